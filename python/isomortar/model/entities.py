@@ -1,0 +1,183 @@
+"""What a computation consists of: bodies, contacts, supports with their motions, stages."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from isomortar.geometry.patch import FloatArray, Patch
+
+
+@dataclass(frozen=True)
+class Material:
+    """Neo-Hookean solid of `formulation.md` Section 1.
+
+    Parameters
+    ----------
+    young : float
+        Young's modulus E, force per area.
+    poisson : float
+        Poisson's ratio, -1 < nu < 0.5.
+    """
+
+    young: float = 10.0
+    poisson: float = 0.3
+
+    @property
+    def bulk(self) -> float:
+        """Bulk modulus A1 = E / (3 (1 - 2 nu))."""
+        return self.young / (3.0 * (1.0 - 2.0 * self.poisson))
+
+    @property
+    def shear(self) -> float:
+        """Shear modulus A2 = E / (2 (1 + nu))."""
+        return self.young / (2.0 * (1.0 + self.poisson))
+
+
+@dataclass(frozen=True)
+class Body:
+    """A deformable body: one volume patch with its material.
+
+    `quadrature` are Gauss points per element and direction. `closed` names the direction ("u", "v", "w")
+    whose last row of control points is the same unknown as the first (a ring), or is None.
+    """
+
+    name: str
+    patch: Patch
+    material: Material
+    quadrature: tuple[int, int, int]
+    closed: Literal["u", "v", "w"] | None = None
+
+
+@dataclass(frozen=True)
+class Face:
+    """A face of a body: a contact patch, or the place of a support."""
+
+    body: str
+    face: str
+
+
+@dataclass(frozen=True)
+class RigidPlane:
+    """A rigid master plane through `point`; coordinates are lengths along `tangent` and `normal` x `tangent`."""
+
+    point: tuple[float, float, float]
+    normal: tuple[float, float, float]
+    tangent: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Contact:
+    """A contact pair. `quadrature` are Gauss points per slave contact element and surface direction.
+
+    `reference_area` divides the penalties (Section 5); None: the area of the slave face in the reference configuration.
+    """
+
+    name: str
+    slave: Face
+    master: Face | RigidPlane
+    friction: float
+    quadrature: tuple[int, int]
+    reference_area: float | None = None
+
+
+@dataclass(frozen=True)
+class Motion:
+    """What a support does during one stage: grows linearly over the stage's load steps.
+
+    `translate`: total vector (length). `rotate`: total angle in degrees, right-hand rule about the support's axis.
+    """
+
+    translate: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    rotate: float = 0.0
+
+
+@dataclass(frozen=True)
+class Support:
+    """Prescribed control points of a face: x = c + u(t) + R(axis, angle(t)) (X - c) in the given components.
+
+    `motions` has one entry a stage. u and angle accumulate over the stages.
+    """
+
+    name: str
+    place: Face
+    motions: tuple[Motion, ...]
+    components: tuple[int, ...] = (0, 1, 2)
+    centre: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    axis: tuple[float, float, float] = (0.0, 0.0, 1.0)
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A part of the load history: `steps` equal load steps, each of them recorded."""
+
+    name: str
+    steps: int
+
+
+@dataclass(frozen=True)
+class SolverSettings:
+    """How contact is enforced and when a load step has converged (`formulation.md` Section 5).
+
+    Parameters
+    ----------
+    method : {"uzawa"}
+        Enforcement of the contact conditions.
+    slip_sum : {"local", "paper"}
+        The trial traction from the control point's own slip, or summed over active neighbours (Section 4).
+    penalty_normal, penalty_tangential : float
+        Base penalties, times the largest diagonal entry of the solid tangent over the reference area.
+    penalty_growth, penalty_growth_max : float
+        Factor per augmentation within a load step and its limit over the base.
+    augmentation_tolerance : float
+    augmentation_norm : {"separate", "paper"}
+        Pressures and tractions tested each in their norm, or the paper's single mixed norm.
+    newton_tolerance : float
+    max_augmentations, max_iterations, max_cuts : int
+        `max_cuts`: how often a load step may be halved.
+    """
+
+    method: Literal["uzawa"] = "uzawa"
+    slip_sum: Literal["local", "paper"] = "local"
+    penalty_normal: float = 100.0
+    penalty_tangential: float = 10.0
+    penalty_growth: float = 2.0
+    penalty_growth_max: float = 200.0
+    augmentation_tolerance: float = 0.01
+    augmentation_norm: Literal["separate", "paper"] = "separate"
+    newton_tolerance: float = 1e-9
+    max_augmentations: int = 100
+    max_iterations: int = 25
+    max_cuts: int = 8
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A whole computation, ready for `isomortar.solve`: plain data, no unknowns, no state.
+
+    Scenes build it (`isomortar.scene`); it can be built by hand as well.
+    """
+
+    name: str
+    bodies: tuple[Body, ...]
+    contacts: tuple[Contact, ...]
+    supports: tuple[Support, ...]
+    stages: tuple[Stage, ...]
+    settings: SolverSettings = field(default_factory=SolverSettings)
+
+    def body(self, name: str) -> Body:
+        """The body of that name."""
+        return next(b for b in self.bodies if b.name == name)
+
+    @property
+    def total_steps(self) -> int:
+        """Number of recorded load steps over all stages."""
+        return sum(stage.steps for stage in self.stages)
+
+
+def unit(vector: tuple[float, float, float]) -> FloatArray:
+    """The vector divided by its length, shape (3,)."""
+    v = np.asarray(vector, dtype=np.float64)
+    return v / np.linalg.norm(v)

@@ -1,0 +1,164 @@
+"""What a computation leaves behind, step by step: plain data that results files store and progress displays show."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from isomortar.geometry.patch import FloatArray, IntArray
+
+
+@dataclass(frozen=True)
+class ContactState:
+    """State of one contact pair, enough to restart.
+
+    Parameters
+    ----------
+    pressure : ndarray, shape (n,)
+        Control pressures p^I of the slave control points, force per area.
+    traction : ndarray, shape (n, 2)
+        Covariant control tractions tau_alpha^I.
+    projection : ndarray, shape (q, 2)
+        Master coordinates of each slave quadrature point at the end of the step.
+    projected : ndarray of int32, shape (q,)
+        1 where the quadrature point has a projection on the master, else 0.
+    """
+
+    pressure: FloatArray
+    traction: FloatArray
+    projection: FloatArray
+    projected: IntArray
+
+
+@dataclass(frozen=True)
+class State:
+    """Positions of all control points, shape (n, 3), and the state of each contact pair."""
+
+    positions: FloatArray
+    contacts: tuple[ContactState, ...]
+
+
+@dataclass(frozen=True)
+class IterationRecord:
+    """One Newton iteration: number, relative residual before the solve, counts of control points by state, what acted."""
+
+    iteration: int
+    residual: float
+    active: int
+    stick: int
+    slip: int
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class AugmentationRecord:
+    """One augmentation (Uzawa) with its Newton iterations and the change of multipliers that it made."""
+
+    augmentation: int
+    penalty_normal: float
+    penalty_tangential: float
+    change_pressure: float
+    change_traction: float
+    iterations: tuple[IterationRecord, ...]
+
+
+@dataclass(frozen=True)
+class Reaction:
+    """Force that a support exerts on its body, moment about the moving centre, and that centre; each shape (3,)."""
+
+    force: FloatArray
+    moment: FloatArray
+    centre: FloatArray
+
+
+@dataclass(frozen=True)
+class ContactResult:
+    """Measured quantities of one contact pair at the end of a load step.
+
+    `force_slave`, `force_master`: resultants of the contact forces on each side, `moment_*` about the origin, shape (3,).
+    `active`, `slip`: numbers of control points. `traction_norm`: metric norm of each control traction, shape (n,).
+    `status`: per slave control point 0 open, 1 stick, 2 slip, shape (n,). `gap`: control gap g^I, shape (n,);
+    positive is penetration. `pressure_field`: smallest and largest p at the contact quadrature points, shape (2,).
+    `excluded`: number of quadrature points without a projection.
+    """
+
+    force_slave: FloatArray
+    force_master: FloatArray
+    moment_slave: FloatArray
+    moment_master: FloatArray
+    active: int
+    slip: int
+    traction_norm: FloatArray
+    status: IntArray
+    gap: FloatArray
+    pressure_field: FloatArray
+    excluded: int
+
+
+@dataclass(frozen=True)
+class StepResult:
+    """One recorded load step.
+
+    Parameters
+    ----------
+    step : int
+        Number of the load step, counted from 1 over all stages.
+    stage : str
+    time : float
+        Load time: equals `step` at recorded steps.
+    state : State
+    reactions : tuple of Reaction
+        One a support.
+    contacts : tuple of ContactResult
+        One a contact pair.
+    augmentations : tuple of AugmentationRecord
+        Iteration log, over all sub-steps.
+    newton_order : float
+        Observed order of Newton's method, median over the converged solves of the step; NaN: too few iterations.
+    substeps, cuts : int
+        Load increments that the step was made of, and how often an increment was cut.
+    next_increment : float
+        Load increment that the step-size control would try next (part of the restart state).
+    timings : dict
+        Seconds by phase: solid, projection, contact, factor, solve, other.
+    counters : dict
+        Kernel counters: solves, factorisations, analyses, projections, ...
+    """
+
+    step: int
+    stage: str
+    time: float
+    state: State
+    reactions: tuple[Reaction, ...]
+    contacts: tuple[ContactResult, ...]
+    augmentations: tuple[AugmentationRecord, ...]
+    newton_order: float
+    substeps: int
+    cuts: int
+    next_increment: float
+    timings: dict[str, float]
+    counters: dict[str, int]
+
+
+class Observer:
+    """Watches a computation; every method may be overridden, none has to be.
+
+    A raised `KeyboardInterrupt` stops the computation; what had been recorded stays.
+    """
+
+    def started(self, total_steps: int, first_step: int) -> None:
+        """Called once before the first load step that is computed."""
+
+    def iteration(self, step: int, time: float, augmentation: int, record: IterationRecord) -> None:
+        """Called after every Newton iteration."""
+
+    def augmented(self, step: int, time: float, record: AugmentationRecord) -> None:
+        """Called after every augmentation."""
+
+    def cut(self, step: int, time: float, increment: float, reason: str) -> None:
+        """Called when a load increment failed and is cut; `increment` is the new one."""
+
+    def recorded(self, result: StepResult) -> None:
+        """Called when a recorded load step is complete."""
+
+    def warned(self, message: str) -> None:
+        """Called with a warning that a person should read."""
