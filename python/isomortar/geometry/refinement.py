@@ -1,0 +1,119 @@
+"""From a coarse exact geometry to a discretisation: k-refinement, and Lagrange elements on the same geometry."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import splinepy
+from scipy.interpolate import BSpline
+
+from isomortar.errors import InputError
+from isomortar.geometry.patch import MAX_ORDER, Direction, Family, FloatArray, Patch
+
+
+def mesh(patch: Patch, families: Sequence[Family], orders: Sequence[int], elements: Sequence[int]) -> Patch:
+    """Discretise a NURBS geometry.
+
+    An ``N`` direction is k-refined: order elevation first, knot insertion second; the geometry does not change.
+    An ``L`` direction interpolates: its nodes lie on the geometry at equally spaced parameters of each element.
+    With ``L`` in all directions every weight is 1 and the nodes are points of the body.
+
+    Parameters
+    ----------
+    patch : Patch
+        NURBS in all three directions.
+    families : three of {"N", "L"}
+    orders : three ints
+        Not below the geometry's own in an ``N`` direction.
+    elements : three ints
+        Elements by direction. Each knot span of the geometry is cut into equal parts, so that they must be a
+        multiple of its number of spans.
+
+    Returns
+    -------
+    Patch
+
+    Raises
+    ------
+    InputError
+        Order or number of elements that the geometry cannot have (`field`: ``order``, ``elements``, ``family``).
+    """
+    _check(patch, families, orders, elements)
+    refined = _k_refined(
+        patch,
+        [p if family == "N" else own.order for family, p, own in zip(families, orders, patch.directions, strict=True)],
+        [n if family == "N" else own.elements for family, n, own in zip(families, elements, patch.directions, strict=True)],
+    )
+    directions = list(refined.directions)
+    grid = _homogeneous(refined)
+    for axis in (a for a in range(3) if families[a] == "L"):
+        source = directions[axis]
+        boundaries = _subdivided(source.boundaries, elements[axis])
+        nodes = _subdivided(boundaries, orders[axis] * elements[axis])
+        grid = BSpline(source.knots, grid, source.order, axis=axis)(nodes)
+        directions[axis] = Direction("L", orders[axis], boundaries)
+    weights = grid[..., 3]
+    points = grid[..., :3] / weights[..., None]
+    if "L" in families:
+        # At a Lagrange node only the ratios of the weights along the NURBS directions mean anything.
+        first = tuple(slice(None) if family == "L" else slice(0, 1) for family in families)
+        weights = weights / weights[first]
+    return Patch((directions[0], directions[1], directions[2]), points.reshape(-1, 3, order="F"), weights.ravel(order="F"))
+
+
+def surface_samples(patch: Patch, face: str, order: int = 4) -> FloatArray:
+    """Points on a face: its nodes as Lagrange elements of that order, shape (n, 3)."""
+    if all(d.family == "N" for d in patch.directions):
+        patch = mesh(patch, "LLL", (order,) * 3, [d.elements for d in patch.directions])
+    return patch.control_points[patch.face_points(face)]
+
+
+def _check(patch: Patch, families: Sequence[Family], orders: Sequence[int], elements: Sequence[int]) -> None:
+    if any(d.family == "L" for d in patch.directions):
+        raise InputError("a patch with Lagrange directions is a mesh already; only its quadrature can be chosen", "family")
+    for name, family, order, count, own in zip("uvw", families, orders, elements, patch.directions, strict=True):
+        lowest = own.order if family == "N" else 1
+        if not lowest <= order <= MAX_ORDER[family]:
+            raise InputError(f"is {order} in direction {name}; allowed for {family} there: {lowest} to {MAX_ORDER[family]}", "order")
+        if count < 1 or count % own.elements:
+            raise InputError(f"is {count} in direction {name}; allowed there: multiples of {own.elements}", "elements")
+
+
+def _k_refined(patch: Patch, orders: Sequence[int], elements: Sequence[int]) -> Patch:
+    """Order elevation, then knot insertion, by splinepy."""
+    properties = {"degrees": [d.order for d in patch.directions], "knot_vectors": [d.knots for d in patch.directions]}
+    if np.all(patch.weights == 1.0):  # plain B-splines keep their weights of exactly 1
+        spline = splinepy.BSpline(**properties, control_points=patch.control_points)
+    else:
+        spline = splinepy.NURBS(**properties, control_points=patch.control_points, weights=patch.weights)
+    raises = [axis for axis, own in enumerate(patch.directions) for _ in range(orders[axis] - own.order)]
+    if raises:
+        spline.elevate_degrees(raises)
+    for axis, own in enumerate(patch.directions):
+        fresh = np.setdiff1d(_subdivided(own.boundaries, elements[axis]), own.boundaries)
+        if len(fresh):
+            spline.insert_knots(axis, fresh)
+    return from_splinepy(spline)
+
+
+def from_splinepy(spline: splinepy.Spline) -> Patch:
+    """The patch of a splinepy volume spline of any kind."""
+    knots = spline.nurbs.knot_vectors
+    directions = tuple(Direction("N", int(p), np.array(k)) for p, k in zip(spline.degrees, knots, strict=True))
+    points = np.array(spline.control_points)
+    weights = np.array(spline.weights).ravel() if spline.is_rational else np.ones(len(points))
+    return Patch((directions[0], directions[1], directions[2]), points, weights)
+
+
+def _homogeneous(patch: Patch) -> FloatArray:
+    """Weighted control points and weights, shape (n1, n2, n3, 4)."""
+    weights = patch.weights[:, None]
+    return np.hstack([patch.control_points * weights, weights]).reshape((*patch.shape, 4), order="F")
+
+
+def _subdivided(boundaries: FloatArray, count: int) -> FloatArray:
+    """`count` spans out of the given ones, each cut into the same number of equal parts."""
+    parts = count // (len(boundaries) - 1)
+    inside = boundaries[:-1, None] + np.diff(boundaries)[:, None] * (np.arange(parts) / parts)
+    return np.append(inside, boundaries[-1])
