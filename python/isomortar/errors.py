@@ -19,6 +19,7 @@ class InputError(IsomortarError, ValueError):
     """
 
     def __init__(self, message: str, field: str | None = None) -> None:
+        self.message = message
         self.field = field
         super().__init__(f"{field}: {message}" if field else message)
 

@@ -118,7 +118,8 @@ class Patch:
         wanted = int(np.prod(self.shape))
         shape = " x ".join(str(n) for n in self.shape)
         if points.shape != (wanted, 3):
-            raise InputError(f"shape is {points.shape}; knots and orders ask for {shape} = {wanted} points of 3 coordinates", "control_points")
+            message = f"shape is {points.shape}; knots and orders ask for {shape} = {wanted} points of 3 coordinates"
+            raise InputError(message, "control_points")
         if weights.shape != (wanted,):
             raise InputError(f"has {weights.size} values; knots and orders ask for {shape} = {wanted}", "weights")
         if not np.all(np.isfinite(points)):

@@ -65,7 +65,7 @@ def mesh(patch: Patch, families: Sequence[Family], orders: Sequence[int], elemen
 def surface_samples(patch: Patch, face: str, order: int = 4) -> FloatArray:
     """Points on a face: its nodes as Lagrange elements of that order, shape (n, 3)."""
     if all(d.family == "N" for d in patch.directions):
-        patch = mesh(patch, "LLL", (order,) * 3, [d.elements for d in patch.directions])
+        patch = mesh(patch, ("L", "L", "L"), (order,) * 3, [d.elements for d in patch.directions])
     return patch.control_points[patch.face_points(face)]
 
 

@@ -1,0 +1,197 @@
+"""From the tables of a scene file to the plain data of a `Problem`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from isomortar.errors import InputError
+from isomortar.geometry.patch import FACES, Direction, Patch
+from isomortar.geometry.quadrature import contact_points, volume_points
+from isomortar.geometry.refinement import mesh
+from isomortar.model.entities import Body, Contact, Face, Material, Motion, Problem, RigidPlane, Stage, Support
+from isomortar.scene.geometry_file import read_geometry
+from isomortar.scene.messages import located
+from isomortar.scene.schema import BodyTable, ContactTable, MeshTable, PlaneTable, SceneTable, SupportTable
+from isomortar.scene.types import listed
+
+#: Scenes above this number of unknowns are taken for mistakes: their factorisation would not fit a large machine.
+MAX_UNKNOWNS = 5_000_000
+
+
+def build(scene: SceneTable, name: str, folder: Path) -> Problem:
+    """The problem that a validated scene describes.
+
+    Parameters
+    ----------
+    scene : SceneTable
+    name : str
+        Name where the scene has none.
+    folder : Path
+        Where geometry files lie.
+
+    Raises
+    ------
+    InputError
+        References to what does not exist, impossible geometry or discretisation.
+    """
+    coarse = {body: coarse_patch(body, table, folder) for body, table in scene.bodies.items()}
+    meshes = {body: _MeshPlan.of(table, coarse[body]) for body, table in scene.bodies.items()}
+    _check_size(meshes)
+    bodies = tuple(_body(body, table, coarse[body], meshes[body], _material(scene, body)) for body, table in scene.bodies.items())
+    by_name = {body.name: body for body in bodies}
+    return Problem(
+        name=scene.name or name,
+        bodies=bodies,
+        contacts=tuple(_contact(contact, table, by_name) for contact, table in scene.contacts.items()),
+        supports=tuple(_support(support, table, by_name, _motions(scene, support)) for support, table in scene.supports.items()),
+        stages=_stages(scene),
+        settings=scene.solver.settings(),
+    )
+
+
+def coarse_patch(name: str, table: BodyTable, folder: Path) -> Patch:
+    """Geometry of a body before its discretisation."""
+    if table.geometry is not None:
+        with located(f"bodies.{name}.geometry"):
+            return table.geometry.patch()
+    if table.file is not None:
+        with located(f"bodies.{name}.file"):
+            return read_geometry(folder / table.file)
+    assert table.patch is not None  # BodyTable has exactly one of the three
+    with located(f"bodies.{name}.patch"):
+        return table.patch.patch()
+
+
+class _MeshPlan:
+    """Families, orders and numbers of elements that a body is to have, with the defaults filled in."""
+
+    def __init__(self, table: MeshTable, own: tuple[Direction, ...], lowest_order: int) -> None:
+        self.asked_for = bool(table.model_fields_set - {"quadrature"}) or lowest_order > 1
+        self.families = table.family if "family" in table.model_fields_set else tuple(d.family for d in own)
+        self.orders = table.order or tuple(max(d.order, lowest_order) for d in own)
+        self.elements = table.elements or tuple(d.elements for d in own)
+
+    @classmethod
+    def of(cls, table: BodyTable, coarse: Patch) -> _MeshPlan:
+        return cls(table.mesh, coarse.directions, 1 if table.geometry is None else 2)
+
+    @property
+    def control_points(self) -> int:
+        """Their number, inner knots counted once: known before any array is made."""
+        counts = [n + p if f == "N" else n * p + 1 for f, p, n in zip(self.families, self.orders, self.elements, strict=True)]
+        return counts[0] * counts[1] * counts[2]
+
+
+def _check_size(meshes: dict[str, _MeshPlan]) -> None:
+    unknowns = {name: 3 * plan.control_points for name, plan in meshes.items()}
+    if sum(unknowns.values()) > MAX_UNKNOWNS:
+        largest = max(unknowns, key=lambda name: unknowns[name])
+        raise InputError(
+            f"the scene would have {sum(unknowns.values())} unknowns, {unknowns[largest]} of them here; allowed: {MAX_UNKNOWNS}",
+            f"bodies.{largest}.mesh.elements",
+        )
+
+
+def _body(name: str, table: BodyTable, coarse: Patch, plan: _MeshPlan, material: Material) -> Body:
+    patch = coarse
+    if plan.asked_for:
+        with located(f"bodies.{name}.mesh"):
+            patch = mesh(coarse, plan.families, plan.orders, plan.elements)
+    u, v, w = patch.directions
+    quadrature = table.mesh.quadrature or (volume_points(u), volume_points(v), volume_points(w))
+    closed = table.closed or (table.geometry.closed if table.geometry else None)
+    if closed:
+        _check_closed(name, patch, closed)
+    return Body(name, patch, material, quadrature, closed)
+
+
+def _check_closed(name: str, patch: Patch, closed: str) -> None:
+    first, last = patch.face_points(f"{closed}0"), patch.face_points(f"{closed}1")
+    distance = np.abs(patch.control_points[first] - patch.control_points[last]).max()
+    size = np.ptp(patch.control_points, axis=0).max()
+    if distance > 1e-9 * size or not np.allclose(patch.weights[first], patch.weights[last], rtol=1e-9):
+        raise InputError(
+            f"is {closed!r}, but the first and last control points along {closed} differ (by {distance:g}, or in their weights)",
+            f"bodies.{name}.closed",
+        )
+
+
+def _material(scene: SceneTable, body: str) -> Material:
+    names, wanted, field = list(scene.materials), scene.bodies[body].material, f"bodies.{body}.material"
+    if wanted is None and len(names) > 1:
+        raise InputError(f"is missing, but must be given where there are several; allowed: {', '.join(names)}", field)
+    if wanted is not None and wanted not in names:
+        raise InputError(f"there is no material {wanted!r}; allowed: {listed(wanted, names)}", field)
+    if not names:
+        return Material()
+    table = scene.materials[wanted or names[0]]
+    return Material(table.young, table.poisson)
+
+
+def _face(text: str, bodies: dict[str, Body], field: str) -> Face:
+    body, _, face = text.rpartition(".")
+    if body not in bodies:
+        raise InputError(f"is {text!r}, but there is no body {body!r}; allowed: BODY.FACE with BODY one of {listed(body, bodies)}", field)
+    faces = [f for f in FACES if f[0] != bodies[body].closed]
+    if face not in faces:
+        closed = f" ({body} is closed in {bodies[body].closed})" if face in FACES else ""
+        raise InputError(f"is {text!r}, but {body} has no face {face!r}{closed}; allowed: {', '.join(faces)}", field)
+    return Face(body, face)
+
+
+def _contact(name: str, table: ContactTable, bodies: dict[str, Body]) -> Contact:
+    path = f"contacts.{name}"
+    slave = _face(table.slave, bodies, f"{path}.slave")
+    master: Face | RigidPlane
+    master = _plane(table.plane, f"{path}.plane") if table.plane else _face(str(table.master), bodies, f"{path}.master")
+    if master == slave:
+        raise InputError(f"is the slave face {table.slave!r} itself; allowed: another face", f"{path}.master")
+    first, second = bodies[slave.body].patch.face_directions(slave.face)
+    quadrature = table.quadrature or (contact_points(first), contact_points(second))
+    return Contact(name, slave, master, table.friction, quadrature, table.reference_area)
+
+
+def _plane(table: PlaneTable, path: str) -> RigidPlane:
+    normal = np.array(_unit(table.normal, f"{path}.normal"))
+    wanted = table.tangent or ((1.0, 0.0, 0.0) if abs(normal[0]) < 0.9 else (0.0, 1.0, 0.0))
+    tangent = np.array(_unit(wanted, f"{path}.tangent"))
+    tangent -= (tangent @ normal) * normal
+    if np.linalg.norm(tangent) < 1e-6:
+        raise InputError(f"is {list(wanted)}, parallel to the normal; allowed: any other direction", f"{path}.tangent")
+    return RigidPlane(table.point, _floats(normal), _unit(_floats(tangent), f"{path}.tangent"))
+
+
+def _unit(vector: tuple[float, float, float], path: str) -> tuple[float, float, float]:
+    scale = max(abs(c) for c in vector)
+    if scale == 0.0:
+        raise InputError("is a vector of length zero; allowed: any other", path)
+    scaled = np.array(vector) / scale  # keeps squares of tiny and huge components in range
+    return _floats(scaled / np.linalg.norm(scaled))
+
+
+def _floats(vector: Any) -> tuple[float, float, float]:
+    return float(vector[0]), float(vector[1]), float(vector[2])
+
+
+def _support(name: str, table: SupportTable, bodies: dict[str, Body], motions: tuple[Motion, ...]) -> Support:
+    place = _face(table.face, bodies, f"supports.{name}.face")
+    components = tuple(sorted("xyz".index(c) for c in table.components))
+    return Support(name, place, motions, components, table.centre, _unit(table.axis, f"supports.{name}.axis"))
+
+
+def _motions(scene: SceneTable, support: str) -> tuple[Motion, ...]:
+    return tuple(stage.motions[support].motion() if support in stage.motions else Motion() for stage in scene.stages)
+
+
+def _stages(scene: SceneTable) -> tuple[Stage, ...]:
+    for number, stage in enumerate(scene.stages):
+        for name in stage.motions:
+            if name not in scene.supports:
+                field = f"stages.{stage.name}.motions.{name}"
+                raise InputError(f"there is no such support; allowed: {listed(name, scene.supports)}", field)
+        if stage.name in [other.name for other in scene.stages[:number]]:
+            raise InputError(f"{stage.name!r} is the name of two stages; allowed: a name for each", f"stages.{number}.name")
+    return tuple(Stage(stage.name, stage.steps) for stage in scene.stages)

@@ -1,0 +1,101 @@
+"""Is a problem well posed? What can be known before any work is said before any work."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+
+from isomortar.errors import InputError
+from isomortar.geometry.patch import FloatArray, IntArray
+from isomortar.geometry.refinement import surface_samples
+from isomortar.model.entities import Body, Contact, Face, Problem, Support
+
+
+def check(problem: Problem) -> None:
+    """Refuse problems that cannot have a solution, or not a single one.
+
+    Raises
+    ------
+    InputError
+        A body that nothing holds; supports that contradict each other.
+    """
+    _check_held(problem)
+    for one, other in combinations(problem.supports, 2):
+        if one.place.body == other.place.body:
+            _check_agreement(problem.body(one.place.body), one, other)
+
+
+def _check_held(problem: Problem) -> None:
+    """Every body needs a support, or must touch a held body from the start."""
+    held = {support.place.body for support in problem.supports}
+    touching = [c for c in problem.contacts if _touch(problem, c)]
+    for _ in problem.bodies:
+        for contact in touching:
+            assert isinstance(contact.master, Face)  # a plane holds nobody
+            pair = {contact.slave.body, contact.master.body}
+            if pair & held:
+                held |= pair
+    in_contact = {place.body for c in problem.contacts for place in (c.slave, c.master) if isinstance(place, Face)}
+    for body in problem.bodies:
+        if body.name not in held:
+            raise InputError(
+                f"body {body.name!r} is free: it has no support and touches no held body at the start; add a support on one of its faces",
+                f"bodies.{body.name}",
+            )
+        if body.name not in in_contact and _rigid_rank(problem, body) < 6:
+            raise InputError(
+                f"body {body.name!r} is free to move: its supports leave a rigid motion, and it is in no contact; support more components",
+                f"bodies.{body.name}",
+            )
+
+
+def _touch(problem: Problem, contact: Contact) -> bool:
+    """Whether two deformable faces may touch in the reference configuration: their bounding boxes meet."""
+    if not isinstance(contact.master, Face):
+        return False
+    slave = surface_samples(problem.body(contact.slave.body).patch, contact.slave.face)
+    master = surface_samples(problem.body(contact.master.body).patch, contact.master.face)
+    margin = 0.01 * np.ptp(slave, axis=0).max()
+    return bool(np.all(slave.min(axis=0) - margin <= master.max(axis=0)) and np.all(master.min(axis=0) - margin <= slave.max(axis=0)))
+
+
+def _rigid_rank(problem: Problem, body: Body) -> int:
+    """How many of the six rigid motions of a body its supports prevent."""
+    rows = []
+    for support in (s for s in problem.supports if s.place.body == body.name):
+        points = body.patch.control_points[body.patch.face_points(support.place.face)]
+        arms = (points - body.patch.control_points.mean(axis=0)) / np.ptp(body.patch.control_points, axis=0).max()
+        for component in support.components:
+            direction = np.zeros_like(arms)
+            direction[:, component] = 1.0
+            rows.append(np.hstack([direction, np.cross(arms, direction)]))
+    return int(np.linalg.matrix_rank(np.vstack(rows), tol=1e-9)) if rows else 0
+
+
+def _check_agreement(body: Body, one: Support, other: Support) -> None:
+    """Two supports may share control points only where they prescribe the same."""
+    shared = np.intersect1d(_unknowns(body, one), _unknowns(body, other))
+    for component in sorted(set(one.components) & set(other.components)):
+        if len(shared) and not _agree(one, other, component):
+            x, y, z = body.patch.control_points[shared[0]]
+            raise InputError(
+                f"prescribes {'xyz'[component]} of {len(shared)} control points (the first at {x:g}, {y:g}, {z:g}) "
+                f"that support {one.name!r} moves differently; allowed: the same motion, or that component in only one of the two",
+                f"supports.{other.name}",
+            )
+
+
+def _unknowns(body: Body, support: Support) -> IntArray:
+    """Numbers of the control points of a support, those of a closed seam by their first number."""
+    numbers = np.arange(len(body.patch.control_points), dtype=np.int32)
+    if body.closed:
+        numbers[body.patch.face_points(f"{body.closed}1")] = body.patch.face_points(f"{body.closed}0")
+    return numbers[body.patch.face_points(support.place.face)]
+
+
+def _agree(one: Support, other: Support, component: int) -> bool:
+    if not any(motion.rotate for motion in (*one.motions, *other.motions)):
+        paths: list[FloatArray] = [np.array([motion.translate[component] for motion in s.motions]) for s in (one, other)]
+        return bool(np.array_equal(paths[0], paths[1]))
+    return (one.motions, one.centre, one.axis) == (other.motions, other.centre, other.axis)

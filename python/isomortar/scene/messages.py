@@ -1,0 +1,71 @@
+"""What pydantic found wrong, as one `InputError` that names the key of the scene file and what it allows."""
+
+from __future__ import annotations
+
+import reprlib
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+from pydantic import ValidationError
+from pydantic_core import ErrorDetails
+
+from isomortar.errors import InputError
+
+
+def input_error(error: ValidationError, data: Any) -> InputError:
+    """The first fault as an `InputError`, further ones as lines of its message.
+
+    Parameters
+    ----------
+    error : ValidationError
+    data : dict
+        What was validated.
+    """
+    faults = [(_field(fault, data), _sentence(fault)) for fault in error.errors()]
+    field, message = faults[0]
+    return InputError("\n".join([message, *(f"{path}: {sentence}" for path, sentence in faults[1:])]), field)
+
+
+@contextmanager
+def located(path: str) -> Iterator[None]:
+    """Puts `path` before the field that an `InputError` from inside names."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(error.message, f"{path}.{error.field}" if error.field else path) from error
+
+
+def _field(fault: ErrorDetails, data: Any) -> str:
+    """Dotted path of the key, list entries by their name where they have one."""
+    location = list(fault["loc"])
+    if fault["type"] == "unknown_key":
+        location.append(fault["ctx"]["key"])
+    elif fault["type"].startswith("union_tag"):
+        location.append(fault["ctx"]["discriminator"].strip("'"))
+    parts: list[str] = []
+    for depth, key in enumerate(location):
+        if isinstance(data, dict) and (key in data or depth == len(location) - 1) and key != "[key]":
+            parts.append(str(key))
+            data = data.get(key)
+        elif isinstance(data, Sequence) and not isinstance(data, str) and isinstance(key, int) and key < len(data):
+            data = data[key]
+            parts.append(str(data.get("name", key) if isinstance(data, dict) else key))
+        # What is left over are pydantic's own labels (a union's tag) and places in a value given once for all directions.
+    return ".".join(parts)
+
+
+def _sentence(fault: ErrorDetails) -> str:
+    given, message = reprlib.repr(fault["input"]), fault["msg"]
+    match fault["type"]:
+        case "missing" | "union_tag_not_found":
+            return "is missing, but must be given"
+        case "union_tag_invalid":
+            return f"is {fault['ctx']['tag']!r}; allowed: {fault['ctx']['expected_tags']}"
+        case "string_pattern_mismatch":
+            return f"name {given} has other characters than are allowed: letters, digits, _ and -"
+        case "too_short" | "too_long":
+            return f"has {fault['ctx']['actual_length']} entries; allowed: " + message.split(" should have ")[1].split(" after")[0]
+    if message.startswith("Input should be "):
+        return f"is {given}; allowed: " + message.removeprefix("Input should be ")
+    return message

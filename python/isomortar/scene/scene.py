@@ -1,0 +1,118 @@
+"""A scene: what a scene file says, and the problem that it describes."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from isomortar.model.entities import Problem
+from isomortar.scene.build import build, coarse_patch
+from isomortar.scene.checks import check
+from isomortar.scene.geometry_file import patch_table
+from isomortar.scene.messages import input_error
+from isomortar.scene.schema import CurveTable, RecordTable, SceneTable
+from isomortar.scene.source import apply_overrides, dump, parse, read_source
+
+
+class Scene:
+    """A validated scene.
+
+    Use `Scene.load` (file or bundled scene) or `Scene.from_toml` (text).
+
+    Parameters
+    ----------
+    text : str
+        TOML text of the scene file.
+    name : str
+        Short name where the text gives none.
+    folder : Path
+        Where its geometry files lie.
+    overrides : iterable of str
+        ``path=value`` each, see `isomortar.scene.source.apply_overrides`.
+
+    Attributes
+    ----------
+    name, title : str
+    tables : SceneTable
+        The content, with defaults.
+
+    Raises
+    ------
+    InputError
+        Not TOML, unknown keys, impossible values; `field` is the dotted path of the key.
+    """
+
+    def __init__(self, text: str, name: str, folder: Path, overrides: Iterable[str] = ()) -> None:
+        self._text, self._folder = text, folder
+        self._data = parse(text, name)
+        apply_overrides(self._data, overrides)
+        try:
+            self.tables = SceneTable.model_validate(self._data)
+        except ValidationError as error:
+            raise input_error(error, self._data) from error
+        self.name = self.tables.name or name
+        self.title = self.tables.title
+
+    @classmethod
+    def load(cls, source: str | Path, overrides: Iterable[str] = ()) -> Scene:
+        """A scene from a file, or a bundled one by its name.
+
+        Parameters
+        ----------
+        source : str or Path
+            Path of a scene file, or a name of `bundled_scenes`.
+        overrides : iterable of str
+            Changes of single values, e.g. ``bodies.master.mesh.order=[3, 2, 2]``.
+        """
+        return cls(*read_source(source), overrides)
+
+    @classmethod
+    def from_toml(cls, text: str, folder: str | Path = ".", overrides: Iterable[str] = ()) -> Scene:
+        """A scene from the text of a scene file; `folder` is where its geometry files lie."""
+        return cls(text, "scene", Path(folder), overrides)
+
+    def problem(self) -> Problem:
+        """The problem that the scene describes, checked as far as it can be before any work.
+
+        Raises
+        ------
+        InputError
+            References to what does not exist, impossible geometry, a body that nothing holds, contradicting supports.
+        """
+        problem = build(self.tables, self.name, self._folder)
+        check(problem)
+        return problem
+
+    @property
+    def record(self) -> RecordTable:
+        """What results are to keep."""
+        return self.tables.record
+
+    def curves(self) -> tuple[CurveTable, ...]:
+        """The curves to draw: the scene's own, or force and moment of every support that moves."""
+        if self.record.curves is not None:
+            return tuple(self.record.curves)
+        moving = [name for name in self.tables.supports if any(name in stage.motions for stage in self.tables.stages)]
+        return tuple(
+            CurveTable(name=f"{name} {quantity} {component}", support=name, quantity=quantity, component=component)
+            for name in moving
+            for quantity in ("force", "moment")
+            for component in ("x", "y", "z")
+        )
+
+    def to_toml(self) -> str:
+        """Text of a scene file that needs no other file: overrides applied, name given, geometry files written out.
+
+        The scene's own text where that says it all already.
+        """
+        data: dict[str, Any] = copy.deepcopy(self._data)
+        data["name"] = self.name
+        for name, table in self.tables.bodies.items():
+            if table.file is not None:
+                del data["bodies"][name]["file"]
+                data["bodies"][name]["patch"] = patch_table(coarse_patch(name, table, self._folder))
+        return self._text if data == parse(self._text, self.name) else dump(data)

@@ -1,0 +1,117 @@
+"""Where a scene comes from: a file or a bundled scene, and overrides of single values."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Iterable
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import tomlkit
+
+from isomortar.errors import InputError
+from isomortar.scene.types import listed
+
+_BUNDLED = resources.files("isomortar.scene") / "bundled"
+
+#: Tables whose entries have names of their own: an override cannot add one.
+_NAMED = ("materials", "bodies", "contacts", "supports")
+
+
+def bundled_scenes() -> tuple[str, ...]:
+    """Names of the scenes that come with the package."""
+    return tuple(sorted(entry.name.removesuffix(".toml") for entry in _BUNDLED.iterdir() if entry.name.endswith(".toml")))
+
+
+def read_source(source: str | Path) -> tuple[str, str, Path]:
+    """Text, short name and folder of a scene file or of a bundled scene.
+
+    Raises
+    ------
+    InputError
+        Neither a file nor the name of a bundled scene.
+    """
+    names = bundled_scenes()
+    if str(source) in names:
+        return (_BUNDLED / f"{source}.toml").read_text(encoding="utf-8"), str(source), Path()
+    path = Path(source)
+    if not path.is_file():
+        raise InputError(f"there is no scene file {str(source)!r}, and the bundled scenes are: {listed(str(source), names)}")
+    try:
+        return path.read_text(encoding="utf-8"), path.stem, path.parent
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path} is not a text file in UTF-8: {error}") from error
+
+
+def parse(text: str, name: str) -> dict[str, Any]:
+    """TOML text as a dictionary; `name` says in errors what it is."""
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"{name} is not valid TOML: {error}") from error
+
+
+def dump(data: dict[str, Any]) -> str:
+    """A dictionary as TOML text."""
+    return tomlkit.dumps(data)
+
+
+def apply_overrides(data: dict[str, Any], overrides: Iterable[str]) -> None:
+    """Change single values in place.
+
+    Parameters
+    ----------
+    data : dict
+        A scene file's content.
+    overrides : iterable of str
+        ``path=value`` each: a dotted path (stages by name or number) and a TOML value; a bare word is taken as text.
+
+    Raises
+    ------
+    InputError
+        Not of that form, or no such body, stage, ... (unknown keys are found by the validation that follows).
+    """
+    for override in overrides:
+        path, equals, value = (part.strip() for part in override.partition("="))
+        if not equals or not re.fullmatch(r"[\w-]+(\.[\w-]+)*", path):
+            raise InputError(f"override {override!r} is not of the form path=value, e.g. solver.max_cuts=4")
+        _set(data, path, _value(value, override))
+
+
+def _value(text: str, override: str) -> Any:
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError as error:
+        if re.fullmatch(r"[A-Za-z][\w./-]*", text):
+            return text
+        raise InputError(f'value of override {override!r} is not a TOML value (number, [list], true, "text"): {error}') from error
+
+
+def _set(data: dict[str, Any], path: str, value: Any) -> None:
+    parts = path.split(".")
+    node: Any = data
+    for depth, part in enumerate(parts):
+        here = ".".join(parts[: depth + 1])
+        key: str | int = part
+        if isinstance(node, list):
+            key = _index(node, part, here)
+        elif not isinstance(node, dict):
+            raise InputError(f"cannot be set: {'.'.join(parts[:depth])} is the single value {node!r}", path)
+        elif depth == 1 and parts[0] in _NAMED and part not in node:
+            raise InputError(f"an override changes what the scene has; {parts[0]} there: {listed(part, node)}", here)
+        elif part not in node:
+            node[part] = {}
+        if depth == len(parts) - 1:
+            node[key] = value
+        node = node[key]
+
+
+def _index(entries: list[Any], part: str, path: str) -> int:
+    names = [entry.get("name", "") if isinstance(entry, dict) else "" for entry in entries]
+    if part in names:
+        return names.index(part)
+    if part.isdecimal() and int(part) < len(entries):
+        return int(part)
+    raise InputError(f"no such entry; allowed: 0 to {len(entries) - 1}" + (f", {listed(part, names)}" if any(names) else ""), path)
