@@ -1,0 +1,33 @@
+# What a person does with a working copy. `make` alone prints this list.
+.DEFAULT_GOAL := help
+.PHONY: help setup demo test lint format
+
+# One BLAS thread is as fast as two on systems of this size; the cores go to cases.
+export OPENBLAS_NUM_THREADS ?= 1
+
+BIN := .venv/bin
+READY := .venv/set-up
+
+help: ## print this list
+	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 16
+
+setup: $(READY) ## install what is missing, build, once
+
+$(READY): pyproject.toml tools/setup.sh
+	@bash tools/setup.sh
+
+demo: $(READY) ## run the ironing scene; curve and picture go to results/
+	@mkdir -p results
+	$(BIN)/isomortar run iron --output results/iron.h5
+	$(BIN)/isomortar plot results/iron.h5
+
+test: lint ## linters, then all tests
+	$(BIN)/python -m pytest
+
+lint: $(READY) ## formatters and linters, nothing is changed
+	@bash tools/lint.sh
+
+format: $(READY) ## put Python and Fortran files into the common format
+	$(BIN)/ruff check --quiet --fix-only .
+	$(BIN)/ruff format .
+	@bash tools/format_fortran.sh

@@ -1,0 +1,37 @@
+#!/usr/bin/env bash
+# Formatters and linters in check mode, all of them even when one complains; fails if any did.
+set -uo pipefail
+cd "$(dirname "$0")/.."
+export PATH="$PWD/.venv/bin:$PATH"
+
+failed=()
+check() {
+  local name=$1
+  shift
+  printf '==> %s\n' "$name"
+  "$@" || failed+=("$name")
+}
+
+# The kernel with run-time checks compiled in, every compiler warning an error.
+compile_without_warnings() {
+  [ -f build/debug/build.ninja ] || meson setup build/debug --buildtype=debug -Dwerror=true >/dev/null || return
+  ninja --quiet -C build/debug
+}
+
+# Without the import hook of the editable install, behind which import-linter finds no files.
+layers() {
+  PYTHONPATH=python:$(python -c 'import sysconfig; print(sysconfig.get_path("purelib"))') python -S .venv/bin/lint-imports --no-logo
+}
+
+check "Python format (ruff format)" ruff format --quiet --check .
+check "Python (ruff)" ruff check --quiet --output-format=concise .
+check "types (mypy)" mypy
+check "layers of the package (import-linter)" layers
+check "Fortran format (findent)" bash tools/format_fortran.sh --check
+check "Fortran (fortitude)" fortitude check --quiet --output-format=concise
+check "compiler warnings" compile_without_warnings
+
+if [ ${#failed[@]} -gt 0 ]; then
+  printf 'failed: %s\n' "${failed[@]}" >&2
+  exit 1
+fi

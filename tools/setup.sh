@@ -1,0 +1,71 @@
+#!/usr/bin/env bash
+# Set up a working copy: system packages (Debian), the virtual environment .venv, the package itself (editable).
+# Installs only what is missing, and says so before it does. Called by `make`, which repeats it only when needed.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+say() { printf '==> %s\n' "$*"; }
+fail() { printf 'set-up stopped: %s\n' "$*" >&2; exit 1; }
+
+# Does `python3 -c CODE` succeed?
+python_can() { python3 -c "$1" 2>/dev/null; }
+python_has_headers() { python_can 'import pathlib, sysconfig; raise SystemExit(not pathlib.Path(sysconfig.get_path("include"), "Python.h").exists())'; }
+python_has_venv() { python_can 'import ensurepip, venv'; }
+
+missing_packages() {
+  local package
+  for package in gcc gfortran libc6-dev libopenblas-dev libsuitesparse-dev; do
+    [ "$(dpkg-query --show --showformat='${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || echo "$package"
+  done
+  python_has_headers || echo python3-dev
+  python_has_venv || echo python3-venv
+}
+
+install_system_packages() {
+  local packages as_root=()
+  if ! command -v apt-get >/dev/null; then
+    say "This is not Debian: taking the compilers gcc and gfortran, OpenBLAS, SuiteSparse and Python's headers to be installed."
+    return
+  fi
+  mapfile -t packages < <(missing_packages)
+  [ ${#packages[@]} -gt 0 ] || return 0
+  if [ "$(id -u)" -ne 0 ]; then
+    # With nobody at the keyboard, sudo is of use only if it asks no password.
+    if command -v sudo >/dev/null && { [ -t 0 ] || sudo -n true 2>/dev/null; }; then
+      as_root=(sudo)
+    else
+      fail "system packages are missing, and this account can not install them. Ask an administrator to run
+    apt-get update && apt-get install ${packages[*]}
+then repeat your command."
+    fi
+  fi
+  say "Installing system packages${as_root:+ with sudo}: ${packages[*]}"
+  "${as_root[@]}" apt-get update -q
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${packages[@]}"
+}
+
+check_python() {
+  python_can 'import sys; raise SystemExit(sys.version_info < (3, 11))' ||
+    fail "Python 3.11 or later is needed; python3 is $(command -v python3 || echo missing), $(python3 --version 2>&1 || true)"
+  python_has_headers || fail "$(command -v python3) has no header files (Python.h): put a python3 that has them first on PATH"
+  python_has_venv || fail "$(command -v python3) can not make virtual environments: put a python3 that can first on PATH"
+}
+
+make_environment() {
+  if ! .venv/bin/python -c '' 2>/dev/null; then
+    say "Making the virtual environment .venv with $(python3 --version)"
+    python3 -m venv --clear .venv
+  fi
+  # The build runs meson and ninja of the environment, activated or not.
+  export PATH="$PWD/.venv/bin:$PATH"
+  say "Installing into .venv: the Python packages that pyproject.toml names (build, dev, dependencies), then isomortar (compiles the kernel)"
+  python -m pip install --quiet --upgrade 'pip>=25.1'
+  python -m pip install --quiet --group build --group dev
+  python -m pip install --quiet --no-build-isolation --editable .
+}
+
+install_system_packages
+check_python
+make_environment
+touch .venv/set-up
+say "Set-up is complete."
