@@ -1,0 +1,246 @@
+!> Functions and reference areas at the quadrature points of a slave face (isomortar_contact_slave).
+!> `nodes` are numbered within the face, from 0.
+subroutine slave_tables(layout, knots, nknots, point, weight, npoints, axis, side, gauss, reference, n, &
+    nlocal, nelements, nquad, nodes, basis, area)
+  use iso_c_binding
+  use isomortar_api_unpack, only: unpack_patch
+  use isomortar_contact_slave, only: tables => slave_tables
+  use isomortar_nurbs_surface, only: face_of
+  implicit none
+  integer(c_int), intent(in) :: nknots, npoints, n, nlocal, nelements, nquad
+  integer(c_int), intent(in) :: layout(9), axis, side, gauss(2), point(npoints)
+  real(c_double), intent(in) :: knots(nknots), weight(npoints), reference(3, n)
+  integer(c_int), intent(out) :: nodes(nlocal, nelements)
+  real(c_double), intent(out) :: basis(nlocal, nquad), area(nquad)
+
+  call tables(face_of(unpack_patch(layout, knots, point, weight), axis, side), gauss, reference, nodes, basis, area)
+  nodes = nodes - 1
+end subroutine slave_tables
+
+!> Project every slave quadrature point (isomortar_contact_control). `xi` holds starts where `started` is 1.
+subroutine project_points(nodes, basis, area, point, nlocal, nelements, nquad, nslave, kind, knots, nknots, master_point, &
+    master_weight, nmaster, x, n, started, origin, had, xi, element, found, slip, slips, status, place)
+  use iso_c_binding
+  use isomortar_api_unpack, only: unpack_master, unpack_slave
+  use isomortar_contact_control, only: project => project_points, projections_t
+  implicit none
+  integer(c_int), intent(in) :: nlocal, nelements, nquad, nslave, nknots, nmaster, n
+  integer(c_int), intent(in) :: nodes(nlocal, nelements), point(nslave), kind(11), master_point(nmaster)
+  integer(c_int), intent(in) :: started(nquad), had(nquad)
+  real(c_double), intent(in) :: basis(nlocal, nquad), area(nquad), knots(nknots), master_weight(nmaster), x(3, n)
+  real(c_double), intent(in) :: origin(2, nquad)
+  real(c_double), intent(inout) :: xi(2, nquad)
+  integer(c_int), intent(out) :: element(2, nquad), found(nquad), slips(nquad)
+  real(c_double), intent(out) :: slip(2, nquad)
+  integer(c_int), intent(out) :: status, place
+  type(projections_t) :: projections
+
+  allocate (projections%place(2, nquad), projections%found(nquad), projections%slip(2, nquad), projections%slips(nquad))
+  projections%xi = xi
+  projections%place = 0
+  projections%found = .false.
+  call project(unpack_slave(nodes, basis, area, point), unpack_master(kind, knots, master_point, master_weight), x, &
+    started /= 0, origin, had /= 0, projections, status, place)
+  xi = projections%xi
+  element = projections%place - 1
+  found = merge(1, 0, projections%found)
+  slip = 0.0_c_double
+  slips = 0
+  if (status /= 0) return
+  slip = projections%slip
+  slips = merge(1, 0, projections%slips)
+end subroutine project_points
+
+!> Control quantities from projections (isomortar_contact_control).
+subroutine control_quantities(nodes, basis, area, point, nlocal, nelements, nquad, nslave, kind, knots, nknots, master_point, &
+    master_weight, nmaster, x, n, xi, element, found, slip, weight, square, gap, control_slip, metric, point_metric)
+  use iso_c_binding
+  use isomortar_api_unpack, only: unpack_master, unpack_slave
+  use isomortar_contact_control, only: control_t, integrate => control_quantities, projections_t
+  implicit none
+  integer(c_int), intent(in) :: nlocal, nelements, nquad, nslave, nknots, nmaster, n
+  integer(c_int), intent(in) :: nodes(nlocal, nelements), point(nslave), kind(11), master_point(nmaster)
+  integer(c_int), intent(in) :: element(2, nquad), found(nquad)
+  real(c_double), intent(in) :: basis(nlocal, nquad), area(nquad), knots(nknots), master_weight(nmaster), x(3, n)
+  real(c_double), intent(in) :: xi(2, nquad), slip(2, nquad)
+  real(c_double), intent(out) :: weight(nslave), square(nslave), gap(nslave), control_slip(2, nslave), metric(3, nslave)
+  real(c_double), intent(out) :: point_metric(3, nquad)
+  type(projections_t) :: projections
+  type(control_t) :: control
+
+  projections%xi = xi
+  projections%place = element + 1
+  projections%found = found /= 0
+  projections%slip = slip
+  allocate (control%weight(nslave), control%square(nslave), control%gap(nslave), control%slip(2, nslave), &
+    control%metric(3, nslave), control%point_metric(3, nquad))
+  call integrate(unpack_slave(nodes, basis, area, point), unpack_master(kind, knots, master_point, master_weight), x, projections, &
+    control)
+  weight = control%weight
+  square = control%square
+  gap = control%gap
+  control_slip = control%slip
+  metric = control%metric
+  point_metric = control%point_metric
+end subroutine control_quantities
+
+!> Control pressures, tractions, states and their slopes of the augmented law (isomortar_contact_augmentation).
+!> `field_slip` is the field of control slips at the quadrature points, with `summed` only.
+subroutine augmented_multipliers(nodes, basis, area, point, nlocal, nelements, nquad, nslave, weight, square, gap, control_slip, &
+    metric, point_metric, summed, penalties, friction, pressure_k, traction_k, pressure, traction, state, pressure_slope, &
+    traction_slope, field_slip)
+  use iso_c_binding
+  use isomortar_api_unpack, only: unpack_slave
+  use isomortar_contact_augmentation, only: active_points, law_t, multipliers => augmented_multipliers, response_t
+  use isomortar_contact_control, only: control_t, integrate_slip_sum
+  implicit none
+  integer(c_int), intent(in) :: nlocal, nelements, nquad, nslave
+  integer(c_int), intent(in) :: nodes(nlocal, nelements), point(nslave), summed
+  real(c_double), intent(in) :: basis(nlocal, nquad), area(nquad), weight(nslave), square(nslave), gap(nslave)
+  real(c_double), intent(in) :: control_slip(2, nslave), metric(3, nslave), point_metric(3, nquad), penalties(2), friction
+  real(c_double), intent(in) :: pressure_k(nslave), traction_k(2, nslave)
+  real(c_double), intent(out) :: pressure(nslave), traction(2, nslave), pressure_slope(nslave), traction_slope(2, 6, nslave)
+  real(c_double), intent(out) :: field_slip(2, nquad)
+  integer(c_int), intent(out) :: state(nslave)
+  type(control_t) :: control
+  type(law_t) :: law
+  type(response_t) :: response
+  real(c_double) :: slips(2, nslave), totals(2, nslave)
+
+  control%weight = weight
+  control%square = square
+  control%gap = gap
+  control%slip = control_slip
+  control%metric = metric
+  law = law_t(penalties(1), penalties(2), friction, pressure_k, traction_k)
+  allocate (response%multipliers%pressure(nslave), response%multipliers%traction(2, nslave), response%multipliers%active(nslave), &
+    response%state(nslave), response%pressure_slope(nslave), response%traction_slope(2, 6, nslave))
+  field_slip = 0.0_c_double
+  if (summed /= 0) then
+    call active_points(control, law, response%multipliers%pressure, response%multipliers%active)
+    slips = 0.0_c_double
+    where (spread(response%multipliers%active, 1, 2)) slips = control_slip / spread(weight, 1, 2)
+    call integrate_slip_sum(unpack_slave(nodes, basis, area, point), point_metric, slips, field_slip, totals)
+    call multipliers(control, law, response, totals)
+  else
+    call multipliers(control, law, response)
+  end if
+  pressure = response%multipliers%pressure
+  traction = response%multipliers%traction
+  state = response%state
+  pressure_slope = response%pressure_slope
+  traction_slope = response%traction_slope
+end subroutine augmented_multipliers
+
+!> Add contact forces; separately on slave and master control points (isomortar_contact_blocks).
+subroutine contact_forces(nodes, basis, area, point, nlocal, nelements, nquad, nslave, kind, knots, nknots, master_point, &
+    master_weight, nmaster, x, n, xi, element, found, with_friction, pressure, traction, state, forces)
+  use iso_c_binding
+  use isomortar_api_unpack, only: unpack_master, unpack_slave
+  use isomortar_contact_blocks, only: integrate_forces, multipliers_t
+  use isomortar_contact_control, only: projections_t
+  implicit none
+  integer(c_int), intent(in) :: nlocal, nelements, nquad, nslave, nknots, nmaster, n
+  integer(c_int), intent(in) :: nodes(nlocal, nelements), point(nslave), kind(11), master_point(nmaster)
+  integer(c_int), intent(in) :: element(2, nquad), found(nquad), with_friction, state(nslave)
+  real(c_double), intent(in) :: basis(nlocal, nquad), area(nquad), knots(nknots), master_weight(nmaster), x(3, n)
+  real(c_double), intent(in) :: xi(2, nquad), pressure(nslave), traction(2, nslave)
+  real(c_double), intent(inout) :: forces(3, n)
+  type(projections_t) :: projections
+
+  projections%xi = xi
+  projections%place = element + 1
+  projections%found = found /= 0
+  call integrate_forces(unpack_slave(nodes, basis, area, point), unpack_master(kind, knots, master_point, master_weight), x, &
+    projections, with_friction /= 0, multipliers_t(pressure, traction, state /= 0), forces)
+end subroutine contact_forces
+
+!> Add constraint rows and the geometric tangent (isomortar_contact_blocks).
+subroutine contact_blocks(nodes, basis, area, point, nlocal, nelements, nquad, nslave, kind, knots, nknots, master_point, &
+    master_weight, nmaster, x, n, xi, element, found, slips, with_friction, pressure, traction, state, field_slip, row_start, &
+    row_column, nrows, nkinds, rows, start, nstart, column, nblocks, tangent)
+  use iso_c_binding
+  use isomortar_api_unpack, only: unpack_master, unpack_pattern, unpack_slave
+  use isomortar_contact_blocks, only: integrate_blocks, multipliers_t
+  use isomortar_contact_control, only: projections_t
+  implicit none
+  integer(c_int), intent(in) :: nlocal, nelements, nquad, nslave, nknots, nmaster, n, nrows, nkinds, nstart, nblocks
+  integer(c_int), intent(in) :: nodes(nlocal, nelements), point(nslave), kind(11), master_point(nmaster)
+  integer(c_int), intent(in) :: element(2, nquad), found(nquad), slips(nquad), with_friction, state(nslave)
+  integer(c_int), intent(in) :: row_start(nslave + 1), row_column(nrows), start(nstart), column(nblocks)
+  real(c_double), intent(in) :: basis(nlocal, nquad), area(nquad), knots(nknots), master_weight(nmaster), x(3, n)
+  real(c_double), intent(in) :: xi(2, nquad), pressure(nslave), traction(2, nslave), field_slip(2, nquad)
+  real(c_double), intent(inout) :: rows(3, nkinds, nrows), tangent(3, 3, nblocks)
+  type(projections_t) :: projections
+
+  projections%xi = xi
+  projections%place = element + 1
+  projections%found = found /= 0
+  projections%slips = slips /= 0
+  call integrate_blocks(unpack_slave(nodes, basis, area, point), unpack_master(kind, knots, master_point, master_weight), x, &
+    projections, with_friction /= 0, multipliers_t(pressure, traction, state /= 0), field_slip, &
+    unpack_pattern(row_start, row_column), rows, unpack_pattern(start, column), tangent)
+end subroutine contact_blocks
+
+!> Rows of the multipliers' derivatives of the augmented law (isomortar_contact_augmentation): changes(component, multiplier, block)
+!> on the pattern `wide`; it and `neighbours` differ from the rows' pattern with `summed` only.
+subroutine multiplier_rows(nodes, basis, area, point, nlocal, nelements, nquad, nslave, weight, square, control_slip, metric, &
+    point_metric, summed, penalties, friction, state, pressure_slope, traction_slope, row_start, row_column, nrows, nkinds, rows, &
+    neighbour_start, neighbour_column, nneighbours, wide_start, wide_column, nwide, changes)
+  use iso_c_binding
+  use isomortar_api_unpack, only: unpack_pattern, unpack_slave
+  use isomortar_contact_augmentation, only: combine => multiplier_rows, law_t, response_t, trial_rows, trial_rows_summed
+  use isomortar_contact_control, only: control_t
+  implicit none
+  integer(c_int), intent(in) :: nlocal, nelements, nquad, nslave, nrows, nkinds, nneighbours, nwide
+  integer(c_int), intent(in) :: nodes(nlocal, nelements), point(nslave), summed, state(nslave)
+  integer(c_int), intent(in) :: row_start(nslave + 1), row_column(nrows), neighbour_start(nslave + 1), neighbour_column(nneighbours)
+  integer(c_int), intent(in) :: wide_start(nslave + 1), wide_column(nwide)
+  real(c_double), intent(in) :: basis(nlocal, nquad), area(nquad), weight(nslave), square(nslave)
+  real(c_double), intent(in) :: control_slip(2, nslave), metric(3, nslave), point_metric(3, nquad), penalties(2), friction
+  real(c_double), intent(in) :: pressure_slope(nslave), traction_slope(2, 6, nslave), rows(3, nkinds, nrows)
+  real(c_double), intent(out) :: changes(3, 3, nwide)
+  type(control_t) :: control
+  type(law_t) :: law
+  type(response_t) :: response
+  real(c_double), allocatable :: trial(:, :, :)
+
+  control%weight = weight
+  control%square = square
+  control%slip = control_slip
+  control%metric = metric
+  control%point_metric = point_metric
+  law%normal_penalty = penalties(1)
+  law%tangential_penalty = penalties(2)
+  law%friction = friction
+  response%state = state
+  response%pressure_slope = pressure_slope
+  response%traction_slope = traction_slope
+  allocate (trial(3, 2, nwide))
+  associate (narrow => unpack_pattern(row_start, row_column), wide => unpack_pattern(wide_start, wide_column))
+    if (nkinds > 1 .and. summed /= 0) then
+      call trial_rows_summed(unpack_slave(nodes, basis, area, point), control, law, state /= 0, narrow, rows, &
+        unpack_pattern(neighbour_start, neighbour_column), wide, trial)
+    else if (nkinds > 1) then
+      call trial_rows(control, law, state /= 0, narrow, rows, trial)
+    end if
+    call combine(control, response, narrow, rows, wide, trial, changes)
+  end associate
+end subroutine multiplier_rows
+
+!> Condense multipliers into the tangent (isomortar_contact_augmentation).
+subroutine condense_multipliers(state, nslave, row_start, row_column, nrows, nkinds, rows, wide_start, wide_column, nwide, &
+    changes, start, nstart, column, nblocks, tangent)
+  use iso_c_binding
+  use isomortar_api_unpack, only: unpack_pattern
+  use isomortar_contact_augmentation, only: condense
+  implicit none
+  integer(c_int), intent(in) :: nslave, nrows, nkinds, nwide, nstart, nblocks
+  integer(c_int), intent(in) :: state(nslave), row_start(nslave + 1), row_column(nrows), wide_start(nslave + 1), wide_column(nwide)
+  integer(c_int), intent(in) :: start(nstart), column(nblocks)
+  real(c_double), intent(in) :: rows(3, nkinds, nrows), changes(3, 3, nwide)
+  real(c_double), intent(inout) :: tangent(3, 3, nblocks)
+
+  call condense(state /= 0, unpack_pattern(row_start, row_column), rows, unpack_pattern(wide_start, wide_column), changes, &
+    unpack_pattern(start, column), tangent)
+end subroutine condense_multipliers

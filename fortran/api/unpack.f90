@@ -1,0 +1,75 @@
+!> From the flat double-precision arrays outside to the types inside. Numbers count from 0 outside and from 1 inside.
+module isomortar_api_unpack
+  use, intrinsic :: iso_c_binding, only: c_double, c_int
+  use isomortar_base_kinds, only: wp
+  use isomortar_contact_master, only: master_t, plane_through
+  use isomortar_contact_slave, only: slave_t
+  use isomortar_nurbs_direction, only: direction_t, family_nurbs, new_direction
+  use isomortar_nurbs_patch, only: patch_t
+  use isomortar_nurbs_surface, only: face_of
+  use isomortar_sparse_blocks, only: pattern_t
+  implicit none
+  private
+
+  public :: unpack_master, unpack_patch, unpack_pattern, unpack_slave
+
+contains
+
+  !> A patch. `layout` holds families (1 NURBS, 2 Lagrange), orders and numbers of control points of the three
+  !> directions; their knots follow one another.
+  pure function unpack_patch(layout, knots, point, weight) result(patch)
+    integer(c_int), intent(in) :: layout(9), point(:)
+    real(c_double), intent(in) :: knots(:), weight(:)
+    type(patch_t) :: patch
+    integer :: count, d, first
+
+    first = 1
+    do d = 1, 3
+      associate (family => layout(d), order => layout(3 + d), points => layout(6 + d))
+        count = merge(points + order + 1, (points - 1) / order + 1, family == family_nurbs)
+        patch%direction(d) = new_direction(int(family), int(order), real(knots(first:first + count - 1), wp))
+        first = first + count
+      end associate
+    end do
+    patch%point = point + 1
+    patch%weight = real(weight, wp)
+  end function unpack_patch
+
+  !> A master. `kind` holds axis (1..3) and end (0, 1) of a face, then the layout of its patch; axis 0 is a plane, whose
+  !> origin, normal and first tangent stand in `knots`.
+  pure function unpack_master(kind, knots, point, weight) result(master)
+    integer(c_int), intent(in) :: kind(11), point(:)
+    real(c_double), intent(in) :: knots(:), weight(:)
+    type(master_t) :: master
+
+    if (kind(1) == 0) then
+      master = plane_through(real(knots(1:3), wp), real(knots(4:6), wp), real(knots(7:9), wp))
+    else
+      master%surface = face_of(unpack_patch(kind(3:11), knots, point, weight), int(kind(1)), int(kind(2)))
+    end if
+  end function unpack_master
+
+  !> A slave side from its tables.
+  pure function unpack_slave(nodes, basis, area, point) result(slave)
+    integer(c_int), intent(in) :: nodes(:, :), point(:)
+    real(c_double), intent(in) :: basis(:, :), area(:)
+    type(slave_t) :: slave
+
+    slave%count = size(point)
+    slave%nodes = nodes + 1
+    slave%basis = real(basis, wp)
+    slave%area = real(area, wp)
+    slave%point = point + 1
+  end function unpack_slave
+
+  !> A compressed pattern of blocks.
+  pure function unpack_pattern(start, column) result(pattern)
+    integer(c_int), intent(in) :: start(:), column(:)
+    type(pattern_t) :: pattern
+
+    allocate (pattern%start(0:size(start) - 1))
+    pattern%start(:) = start
+    pattern%column = column + 1
+  end function unpack_pattern
+
+end module isomortar_api_unpack

@@ -1,0 +1,77 @@
+!> Small dense algebra: 3-vectors, 3x3 and 2x2 matrices.
+module isomortar_base_algebra
+  use isomortar_base_kinds, only: wp
+  implicit none
+  private
+
+  public :: cross, determinant, inverse, inverse2, identity, trace, log1p
+
+  !> 3x3 unit matrix.
+  real(wp), parameter :: identity(3, 3) = reshape([1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [3, 3])
+
+contains
+
+  !> Vector product a x b.
+  pure function cross(a, b) result(c)
+    real(wp), intent(in) :: a(3), b(3)
+    real(wp) :: c(3)
+
+    c(1) = a(2) * b(3) - a(3) * b(2)
+    c(2) = a(3) * b(1) - a(1) * b(3)
+    c(3) = a(1) * b(2) - a(2) * b(1)
+  end function cross
+
+  !> Determinant of a 3x3 matrix.
+  pure function determinant(a) result(d)
+    real(wp), intent(in) :: a(3, 3)
+    real(wp) :: d
+
+    d = dot_product(a(:, 1), cross(a(:, 2), a(:, 3)))
+  end function determinant
+
+  !> Inverse of a 3x3 matrix whose determinant is known.
+  pure function inverse(a, det) result(b)
+    real(wp), intent(in) :: a(3, 3)
+    real(wp), intent(in) :: det
+    real(wp) :: b(3, 3)
+
+    b(1, :) = cross(a(:, 2), a(:, 3)) / det
+    b(2, :) = cross(a(:, 3), a(:, 1)) / det
+    b(3, :) = cross(a(:, 1), a(:, 2)) / det
+  end function inverse
+
+  !> Inverse of a 2x2 matrix.
+  pure function inverse2(a) result(b)
+    real(wp), intent(in) :: a(2, 2)
+    real(wp) :: b(2, 2)
+
+    b(1, 1) = a(2, 2)
+    b(2, 2) = a(1, 1)
+    b(1, 2) = -a(1, 2)
+    b(2, 1) = -a(2, 1)
+    b = b / (a(1, 1) * a(2, 2) - a(1, 2) * a(2, 1))
+  end function inverse2
+
+  !> Trace of a 3x3 matrix.
+  pure function trace(a) result(t)
+    real(wp), intent(in) :: a(3, 3)
+    real(wp) :: t
+
+    t = a(1, 1) + a(2, 2) + a(3, 3)
+  end function trace
+
+  !> ln(1 + y) without losing the digits of a small y (Kahan's correction of the rounded sum).
+  elemental function log1p(y) result(r)
+    real(wp), intent(in) :: y
+    real(wp) :: r
+    real(wp) :: sum
+
+    sum = 1.0_wp + y
+    if (abs(y) <= 0.5_wp * epsilon(y)) then
+      r = y
+    else
+      r = log(sum) * (y / (sum - 1.0_wp))
+    end if
+  end function log1p
+
+end module isomortar_base_algebra

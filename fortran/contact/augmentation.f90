@@ -1,0 +1,237 @@
+!> Control pressures and tractions of an augmented penalty law, and their derivatives as rows (formulation.md Section 4).
+module isomortar_contact_augmentation
+  use isomortar_base_kinds, only: wp
+  use isomortar_contact_blocks, only: multipliers_t, row_gap, row_metric, row_slip, row_slip_sum
+  use isomortar_contact_control, only: control_t
+  use isomortar_contact_friction, only: metric_matrix, return_map, state_open, state_stick
+  use isomortar_contact_slave, only: slave_t
+  use isomortar_sparse_blocks, only: mark_row, pattern_t
+  implicit none
+  private
+
+  public :: active_points, augmented_multipliers, condense, multiplier_rows, trial_rows, trial_rows_summed
+
+  !> A control point whose weight w^I is below this share of the largest has left the master.
+  real(wp), parameter :: least_weight = 1.0e-10_wp
+
+  !> The law: multipliers of the current augmentation, penalties (force per volume), friction coefficient.
+  type, public :: law_t
+    real(wp) :: normal_penalty, tangential_penalty, friction
+    real(wp), allocatable :: pressure(:)
+    real(wp), allocatable :: traction(:, :)
+  end type law_t
+
+  !> What the law makes of the control quantities.
+  type, public :: response_t
+    type(multipliers_t) :: multipliers
+    integer, allocatable :: state(:)
+    !> d pressure by <R^I g>, shape (I).
+    real(wp), allocatable :: pressure_slope(:)
+    !> d traction by pressure, trial traction (2) and metric (3), shape (2, 6, I).
+    real(wp), allocatable :: traction_slope(:, :, :)
+  end type response_t
+
+contains
+
+  !> Active control points [2.12]: w p > 0. The pressure of the current augmentation is zero for inactive ones.
+  pure subroutine active_points(control, law, pressure, active)
+    type(control_t), intent(in) :: control
+    type(law_t), intent(in) :: law
+    real(wp), intent(out) :: pressure(:)
+    logical, intent(out) :: active(:)
+    integer :: i
+
+    pressure = 0.0_wp
+    active = .false.
+    do i = 1, size(pressure)
+      if (control%weight(i) <= least_weight * maxval(control%weight)) cycle
+      pressure(i) = law%pressure(i) + law%normal_penalty * control%gap(i) / control%weight(i)
+      active(i) = pressure(i) > 0.0_wp
+      if (.not. active(i)) pressure(i) = 0.0_wp
+    end do
+  end subroutine active_points
+
+  !> Pressures, tractions and states. `slip_sum` is <R^I a_ab zeta^b> for the paper's form, absent for the local one.
+  pure subroutine augmented_multipliers(control, law, response, slip_sum)
+    type(control_t), intent(in) :: control
+    type(law_t), intent(in) :: law
+    type(response_t), intent(inout) :: response
+    real(wp), intent(in), optional :: slip_sum(:, :)
+    real(wp) :: metric(3), trial(2)
+    integer :: i
+
+    call active_points(control, law, response%multipliers%pressure, response%multipliers%active)
+    response%multipliers%traction = 0.0_wp
+    response%state = state_open
+    response%pressure_slope = 0.0_wp
+    response%traction_slope = 0.0_wp
+    do i = 1, size(response%state)
+      if (.not. response%multipliers%active(i)) cycle
+      response%state(i) = state_stick
+      response%pressure_slope(i) = law%normal_penalty / control%weight(i)
+      if (law%friction <= 0.0_wp) cycle
+      metric = control%metric(:, i) / control%square(i)
+      if (present(slip_sum)) then
+        trial = slip_sum(:, i)
+      else
+        trial = matmul(metric_matrix(metric), control%slip(:, i))
+      end if
+      trial = law%traction(:, i) + law%tangential_penalty / control%weight(i) * trial
+      call return_map(trial, response%multipliers%pressure(i), law%friction, metric, response%multipliers%traction(:, i), &
+        response%state(i), response%traction_slope(:, :, i))
+    end do
+  end subroutine augmented_multipliers
+
+  !> Rows of the trial traction, "local" slip sum: e_T (m_ab <R^I dxi^b> / w + dm_ab slip^b), shape (3, 2, blocks).
+  pure subroutine trial_rows(control, law, active, pattern, rows, trial)
+    type(control_t), intent(in) :: control
+    type(law_t), intent(in) :: law
+    logical, intent(in) :: active(:)
+    type(pattern_t), intent(in) :: pattern
+    real(wp), intent(in) :: rows(:, :, :)
+    real(wp), intent(out) :: trial(:, :, :)
+    integer, parameter :: entry(2, 2) = reshape([0, 1, 1, 2], [2, 2])
+    real(wp) :: metric(2, 2), slip(2), factor
+    integer :: a, b, i, k
+
+    trial = 0.0_wp
+    do i = 1, size(active)
+      if (.not. active(i)) cycle
+      metric = metric_matrix(control%metric(:, i) / control%square(i))
+      slip = control%slip(:, i) / control%square(i)
+      factor = law%tangential_penalty / control%weight(i)
+      do k = pattern%start(i - 1) + 1, pattern%start(i)
+        do b = 1, 2
+          do a = 1, 2
+            trial(:, a, k) = trial(:, a, k) + factor * (metric(a, b) * rows(:, row_slip + b - 1, k) &
+              + slip(b) * rows(:, row_metric + entry(a, b), k))
+          end do
+        end do
+      end do
+    end do
+  end subroutine trial_rows
+
+  !> Rows of the trial traction, the paper's slip sum: e_T / w^I (sum_J M_ab^IJ <R^J dxi^b> / w^J + <R^I da_ab zeta^b>).
+  !> `wide` is the pattern of the result, `neighbours` that of M^IJ.
+  pure subroutine trial_rows_summed(slave, control, law, active, pattern, rows, neighbours, wide, trial)
+    type(slave_t), intent(in) :: slave
+    type(control_t), intent(in) :: control
+    type(law_t), intent(in) :: law
+    logical, intent(in) :: active(:)
+    type(pattern_t), intent(in) :: pattern, neighbours, wide
+    real(wp), intent(in) :: rows(:, :, :)
+    real(wp), intent(out) :: trial(:, :, :)
+    integer, parameter :: entry(2, 2) = reshape([1, 2, 2, 3], [2, 2])
+    real(wp), allocatable :: metric(:, :)
+    integer, allocatable :: columns(:)
+    integer :: a, b, i, j, k, n
+
+    allocate (metric(3, size(neighbours%column)), columns(max(maxval(pattern%column), maxval(wide%column))))
+    call pair_metric(slave, control, neighbours, metric)
+    trial = 0.0_wp
+    do i = 1, size(active)
+      if (.not. active(i)) cycle
+      call mark_row(wide, i, columns)
+      associate (factor => law%tangential_penalty / control%weight(i))
+        do k = pattern%start(i - 1) + 1, pattern%start(i)
+          associate (target => trial(:, :, columns(pattern%column(k))))
+            target = target + factor * rows(:, row_slip_sum:row_slip_sum + 1, k)
+          end associate
+        end do
+        do n = neighbours%start(i - 1) + 1, neighbours%start(i)
+          j = neighbours%column(n)
+          if (.not. active(j)) cycle
+          do k = pattern%start(j - 1) + 1, pattern%start(j)
+            do b = 1, 2
+              do a = 1, 2
+                associate (target => trial(:, a, columns(pattern%column(k))))
+                  target = target + factor / control%weight(j) * metric(entry(a, b), n) * rows(:, row_slip + b - 1, k)
+                end associate
+              end do
+            end do
+          end do
+        end do
+      end associate
+    end do
+  end subroutine trial_rows_summed
+
+  !> M_ab^IJ = <R^I a_ab R^J> as 11, 12, 22 on the pattern of neighbours.
+  pure subroutine pair_metric(slave, control, neighbours, metric)
+    type(slave_t), intent(in) :: slave
+    type(control_t), intent(in) :: control
+    type(pattern_t), intent(in) :: neighbours
+    real(wp), intent(out) :: metric(:, :)
+    integer :: a, b, columns(slave%count), e, per_element, q
+
+    metric = 0.0_wp
+    per_element = size(slave%area) / size(slave%nodes, 2)
+    do e = 1, size(slave%nodes, 2)
+      do a = 1, size(slave%nodes, 1)
+        call mark_row(neighbours, slave%nodes(a, e), columns)
+        do q = (e - 1) * per_element + 1, e * per_element
+          do b = 1, size(slave%nodes, 1)
+            associate (target => metric(:, columns(slave%nodes(b, e))))
+              target = target + slave%basis(a, q) * slave%basis(b, q) * slave%area(q) * control%point_metric(:, q)
+            end associate
+          end do
+        end do
+      end do
+    end do
+  end subroutine pair_metric
+
+  !> Rows of the multipliers p, t_1, t_2 on the pattern `wide` of the trial rows: result(component, multiplier, block).
+  pure subroutine multiplier_rows(control, response, pattern, rows, wide, trial, result)
+    type(control_t), intent(in) :: control
+    type(response_t), intent(in) :: response
+    type(pattern_t), intent(in) :: pattern, wide
+    real(wp), intent(in) :: rows(:, :, :), trial(:, :, :)
+    real(wp), intent(out) :: result(:, :, :)
+    integer, allocatable :: columns(:)
+    integer :: i, k
+
+    allocate (columns(max(maxval(pattern%column), maxval(wide%column))))
+    result = 0.0_wp
+    do i = 1, size(response%state)
+      if (response%state(i) == state_open) cycle
+      call mark_row(wide, i, columns)
+      do k = pattern%start(i - 1) + 1, pattern%start(i)
+        associate (target => result(:, :, columns(pattern%column(k))), by => response%traction_slope(:, :, i))
+          target(:, 1) = response%pressure_slope(i) * rows(:, row_gap, k)
+          if (size(rows, 2) == 1) cycle
+          target(:, 2:3) = matmul(rows(:, row_metric:row_metric + 2, k) / control%square(i), transpose(by(:, 4:6)))
+          target(:, 2) = target(:, 2) + by(1, 1) * target(:, 1)
+          target(:, 3) = target(:, 3) + by(2, 1) * target(:, 1)
+        end associate
+      end do
+      if (size(rows, 2) == 1) cycle
+      do k = wide%start(i - 1) + 1, wide%start(i)
+        result(:, 2:3, k) = result(:, 2:3, k) + matmul(trial(:, :, k), transpose(response%traction_slope(:, 2:3, i)))
+      end do
+    end do
+  end subroutine multiplier_rows
+
+  !> Add sum_I <R^I dg> Dp^I + <R^I dxi^a> Dt_a^I to a matrix of blocks.
+  pure subroutine condense(active, pattern, rows, wide, changes, target_pattern, target)
+    logical, intent(in) :: active(:)
+    type(pattern_t), intent(in) :: pattern, wide, target_pattern
+    real(wp), intent(in) :: rows(:, :, :), changes(:, :, :)
+    real(wp), intent(inout) :: target(:, :, :)
+    integer, allocatable :: columns(:)
+    integer :: a, b, i, multipliers
+
+    allocate (columns(size(target_pattern%start)))
+    multipliers = merge(1, 3, size(rows, 2) == 1)
+    do i = 1, size(active)
+      if (.not. active(i)) cycle
+      do a = pattern%start(i - 1) + 1, pattern%start(i)
+        call mark_row(target_pattern, pattern%column(a), columns)
+        do b = wide%start(i - 1) + 1, wide%start(i)
+          associate (block => target(:, :, columns(wide%column(b))))
+            block = block + matmul(changes(:, 1:multipliers, b), transpose(rows(:, 1:multipliers, a)))
+          end associate
+        end do
+      end do
+    end do
+  end subroutine condense
+
+end module isomortar_contact_augmentation

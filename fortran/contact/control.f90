@@ -1,0 +1,202 @@
+!> First pass over the slave quadrature points: projection and control quantities (formulation.md Section 4).
+module isomortar_contact_control
+  use isomortar_base_kinds, only: wp
+  use isomortar_base_status, only: status_lost_projection, status_ok
+  use isomortar_contact_kinematics, only: contact_point, contact_point_t, plane_point
+  use isomortar_contact_master, only: master_t
+  use isomortar_contact_projection, only: nearest_start, project, projection_inside, projection_lost, projection_outside, &
+    sample_surface
+  use isomortar_contact_slave, only: integrate_functions, slave_t
+  use isomortar_nurbs_surface, only: derivative_columns, surface_basis, surface_nodes
+  implicit none
+  private
+
+  public :: control_quantities, integrate_slip_sum, point_on_master, project_points
+
+  !> Where the slave quadrature points stand on the master.
+  type, public :: projections_t
+    !> Master coordinates.
+    real(wp), allocatable :: xi(:, :)
+    !> Master element by direction; 0 where there is none (plane, no projection).
+    integer, allocatable :: place(:, :)
+    logical, allocatable :: found(:)
+    !> Slip increment since the last converged load step; zero without a history.
+    real(wp), allocatable :: slip(:, :)
+    !> The slip follows the motion: found now and at the last converged load step.
+    logical, allocatable :: slips(:)
+  end type projections_t
+
+  !> Control quantities of every slave control point, and what they were integrated from.
+  type, public :: control_t
+    !> w^I = <R^I> and <R^I R^I>.
+    real(wp), allocatable :: weight(:), square(:)
+    !> <R^I g>.
+    real(wp), allocatable :: gap(:)
+    !> <R^I (xi - xi_n)>, shape (2, I).
+    real(wp), allocatable :: slip(:, :)
+    !> <R^I R^I a_ab> as 11, 12, 22, shape (3, I).
+    real(wp), allocatable :: metric(:, :)
+    !> Metric at the quadrature points, shape (3, points).
+    real(wp), allocatable :: point_metric(:, :)
+  end type control_t
+
+contains
+
+  !> Project every slave quadrature point; `xi` holds starts where `started`, which a coarse search finds elsewhere.
+  !> `origin` and `had` are the projections at the last converged load step. On failure `place` is the quadrature point.
+  subroutine project_points(slave, master, positions, started, origin, had, projections, status, place)
+    type(slave_t), intent(in) :: slave
+    type(master_t), intent(in) :: master
+    real(wp), intent(in) :: positions(:, :)
+    logical, intent(in) :: started(:), had(:)
+    real(wp), intent(in) :: origin(:, :)
+    type(projections_t), intent(inout) :: projections
+    integer, intent(out) :: status, place
+    real(wp), allocatable :: coordinates(:, :), samples(:, :)
+    real(wp) :: x(3)
+    integer :: outcome, q
+
+    status = status_ok
+    place = 0
+    if (.not. master%is_plane .and. .not. all(started)) call sample_surface(master%surface, positions, coordinates, samples)
+    do q = 1, size(slave%area)
+      x = slave_position(slave, positions, q)
+      if (master%is_plane) then
+        projections%xi(:, q) = matmul(x - master%origin, master%tangent)
+        outcome = projection_inside
+      else
+        if (.not. started(q)) projections%xi(:, q) = nearest_start(coordinates, samples, x)
+        call project(master%surface, positions, x, projections%xi(:, q), projections%place(:, q), outcome)
+      end if
+      if (outcome == projection_lost) then
+        status = status_lost_projection
+        place = q
+        return
+      end if
+      projections%found(q) = outcome /= projection_outside
+    end do
+    projections%slips = projections%found .and. had
+    do q = 1, size(slave%area)
+      projections%slip(:, q) = merge(projections%xi(:, q) - origin(:, q), 0.0_wp, projections%slips(q))
+    end do
+  end subroutine project_points
+
+  !> Position of a slave quadrature point.
+  pure function slave_position(slave, positions, q) result(x)
+    type(slave_t), intent(in) :: slave
+    real(wp), intent(in) :: positions(:, :)
+    integer, intent(in) :: q
+    real(wp) :: x(3)
+    integer :: a, e
+
+    e = (q - 1) / (size(slave%area) / size(slave%nodes, 2)) + 1
+    x = 0.0_wp
+    do a = 1, size(slave%nodes, 1)
+      x = x + slave%basis(a, q) * positions(:, slave%point(slave%nodes(a, e)))
+    end do
+  end function slave_position
+
+  !> Kinematics at a slave quadrature point that has a projection, with surface derivatives up to `order`.
+  !> On a surface, `nodes` are its control points within the master and `functions` their values and derivatives.
+  pure subroutine point_on_master(slave, master, positions, projections, q, order, point, nodes, functions)
+    type(slave_t), intent(in) :: slave
+    type(master_t), intent(in) :: master
+    real(wp), intent(in) :: positions(:, :)
+    type(projections_t), intent(in) :: projections
+    integer, intent(in) :: q, order
+    type(contact_point_t), intent(out) :: point
+    integer, intent(out) :: nodes(:)
+    real(wp), intent(out) :: functions(:, :)
+    real(wp) :: x(3)
+
+    x = slave_position(slave, positions, q)
+    if (master%is_plane) then
+      point = plane_point(x, master%origin, master%normal, master%tangent)
+      return
+    end if
+    associate (surface => master%surface, columns => derivative_columns(order))
+      call surface_nodes(surface, projections%place(:, q), nodes)
+      call surface_basis(surface, projections%place(:, q), nodes, projections%xi(:, q), order, functions(:, 1:columns))
+      point = contact_point(x, matmul(positions(:, surface%point(nodes)), functions(:, 1:columns)), surface%outward)
+    end associate
+  end subroutine point_on_master
+
+  !> Integrate the control quantities. Points without a projection take no part in any of them.
+  pure subroutine control_quantities(slave, master, positions, projections, control)
+    type(slave_t), intent(in) :: slave
+    type(master_t), intent(in) :: master
+    real(wp), intent(in) :: positions(:, :)
+    type(projections_t), intent(in) :: projections
+    type(control_t), intent(inout) :: control
+    type(contact_point_t) :: point
+    real(wp), allocatable :: fields(:, :), functions(:, :), totals(:, :)
+    integer, allocatable :: nodes(:)
+    integer :: q
+
+    allocate (fields(4, size(slave%area)), totals(4, slave%count))
+    allocate (nodes(product_of_orders(master)), functions(product_of_orders(master), derivative_columns(2)))
+    fields = 0.0_wp
+    control%point_metric = 0.0_wp
+    do q = 1, size(slave%area)
+      if (.not. projections%found(q)) cycle
+      call point_on_master(slave, master, positions, projections, q, merge(0, 2, master%is_plane), point, nodes, functions)
+      fields(:, q) = [1.0_wp, point%gap, projections%slip(:, q)]
+      control%point_metric(:, q) = [point%metric(1, 1), point%metric(1, 2), point%metric(2, 2)]
+    end do
+    call integrate_functions(slave, fields, totals)
+    control%weight(:) = totals(1, :)
+    control%gap(:) = totals(2, :)
+    control%slip(:, :) = totals(3:4, :)
+    call integrate_squares(slave, fields(1, :), control)
+  end subroutine control_quantities
+
+  !> Number of master control points at a quadrature point; one, unused, for a plane.
+  pure integer function product_of_orders(master)
+    type(master_t), intent(in) :: master
+
+    product_of_orders = 1
+    if (.not. master%is_plane) product_of_orders = product(master%surface%direction%order + 1)
+  end function product_of_orders
+
+  !> <R^I R^I> and <R^I R^I a_ab> over the points whose `present` is 1.
+  pure subroutine integrate_squares(slave, present, control)
+    type(slave_t), intent(in) :: slave
+    real(wp), intent(in) :: present(:)
+    type(control_t), intent(inout) :: control
+    real(wp) :: share
+    integer :: a, e, i, per_element, q
+
+    control%square = 0.0_wp
+    control%metric = 0.0_wp
+    per_element = size(slave%area) / size(slave%nodes, 2)
+    do q = 1, size(slave%area)
+      e = (q - 1) / per_element + 1
+      do a = 1, size(slave%nodes, 1)
+        i = slave%nodes(a, e)
+        share = slave%basis(a, q)**2 * slave%area(q) * present(q)
+        control%square(i) = control%square(i) + share
+        control%metric(:, i) = control%metric(:, i) + share * control%point_metric(:, q)
+      end do
+    end do
+  end subroutine integrate_squares
+
+  !> <R^I a_ab zeta^b> with zeta the field of control slips (formulation.md Section 4, "paper"); zero slip where inactive.
+  pure subroutine integrate_slip_sum(slave, point_metric, control_slip, field_slip, totals)
+    type(slave_t), intent(in) :: slave
+    real(wp), intent(in) :: point_metric(:, :), control_slip(:, :)
+    real(wp), intent(out) :: field_slip(:, :), totals(:, :)
+    real(wp), allocatable :: fields(:, :)
+    integer :: e, per_element, q
+
+    allocate (fields(2, size(slave%area)))
+    per_element = size(slave%area) / size(slave%nodes, 2)
+    do q = 1, size(slave%area)
+      e = (q - 1) / per_element + 1
+      field_slip(:, q) = matmul(control_slip(:, slave%nodes(:, e)), slave%basis(:, q))
+      fields(1, q) = point_metric(1, q) * field_slip(1, q) + point_metric(2, q) * field_slip(2, q)
+      fields(2, q) = point_metric(2, q) * field_slip(1, q) + point_metric(3, q) * field_slip(2, q)
+    end do
+    call integrate_functions(slave, fields, totals)
+  end subroutine integrate_slip_sum
+
+end module isomortar_contact_control

@@ -1,0 +1,76 @@
+!> Coulomb friction at a control point: trial traction, return map, and its exact derivative (formulation.md Section 4).
+module isomortar_contact_friction
+  use isomortar_base_kinds, only: wp
+  implicit none
+  private
+
+  public :: metric_norm, metric_matrix, return_map
+
+  integer, parameter, public :: state_open = 0
+  integer, parameter, public :: state_stick = 1
+  integer, parameter, public :: state_slip = 2
+
+contains
+
+  !> Symmetric 2x2 matrix from its 11, 12, 22 entries.
+  pure function metric_matrix(entries) result(m)
+    real(wp), intent(in) :: entries(3)
+    real(wp) :: m(2, 2)
+
+    m = reshape([entries(1), entries(2), entries(2), entries(3)], [2, 2])
+  end function metric_matrix
+
+  !> Contravariant components of covariant ones.
+  pure function raise_index(covariant, metric) result(contravariant)
+    real(wp), intent(in) :: covariant(2), metric(3)
+    real(wp) :: contravariant(2)
+
+    contravariant(1) = metric(3) * covariant(1) - metric(2) * covariant(2)
+    contravariant(2) = metric(1) * covariant(2) - metric(2) * covariant(1)
+    contravariant = contravariant / (metric(1) * metric(3) - metric(2)**2)
+  end function raise_index
+
+  !> Norm of covariant components in a metric.
+  pure real(wp) function metric_norm(traction, metric)
+    real(wp), intent(in) :: traction(2), metric(3)
+    real(wp) :: contravariant(2)
+
+    contravariant = raise_index(traction, metric)
+    metric_norm = sqrt(max(0.0_wp, dot_product(traction, contravariant)))
+  end function metric_norm
+
+  !> Return the trial traction of a control point under pressure to the disk of radius mu p.
+  !>
+  !> `derivative(a, :)` is d traction_a by the pressure (1), the trial traction (2:3) and the metric (4:6: 11, 12, 22).
+  pure subroutine return_map(trial, pressure, friction, metric, traction, state, derivative)
+    real(wp), intent(in) :: trial(2), pressure, friction, metric(3)
+    real(wp), intent(out) :: traction(2)
+    integer, intent(out) :: state
+    real(wp), intent(out) :: derivative(2, 6)
+    real(wp) :: length, along(2), contravariant(2), ratio, by_metric(3)
+    integer :: a
+
+    length = metric_norm(trial, metric)
+    derivative = 0.0_wp
+    if (length <= friction * pressure) then
+      state = state_stick
+      traction = trial
+      derivative(1, 2) = 1.0_wp
+      derivative(2, 3) = 1.0_wp
+      return
+    end if
+    state = state_slip
+    along = trial / length
+    contravariant = raise_index(along, metric)
+    ratio = friction * pressure / length
+    traction = friction * pressure * along
+    by_metric = -0.5_wp * length * [contravariant(1)**2, 2.0_wp * contravariant(1) * contravariant(2), contravariant(2)**2]
+    do a = 1, 2
+      derivative(a, 1) = friction * along(a)
+      derivative(a, 1 + a) = ratio
+      derivative(a, 2:3) = derivative(a, 2:3) - ratio * along(a) * contravariant
+      derivative(a, 4:6) = -ratio * along(a) * by_metric
+    end do
+  end subroutine return_map
+
+end module isomortar_contact_friction

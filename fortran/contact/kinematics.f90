@@ -1,0 +1,226 @@
+!> Gap, projection and their variations at one slave point (formulation.md Section 3).
+!>
+!> Variations are linear forms in short vectors: dx - dS, dS,1, dS,2, dS,11, dS,12, dS,22, three components each. A plane
+!> needs the first, a frictionless surface the first three, friction on a surface all six.
+module isomortar_contact_kinematics
+  use isomortar_base_algebra, only: cross, inverse2
+  use isomortar_base_kinds, only: wp
+  implicit none
+  private
+
+  public :: contact_point, first_variations, metric_variation, plane_point, short_vectors, traction_variation, gap_variation
+
+  !> Components of all short vectors.
+  integer, parameter, public :: all_components = 18
+  !> Number of the short vector dS,ab.
+  integer, parameter :: second_vector(2, 2) = reshape([4, 5, 5, 6], [2, 2])
+  !> Column of S,ab and of S,abc in the table of surface derivatives.
+  integer, parameter :: second_column(2, 2) = reshape([4, 5, 5, 6], [2, 2])
+  integer, parameter :: third_column(2, 2, 2) = reshape([7, 8, 8, 9, 8, 9, 9, 10], [2, 2, 2])
+
+  !> A slave point and its projection.
+  type, public :: contact_point_t
+    !> Penetration: positive inside the master.
+    real(wp) :: gap
+    real(wp) :: normal(3)
+    !> Tangent vectors a_1, a_2.
+    real(wp) :: tangent(3, 2)
+    real(wp) :: metric(2, 2)
+    real(wp) :: inverse_metric(2, 2)
+    !> Curvature b_ab = normal . S,ab; zero for a plane.
+    real(wp) :: curvature(2, 2)
+    !> Inverse of H_ab = a_ab + g b_ab.
+    real(wp) :: inverse_h(2, 2)
+    !> Surface derivatives by column (derivative_column), up to the order that is needed.
+    real(wp) :: surface(3, 10)
+  end type contact_point_t
+
+  !> First variations as rows over the components of the short vectors.
+  type, public :: variations_t
+    real(wp) :: gap(all_components)
+    real(wp) :: projection(all_components, 2)
+  end type variations_t
+
+contains
+
+  !> Number of short vectors that the variations of a scene need.
+  pure integer function short_vectors(is_plane, with_friction)
+    logical, intent(in) :: is_plane, with_friction
+
+    short_vectors = merge(1, merge(6, 3, with_friction), is_plane)
+  end function short_vectors
+
+  !> Kinematics on a deformable surface. `derivatives` holds S and its derivatives by column, `outward` the sign of the normal.
+  pure function contact_point(x, derivatives, outward) result(self)
+    real(wp), intent(in) :: x(3), derivatives(:, :), outward
+    type(contact_point_t) :: self
+    integer :: a, b
+
+    self%surface = 0.0_wp
+    self%surface(:, 1:size(derivatives, 2)) = derivatives
+    self%tangent = self%surface(:, 2:3)
+    self%normal = outward * cross(self%tangent(:, 1), self%tangent(:, 2))
+    self%normal = self%normal / norm2(self%normal)
+    self%gap = -dot_product(x - self%surface(:, 1), self%normal)
+    self%metric = matmul(transpose(self%tangent), self%tangent)
+    self%inverse_metric = inverse2(self%metric)
+    do b = 1, 2
+      do a = 1, 2
+        self%curvature(a, b) = dot_product(self%normal, self%surface(:, second_column(a, b)))
+      end do
+    end do
+    self%inverse_h = inverse2(self%metric + self%gap * self%curvature)
+  end function contact_point
+
+  !> Kinematics on a rigid plane.
+  pure function plane_point(x, origin, normal, tangent) result(self)
+    real(wp), intent(in) :: x(3), origin(3), normal(3), tangent(3, 2)
+    type(contact_point_t) :: self
+
+    self%surface = 0.0_wp
+    self%normal = normal
+    self%tangent = tangent
+    self%gap = -dot_product(x - origin, normal)
+    self%metric = reshape([1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [2, 2])
+    self%inverse_metric = self%metric
+    self%curvature = 0.0_wp
+    self%inverse_h = self%metric
+  end function plane_point
+
+  !> Components 3 k - 2 .. 3 k of short vector k.
+  pure function components(k) result(range)
+    integer, intent(in) :: k
+    integer :: range(3)
+
+    range = [3 * k - 2, 3 * k - 1, 3 * k]
+  end function components
+
+  !> Rows of dg and dxi.
+  pure function first_variations(point, vectors) result(self)
+    type(contact_point_t), intent(in) :: point
+    integer, intent(in) :: vectors
+    type(variations_t) :: self
+    real(wp) :: right(all_components, 2)
+    integer :: a
+
+    self%gap = 0.0_wp
+    self%gap(1:3) = -point%normal
+    right = 0.0_wp
+    do a = 1, 2
+      right(1:3, a) = point%tangent(:, a)
+      if (vectors > 1) right(components(1 + a), a) = -point%gap * point%normal
+    end do
+    self%projection = matmul(right, point%inverse_h)
+  end function first_variations
+
+  !> Rows of dS,a with the projection moving along: dS,a + S,ab dxi^b, three rows.
+  pure function moving_tangent(point, variations, a) result(rows)
+    type(contact_point_t), intent(in) :: point
+    type(variations_t), intent(in) :: variations
+    integer, intent(in) :: a
+    real(wp) :: rows(all_components, 3)
+    integer :: b, i
+
+    rows = 0.0_wp
+    do i = 1, 3
+      rows(3 * a + i, i) = 1.0_wp
+      do b = 1, 2
+        rows(:, i) = rows(:, i) + point%surface(i, second_column(a, b)) * variations%projection(:, b)
+      end do
+    end do
+  end function moving_tangent
+
+  !> Rows of the metric's variation: a_11, a_12, a_22.
+  pure function metric_variation(point, variations) result(rows)
+    type(contact_point_t), intent(in) :: point
+    type(variations_t), intent(in) :: variations
+    real(wp) :: rows(all_components, 3)
+    real(wp) :: first(all_components, 3), second(all_components, 3)
+
+    first = moving_tangent(point, variations, 1)
+    second = moving_tangent(point, variations, 2)
+    rows(:, 1) = 2.0_wp * matmul(first, point%tangent(:, 1))
+    rows(:, 2) = matmul(first, point%tangent(:, 2)) + matmul(second, point%tangent(:, 1))
+    rows(:, 3) = 2.0_wp * matmul(second, point%tangent(:, 2))
+  end function metric_variation
+
+  !> Add scale * Ddg to a bilinear form over the components.
+  pure subroutine gap_variation(point, variations, scale, form)
+    type(contact_point_t), intent(in) :: point
+    type(variations_t), intent(in) :: variations
+    real(wp), intent(in) :: scale
+    real(wp), intent(inout) :: form(:, :)
+    real(wp) :: slope(9, 2), turned(9, 2), xi(9, 2)
+    integer :: a, b
+
+    xi = variations%projection(1:9, :)
+    slope = 0.0_wp
+    do a = 1, 2
+      slope(components(1 + a), a) = point%normal
+    end do
+    turned = slope + matmul(xi, point%curvature)
+    do a = 1, 2
+      call add_symmetric(scale, slope(:, a), xi(:, a), form(1:9, 1:9))
+      do b = 1, 2
+        call add_product(scale * point%curvature(a, b), xi(:, a), xi(:, b), form(1:9, 1:9))
+        call add_product(scale * point%gap * point%inverse_metric(a, b), turned(:, a), turned(:, b), form(1:9, 1:9))
+      end do
+    end do
+  end subroutine gap_variation
+
+  !> Add traction_a Ddxi^a, scaled, to a bilinear form over the components.
+  pure subroutine traction_variation(point, variations, traction, form)
+    type(contact_point_t), intent(in) :: point
+    type(variations_t), intent(in) :: variations
+    real(wp), intent(in) :: traction(2)
+    real(wp), intent(inout) :: form(:, :)
+    real(wp) :: apart(all_components, 3), along(all_components, 3), d(3), row(all_components), theta(2), factor
+    integer :: b, c, i, m
+
+    theta = matmul(traction, point%inverse_h)
+    d = -point%gap * point%normal
+    apart = 0.0_wp
+    do i = 1, 3
+      apart(i, i) = 1.0_wp
+      apart(:, i) = apart(:, i) - matmul(variations%projection, point%tangent(i, :))
+    end do
+    do b = 1, 2
+      along = moving_tangent(point, variations, b)
+      do i = 1, 3
+        call add_symmetric(theta(b), apart(:, i), along(:, i), form)
+      end do
+      do c = 1, 2
+        row = 0.0_wp
+        row(components(1 + c)) = -point%tangent(:, b)
+        row(components(second_vector(b, c))) = d
+        call add_symmetric(theta(b), row, variations%projection(:, c), form)
+        do m = 1, 2
+          factor = dot_product(d, point%surface(:, third_column(b, c, m))) &
+            - dot_product(point%tangent(:, b), point%surface(:, second_column(c, m)))
+          call add_product(theta(b) * factor, variations%projection(:, c), variations%projection(:, m), form)
+        end do
+      end do
+    end do
+  end subroutine traction_variation
+
+  !> form += scale * left right^T.
+  pure subroutine add_product(scale, left, right, form)
+    real(wp), intent(in) :: scale, left(:), right(:)
+    real(wp), intent(inout) :: form(:, :)
+    integer :: k
+
+    do k = 1, size(right)
+      form(:, k) = form(:, k) + (scale * right(k)) * left
+    end do
+  end subroutine add_product
+
+  !> form += scale * (left right^T + right left^T).
+  pure subroutine add_symmetric(scale, left, right, form)
+    real(wp), intent(in) :: scale, left(:), right(:)
+    real(wp), intent(inout) :: form(:, :)
+
+    call add_product(scale, left, right, form)
+    call add_product(scale, right, left, form)
+  end subroutine add_symmetric
+
+end module isomortar_contact_kinematics

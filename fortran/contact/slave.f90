@@ -1,0 +1,80 @@
+!> The slave side of a contact pair: its functions and quadrature, fixed for a whole computation.
+module isomortar_contact_slave
+  use isomortar_base_algebra, only: cross
+  use isomortar_base_kinds, only: wp
+  use isomortar_nurbs_direction, only: direction_t
+  use isomortar_nurbs_quadrature, only: gauss_legendre
+  use isomortar_nurbs_surface, only: surface_basis, surface_element_count, surface_element_of, surface_nodes, surface_t
+  implicit none
+  private
+
+  public :: integrate_functions, slave_tables
+
+  !> Slave side. Slave control points are numbered from 1 on their own; quadrature points run within elements.
+  type, public :: slave_t
+    !> Number of slave control points.
+    integer :: count
+    !> Slave control points of each element, shape (control points of an element, elements).
+    integer, allocatable :: nodes(:, :)
+    !> Functions R^I at the quadrature points, shape (control points of an element, quadrature points).
+    real(wp), allocatable :: basis(:, :)
+    !> Quadrature weight times reference area of each quadrature point.
+    real(wp), allocatable :: area(:)
+    !> Global number of each slave control point.
+    integer, allocatable :: point(:)
+  end type slave_t
+
+contains
+
+  !> Functions and reference areas at the quadrature points of a contact patch.
+  !> `nodes` are numbered within the surface.
+  pure subroutine slave_tables(surface, points, references, nodes, basis, area)
+    type(surface_t), intent(in) :: surface
+    integer, intent(in) :: points(2)
+    real(wp), intent(in) :: references(:, :)
+    integer, intent(out) :: nodes(:, :)
+    real(wp), intent(out) :: basis(:, :), area(:)
+    real(wp) :: at1(points(1)), at2(points(2)), weight1(points(1)), weight2(points(2))
+    real(wp) :: low(2), length(2), tangents(3, 2), values(size(basis, 1), 3)
+    integer :: e, i, j, k, place(2)
+
+    call gauss_legendre(at1, weight1)
+    call gauss_legendre(at2, weight2)
+    k = 0
+    do e = 1, surface_element_count(surface)
+      place = surface_element_of(surface, e)
+      call surface_nodes(surface, place, nodes(:, e))
+      low = [surface%direction(1)%boundary(place(1) - 1), surface%direction(2)%boundary(place(2) - 1)]
+      length = [surface%direction(1)%boundary(place(1)), surface%direction(2)%boundary(place(2))] - low
+      do j = 1, points(2)
+        do i = 1, points(1)
+          k = k + 1
+          call surface_basis(surface, place, nodes(:, e), low + length * [at1(i), at2(j)], 1, values)
+          basis(:, k) = values(:, 1)
+          tangents = matmul(references(:, surface%point(nodes(:, e))), values(:, 2:3))
+          area(k) = weight1(i) * weight2(j) * product(length) * norm2(cross(tangents(:, 1), tangents(:, 2)))
+        end do
+      end do
+    end do
+  end subroutine slave_tables
+
+  !> <R^I f> for every slave control point, of fields given at the quadrature points: totals(field, I).
+  pure subroutine integrate_functions(slave, fields, totals)
+    type(slave_t), intent(in) :: slave
+    real(wp), intent(in) :: fields(:, :)
+    real(wp), intent(out) :: totals(:, :)
+    integer :: a, e, per_element, q
+
+    totals = 0.0_wp
+    per_element = size(slave%area) / size(slave%nodes, 2)
+    do q = 1, size(slave%area)
+      e = (q - 1) / per_element + 1
+      do a = 1, size(slave%nodes, 1)
+        associate (total => totals(:, slave%nodes(a, e)))
+          total = total + slave%basis(a, q) * slave%area(q) * fields(:, q)
+        end associate
+      end do
+    end do
+  end subroutine integrate_functions
+
+end module isomortar_contact_slave

@@ -1,0 +1,183 @@
+!> One parametric direction of a patch: elements, and the functions that do not vanish on each of them.
+module isomortar_nurbs_direction
+  use isomortar_base_kinds, only: wp
+  implicit none
+  private
+
+  public :: new_direction, basis, element_at
+
+  integer, parameter, public :: family_nurbs = 1
+  integer, parameter, public :: family_lagrange = 2
+  !> Largest order of either family.
+  integer, parameter, public :: max_order = 10
+
+  !> A direction with its elements (non-empty knot spans).
+  type, public :: direction_t
+    integer :: family = family_nurbs
+    integer :: order = 0
+    !> Number of control points.
+    integer :: count = 0
+    !> Number of elements.
+    integer :: elements = 0
+    !> Full knot vector (NURBS), numbered from 0, or element boundaries (Lagrange).
+    real(wp), allocatable :: knots(:)
+    !> Element boundaries, 0..elements.
+    real(wp), allocatable :: boundary(:)
+    !> First control point (from 0) of the functions that do not vanish on element e = 1..elements.
+    integer, allocatable :: first(:)
+  end type direction_t
+
+contains
+
+  !> A direction from its knots. The knots have been validated by the caller.
+  pure function new_direction(family, order, knots) result(self)
+    integer, intent(in) :: family, order
+    real(wp), intent(in) :: knots(:)
+    type(direction_t) :: self
+    integer :: i, last
+
+    self%family = family
+    self%order = order
+    last = size(knots) - 1
+    allocate (self%knots(0:last), self%boundary(0:last), self%first(last))
+    self%knots(:) = knots
+    self%boundary(0) = knots(1)
+    do i = 0, last - 1
+      if (self%knots(i + 1) > self%knots(i)) then
+        self%elements = self%elements + 1
+        self%boundary(self%elements) = self%knots(i + 1)
+        self%first(self%elements) = merge(i - order, i * order, family == family_nurbs)
+      end if
+    end do
+    self%count = merge(last - order, order * last + 1, family == family_nurbs)
+  end function new_direction
+
+  !> The element that holds coordinate u; the one above where u is a boundary, the last one at the end.
+  pure function element_at(self, u) result(element)
+    type(direction_t), intent(in) :: self
+    real(wp), intent(in) :: u
+    integer :: element
+    integer :: low, high
+
+    low = 1
+    high = self%elements
+    do while (low < high)
+      element = (low + high) / 2
+      if (u < self%boundary(element)) then
+        high = element
+      else
+        low = element + 1
+      end if
+    end do
+    element = low
+  end function element_at
+
+  !> The order + 1 functions of an element at u, and their derivatives: values(j, k) is the k-th derivative.
+  pure subroutine basis(self, element, u, derivatives, values)
+    type(direction_t), intent(in) :: self
+    integer, intent(in) :: element
+    real(wp), intent(in) :: u
+    integer, intent(in) :: derivatives
+    real(wp), intent(out) :: values(0:self%order, 0:derivatives)
+
+    if (self%family == family_nurbs) then
+      call bspline_basis(self, self%first(element) + self%order, u, derivatives, values)
+    else
+      call lagrange_basis(self, element, u, derivatives, values)
+    end if
+  end subroutine basis
+
+  !> Cox and de Boor: raise the order by the recurrence order - k times, then k times by its derivative.
+  pure subroutine bspline_basis(self, span, u, derivatives, values)
+    type(direction_t), intent(in) :: self
+    integer, intent(in) :: span
+    real(wp), intent(in) :: u
+    integer, intent(in) :: derivatives
+    real(wp), intent(out) :: values(0:self%order, 0:derivatives)
+    real(wp) :: lower(0:max_order), raised(0:max_order)
+    integer :: k, q
+
+    lower(0) = 1.0_wp
+    values = 0.0_wp
+    do q = 0, self%order
+      k = self%order - q
+      if (k <= derivatives) call differentiate_up(self, span, q, lower, values(:, k))
+      if (q == self%order) exit
+      call raise(self, span, q + 1, lower, u, raised)
+      lower(0:q + 1) = raised(0:q + 1)
+    end do
+  end subroutine bspline_basis
+
+  !> Values of order q from those of order q - 1 on the same span.
+  pure subroutine raise(self, span, q, lower, u, raised)
+    type(direction_t), intent(in) :: self
+    integer, intent(in) :: span, q
+    real(wp), intent(in) :: lower(0:), u
+    real(wp), intent(out) :: raised(0:)
+    real(wp) :: share
+    integer :: j, left, right
+
+    raised(0:q) = 0.0_wp
+    do j = 0, q - 1
+      left = span - q + 1 + j
+      right = left + q
+      share = lower(j) / (self%knots(right) - self%knots(left))
+      raised(j) = raised(j) + (self%knots(right) - u) * share
+      raised(j + 1) = raised(j + 1) + (u - self%knots(left)) * share
+    end do
+  end subroutine raise
+
+  !> Derivative number order - q of the functions of full order, from the values of order q.
+  pure subroutine differentiate_up(self, span, q, lower, derivative)
+    type(direction_t), intent(in) :: self
+    integer, intent(in) :: span, q
+    real(wp), intent(in) :: lower(0:)
+    real(wp), intent(out) :: derivative(0:)
+    real(wp) :: raised(0:max_order), share
+    integer :: j, left, order, right
+
+    derivative(0:q) = lower(0:q)
+    do order = q + 1, self%order
+      raised(0:order) = 0.0_wp
+      do j = 0, order - 1
+        left = span - order + 1 + j
+        right = left + order
+        share = real(order, wp) * derivative(j) / (self%knots(right) - self%knots(left))
+        raised(j) = raised(j) - share
+        raised(j + 1) = raised(j + 1) + share
+      end do
+      derivative(0:order) = raised(0:order)
+    end do
+  end subroutine differentiate_up
+
+  !> Nodal Lagrange functions on equally spaced nodes, multiplied up factor by factor with their derivatives.
+  pure subroutine lagrange_basis(self, element, u, derivatives, values)
+    type(direction_t), intent(in) :: self
+    integer, intent(in) :: element
+    real(wp), intent(in) :: u
+    integer, intent(in) :: derivatives
+    real(wp), intent(out) :: values(0:self%order, 0:derivatives)
+    real(wp) :: scale, factor, slope, t
+    integer :: j, k, m
+
+    scale = real(self%order, wp) / (self%boundary(element) - self%boundary(element - 1))
+    t = (u - self%boundary(element - 1)) * scale
+    do j = 0, self%order
+      values(j, 0) = 1.0_wp
+      values(j, 1:) = 0.0_wp
+      do m = 0, self%order
+        if (m == j) cycle
+        slope = 1.0_wp / real(j - m, wp)
+        factor = (t - real(m, wp)) * slope
+        do k = derivatives, 1, -1
+          values(j, k) = values(j, k) * factor + real(k, wp) * values(j, k - 1) * slope
+        end do
+        values(j, 0) = values(j, 0) * factor
+      end do
+    end do
+    do k = 1, derivatives
+      values(:, k) = values(:, k) * scale**k
+    end do
+  end subroutine lagrange_basis
+
+end module isomortar_nurbs_direction

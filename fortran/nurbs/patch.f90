@@ -1,0 +1,118 @@
+!> Volume patches: the tensor product of three directions, with weights and global control point numbers.
+module isomortar_nurbs_patch
+  use isomortar_base_kinds, only: wp
+  use isomortar_nurbs_direction, only: basis, direction_t
+  use isomortar_nurbs_quadrature, only: gauss_legendre
+  implicit none
+  private
+
+  public :: element_count, element_nodes, element_of, line_rule, volume_gradients
+
+  !> A volume patch.
+  type, public :: patch_t
+    type(direction_t) :: direction(3)
+    !> Global number (from 1) of each control point; the first direction runs fastest.
+    integer, allocatable :: point(:)
+    !> Weight of each control point.
+    real(wp), allocatable :: weight(:)
+  end type patch_t
+
+  !> Functions of one direction at the quadrature points of one element.
+  type, public :: line_rule_t
+    !> Quadrature weights times the length of the element.
+    real(wp), allocatable :: weight(:)
+    !> values(j, k, q): derivative k of function j at point q.
+    real(wp), allocatable :: values(:, :, :)
+  end type line_rule_t
+
+contains
+
+  !> Number of elements.
+  pure integer function element_count(self)
+    type(patch_t), intent(in) :: self
+
+    element_count = product(self%direction%elements)
+  end function element_count
+
+  !> Element numbers by direction of element number e (from 1, first direction fastest).
+  pure function element_of(self, e) result(place)
+    type(patch_t), intent(in) :: self
+    integer, intent(in) :: e
+    integer :: place(3)
+
+    place(1) = mod(e - 1, self%direction(1)%elements) + 1
+    place(2) = mod((e - 1) / self%direction(1)%elements, self%direction(2)%elements) + 1
+    place(3) = (e - 1) / (self%direction(1)%elements * self%direction(2)%elements) + 1
+  end function element_of
+
+  !> Local numbers (from 1) of the control points of an element, first direction fastest.
+  pure subroutine element_nodes(self, place, nodes)
+    type(patch_t), intent(in) :: self
+    integer, intent(in) :: place(3)
+    integer, intent(out) :: nodes(:)
+    integer :: a, first(3), i, j, k, d
+
+    do d = 1, 3
+      first(d) = self%direction(d)%first(place(d))
+    end do
+    a = 0
+    do k = first(3), first(3) + self%direction(3)%order
+      do j = first(2), first(2) + self%direction(2)%order
+        do i = first(1), first(1) + self%direction(1)%order
+          a = a + 1
+          nodes(a) = 1 + i + self%direction(1)%count * (j + self%direction(2)%count * k)
+        end do
+      end do
+    end do
+  end subroutine element_nodes
+
+  !> Functions and quadrature of every element of one direction.
+  pure subroutine line_rule(direction, points, derivatives, rule)
+    type(direction_t), intent(in) :: direction
+    integer, intent(in) :: points, derivatives
+    type(line_rule_t), allocatable, intent(out) :: rule(:)
+    real(wp) :: position(points), weight(points), low, length
+    integer :: e, q
+
+    call gauss_legendre(position, weight)
+    allocate (rule(direction%elements))
+    do e = 1, direction%elements
+      low = direction%boundary(e - 1)
+      length = direction%boundary(e) - low
+      allocate (rule(e)%values(0:direction%order, 0:derivatives, points))
+      rule(e)%weight = weight * length
+      do q = 1, points
+        call basis(direction, e, low + position(q) * length, derivatives, rule(e)%values(:, :, q))
+      end do
+    end do
+  end subroutine line_rule
+
+  !> Rational functions of an element at one point, differentiated by the parameters: gradients(a, d).
+  !> u, v, w hold the values (column 0) and first derivatives (column 1) of each direction.
+  pure subroutine volume_gradients(u, v, w, weight, gradients)
+    real(wp), intent(in) :: u(0:, 0:), v(0:, 0:), w(0:, 0:)
+    real(wp), intent(in) :: weight(:)
+    real(wp), intent(out) :: gradients(:, :)
+    real(wp) :: total, slope(3), values(size(weight))
+    integer :: a, d, i, j, k
+
+    a = 0
+    do k = 0, ubound(w, 1)
+      do j = 0, ubound(v, 1)
+        do i = 0, ubound(u, 1)
+          a = a + 1
+          values(a) = weight(a) * u(i, 0) * v(j, 0) * w(k, 0)
+          gradients(a, 1) = weight(a) * u(i, 1) * v(j, 0) * w(k, 0)
+          gradients(a, 2) = weight(a) * u(i, 0) * v(j, 1) * w(k, 0)
+          gradients(a, 3) = weight(a) * u(i, 0) * v(j, 0) * w(k, 1)
+        end do
+      end do
+    end do
+    total = sum(values)
+    slope = sum(gradients, dim=1)
+    do d = 1, 3
+      gradients(:, d) = (gradients(:, d) - values * (slope(d) / total)) / total
+    end do
+  end subroutine volume_gradients
+
+end module isomortar_nurbs_patch

@@ -1,0 +1,146 @@
+!> Contact patches: a face of a volume patch, with derivatives to order three.
+module isomortar_nurbs_surface
+  use isomortar_base_kinds, only: wp
+  use isomortar_nurbs_direction, only: basis, direction_t, max_order
+  use isomortar_nurbs_patch, only: patch_t
+  implicit none
+  private
+
+  public :: face_of, surface_basis, surface_element_count, surface_element_of, surface_nodes
+
+  !> Column of each partial derivative (k, l) in a table of derivatives to order three.
+  integer, parameter, public :: derivative_column(0:3, 0:3) = reshape( &
+    [1, 2, 4, 7, 3, 5, 8, 0, 6, 9, 0, 0, 10, 0, 0, 0], [4, 4])
+  !> Number of columns of a table of derivatives to order 0..3.
+  integer, parameter, public :: derivative_columns(0:3) = [1, 3, 6, 10]
+
+  !> A face of a volume patch. Surface directions are the two others in cyclic order.
+  type, public :: surface_t
+    type(direction_t) :: direction(2)
+    !> Global number (from 1) of each control point; the first surface direction runs fastest.
+    integer, allocatable :: point(:)
+    real(wp), allocatable :: weight(:)
+    !> Sign of a_1 x a_2 that points out of the body.
+    real(wp) :: outward = 1.0_wp
+  end type surface_t
+
+contains
+
+  !> The face of a patch: axis 1..3 is the direction that is constant, at its start (end = 0) or end (end = 1).
+  pure function face_of(patch, axis, end) result(self)
+    type(patch_t), intent(in) :: patch
+    integer, intent(in) :: axis, end
+    type(surface_t) :: self
+    integer :: first, second, i, j, index(3), a
+
+    first = mod(axis, 3) + 1
+    second = mod(axis + 1, 3) + 1
+    self%direction(1) = patch%direction(first)
+    self%direction(2) = patch%direction(second)
+    self%outward = merge(1.0_wp, -1.0_wp, end == 1)
+    a = self%direction(1)%count * self%direction(2)%count
+    allocate (self%point(a), self%weight(a))
+    index(axis) = merge(patch%direction(axis)%count - 1, 0, end == 1)
+    a = 0
+    do j = 0, self%direction(2)%count - 1
+      do i = 0, self%direction(1)%count - 1
+        index(first) = i
+        index(second) = j
+        a = a + 1
+        associate (local => 1 + index(1) + patch%direction(1)%count * (index(2) + patch%direction(2)%count * index(3)))
+          self%point(a) = patch%point(local)
+          self%weight(a) = patch%weight(local)
+        end associate
+      end do
+    end do
+  end function face_of
+
+  !> Number of surface elements.
+  pure integer function surface_element_count(self)
+    type(surface_t), intent(in) :: self
+
+    surface_element_count = self%direction(1)%elements * self%direction(2)%elements
+  end function surface_element_count
+
+  !> Element numbers by direction of surface element e (from 1, first direction fastest).
+  pure function surface_element_of(self, e) result(place)
+    type(surface_t), intent(in) :: self
+    integer, intent(in) :: e
+    integer :: place(2)
+
+    place(1) = mod(e - 1, self%direction(1)%elements) + 1
+    place(2) = (e - 1) / self%direction(1)%elements + 1
+  end function surface_element_of
+
+  !> Numbers, within the surface, of the control points of an element.
+  pure subroutine surface_nodes(self, place, nodes)
+    type(surface_t), intent(in) :: self
+    integer, intent(in) :: place(2)
+    integer, intent(out) :: nodes(:)
+    integer :: a, i, j
+
+    a = 0
+    do j = self%direction(2)%first(place(2)), self%direction(2)%first(place(2)) + self%direction(2)%order
+      do i = self%direction(1)%first(place(1)), self%direction(1)%first(place(1)) + self%direction(1)%order
+        a = a + 1
+        nodes(a) = 1 + i + self%direction(1)%count * j
+      end do
+    end do
+  end subroutine surface_nodes
+
+  !> Rational functions of an element at xi and their partial derivatives up to `order` (columns: derivative_column).
+  !> Quotient rule on the homogeneous form, Piegl and Tiller 1997, Section 4.5.
+  pure subroutine surface_basis(self, place, nodes, xi, order, values)
+    type(surface_t), intent(in) :: self
+    integer, intent(in) :: place(2), nodes(:)
+    real(wp), intent(in) :: xi(2)
+    integer, intent(in) :: order
+    real(wp), intent(out) :: values(:, :)
+    real(wp) :: u(0:max_order, 0:3), v(0:max_order, 0:3), total(10)
+    integer :: a, column, i, j, k, l, pu, pv
+
+    pu = self%direction(1)%order
+    pv = self%direction(2)%order
+    call basis(self%direction(1), place(1), xi(1), order, u(0:pu, 0:order))
+    call basis(self%direction(2), place(2), xi(2), order, v(0:pv, 0:order))
+    do l = 0, order
+      do k = 0, order - l
+        column = derivative_column(k, l)
+        a = 0
+        do j = 0, pv
+          do i = 0, pu
+            a = a + 1
+            values(a, column) = self%weight(nodes(a)) * u(i, k) * v(j, l)
+          end do
+        end do
+        total(column) = sum(values(:, column))
+      end do
+    end do
+    call divide(order, total, values)
+  end subroutine surface_basis
+
+  !> From the derivatives of numerators and denominator to those of the quotients.
+  pure subroutine divide(order, total, values)
+    integer, intent(in) :: order
+    real(wp), intent(in) :: total(:)
+    real(wp), intent(inout) :: values(:, :)
+    integer, parameter :: binomial(0:3, 0:3) = reshape([1, 1, 1, 1, 0, 1, 2, 3, 0, 0, 1, 3, 0, 0, 0, 1], [4, 4])
+    integer :: column, degree, i, j, k, l
+
+    do degree = 0, order
+      do l = 0, degree
+        k = degree - l
+        column = derivative_column(k, l)
+        do j = 0, l
+          do i = 0, k
+            if (i + j == 0) cycle
+            values(:, column) = values(:, column) - real(binomial(k, i) * binomial(l, j), wp) &
+              * total(derivative_column(i, j)) * values(:, derivative_column(k - i, l - j))
+          end do
+        end do
+        values(:, column) = values(:, column) / total(1)
+      end do
+    end do
+  end subroutine divide
+
+end module isomortar_nurbs_surface

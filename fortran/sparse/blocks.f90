@@ -1,0 +1,31 @@
+!> Compressed rows of 3x3 blocks: places are found by marking a row once, never by searching.
+module isomortar_sparse_blocks
+  use isomortar_base_kinds, only: wp
+  implicit none
+  private
+
+  public :: mark_row
+
+  !> Pattern of a matrix of 3x3 blocks; rows and columns are numbered from 1, offsets from 0.
+  type, public :: pattern_t
+    !> Blocks of row i are start(i - 1) + 1 .. start(i).
+    integer, allocatable :: start(:)
+    !> Column of each block.
+    integer, allocatable :: column(:)
+  end type pattern_t
+
+contains
+
+  !> Write the place of each block of a row at its column: place(column) = block. Other columns keep what they hold.
+  pure subroutine mark_row(pattern, row, place)
+    type(pattern_t), intent(in) :: pattern
+    integer, intent(in) :: row
+    integer, intent(inout) :: place(:)
+    integer :: k
+
+    do k = pattern%start(row - 1) + 1, pattern%start(row)
+      place(pattern%column(k)) = k
+    end do
+  end subroutine mark_row
+
+end module isomortar_sparse_blocks

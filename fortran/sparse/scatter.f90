@@ -1,0 +1,101 @@
+!> Assembly of a linear system from blocked sources through places that are found once per pattern.
+module isomortar_sparse_scatter
+  use, intrinsic :: iso_c_binding, only: c_int, c_int64_t
+  use isomortar_base_kinds, only: wp
+  implicit none
+  private
+
+  public :: add_values, find_places
+
+contains
+
+  !> Where each entry of a matrix of 3x3 blocks goes in a compressed matrix: places(column, row, block), 0 where it is dropped.
+  !>
+  !> `row_of` and `column_of` number the rows and columns of the system (from 0; negative: dropped). With `transposed`, rows of the
+  !> source are columns of the system. `missing` is set where the system lacks an entry.
+  pure subroutine find_places(start, column, row_of, column_of, transposed, system_start, system_column, places, missing)
+    integer(c_int), intent(in) :: start(0:), column(:), row_of(0:), column_of(0:)
+    logical, intent(in) :: transposed
+    integer(c_int64_t), intent(in) :: system_start(0:), system_column(:)
+    integer(c_int64_t), intent(out) :: places(:, :, :)
+    logical, intent(out) :: missing
+    integer(c_int64_t), allocatable :: mark(:)
+    integer(c_int64_t) :: k
+    integer :: block, i, j, r, row
+
+    missing = .false.
+    places = 0
+    if (transposed) then
+      call find_transposed(start, column, row_of, column_of, system_start, system_column, places, missing)
+      return
+    end if
+    allocate (mark(0:max(maxval(column_of), 0)))
+    mark = 0
+    do i = 0, size(start) - 2
+      do r = 1, 3
+        row = row_of(3 * i + r - 1)
+        if (row < 0) cycle
+        do k = system_start(row) + 1, system_start(row + 1)
+          if (system_column(k) <= ubound(mark, 1)) mark(system_column(k)) = k
+        end do
+        do block = start(i) + 1, start(i + 1)
+          do j = 1, 3
+            associate (target => column_of(3 * column(block) + j - 1))
+              if (target < 0) cycle
+              places(j, r, block) = mark(target)
+              missing = missing .or. mark(target) <= system_start(row)
+            end associate
+          end do
+        end do
+      end do
+    end do
+  end subroutine find_places
+
+  !> The same where rows of the source are columns of the system: by bisection, as its rows are met out of order.
+  pure subroutine find_transposed(start, column, row_of, column_of, system_start, system_column, places, missing)
+    integer(c_int), intent(in) :: start(0:), column(:), row_of(0:), column_of(0:)
+    integer(c_int64_t), intent(in) :: system_start(0:), system_column(:)
+    integer(c_int64_t), intent(inout) :: places(:, :, :)
+    logical, intent(inout) :: missing
+    integer(c_int64_t) :: high, low, middle
+    integer :: block, i, j, r, row, wanted
+
+    do i = 0, size(start) - 2
+      do block = start(i) + 1, start(i + 1)
+        do j = 1, 3
+          row = column_of(3 * column(block) + j - 1)
+          if (row < 0) cycle
+          do r = 1, 3
+            wanted = row_of(3 * i + r - 1)
+            if (wanted < 0) cycle
+            low = system_start(row) + 1
+            high = system_start(row + 1)
+            do while (low < high)
+              middle = (low + high) / 2
+              if (system_column(middle) < wanted) then
+                low = middle + 1
+              else
+                high = middle
+              end if
+            end do
+            places(j, r, block) = low
+            missing = missing .or. system_column(low) /= wanted
+          end do
+        end do
+      end do
+    end do
+  end subroutine find_transposed
+
+  !> values(places(k)) += source(k), where places(k) > 0.
+  pure subroutine add_values(places, source, values)
+    integer(c_int64_t), intent(in) :: places(:)
+    real(wp), intent(in) :: source(:)
+    real(wp), intent(inout) :: values(:)
+    integer(c_int64_t) :: k
+
+    do k = 1, size(places, kind=c_int64_t)
+      if (places(k) > 0) values(places(k)) = values(places(k)) + source(k)
+    end do
+  end subroutine add_values
+
+end module isomortar_sparse_scatter
