@@ -1,0 +1,107 @@
+"""Stores a `Problem` in a results file and rebuilds it, bit for bit; says where two problems differ.
+
+Patches are datasets; all else is JSON (which keeps every bit of a float) in attributes (which HDF5 guards with checksums).
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import fields, is_dataclass
+from typing import Any, Literal
+
+import h5py
+import numpy as np
+from pydantic import TypeAdapter
+
+from isomortar.geometry.patch import Direction, Patch
+from isomortar.model.entities import Body, Contact, Material, Problem, SolverSettings, Stage, Support
+from isomortar.results.layout import CONTROL_POINTS, KNOTS, WEIGHTS, Quantity
+
+_AXES = "uvw"
+_PLAIN: dict[str, Any] = {
+    "contacts": tuple[Contact, ...],
+    "supports": tuple[Support, ...],
+    "stages": tuple[Stage, ...],
+    "settings": SolverSettings,
+}
+_BODY: dict[str, Any] = {"name": str, "material": Material, "quadrature": tuple[int, int, int], "closed": Literal["u", "v", "w"] | None}
+
+
+def write_problem(group: h5py.Group, problem: Problem) -> None:
+    """Store the problem in an empty group."""
+    for name in ("name", *_PLAIN):
+        group.attrs[name] = _json(getattr(problem, name))
+    for number, body in enumerate(problem.bodies):
+        _write_body(group.create_group(f"bodies/{number}"), body)
+
+
+def read_problem(group: h5py.Group) -> Problem:
+    """Rebuild the problem that `write_problem` stored."""
+    plain: dict[str, Any] = {name: TypeAdapter(kind).validate_json(bytes(group.attrs[name])) for name, kind in _PLAIN.items()}
+    bodies = tuple(_read_body(group[f"bodies/{number}"]) for number in range(len(group["bodies"])))
+    return Problem(name=json.loads(group.attrs["name"]), bodies=bodies, **plain)
+
+
+def differences(stored: Problem, given: Problem) -> list[str]:
+    """Where two problems differ: one sentence a field, by its dotted path."""
+    old, new = _flat(stored), _flat(given)
+    missing = object()
+    paths = [path for path in {**old, **new} if old.get(path, missing) != new.get(path, missing)]
+    return [f"{path}: {_shown(old, path)} in the file, {_shown(new, path)} in the scene" for path in paths]
+
+
+def _write_body(group: h5py.Group, body: Body) -> None:
+    for name in _BODY:
+        group.attrs[name] = _json(getattr(body, name))
+    for axis, direction in zip(_AXES, body.patch.directions, strict=True):
+        knots = _dataset(group, f"knots_{axis}", KNOTS, direction.knots)
+        knots.attrs["family"] = _json(direction.family)
+        knots.attrs["order"] = direction.order
+    _dataset(group, "control_points", CONTROL_POINTS, body.patch.control_points)
+    _dataset(group, "weights", WEIGHTS, body.patch.weights)
+
+
+def _read_body(group: h5py.Group) -> Body:
+    knots = [group[f"knots_{axis}"] for axis in _AXES]
+    u, v, w = (Direction(json.loads(k.attrs["family"]), int(k.attrs["order"]), k[()]) for k in knots)
+    patch = Patch((u, v, w), group["control_points"][()], group["weights"][()])
+    plain: dict[str, Any] = {name: TypeAdapter(kind).validate_json(bytes(group.attrs[name])) for name, kind in _BODY.items()}
+    return Body(patch=patch, **plain)
+
+
+def _dataset(group: h5py.Group, name: str, quantity: Quantity, data: Any) -> h5py.Dataset:
+    dataset = group.create_dataset(name, data=np.asarray(data, dtype=quantity.dtype), chunks=True, fletcher32=True)
+    dataset.attrs["unit"], dataset.attrs["description"] = quantity.unit, quantity.description
+    return dataset
+
+
+def _json(value: Any) -> np.bytes_:
+    return np.bytes_(json.dumps(_plain(value)))
+
+
+def _plain(value: Any) -> Any:
+    """Dataclasses to dictionaries, arrays and tuples to lists, NumPy numbers to Python's."""
+    if is_dataclass(value):
+        return {f.name: _plain(getattr(value, f.name)) for f in fields(value)}
+    if isinstance(value, (list, tuple)):
+        return [_plain(v) for v in value]
+    return value.tolist() if isinstance(value, (np.ndarray, np.generic)) else value
+
+
+def _flat(value: Any, path: str = "") -> dict[str, Any]:
+    """Leaves of a problem by dotted path; entries of lists go by their name where they have one. Lists of numbers are leaves."""
+    plain = _plain(value) if is_dataclass(value) else value
+    if isinstance(plain, dict):
+        entries = plain.items()
+    elif isinstance(plain, list) and any(isinstance(entry, dict) for entry in plain):
+        entries = {str(entry.get("name", number)): entry for number, entry in enumerate(plain)}.items()
+    else:
+        return {path: plain}
+    return {p: v for key, entry in entries for p, v in _flat(entry, f"{path}.{key}".lstrip(".")).items()}
+
+
+def _shown(leaves: dict[str, Any], path: str) -> str:
+    if path not in leaves:
+        return "nothing"
+    text = repr(leaves[path])
+    return text if len(text) <= 60 else f"other numbers ({text[:30]}...)"

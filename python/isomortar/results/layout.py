@@ -1,0 +1,142 @@
+"""What a results file contains: every quantity with its unit and a sentence, and the groups it lives in.
+
+The program knows no units; `unit` names the dimension in terms of the scene's own length and force. ::
+
+    /scene                       text of the scene file
+    /problem/...                 definition of the computation, enough to rebuild every patch
+    /curves/<quantity>           one row a recorded step
+    /curves/supports/<name>/...  reactions
+    /curves/contacts/<name>/...  resultants and counts of a contact pair
+    /timings/<phase>             seconds, one row a recorded step
+    /counters/<name>             kernel counters, one row a recorded step
+    /log/augmentations           one row an augmentation, in the order in which they happened
+    /log/iterations              one row a Newton iteration, in the order in which they happened
+    /log/notes                   one row a note of a Newton iteration
+    /states/...                  one row a kept state: positions, control pressures, ...: enough to restart
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import h5py
+import numpy as np
+
+FORMAT = "isomortar results"
+FORMAT_VERSION = 1
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """Type, unit and meaning of a dataset, shape of a row where the data do not tell it, what stands for a value nobody gave."""
+
+    dtype: np.dtype
+    unit: str
+    description: str
+    row: tuple[int, ...] = ()
+    missing: float | None = None
+
+
+def _real(unit: str, description: str, row: tuple[int, ...] = ()) -> Quantity:
+    return Quantity(np.dtype(np.float64), unit, description, row)
+
+
+def _count(description: str) -> Quantity:
+    return Quantity(np.dtype(np.int64), "1", description)
+
+
+def _flag(description: str) -> Quantity:
+    return Quantity(np.dtype(np.int32), "1", description)
+
+
+TEXT = h5py.string_dtype()
+
+#: One value a recorded step, named as in `StepResult`.
+STEP = {
+    "step": _count("number of the load step, from 1 over all stages"),
+    "stage": Quantity(TEXT, "text", "stage that the load step belongs to"),
+    "time": _real("load step", "load time"),
+    "newton_order": _real("1", "observed order of Newton's method, median over the step's converged solves; NaN: too few iterations"),
+    "substeps": _count("load increments that the step was made of"),
+    "cuts": _count("how often a load increment was cut"),
+    "next_increment": _real("load step", "load increment that the step-size control tries next"),
+}
+
+#: Named as in `Reaction`.
+REACTION = {
+    "force": _real("force", "force that the support exerts on its body", (3,)),
+    "moment": _real("force*length", "moment that the support exerts on its body, about the moving centre", (3,)),
+    "centre": _real("length", "moving centre of the support", (3,)),
+}
+
+#: Resultants and counts of a contact pair, named as in `ContactResult`.
+CONTACT = {
+    "force_slave": _real("force", "resultant of the contact forces on the slave side", (3,)),
+    "force_master": _real("force", "resultant of the contact forces on the master side", (3,)),
+    "moment_slave": _real("force*length", "moment of the contact forces on the slave side about the origin", (3,)),
+    "moment_master": _real("force*length", "moment of the contact forces on the master side about the origin", (3,)),
+    "active": _count("active slave control points"),
+    "slip": _count("slipping slave control points"),
+    "pressure_field": _real("force/area", "smallest and largest contact pressure p = sum R^I p^I at the contact quadrature points", (2,)),
+    "excluded": _count("contact quadrature points without a projection"),
+}
+
+#: Restart state of a contact pair, named as in `ContactState`.
+CONTACT_STATE = {
+    "pressure": _real("force/area", "control pressures p^I of the slave control points"),
+    "traction": _real("force/area*length/parameter", "covariant control tractions tau_alpha^I of the slave control points"),
+    "projection": _real("parameter", "master coordinates of the slave quadrature points (on a rigid plane: lengths)"),
+    "projected": _flag("1 where the slave quadrature point has a projection on the master, else 0"),
+}
+
+#: Measured values at the slave control points, named as in `ContactResult`; kept with the states.
+CONTACT_VALUES = {
+    "traction_norm": _real("force/area", "metric norm of the control tractions"),
+    "status": _flag("slave control points: 0 open, 1 stick, 2 slip"),
+    "gap": _real("length", "control gap g^I, positive is penetration"),
+}
+
+STATE_STEP = _count("number of the load step whose state this row is")
+POSITIONS = _real("length", "positions of all control points, bodies one after the other, shared points once")
+TIMING = Quantity(np.dtype(np.float64), "s", "time spent in the phase within the load step", missing=np.nan)
+COUNTER = Quantity(np.dtype(np.int64), "1", "kernel counter within the load step", missing=-1)
+
+_AUGMENTATIONS = Quantity(
+    np.dtype(
+        [
+            ("step", np.int64),
+            ("augmentation", np.int64),
+            ("penalty_normal", np.float64),
+            ("penalty_tangential", np.float64),
+            ("change_pressure", np.float64),
+            ("change_traction", np.float64),
+            ("iterations", np.int64),
+        ]
+    ),
+    "penalties: force/area/length; all else: 1",
+    "augmentations with the change of multipliers that each made and its number of Newton iterations",
+)
+_ITERATIONS = Quantity(
+    np.dtype(
+        [
+            ("step", np.int64),
+            ("iteration", np.int64),
+            ("residual", np.float64),
+            ("active", np.int64),
+            ("stick", np.int64),
+            ("slip", np.int64),
+            ("notes", np.int64),
+        ]
+    ),
+    "1",
+    "Newton iterations with the relative residual before the solve, control points by state, number of notes",
+)
+
+_NOTES = Quantity(TEXT, "text", "what acted in a Newton iteration, in the order of the iterations")
+
+#: Named as the datasets of the log.
+LOG = {"augmentations": _AUGMENTATIONS, "iterations": _ITERATIONS, "notes": _NOTES}
+
+CONTROL_POINTS = _real("length", "control points in the reference configuration, first direction fastest")
+WEIGHTS = _real("1", "weights of the control points, not multiplied into them")
+KNOTS = _real("parameter", "N: full open knot vector; L: element boundaries")

@@ -1,0 +1,273 @@
+"""Reads a results file, also one whose computation is still running or was killed."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Literal, TypeVar
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from isomortar.errors import ResultsError
+from isomortar.geometry.patch import FloatArray, IntArray
+from isomortar.model.entities import Contact, Problem
+from isomortar.results import layout
+from isomortar.results.definition import read_problem
+from isomortar.solve.record import AugmentationRecord, ContactResult, ContactState, IterationRecord, Reaction, State, StepResult
+
+Value = TypeVar("Value")
+
+
+@dataclass(frozen=True)
+class ContactHistory:
+    """The control values of a contact pair over the kept states.
+
+    `steps`: shape (m,); `pressure`, `traction_norm`, `status`, `gap`: shape (m, n); `traction`: shape (m, n, 2);
+    n slave control points as in `ContactState` and `ContactResult`.
+    """
+
+    contact: Contact
+    steps: NDArray[np.int64]
+    pressure: FloatArray
+    traction: FloatArray
+    traction_norm: FloatArray
+    status: IntArray
+    gap: FloatArray
+
+
+class Results:
+    """A results file.
+
+    It shows the file as it was when it was opened; a computation that goes on replaces the file and does not disturb.
+
+    >>> with Results("iron.h5") as results:
+    ...     drag = results.curve("force", support="top", component="x")
+
+    Parameters
+    ----------
+    path : path-like
+
+    Raises
+    ------
+    ResultsError
+        There is no such file, it is damaged, or it holds something else. Every method raises it as well where the file is damaged.
+    """
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        self.path = Path(path)
+        if not self.path.is_file():
+            raise ResultsError(f"{self.path} does not exist: run the scene first, or check the path")
+        try:
+            self._file = h5py.File(self.path, "r")
+        except OSError as error:
+            raise self._damaged(error) from error
+        try:
+            self._read(self._check_format)
+        except ResultsError:
+            self.close()
+            raise
+
+    def __enter__(self) -> Results:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+    @cached_property
+    def scene_text(self) -> str:
+        """Text of the scene file."""
+        return self._read(lambda file: bytes(file["scene"][()]).decode())
+
+    @property
+    def version(self) -> str:
+        """Version of the program that wrote the file."""
+        return self._read(lambda file: str(file.attrs["program_version"]))
+
+    @cached_property
+    def problem(self) -> Problem:
+        """What was computed: bodies with their patches, contacts, supports, stages, settings."""
+        return self._read(lambda file: read_problem(file["problem"]))
+
+    @cached_property
+    def steps(self) -> NDArray[np.int64]:
+        """Numbers of the recorded load steps."""
+        return self._rows("curves/step")
+
+    @cached_property
+    def kept_states(self) -> NDArray[np.int64]:
+        """Numbers of the load steps whose full state is in the file."""
+        return self._rows("states/step")
+
+    @cached_property
+    def stages(self) -> list[str]:
+        """Stage of each recorded load step."""
+        return [text.decode() for text in self._rows("curves/stage")]
+
+    def curve(
+        self, quantity: str, *, support: str | None = None, contact: str | None = None, component: Literal["x", "y", "z"] | None = None
+    ) -> NDArray[Any]:
+        """A quantity over the recorded load steps.
+
+        Parameters
+        ----------
+        quantity : str
+            Of a support: force, moment, centre. Of a contact: force_slave, force_master, moment_slave, moment_master, active, slip,
+            pressure_field, excluded. Of neither: step, time, newton_order, substeps, cuts, next_increment.
+        support, contact : str, optional
+            Name of a support or of a contact pair.
+        component : {"x", "y", "z"}, optional
+            Of a vector; absent: all three.
+
+        Returns
+        -------
+        ndarray, shape (steps,) or (steps, 3)
+        """
+        if support is not None:
+            known, place = layout.REACTION, f"supports/{_named(self.problem.supports, support, 'support').name}/"
+        elif contact is not None:
+            known, place = layout.CONTACT, f"contacts/{_named(self.problem.contacts, contact, 'contact').name}/"
+        else:
+            known, place = {name: kind for name, kind in layout.STEP.items() if name != "stage"}, ""
+        if quantity not in known:
+            raise ResultsError(f"there is no curve {quantity!r} here; there are: {', '.join(known)}")
+        values = self._rows(f"curves/{place}{quantity}")
+        if component is None:
+            return values
+        if values.ndim != 2 or values.shape[1] != 3:
+            raise ResultsError(f"curve {quantity!r} has no components")
+        return values[:, "xyz".index(component)]
+
+    def timings(self) -> dict[str, FloatArray]:
+        """Seconds by phase over the recorded load steps; NaN where a step did not tell."""
+        return self._read(lambda file: {name: data[()] for name, data in file["timings"].items()})
+
+    def counters(self) -> dict[str, NDArray[np.int64]]:
+        """Kernel counters over the recorded load steps; -1 where a step did not tell."""
+        return self._read(lambda file: {name: data[()] for name, data in file["counters"].items()})
+
+    def contact(self, name: str) -> ContactHistory:
+        """Control values of a contact pair over the kept states."""
+        contact = _named(self.problem.contacts, name, "contact")
+        if not len(self.kept_states):
+            raise ResultsError(f"{self.path} holds no load step yet")
+        names = ("pressure", "traction", "traction_norm", "status", "gap")
+        values = self._read(lambda file: {n: file[f"states/contacts/{name}/{n}"][()] for n in names})
+        return ContactHistory(contact=contact, steps=self.kept_states, **values)
+
+    def last_step(self) -> StepResult | None:
+        """The newest recorded step, from which a computation resumes; None: nothing is recorded yet."""
+        return self.step(int(self.steps[-1])) if len(self.steps) else None
+
+    def step(self, number: int) -> StepResult:
+        """A recorded load step, bit for bit as it was recorded.
+
+        Raises
+        ------
+        ResultsError
+            The step was not recorded, or its state was not kept.
+        """
+        if number not in self.steps:
+            raise ResultsError(f"load step {number} is not in {self.path}; it holds {_ranges(self.steps)}")
+        if number not in self.kept_states:
+            raise ResultsError(f"{self.path} kept no state of load step {number} (states = 'last'); it has the curves of all steps")
+        row = int(np.flatnonzero(self.steps == number)[0])
+        kept = int(np.flatnonzero(self.kept_states == number)[0])
+        return self._read(lambda file: _step_result(file, self.problem, number, row, kept))
+
+    def _rows(self, path: str) -> NDArray[Any]:
+        return self._read(lambda file: file[path][()])
+
+    def _check_format(self, file: h5py.File) -> None:
+        if file.attrs.get("format") != layout.FORMAT:
+            raise ResultsError(f"{self.path} is an HDF5 file, but not one with results of isomortar")
+        version = file.attrs["format_version"]
+        if version != layout.FORMAT_VERSION:
+            raise ResultsError(
+                f"{self.path} has format {version}, this program reads format {layout.FORMAT_VERSION}: use the version that wrote it"
+            )
+
+    def _read(self, action: Callable[[h5py.File], Value]) -> Value:
+        try:
+            return action(self._file)
+        except ResultsError:
+            raise
+        except Exception as error:  # damaged content may come up as any of them
+            raise self._damaged(error) from error
+
+    def _damaged(self, error: Exception) -> ResultsError:
+        return ResultsError(
+            f"{self.path} cannot be read ({error}): it is damaged or no results file (a killed run does not damage it). "
+            "Restore a copy, or remove it and run the scene again"
+        )
+
+
+def _step_result(file: h5py.File, problem: Problem, number: int, row: int, kept: int) -> StepResult:
+    states = [f"states/contacts/{contact.name}" for contact in problem.contacts]
+    curves = [f"curves/contacts/{contact.name}" for contact in problem.contacts]
+    values = _get(file, "curves", layout.STEP, row)
+    values["stage"] = values["stage"].decode()
+    return StepResult(
+        **values,
+        state=State(
+            positions=file["states/positions"][kept],
+            contacts=tuple(ContactState(**_get(file, state, layout.CONTACT_STATE, kept)) for state in states),
+        ),
+        reactions=tuple(Reaction(**_get(file, f"curves/supports/{s.name}", layout.REACTION, row)) for s in problem.supports),
+        contacts=tuple(
+            ContactResult(**_get(file, curve, layout.CONTACT, row), **_get(file, state, layout.CONTACT_VALUES, kept))
+            for curve, state in zip(curves, states, strict=True)
+        ),
+        augmentations=_augmentations(file, number),
+        timings={name: float(data[row]) for name, data in file["timings"].items() if not np.isnan(data[row])},
+        counters={name: int(data[row]) for name, data in file["counters"].items() if data[row] >= 0},
+    )
+
+
+def _get(file: h5py.File, group: str, quantities: Mapping[str, layout.Quantity], row: int) -> dict[str, Any]:
+    """Row `row` of every quantity; single numbers as Python's own."""
+    rows = {name: file[f"{group}/{name}"][row] for name in quantities}
+    return {name: value.item() if isinstance(value, np.generic) else value for name, value in rows.items()}
+
+
+def _augmentations(file: h5py.File, step: int) -> tuple[AugmentationRecord, ...]:
+    rows = file["log/augmentations"][()]
+    iterations = iter(_iterations(file, step))
+    records = [_numbers(row) for row in rows[rows["step"] == step]]
+    return tuple(AugmentationRecord(**r | {"iterations": tuple(next(iterations) for _ in range(r["iterations"]))}) for r in records)
+
+
+def _iterations(file: h5py.File, step: int) -> list[IterationRecord]:
+    rows = file["log/iterations"][()]
+    mine = np.flatnonzero(rows["step"] == step)
+    if not len(mine):
+        return []
+    begin, end = rows["notes"][: mine[0]].sum(), rows["notes"][: mine[-1] + 1].sum()
+    notes = iter(file["log/notes"].asstr()[begin:end])
+    records = [_numbers(row) for row in rows[mine]]
+    return [IterationRecord(**r | {"notes": tuple(next(notes) for _ in range(r["notes"]))}) for r in records]
+
+
+def _numbers(row: np.void) -> dict[str, Any]:
+    """A row of the log by name, without the load step."""
+    return {name: row[name].item() for name in row.dtype.names or () if name != "step"}
+
+
+def _named(entries: tuple[Any, ...], name: str, kind: str) -> Any:
+    for entry in entries:
+        if entry.name == name:
+            return entry
+    raise ResultsError(f"there is no {kind} {name!r}; there are: {', '.join(entry.name for entry in entries) or 'none'}")
+
+
+def _ranges(steps: NDArray[np.int64]) -> str:
+    return f"steps {steps[0]} to {steps[-1]}" if len(steps) else "no step yet"

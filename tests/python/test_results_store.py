@@ -1,0 +1,264 @@
+"""Results files: what is written is read back bit for bit; damage and misuse are told clearly; a kill loses nothing recorded."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from isomortar.errors import ResultsError
+from isomortar.model.entities import Motion
+from isomortar.results.reader import Results
+from isomortar.results.writer import ResultsWriter
+from isomortar.solve.record import StepResult
+from results_samples import problem, step_result
+
+SCENE = "[scene]\nname = 'rolling'  # größer ≤ ö\n"
+
+
+def write(path: Path, steps: range, **options: object) -> None:
+    writer = ResultsWriter(path, problem(), SCENE, "0.1", **options)
+    for number in steps:
+        writer.recorded(step_result(number))
+
+
+def same(a: object, b: object) -> bool:
+    """Equality of nested plain data down to the last bit, type and shape of arrays included."""
+    if dataclasses.is_dataclass(a):
+        return type(a) is type(b) and all(same(getattr(a, f.name), getattr(b, f.name)) for f in dataclasses.fields(a))
+    if isinstance(a, tuple):
+        return isinstance(b, tuple) and len(a) == len(b) and all(map(same, a, b))
+    if isinstance(a, np.ndarray):
+        return isinstance(b, np.ndarray) and a.dtype == b.dtype and a.shape == b.shape and a.tobytes() == b.tobytes()
+    if isinstance(a, dict):
+        return isinstance(b, dict) and a.keys() == b.keys() and all(same(a[k], b[k]) for k in a)
+    return a == b or (a != a and b != b)
+
+
+def test_steps_come_back_bit_for_bit(tmp_path: Path) -> None:
+    path = tmp_path / "sub" / "run.h5"
+    write(path, range(1, 6))
+    with Results(path) as results:
+        assert list(results.steps) == list(results.kept_states) == [1, 2, 3, 4, 5]
+        for number in range(1, 6):
+            assert same(results.step(number), step_result(number))
+        assert same(results.last_step(), step_result(5))
+
+
+def test_a_changed_bit_is_seen_by_the_comparison() -> None:
+    a, b = step_result(1), step_result(1)
+    assert same(a, b)
+    b.state.positions[3, 1] = np.nextafter(b.state.positions[3, 1], 1)
+    assert not same(a, b)
+
+
+def test_the_problem_comes_back(tmp_path: Path) -> None:
+    path = tmp_path / "run.h5"
+    write(path, range(0))
+    with Results(path) as results:
+        assert same(results.problem, problem())
+        assert results.scene_text == SCENE
+        assert results.version == "0.1"
+        assert results.last_step() is None
+        assert len(results.steps) == 0
+        assert results.curve("force", support="rim").shape == (0, 3)
+        with pytest.raises(ResultsError, match="no load step yet"):
+            results.contact("tread")
+
+
+def test_curves(tmp_path: Path) -> None:
+    path = tmp_path / "run.h5"
+    write(path, range(1, 4))
+    steps = [step_result(k) for k in range(1, 4)]
+    with Results(path) as results:
+        assert np.array_equal(results.curve("force", support="bed", component="z"), [s.reactions[1].force[2] for s in steps])
+        assert np.array_equal(results.curve("moment_master", contact="ground"), [s.contacts[1].moment_master for s in steps])
+        assert np.array_equal(results.curve("active", contact="tread"), [s.contacts[0].active for s in steps])
+        assert np.array_equal(results.curve("time"), [1, 2, 3])
+        assert results.stages == ["press"] * 3
+        assert np.array_equal(results.contact("ground").pressure, [s.state.contacts[1].pressure for s in steps])
+        assert np.array_equal(results.timings()["other"], [np.nan, 0.25, 0.25], equal_nan=True)
+        assert np.array_equal(results.counters()["analyses"], [3, -1, -1])
+        for bad, words in [
+            ({"quantity": "stress", "support": "rim"}, "force, moment, centre"),
+            ({"quantity": "force", "support": "roof"}, "rim, bed"),
+            ({"quantity": "active", "contact": "tread", "component": "x"}, "no components"),
+        ]:
+            with pytest.raises(ResultsError, match=words):
+                results.curve(**bad)
+        with pytest.raises(ResultsError, match="steps 1 to 3"):
+            results.step(4)
+
+
+def test_every_dataset_has_unit_and_description(tmp_path: Path) -> None:
+    path = tmp_path / "run.h5"
+    write(path, range(1, 3))
+    bare = []
+
+    def look(name: str, entry: h5py.Dataset | h5py.Group) -> None:
+        if isinstance(entry, h5py.Dataset) and not (entry.attrs.get("unit") and entry.attrs.get("description")):
+            bare.append(name)
+
+    with h5py.File(path) as file:
+        file.visititems(look)
+    assert bare == []
+
+
+def test_only_the_last_state_is_kept_on_demand(tmp_path: Path) -> None:
+    path = tmp_path / "run.h5"
+    write(path, range(1, 6), states="last")
+    with Results(path) as results:
+        assert list(results.steps) == [1, 2, 3, 4, 5]
+        assert list(results.kept_states) == [5]
+        assert same(results.last_step(), step_result(5))
+        assert len(results.curve("force", support="rim")) == 5
+        with pytest.raises(ResultsError, match="kept no state"):
+            results.step(2)
+
+
+@pytest.mark.parametrize("states", ["all", "last"])
+def test_resume_appends(tmp_path: Path, states: str) -> None:
+    path = tmp_path / "run.h5"
+    write(path, range(1, 3), states=states)
+    write(path, range(3, 5), states=states, resume=True)
+    with Results(path) as results:
+        assert list(results.steps) == [1, 2, 3, 4]
+        assert same(results.last_step(), step_result(4))
+        if states == "all":
+            assert same(results.step(1), step_result(1))
+
+
+def test_resume_refuses_another_scene_and_names_the_difference(tmp_path: Path) -> None:
+    path = tmp_path / "run.h5"
+    write(path, range(1, 3))
+    before = path.read_bytes()
+    given = problem()
+    rim = dataclasses.replace(given.supports[0], motions=(Motion((0, 0, -0.2)), given.supports[0].motions[1]))
+    softer = dataclasses.replace(given.bodies[0], material=dataclasses.replace(given.bodies[0].material, young=0.25))
+    other = dataclasses.replace(given, supports=(rim, given.supports[1]), bodies=(softer, given.bodies[1]))
+    with pytest.raises(ResultsError) as raised:
+        ResultsWriter(path, other, SCENE, "0.1", resume=True)
+    assert "bodies.tyre.material.young: 0.3333333333333333 in the file, 0.25 in the scene" in str(raised.value)
+    assert "supports.rim.motions.0.translate" in str(raised.value)
+    assert path.read_bytes() == before
+
+
+def test_an_existing_file_is_not_overwritten(tmp_path: Path) -> None:
+    path = tmp_path / "run.h5"
+    write(path, range(1, 3))
+    with pytest.raises(ResultsError, match="exists already"):
+        write(path, range(1, 3))
+
+
+def test_a_step_cannot_be_recorded_twice(tmp_path: Path) -> None:
+    path = tmp_path / "run.h5"
+    write(path, range(1, 3))
+    with pytest.raises(ResultsError, match="load step 2 already"):
+        write(path, range(2, 3), resume=True)
+    with Results(path) as results:
+        assert list(results.steps) == [1, 2]
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_an_unwritable_place_is_told(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(ResultsError, match="cannot be written"):
+        write(tmp_path / "file" / "run.h5", range(1))
+
+
+def test_missing_and_foreign_files(tmp_path: Path) -> None:
+    with pytest.raises(ResultsError, match="does not exist"):
+        Results(tmp_path / "none.h5")
+    (tmp_path / "text.h5").write_text("not HDF5")
+    with pytest.raises(ResultsError, match="cannot be read"):
+        Results(tmp_path / "text.h5")
+    h5py.File(tmp_path / "other.h5", "w").close()
+    with pytest.raises(ResultsError, match="not one with results of isomortar"):
+        Results(tmp_path / "other.h5")
+    write(tmp_path / "newer.h5", range(0))
+    with h5py.File(tmp_path / "newer.h5", "a") as file:
+        file.attrs["format_version"] = 99
+    with pytest.raises(ResultsError, match="format 99"):
+        Results(tmp_path / "newer.h5")
+
+
+def numbers(step: StepResult) -> StepResult:
+    """The step without its texts (HDF5 guards numbers by checksums, but not texts of free length)."""
+    bare = tuple(
+        dataclasses.replace(a, iterations=tuple(dataclasses.replace(i, notes=()) for i in a.iterations)) for a in step.augmentations
+    )
+    return dataclasses.replace(step, stage="", augmentations=bare)
+
+
+def read_all(path: Path) -> list[StepResult]:
+    with Results(path) as results:
+        assert results.problem is not None
+        return [results.step(int(k)) for k in results.steps]
+
+
+def test_damage_is_told_and_never_read_as_numbers(tmp_path: Path) -> None:
+    """Cut the file short, or spoil 64 bytes, at many places: the steps read are right, or a ResultsError says so."""
+    path, spoiled = tmp_path / "run.h5", tmp_path / "spoiled.h5"
+    write(path, range(1, 4))
+    whole = path.read_bytes()
+    expected = [step_result(k) for k in range(1, 4)]
+    random = np.random.default_rng(0)
+    told = 0
+    for place in random.integers(0, len(whole), 150):
+        for damaged in (whole[:place], whole[:place] + random.bytes(64) + whole[place + 64 :]):
+            spoiled.write_bytes(damaged)
+            try:
+                steps = read_all(spoiled)
+            except ResultsError:
+                told += 1
+            else:
+                assert len(steps) <= 3
+                assert all(map(same, map(numbers, steps), map(numbers, expected)))
+    assert told > 150
+
+
+CHILD = """
+import sys
+from results_samples import problem, step_result
+from isomortar.results.reader import Results
+from isomortar.results.writer import ResultsWriter
+path = sys.argv[1]
+writer = ResultsWriter(path, problem(), "scene", "0.1", resume=True)
+with Results(path) as results:
+    first = len(results.steps) + 1
+for step in range(first, 10000):
+    writer.recorded(step_result(step))
+    print(step, flush=True)
+"""
+
+
+def test_a_kill_at_any_moment_leaves_the_last_completed_step(tmp_path: Path) -> None:
+    """SIGKILL at random moments of a run that does nothing but write; it resumes and is killed again, ten times."""
+    path = tmp_path / "run.h5"
+    random = np.random.default_rng()
+    here = str(Path(__file__).parent)
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join([here, *sys.path])}
+    reached = 0
+    for _ in range(10):
+        child = subprocess.Popen([sys.executable, "-c", CHILD, str(path)], stdout=subprocess.PIPE, text=True, env=environment)
+        assert child.stdout is not None
+        first = child.stdout.readline()
+        assert first == f"{reached + 1}\n"  # it resumes where the file ends
+        time.sleep(0.1 * random.random())
+        child.send_signal(signal.SIGKILL)
+        told = [first, *child.stdout]
+        child.wait()
+        recorded = max(int(line) for line in told if line.endswith("\n"))
+        with Results(path) as results:
+            reached = len(results.steps)
+            assert reached in (recorded, recorded + 1)  # killed between taking the name and telling
+            assert same(results.last_step(), step_result(reached))
+            assert same(results.step(1 + reached // 2), step_result(1 + reached // 2))
+    assert reached > 20
