@@ -20,6 +20,7 @@ from typing import Any
 
 import numpy as np
 import tomlkit
+
 from isomortar.errors import InputError
 from isomortar.geometry.patch import Direction, Patch
 from isomortar.scene.geometry_file import write_geometry
@@ -35,7 +36,7 @@ SOLVER_KEYS = {
 }
 
 #: What the explicit scene means where it says nothing.
-SOLVER_DEFAULTS = {"penalty_base": [100.0, 10.0], "aug_tol": 0.01, "penalty_growth": 1.0}
+SOLVER_DEFAULTS: dict[str, Any] = {"penalty_base": [100.0, 10.0], "aug_tol": 0.01, "penalty_growth": 1.0}
 
 
 def convert(source: Path, folder: Path, slip_sum: str = "local", augmentation_norm: str = "separate") -> Path:
@@ -149,7 +150,7 @@ def _solver(solver: dict[str, Any]) -> dict[str, Any]:
     unknown = sorted(set(solver) - {"penalty_base", *SOLVER_KEYS})
     if unknown:  # they steer the way to the solution, not the solution
         warnings.warn(f"solver keys without a counterpart are left out: {', '.join(unknown)}", stacklevel=2)
-    solver = SOLVER_DEFAULTS | solver
+    solver = {**SOLVER_DEFAULTS, **solver}
     normal, tangential = solver["penalty_base"]
     table = {"penalty_normal": float(normal), "penalty_tangential": float(tangential)}
     return table | {ours: solver[theirs] for theirs, ours in SOLVER_KEYS.items() if theirs in solver}
