@@ -21,6 +21,12 @@ missing_packages() {
   python_has_venv || echo python3-venv
 }
 
+ask_administrator() {
+  fail "system packages are missing, and this account can not install them. Ask an administrator to run
+    apt-get update && apt-get install $*
+then repeat your command."
+}
+
 install_system_packages() {
   local packages as_root=()
   if ! command -v apt-get >/dev/null; then
@@ -31,17 +37,13 @@ install_system_packages() {
   [ ${#packages[@]} -gt 0 ] || return 0
   if [ "$(id -u)" -ne 0 ]; then
     # With nobody at the keyboard, sudo is of use only if it asks no password.
-    if command -v sudo >/dev/null && { [ -t 0 ] || sudo -n true 2>/dev/null; }; then
-      as_root=(sudo)
-    else
-      fail "system packages are missing, and this account can not install them. Ask an administrator to run
-    apt-get update && apt-get install ${packages[*]}
-then repeat your command."
-    fi
+    command -v sudo >/dev/null && { [ -t 0 ] || sudo -n true 2>/dev/null; } || ask_administrator "${packages[@]}"
+    as_root=(sudo)
   fi
   say "Installing system packages${as_root:+ with sudo}: ${packages[*]}"
-  "${as_root[@]}" apt-get update -q
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${packages[@]}"
+  if [ ${#as_root[@]} -gt 0 ]; then sudo -v || ask_administrator "${packages[@]}"; fi
+  "${as_root[@]}" apt-get update -qq
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -qq -y --no-install-recommends "${packages[@]}"
 }
 
 check_python() {
