@@ -16,7 +16,8 @@ subroutine sparse_analyse(n, nnz, indptr, indices, by_metis, handle, place, stat
 end subroutine sparse_analyse
 
 !> Factorise a matrix of the pattern analysed; when singular, `place` is the unknown of the smallest pivot.
-subroutine sparse_factorise(handle, n, nnz, indptr, indices, values, rcond_min, rcond, flops, peak_bytes, factor_entries, place, status)
+subroutine sparse_factorise(handle, n, nnz, indptr, indices, values, rcond_min, rcond, flops, peak_bytes, &
+  factor_entries, place, status)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_sparse_factorisation, only: factorise
   implicit none
@@ -32,7 +33,7 @@ subroutine sparse_factorise(handle, n, nnz, indptr, indices, values, rcond_min, 
 end subroutine sparse_factorise
 
 !> Solve for several right-hand sides with at most `refine` steps of refinement each.
-subroutine sparse_solve(handle, n, nnz, columns, indptr, indices, values, b, refine, x, refined, place, status)
+subroutine sparse_solve(handle, n, nnz, columns, indptr, indices, values, b, refine, x, place, status)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_sparse_factorisation, only: solve
   implicit none
@@ -42,11 +43,10 @@ subroutine sparse_solve(handle, n, nnz, columns, indptr, indices, values, b, ref
   real(c_double), intent(in) :: values(nnz), b(n, columns)
   integer(c_int), intent(in) :: refine
   real(c_double), intent(out) :: x(n, columns)
-  integer(c_int), intent(out) :: refined
   integer(c_int64_t), intent(out) :: place
   integer(c_int), intent(out) :: status
 
-  call solve(handle, indptr, indices, values, b, refine, x, refined, place, status)
+  call solve(handle, indptr, indices, values, b, refine, x, place, status)
 end subroutine sparse_solve
 
 !> Free what a handle owns.
