@@ -1,0 +1,84 @@
+"""Internal forces and tangent of all bodies."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy import sparse
+
+from isomortar import _bindings
+from isomortar.errors import FoldedElementError, InputError
+from isomortar.geometry.patch import FloatArray
+from isomortar.model.entities import Problem
+from isomortar.model.numbering import Numbering
+from isomortar.model.pattern import element_points, incidence, pattern_of
+
+
+class Solid:
+    """The bodies of a problem.
+
+    Attributes
+    ----------
+    pattern : Pattern
+        Blocks of the tangent, on global control points; fixed for a whole computation.
+
+    Raises
+    ------
+    InputError
+        An element is folded in the reference configuration.
+    """
+
+    def __init__(self, problem: Problem, numbering: Numbering) -> None:
+        self._bodies = problem.bodies
+        self._numbering = numbering
+        self._patches = [numbering.patch_arrays(body) for body in self._bodies]
+        total = sparse.csr_array((numbering.count, numbering.count), dtype=np.int32)
+        for body in self._bodies:
+            elements = incidence(element_points(body.patch, numbering.points[body.name]), numbering.count)
+            total = total + elements.T @ elements
+        self.pattern = pattern_of(sparse.csr_array(total))
+        rows = np.repeat(np.arange(numbering.count), np.diff(self.pattern.start))
+        self._diagonal = np.flatnonzero(rows == self.pattern.column)
+        try:
+            self.forces(numbering.reference)
+        except FoldedElementError as error:
+            raise InputError(f"{error}; check the geometry, the order of its control points and the face it is seen from") from error
+
+    def forces(self, positions: FloatArray) -> FloatArray:
+        """Internal forces, shape (control points, 3).
+
+        Raises
+        ------
+        FoldedElementError
+            Naming body and element.
+        """
+        return self._add(positions, None)
+
+    def forces_and_tangent(self, positions: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Internal forces and tangent blocks, shape (blocks, 3, 3): block, row component, column component."""
+        tangent = np.zeros((len(self.pattern.column), 3, 3))
+        return self._add(positions, tangent), tangent
+
+    def _add(self, positions: FloatArray, tangent: FloatArray | None) -> FloatArray:
+        forces = np.zeros_like(self._numbering.reference)
+        for body, patch in zip(self._bodies, self._patches, strict=True):
+            try:
+                _bindings.add_body(
+                    patch,
+                    body.quadrature,
+                    body.material.bulk,
+                    body.material.shear,
+                    positions,
+                    self._numbering.reference,
+                    forces,
+                    self.pattern if tangent is not None else None,
+                    tangent,
+                )
+            except FoldedElementError as error:
+                where = np.unravel_index(error.place, [d.elements for d in body.patch.directions], order="F")
+                place = ", ".join(str(int(i)) for i in where)
+                raise FoldedElementError(f"body {body.name!r}: {error} (element {place} along u, v, w)", error.place) from error
+        return forces
+
+    def largest_diagonal(self, tangent: FloatArray) -> float:
+        """Largest diagonal entry of the tangent, over all unknowns."""
+        return float(np.einsum("kii->ki", tangent[self._diagonal]).max())

@@ -1,0 +1,75 @@
+"""Prescribed control points and their motion."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from isomortar.geometry.patch import FloatArray, IntArray
+from isomortar.model.entities import Problem, Stage, Support, unit
+from isomortar.model.numbering import Numbering
+
+
+def progress(stages: Sequence[Stage], time: float) -> FloatArray:
+    """Share of each stage that has passed at a load time (in load steps), shape (stages,)."""
+    starts = np.cumsum([0] + [stage.steps for stage in stages])[:-1]
+    return np.clip((time - starts) / np.array([stage.steps for stage in stages]), 0.0, 1.0)
+
+
+class Supports:
+    """All supports of a problem.
+
+    Attributes
+    ----------
+    prescribed : ndarray of int, shape (m,)
+        Prescribed unknowns (3 * control point + component), sorted.
+    free : ndarray of int, shape (u,)
+        The others.
+    equation : ndarray of int32, shape (3 * control points,)
+        Equation number of each unknown; -1: prescribed.
+    """
+
+    def __init__(self, problem: Problem, numbering: Numbering) -> None:
+        self._problem = problem
+        self._numbering = numbering
+        self.points: list[IntArray] = [
+            np.unique(numbering.points[s.place.body][problem.body(s.place.body).patch.face_points(s.place.face)]) for s in problem.supports
+        ]
+        unknowns = [self._unknowns(k) for k in range(len(problem.supports))]
+        self.prescribed = np.unique(np.concatenate(unknowns)) if unknowns else np.zeros(0, dtype=np.int64)
+        mask = np.ones(3 * numbering.count, dtype=bool)
+        mask[self.prescribed] = False
+        self.free = np.flatnonzero(mask)
+        self.equation = np.full(3 * numbering.count, -1, dtype=np.int32)
+        self.equation[self.free] = np.arange(len(self.free), dtype=np.int32)
+
+    def _unknowns(self, k: int) -> FloatArray:
+        components = np.asarray(self._problem.supports[k].components)
+        return (3 * self.points[k].astype(np.int64)[:, None] + components).ravel()
+
+    def centre(self, support: Support, time: float) -> FloatArray:
+        """The moving centre c + u(t) of a support, shape (3,)."""
+        shares = progress(self._problem.stages, time)
+        shift = sum((share * np.asarray(motion.translate) for share, motion in zip(shares, support.motions, strict=True)), np.zeros(3))
+        return np.asarray(support.centre, dtype=np.float64) + shift
+
+    def place(self, time: float) -> FloatArray:
+        """Positions of all control points with the prescribed ones where their supports put them at a load time.
+
+        Returns
+        -------
+        ndarray, shape (control points, 3)
+            Rows of control points without support hold their reference positions.
+        """
+        positions = self._numbering.reference.copy()
+        for k, support in enumerate(self._problem.supports):
+            shares = progress(self._problem.stages, time)
+            angle = sum(share * motion.rotate for share, motion in zip(shares, support.motions, strict=True))
+            turn = Rotation.from_rotvec(np.radians(angle) * unit(support.axis))
+            points = self.points[k]
+            target = self.centre(support, time) + turn.apply(self._numbering.reference[points] - np.asarray(support.centre))
+            for component in support.components:
+                positions[points, component] = target[:, component]
+        return positions

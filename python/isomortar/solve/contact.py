@@ -1,0 +1,143 @@
+"""One contact pair during a load step: kinematics, response of the augmented law, forces, tangent."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from isomortar import _bindings
+from isomortar._bindings import ROW_KINDS, Control, Law, Pattern, Projections, Response
+from isomortar.geometry.patch import FloatArray
+from isomortar.model.entities import SolverSettings
+from isomortar.model.pairs import Pair
+from isomortar.solve.reach import ContactPatterns, Reach
+from isomortar.solve.record import ContactResult, ContactState
+from isomortar.solve.timing import Ledger
+
+
+@dataclass(frozen=True)
+class Kinematics:
+    """A pair at given positions: projections and control quantities."""
+
+    projections: Projections
+    control: Control
+
+
+@dataclass(frozen=True)
+class Blocks:
+    """What a second pass gives: rows, derivatives of the multipliers, geometric tangent, and their patterns."""
+
+    patterns: ContactPatterns
+    rows: FloatArray
+    changes: FloatArray
+    geometric: FloatArray
+
+
+class PairMechanics:
+    """A contact pair with what stays for a whole computation."""
+
+    def __init__(self, pair: Pair, settings: SolverSettings, ledger: Ledger) -> None:
+        self.pair = pair
+        self.friction = pair.contact.friction
+        self.summed = settings.slip_sum == "paper" and self.friction > 0
+        self.reach = Reach(pair, self.summed)
+        self._ledger = ledger
+        self._kinds = ROW_KINDS["frictionless" if self.friction <= 0 else ("paper" if self.summed else "local")]
+
+    @property
+    def penalty_area(self) -> float:
+        """Area that the penalties are divided by (formulation.md Section 5)."""
+        return self.pair.contact.reference_area or self.pair.area
+
+    def no_contact(self) -> ContactState:
+        """State before the first load step."""
+        n, q = len(self.pair.slave.point), len(self.pair.slave.area)
+        return ContactState(np.zeros(n), np.zeros((n, 2)), np.zeros((q, 2)), np.zeros(q, dtype=np.int32))
+
+    def kinematics(self, positions: FloatArray, start: ContactState) -> Kinematics:
+        """Project and integrate the control quantities; slips count from `start`."""
+        pair = self.pair
+        with self._ledger.phase("projection"):
+            projections = _bindings.project_points(pair.slave, pair.master, positions, start.projection, start.projected)
+        with self._ledger.phase("contact"):
+            control = _bindings.control_quantities(pair.slave, pair.master, positions, projections)
+        self._ledger.counts["projections"] += len(pair.slave.area)
+        return Kinematics(projections, control)
+
+    def law(self, penalties: FloatArray, pressure: FloatArray, traction: FloatArray) -> Law:
+        """The augmented law with given penalties (normal, tangential) and multipliers."""
+        return Law(penalties, self.friction, pressure, traction, self.summed)
+
+    def respond(self, kinematics: Kinematics, law: Law) -> Response:
+        """Multipliers and states of the law."""
+        with self._ledger.phase("contact"):
+            return _bindings.augmented_multipliers(self.pair.slave, kinematics.control, law)
+
+    def add_forces(self, positions: FloatArray, kinematics: Kinematics, response: Response, forces: FloatArray) -> None:
+        """Add the contact forces of both sides to `forces`, shape (control points, 3)."""
+        with self._ledger.phase("contact"):
+            _bindings.contact_forces(
+                self.pair.slave, self.pair.master, positions, kinematics.projections, self.friction, response, forces
+            )
+
+    def blocks(self, positions: FloatArray, kinematics: Kinematics, law: Law, response: Response) -> Blocks:
+        """Constraint rows, derivatives of the multipliers and the geometric tangent."""
+        patterns = self.reach.update(kinematics.projections, response.state)
+        rows = np.zeros((len(patterns.rows.column), self._kinds, 3))
+        geometric = np.zeros((len(patterns.tangent.column), 3, 3))
+        with self._ledger.phase("contact"):
+            _bindings.contact_blocks(
+                self.pair.slave, self.pair.master, positions, kinematics.projections, self.friction, response,
+                patterns.rows, rows, patterns.tangent, geometric,
+            )  # fmt: skip
+            changes = _bindings.multiplier_rows(
+                self.pair.slave, kinematics.control, law, response, patterns.rows, rows, self.pair.neighbours, patterns.wide
+            )
+        self._ledger.counts["contact tangents"] += 1
+        return Blocks(patterns, rows, changes, geometric)
+
+    def condensed(self, response: Response, blocks: Blocks) -> tuple[Pattern, FloatArray]:
+        """The contact tangent with the multipliers eliminated."""
+        tangent = blocks.geometric.copy()
+        with self._ledger.phase("contact"):
+            _bindings.condense_multipliers(
+                response.state, blocks.patterns.rows, blocks.rows, blocks.patterns.wide, blocks.changes, blocks.patterns.tangent, tangent
+            )
+        return blocks.patterns.tangent, tangent
+
+    def traction_norms(self, control: Control, traction: FloatArray) -> FloatArray:
+        """Metric norm of control tractions, shape (slave control points,)."""
+        m = control.metric / np.where(control.square > 0, control.square, 1.0)[:, None]
+        determinant = m[:, 0] * m[:, 2] - m[:, 1] ** 2
+        t = traction
+        squared = m[:, 2] * t[:, 0] ** 2 - 2 * m[:, 1] * t[:, 0] * t[:, 1] + m[:, 0] * t[:, 1] ** 2
+        return np.sqrt(np.maximum(squared / np.where(determinant > 0, determinant, 1.0), 0.0))
+
+    def result(self, positions: FloatArray, kinematics: Kinematics, response: Response) -> ContactResult:
+        """Measured quantities at the end of a load step."""
+        control, projections = kinematics.control, kinematics.projections
+        slave_forces, forces = np.zeros_like(positions), np.zeros_like(positions)
+        self.add_forces(positions, kinematics, response, forces)
+        slave_forces[self.pair.slave.point] = forces[self.pair.slave.point]
+        master_forces = forces - slave_forces
+        field = self.pair.field(response.pressure)[projections.found > 0]
+        weight = np.where(control.weight > 0, control.weight, 1.0)
+        return ContactResult(
+            force_slave=slave_forces.sum(axis=0),
+            force_master=master_forces.sum(axis=0),
+            moment_slave=np.cross(positions, slave_forces).sum(axis=0),
+            moment_master=np.cross(positions, master_forces).sum(axis=0),
+            active=int(np.count_nonzero(response.state)),
+            slip=int(np.count_nonzero(response.state == 2)),
+            traction_norm=self.traction_norms(control, response.traction),
+            status=response.state,
+            gap=control.gap / weight,
+            pressure_field=np.array([field.min(), field.max()]) if field.size else np.zeros(2),
+            excluded=int(np.count_nonzero(projections.found == 0)),
+        )
+
+    def state(self, kinematics: Kinematics, response: Response) -> ContactState:
+        """State to go on from."""
+        projections = kinematics.projections
+        return ContactState(response.pressure, response.traction, projections.xi, projections.found)

@@ -1,0 +1,142 @@
+"""Balance of internal and contact forces at given positions: residual and condensed tangent."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import sparse
+
+from isomortar._bindings import Law, Response
+from isomortar.errors import SingularSystemError
+from isomortar.geometry.patch import FloatArray
+from isomortar.model.entities import Problem
+from isomortar.model.numbering import Numbering
+from isomortar.model.pairs import Pair
+from isomortar.model.solid import Solid
+from isomortar.model.supports import Supports
+from isomortar.solve.contact import Kinematics, PairMechanics
+from isomortar.solve.record import State
+from isomortar.solve.system import LinearSystem, Source, block_product
+from isomortar.solve.timing import Ledger
+
+
+@dataclass(frozen=True)
+class Balance:
+    """Forces at given positions, shape (control points, 3), with the contact kinematics and responses behind them."""
+
+    positions: FloatArray
+    internal: FloatArray
+    total: FloatArray
+    kinematics: tuple[Kinematics, ...]
+    responses: tuple[Response, ...]
+
+    @property
+    def active(self) -> int:
+        """Number of active slave control points."""
+        return sum(int(np.count_nonzero(r.state)) for r in self.responses)
+
+    @property
+    def slipping(self) -> int:
+        """Number of slipping slave control points."""
+        return sum(int(np.count_nonzero(r.state == 2)) for r in self.responses)
+
+
+class Equilibrium:
+    """A problem with its unknowns: everything that load steps and solvers share.
+
+    Raises
+    ------
+    InputError
+        Folded elements, rings that do not close.
+    """
+
+    def __init__(self, problem: Problem, ledger: Ledger) -> None:
+        self.problem = problem
+        self.ledger = ledger
+        self.numbering = Numbering(problem)
+        self.supports = Supports(problem, self.numbering)
+        self.solid = Solid(problem, self.numbering)
+        self.pairs = [PairMechanics(Pair(c, problem, self.numbering), problem.settings, ledger) for c in problem.contacts]
+        self._solid_source = Source(self.solid.pattern, self.supports.equation, self.supports.equation)
+        self._solid_entries: sparse.csr_array | None = None
+        self._system: LinearSystem | None = None
+        self._system_patterns: list[object] = []
+
+    def initial_state(self) -> State:
+        """The reference configuration without contact."""
+        return State(self.numbering.reference.copy(), tuple(pair.no_contact() for pair in self.pairs))
+
+    def balance(self, positions: FloatArray, start: State, laws: Sequence[Law]) -> Balance:
+        """Forces at given positions; slips count from `start`.
+
+        Raises
+        ------
+        FoldedElementError, LostProjectionError
+        """
+        with self.ledger.phase("solid"):
+            internal = self.solid.forces(positions)
+        self.ledger.counts["solid residuals"] += 1
+        total = internal.copy()
+        kinematics, responses = [], []
+        for pair, law, state in zip(self.pairs, laws, start.contacts, strict=True):
+            kinematics.append(pair.kinematics(positions, state))
+            responses.append(pair.respond(kinematics[-1], law))
+            pair.add_forces(positions, kinematics[-1], responses[-1], total)
+        return Balance(positions, internal, total, tuple(kinematics), tuple(responses))
+
+    def tangents(self, balance: Balance, laws: Sequence[Law]) -> tuple[list[Source], list[FloatArray]]:
+        """Solid and condensed contact tangents as sources of the linear system, with their values."""
+        with self.ledger.phase("solid"):
+            _, solid = self.solid.forces_and_tangent(balance.positions)
+        self.ledger.counts["solid tangents"] += 1
+        sources, values = [self._solid_source], [solid]
+        for pair, law, kinematics, response in zip(self.pairs, laws, balance.kinematics, balance.responses, strict=True):
+            if not np.any(response.state):
+                continue
+            pattern, tangent = pair.condensed(response, pair.blocks(balance.positions, kinematics, law, response))
+            sources.append(Source(pattern, self.supports.equation, self.supports.equation))
+            values.append(tangent)
+        return sources, values
+
+    def correction(self, balance: Balance, laws: Sequence[Law], prescribed: FloatArray) -> FloatArray:
+        """Newton's correction of all positions, with given increments of the prescribed ones, shape (control points, 3).
+
+        Raises
+        ------
+        SingularSystemError
+            Naming a body that nothing holds.
+        """
+        sources, values = self.tangents(balance, laws)
+        right = balance.total.copy()
+        if np.any(prescribed):
+            for source, block in zip(sources, values, strict=True):
+                right += block_product(source.pattern, block, prescribed)
+        system = self._system_for(sources)
+        try:
+            system.factorise(values)
+        except SingularSystemError as error:
+            point = int(self.supports.free[error.place]) // 3 if error.place >= 0 else 0
+            body = self.numbering.body_of(point)
+            raise SingularSystemError(
+                f"the tangent is singular (reciprocal condition {system.rcond:.1e}): body {body!r} can move freely at control "
+                f"point {point}; hold it by a support or by contact from the start",
+                point,
+            ) from error
+        correction = prescribed.copy()
+        correction.ravel()[self.supports.free] -= system.solve(right.ravel()[self.supports.free])
+        return correction
+
+    def _system_for(self, sources: list[Source]) -> LinearSystem:
+        """The linear system of these sources: the last one, as long as all patterns stand."""
+        patterns: list[object] = [source.pattern for source in sources]
+        if self._system is None or len(patterns) != len(self._system_patterns) or any(
+            a is not b for a, b in zip(patterns, self._system_patterns, strict=True)
+        ):
+            size = len(self.supports.free)
+            if self._solid_entries is None:
+                self._solid_entries = self._solid_source.entries(size)
+            self._system = LinearSystem(size, sources, self.ledger, self._solid_entries)
+            self._system_patterns = patterns
+        return self._system

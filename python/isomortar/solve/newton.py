@@ -1,0 +1,79 @@
+"""Newton's method for the positions, with the multipliers of one augmentation held."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from isomortar._bindings import Law
+from isomortar.errors import ConvergenceError
+from isomortar.geometry.patch import FloatArray
+from isomortar.solve.equilibrium import Balance, Equilibrium
+from isomortar.solve.record import IterationRecord, State
+
+#: The residual is measured against no less than this share of the stiffness times the size of the bodies: while bodies move
+#: rigidly, internal forces are round-off and no relative test would pass (formulation.md Section 5).
+FORCE_FLOOR = 1e-4
+
+
+def relative_residual(equilibrium: Equilibrium, balance: Balance, stiffness: float) -> float:
+    """Residual at the free unknowns relative to the internal forces or their floor."""
+    residual = float(np.linalg.norm(balance.total.ravel()[equilibrium.supports.free]))
+    scale = max(float(np.linalg.norm(balance.internal)), FORCE_FLOOR * stiffness * equilibrium.numbering.size)
+    return residual / scale
+
+
+def solve_positions(
+    equilibrium: Equilibrium,
+    positions: FloatArray,
+    prescribed: FloatArray,
+    start: State,
+    laws: Sequence[Law],
+    stiffness: float,
+    report: Callable[[IterationRecord], None],
+) -> Balance:
+    """Positions in balance with the laws.
+
+    Parameters
+    ----------
+    positions : ndarray, shape (control points, 3)
+        Where the iteration starts.
+    prescribed : ndarray, shape (control points, 3)
+        Increment of the prescribed positions, which enters the first linear solve.
+    start : State
+        Last converged state: slips count from it.
+    stiffness : float
+        Largest diagonal entry of the solid tangent, for the floor of the residual's scale.
+    report : callable
+        Gets the record of every iteration.
+
+    Raises
+    ------
+    ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError
+    """
+    settings = equilibrium.problem.settings
+    moves = bool(np.any(prescribed))
+    for iteration in range(settings.max_iterations + 1):
+        balance = equilibrium.balance(positions, start, laws)
+        residual = relative_residual(equilibrium, balance, stiffness)
+        report(IterationRecord(iteration, residual, balance.active, balance.active - balance.slipping, balance.slipping))
+        if not np.isfinite(residual):
+            break
+        if residual <= settings.newton_tolerance and not (moves and iteration == 0):
+            return balance
+        if iteration < settings.max_iterations:
+            increment = prescribed if iteration == 0 else np.zeros_like(prescribed)
+            positions = positions + equilibrium.correction(balance, laws, increment)
+    raise ConvergenceError(f"Newton's method stopped at a relative residual of {residual:.2e} after {iteration} iterations")
+
+
+def observed_order(residuals: Sequence[float], floor: float = 1e-13) -> float:
+    """Observed order of convergence from the last three residuals above round-off; NaN where there are too few.
+
+    The order q solves r_(k+1) = C r_k^q over three successive residuals.
+    """
+    above = [r for r in residuals if r > floor]
+    if len(above) < 3 or not above[-3] > above[-2] > above[-1]:
+        return float("nan")
+    return float(np.log(above[-1] / above[-2]) / np.log(above[-2] / above[-3]))

@@ -1,0 +1,78 @@
+"""Patterns of a contact pair: they grow as slave elements reach new master elements, and stand otherwise."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import sparse
+
+from isomortar._bindings import Pattern, Projections
+from isomortar.geometry.patch import IntArray
+from isomortar.model.pairs import Pair
+from isomortar.model.pattern import pattern_of
+
+
+@dataclass(frozen=True)
+class ContactPatterns:
+    """Patterns of constraint rows, of the multipliers' derivatives, and of the contact tangent."""
+
+    rows: Pattern
+    wide: Pattern
+    tangent: Pattern
+
+
+class Reach:
+    """Which control points the constraint rows of a pair reach.
+
+    `update` keeps the patterns while everything needed is in them; else it rebuilds them, with what the same load step
+    needed before, so that Newton's iterations do not trade one pattern for another.
+    """
+
+    def __init__(self, pair: Pair, summed: bool) -> None:
+        self._pair = pair
+        self._summed = summed
+        self._touched = np.zeros(0, dtype=np.int64)
+        self._active = np.zeros(len(pair.slave.point), dtype=bool)
+        self._fresh = True
+        self.patterns: ContactPatterns | None = None
+
+    def begin_step(self) -> None:
+        """Forget, at the next rebuild, what earlier load steps needed."""
+        self._fresh = True
+
+    def update(self, projections: Projections, state: IntArray) -> ContactPatterns:
+        """The patterns for the given projections and states of the control points."""
+        active = state > 0
+        touched = self._touched_elements(projections, active)
+        if self.patterns is not None and not np.any(active & ~self._active) and np.isin(touched, self._touched).all():
+            return self.patterns
+        if not self._fresh:
+            active, touched = active | self._active, np.union1d(touched, self._touched)
+        self._fresh, self._active, self._touched = False, active, touched
+        self.patterns = self._build(active, touched)
+        return self.patterns
+
+    def _touched_elements(self, projections: Projections, active: np.ndarray) -> np.ndarray:
+        """Pairs of a slave element with an active control point and a master element that it projects on, as one number."""
+        pair = self._pair
+        if pair.master_reach is None:
+            return np.zeros(0, dtype=np.int64)
+        element = np.repeat(np.arange(len(pair.slave.nodes)), pair.points_per_element)
+        counts = (projections.found > 0) & active[pair.slave.nodes].any(axis=1)[element]
+        first, second = projections.element[counts, 0], projections.element[counts, 1]
+        return np.unique(element[counts].astype(np.int64) * pair.master_reach.shape[0] + first + pair.master_elements[0] * second)
+
+    def _build(self, active: np.ndarray, touched: np.ndarray) -> ContactPatterns:
+        pair = self._pair
+        reach = pair.slave_reach
+        if pair.master_reach is not None:
+            elements, masters = np.divmod(touched, pair.master_reach.shape[0])
+            shape = (len(pair.slave.nodes), pair.master_reach.shape[0])
+            meets = sparse.csr_array((np.ones(len(touched), dtype=np.int32), (elements, masters)), shape=shape)
+            reach = reach + meets @ pair.master_reach
+        chosen = sparse.diags_array(active.astype(np.int32), format="csr")
+        rows = sparse.csr_array(chosen @ pair.elements_of_point @ reach)
+        wide = sparse.csr_array(chosen @ pair.neighbour_matrix @ rows) if self._summed else rows
+        tangent = sparse.csr_array(rows.T @ wide)
+        return ContactPatterns(pattern_of(rows), pattern_of(wide), pattern_of(tangent))

@@ -1,0 +1,131 @@
+"""The march through the load steps: cutting, growing back, recording."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from isomortar.errors import ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError
+from isomortar.geometry.patch import FloatArray
+from isomortar.model.entities import Problem
+from isomortar.solve.equilibrium import Balance, Equilibrium
+from isomortar.solve.record import AugmentationRecord, Observer, Reaction, State, StepResult
+from isomortar.solve.timing import Ledger
+from isomortar.solve.uzawa import Uzawa
+
+_REASONS_TO_CUT = (ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError)
+
+
+class Simulation:
+    """A computation of a problem, step by step.
+
+    Parameters
+    ----------
+    problem : Problem
+    observer : Observer, optional
+        Watches iterations, augmentations, cuts and recorded steps.
+    resume_from : StepResult, optional
+        Last recorded step of an earlier run of the same problem.
+
+    Examples
+    --------
+    >>> for result in Simulation(problem).run():  # doctest: +SKIP
+    ...     print(result.step, result.reactions[0].force)
+    """
+
+    def __init__(self, problem: Problem, observer: Observer | None = None, resume_from: StepResult | None = None) -> None:
+        self.problem = problem
+        self.ledger = Ledger()
+        self.equilibrium = Equilibrium(problem, self.ledger)
+        self._observer = observer or Observer()
+        self._method = Uzawa(self.equilibrium, self._observer)
+        self._step = resume_from.step if resume_from else 0
+        self._increment = resume_from.next_increment if resume_from else 1.0
+        self.state = resume_from.state if resume_from else self.equilibrium.initial_state()
+
+    def run(self) -> Iterator[StepResult]:
+        """Compute the load steps that are left, one recorded step at a time.
+
+        Raises
+        ------
+        ConvergenceError
+            A load increment did not converge and could not be cut further. Steps yielded before stand.
+        """
+        self._observer.started(self.problem.total_steps, self._step + 1)
+        while self._step < self.problem.total_steps:
+            result = self._advance_step(self._step + 1)
+            self._step, self.state = result.step, result.state
+            self._observer.recorded(result)
+            yield result
+
+    def _advance_step(self, step: int) -> StepResult:
+        """One recorded load step, in as many increments as it takes."""
+        state, time = self.state, float(step - 1)
+        log: list[AugmentationRecord] = []
+        orders: list[float] = []
+        cuts = substeps = 0
+        while time < step:
+            increment = min(self._increment, step - time)
+            target = float(step) if increment > step - time - 1e-12 else time + increment
+            try:
+                converged = self._method.advance(state, target, step)
+            except _REASONS_TO_CUT as error:
+                self._cut(step, target, increment, error)
+                cuts += 1
+                continue
+            time, substeps = target, substeps + 1
+            state = self._state_of(converged.balance)
+            log += converged.augmentations
+            orders += [order for order in converged.orders if np.isfinite(order)]
+            self._increment = min(1.0, 2.0 * increment) if increment < 1.0 else 1.0
+        return self._result(step, state, converged.balance, tuple(log), orders, substeps, cuts)
+
+    def _cut(self, step: int, time: float, increment: float, error: Exception) -> None:
+        """Halve the load increment, or give up with a sentence that says where and why."""
+        self._increment = 0.5 * increment
+        if self._increment < 0.5**self.problem.settings.max_cuts:
+            raise ConvergenceError(
+                f"load step {step} (stage {self._stage_of(step)!r}) does not converge at load time {time:.6g}, even with an increment of "
+                f"1/{round(1 / increment)} step: {error}"
+            ) from error
+        self._observer.cut(step, time, self._increment, str(error))
+
+    def _stage_of(self, step: int) -> str:
+        ends = np.cumsum([stage.steps for stage in self.problem.stages])
+        return self.problem.stages[int(np.searchsorted(ends, step))].name
+
+    def _state_of(self, balance: Balance) -> State:
+        contacts = [
+            pair.state(k, r) for pair, k, r in zip(self.equilibrium.pairs, balance.kinematics, balance.responses, strict=True)
+        ]
+        return State(balance.positions, tuple(contacts))
+
+    def _reactions(self, time: float, positions: FloatArray, total: FloatArray) -> tuple[Reaction, ...]:
+        """Forces that the supports exert: the residual at their control points."""
+        reactions = []
+        for support, points in zip(self.problem.supports, self.equilibrium.supports.points, strict=True):
+            centre = self.equilibrium.supports.centre(support, time)
+            moment = np.cross(positions[points] - centre, total[points]).sum(axis=0)
+            reactions.append(Reaction(total[points].sum(axis=0), moment, centre))
+        return tuple(reactions)
+
+    def _result(
+        self, step: int, state: State, balance: Balance, log: tuple[AugmentationRecord, ...], orders: list[float], substeps: int, cuts: int
+    ) -> StepResult:
+        pairs = zip(self.equilibrium.pairs, balance.kinematics, balance.responses, strict=True)
+        return StepResult(
+            step=step,
+            stage=self._stage_of(step),
+            time=float(step),
+            state=state,
+            reactions=self._reactions(float(step), balance.positions, balance.total),
+            contacts=tuple(pair.result(balance.positions, k, r) for pair, k, r in pairs),
+            augmentations=log,
+            newton_order=float(np.median(orders)) if orders else float("nan"),
+            substeps=substeps,
+            cuts=cuts,
+            next_increment=self._increment,
+            timings=self.ledger.totals(),
+            counters=dict(self.ledger.counts),
+        )

@@ -1,0 +1,99 @@
+"""The linear system: blocked sources gathered into one compressed matrix, its factors, its solution."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import sparse
+
+from isomortar import _bindings
+from isomortar._bindings import Pattern
+from isomortar._sparse import SparseLU
+from isomortar.geometry.patch import FloatArray, IntArray
+from isomortar.solve.timing import Ledger
+
+#: Systems with fewer unknowns are ordered by minimum degree, larger ones by nested dissection (measured: toolchain.md).
+SMALL_SYSTEM = 4000
+
+
+@dataclass(frozen=True, eq=False)
+class Source:
+    """A matrix of 3x3 blocks and where its rows and columns stand in the system (-1: dropped)."""
+
+    pattern: Pattern
+    row_of: IntArray
+    column_of: IntArray
+    transposed: bool = False
+
+    def entries(self, size: int) -> sparse.csr_array:
+        """Pattern of ones in the numbering of the system."""
+        blocks = len(self.pattern.column)
+        rows, columns = len(self.row_of), len(self.column_of)
+        ones = sparse.bsr_array(
+            (np.ones((blocks, 3, 3), dtype=np.int8), self.pattern.column, self.pattern.start), shape=(rows, columns)
+        ).tocoo()
+        row, column = self.row_of[ones.row], self.column_of[ones.col]
+        if self.transposed:
+            row, column = column, row
+        kept = (row >= 0) & (column >= 0)
+        return sparse.csr_array((ones.data[kept], (row[kept], column[kept])), shape=(size, size))
+
+
+class LinearSystem:
+    """A system of a fixed pattern: analysed once, assembled, factorised and solved many times."""
+
+    def __init__(self, size: int, sources: Sequence[Source], ledger: Ledger, known: sparse.csr_array | None = None) -> None:
+        """`known` is the pattern of the first source, where it is at hand already."""
+        self._ledger = ledger
+        total = sources[0].entries(size) if known is None else known
+        for source in sources[1:]:
+            total = total + source.entries(size)
+        total = sparse.csr_array(total)
+        total.sort_indices()
+        self._start, self._column = total.indptr.astype(np.int64), total.indices.astype(np.int64)
+        self._places = [
+            _bindings.find_places(s.pattern, s.row_of, s.column_of, s.transposed, self._start, self._column) for s in sources
+        ]
+        self.values = np.zeros(len(self._column))
+        with ledger.phase("factor"):
+            self._factors = SparseLU(self._start, self._column, ordering="amd" if size < SMALL_SYSTEM else "metis")
+        ledger.counts["analyses"] += 1
+
+    def factorise(self, sources: Sequence[FloatArray]) -> None:
+        """Gather the values of all sources and factorise.
+
+        Raises
+        ------
+        SingularSystemError
+            `place` is an equation that nothing holds.
+        """
+        with self._ledger.phase("factor"):
+            self.values[:] = 0.0
+            for places, source in zip(self._places, sources, strict=True):
+                _bindings.add_values(places, source, self.values)
+            self._factors.factorise(self.values)
+        self._ledger.counts["factorisations"] += 1
+
+    @property
+    def rcond(self) -> float:
+        """Estimate of the reciprocal condition of the last factors."""
+        return self._factors.rcond
+
+    def solve(self, right: FloatArray) -> FloatArray:
+        """Solution for one right-hand side, shape (unknowns,)."""
+        with self._ledger.phase("solve"):
+            solution = self._factors.solve(right)
+        self._ledger.counts["solves"] += 1
+        return solution
+
+    def matrix(self) -> sparse.csr_array:
+        """The assembled matrix."""
+        return sparse.csr_array((self.values, self._column, self._start), shape=(len(self._start) - 1,) * 2)
+
+
+def block_product(pattern: Pattern, values: FloatArray, vector: FloatArray) -> FloatArray:
+    """Product of a matrix of blocks with a field of control points, shape (control points, 3)."""
+    matrix = sparse.bsr_array((values, pattern.column, pattern.start), shape=(vector.size, vector.size))
+    return np.asarray(matrix @ vector.ravel()).reshape(vector.shape)
