@@ -1,0 +1,38 @@
+"""The layers of the kernel: each uses those below it, and a module is named by its path."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+FORTRAN = Path(__file__).parents[2] / "fortran"
+FILES = sorted(FORTRAN.glob("*/*.f90"))
+
+#: The layers that each layer may use besides itself.
+BELOW = {
+    "base": set(),
+    "nurbs": {"base"},
+    "sparse": {"base"},
+    "solid": {"base", "nurbs", "sparse"},
+    "contact": {"base", "nurbs", "sparse"},
+    "api": {"base", "nurbs", "sparse", "solid", "contact"},
+}
+
+
+def test_every_layer_is_known():
+    assert {path.parent.name for path in FILES} == set(BELOW)
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: f"{path.parent.name}/{path.name}")
+def test_file_uses_only_layers_below(path):
+    layer = path.parent.name
+    used = set(re.findall(r"^\s*use isomortar_([a-z]+)_", path.read_text(), re.MULTILINE))
+    assert used <= BELOW[layer] | {layer}
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: f"{path.parent.name}/{path.name}")
+def test_module_is_named_by_its_path(path):
+    names = re.findall(r"^module (\w+)", path.read_text(), re.MULTILINE)
+    # The kind module of the other precision bears the same name; API files are bare subroutines.
+    wanted = f"isomortar_{path.parent.name}_{path.stem.removesuffix('_extended')}"
+    assert names == ([] if path.stem.endswith("_api") else [wanted])
