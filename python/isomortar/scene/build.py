@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from math import hypot
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -40,6 +40,7 @@ def build(scene: SceneTable, name: str, folder: Path) -> Problem:
     coarse = {body: coarse_patch(body, table, folder) for body, table in scene.bodies.items()}
     meshes = {body: _MeshPlan.of(table, coarse[body]) for body, table in scene.bodies.items()}
     _check_size(meshes)
+    _check_curves(scene)
     bodies = tuple(_body(body, table, coarse[body], meshes[body], _material(scene, body)) for body, table in scene.bodies.items())
     by_name = {body.name: body for body in bodies}
     return Problem(
@@ -155,25 +156,21 @@ def _contact(name: str, table: ContactTable, bodies: dict[str, Body]) -> Contact
 
 
 def _plane(table: PlaneTable, path: str) -> RigidPlane:
-    normal = np.array(_unit(table.normal, f"{path}.normal"))
+    normal = _unit(table.normal, f"{path}.normal")
     wanted = table.tangent or ((1.0, 0.0, 0.0) if abs(normal[0]) < 0.9 else (0.0, 1.0, 0.0))
-    tangent = np.array(_unit(wanted, f"{path}.tangent"))
-    tangent -= (tangent @ normal) * normal
-    if np.linalg.norm(tangent) < 1e-6:
+    along = _unit(wanted, f"{path}.tangent")
+    out = sum(a * n for a, n in zip(along, normal, strict=True))
+    across = (along[0] - out * normal[0], along[1] - out * normal[1], along[2] - out * normal[2])
+    if hypot(*across) < 1e-6:
         raise InputError(f"is {list(wanted)}, parallel to the normal; allowed: any other direction", f"{path}.tangent")
-    return RigidPlane(table.point, _floats(normal), _unit(_floats(tangent), f"{path}.tangent"))
+    return RigidPlane(table.point, normal, _unit(across, f"{path}.tangent"))
 
 
 def _unit(vector: tuple[float, float, float], path: str) -> tuple[float, float, float]:
-    scale = max(abs(c) for c in vector)
-    if scale == 0.0:
+    length = hypot(*vector)
+    if length == 0.0:
         raise InputError("is a vector of length zero; allowed: any other", path)
-    scaled = np.array(vector) / scale  # keeps squares of tiny and huge components in range
-    return _floats(scaled / np.linalg.norm(scaled))
-
-
-def _floats(vector: Any) -> tuple[float, float, float]:
-    return float(vector[0]), float(vector[1]), float(vector[2])
+    return vector[0] / length, vector[1] / length, vector[2] / length
 
 
 def _support(name: str, table: SupportTable, bodies: dict[str, Body], motions: tuple[Motion, ...]) -> Support:
@@ -195,3 +192,10 @@ def _stages(scene: SceneTable) -> tuple[Stage, ...]:
         if stage.name in [other.name for other in scene.stages[:number]]:
             raise InputError(f"{stage.name!r} is the name of two stages; allowed: a name for each", f"stages.{number}.name")
     return tuple(Stage(stage.name, stage.steps) for stage in scene.stages)
+
+
+def _check_curves(scene: SceneTable) -> None:
+    for curve in scene.record.curves or ():
+        if curve.support not in scene.supports:
+            allowed = listed(curve.support, scene.supports)
+            raise InputError(f"there is no support {curve.support!r}; allowed: {allowed}", f"record.curves.{curve.name}.support")

@@ -1,0 +1,286 @@
+"""Bad scenes: each is refused before any work, by the dotted path of the wrong key and what is allowed there."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from isomortar.errors import InputError
+from isomortar.scene import Scene
+
+# A scene with everything in it that can be wrong; each case below changes one place.
+GOOD = """
+format = 1
+name = "good"
+[materials.rubber]
+young = 10.0
+poisson = 0.3
+[materials.cork]
+poisson = 0.0
+[bodies.upper]
+material = "rubber"
+geometry = { kind = "bowl", half_width = 0.5, bottom = 0.1, rise = 0.2, top = 1.0 }
+mesh = { order = [2, 2, 1], elements = [2, 2, 1] }
+[bodies.lower]
+material = "cork"
+[bodies.lower.patch]
+order = [1, 1, 1]
+knots = [[0, 0, 0.5, 1, 1], [0, 0, 1, 1], [0, 0, 1, 1]]
+control_points = [[-1, -1, -1], [0, -1, -1], [1, -1, -1], [-1, 1, -1], [0, 1, -1], [1, 1, -1],
+                  [-1, -1, 0], [0, -1, 0], [1, -1, 0], [-1, 1, 0], [0, 1, 0], [1, 1, 0]]
+weights = [1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1]
+[contacts.pair]
+slave = "upper.w0"
+master = "lower.w1"
+[contacts.floor]
+slave = "lower.w0"
+plane = { point = [0, 0, -1], normal = [0, 0, 1], tangent = [1, 0, 0] }
+[supports.top]
+face = "upper.w1"
+[supports.base]
+face = "lower.w0"
+[[stages]]
+name = "press"
+steps = 3
+motions.top.translate = [0, 0, -0.2]
+[[stages]]
+name = "turn"
+steps = 2
+motions.top.rotate = 10
+[solver]
+max_cuts = 4
+"""
+
+# What is replaced, by what, the field that the error names, and a part of its text.
+CASES = {
+    "version": ("format = 1", "format = 2", "format", "is 2; allowed: 1"),
+    "unknown key": ("steps = 3", "step = 3", "stages.press.step", "unknown key; allowed here: steps, name, motions"),
+    "unknown table": ("[solver]", "[solvers]", "solvers", "unknown key; allowed here: solver, "),
+    "unknown key of a primitive": ("rise = 0.2", "raise = 0.2", "bodies.upper.geometry.raise", "rise, kind, centre, half_width"),
+    "unknown primitive": ('kind = "bowl"', 'kind = "ball"', "bodies.upper.geometry.kind", "is 'ball'; allowed: 'box', 'bowl', 'ring'"),
+    "missing": ('name = "turn"\n', "", "stages.1.name", "is missing, but must be given"),
+    "not a number": ("young = 10.0", 'young = "hard"', "materials.rubber.young", "is 'hard'; allowed: a valid number"),
+    "Young": ("young = 10.0", "young = 0", "materials.rubber.young", "is 0; allowed: greater than 0"),
+    "Poisson": ("poisson = 0.3", "poisson = 0.5", "materials.rubber.poisson", "is 0.5; allowed: less than 0.5"),
+    "NaN": ("poisson = 0.3", "poisson = nan", "materials.rubber.poisson", "is nan; allowed: a finite number"),
+    "name": ("[supports.top]", '[supports."the top"]', "supports.the top", "allowed: letters, digits, _ and -"),
+    "no material": (
+        'material = "cork"',
+        'material = "corc"',
+        "bodies.lower.material",
+        "there is no material 'corc'; allowed: cork, rubber",
+    ),
+    "which material": ('material = "cork"\n', "", "bodies.lower.material", "must be given where there are several; allowed: rubber, cork"),
+    "two geometries": (
+        'material = "cork"',
+        'file = "lower.json"',
+        "bodies.lower",
+        "has file and patch; allowed: exactly one of geometry, file, patch",
+    ),
+    "low top": ("top = 1.0", "top = 0.5", "bodies.upper.geometry.top", "is 0.5; must be above the highest point of the underside, 0.5"),
+    "file": (
+        'geometry = { kind = "bowl", half_width = 0.5, bottom = 0.1, rise = 0.2, top = 1.0 }',
+        'file = "none.json"',
+        "bodies.upper.file",
+        "none.json",
+    ),
+    "file format": (
+        'geometry = { kind = "bowl", half_width = 0.5, bottom = 0.1, rise = 0.2, top = 1.0 }',
+        'file = "a.step"',
+        "bodies.upper.file",
+        ".json, .xml, .itd, .irit, .mesh",
+    ),
+    "order": ("order = [2, 2, 1]", "order = [2, 1, 1]", "bodies.upper.mesh.order", "is 1 in direction v; allowed for N there: 2 to 10"),
+    "high order": ("order = [2, 2, 1]", "order = 11", "bodies.upper.mesh.order", "is 11 in direction u; allowed for N there: 2 to 10"),
+    "high order of Lagrange": ("order = [2, 2, 1]", 'family = "L", order = 5', "bodies.upper.mesh.order", "allowed for L there: 1 to 4"),
+    "family": ("order = [2, 2, 1]", 'family = "B"', "bodies.upper.mesh.family", "is 'B'; allowed: 'N' or 'L'"),
+    "elements": (
+        "elements = [2, 2, 1]",
+        "elements = [2, 0, 1]",
+        "bodies.upper.mesh.elements.1",
+        "is 0; allowed: greater than or equal to 1",
+    ),
+    "two elements": ("elements = [2, 2, 1]", "elements = [2, 2]", "bodies.upper.mesh.elements", "allowed: one for all directions, or 3"),
+    "half an element": ("elements = [2, 2, 1]", "elements = 2.5", "bodies.upper.mesh.elements", "is 2.5; allowed: a valid integer"),
+    "size": ("elements = [2, 2, 1]", "elements = [1000, 1000, 1000]", "bodies.upper.mesh.elements", "allowed: 5000000"),
+    "closed": (
+        'material = "cork"',
+        'material = "cork"\nclosed = "u"',
+        "bodies.lower.closed",
+        "first and last control points along u differ",
+    ),
+    "knots unsorted": (
+        "[0, 0, 0.5, 1, 1]",
+        "[0, 0, 0.5, 0.4, 1, 1]",
+        "bodies.lower.patch.knots",
+        "value 3 (0.4) is below the one before it",
+    ),
+    "knots not open": ("[0, 0, 0.5, 1, 1]", "[0, 0, 0.5, 0.9, 1]", "bodies.lower.patch.knots", "must be open"),
+    "knots repeated": ("[0, 0, 0.5, 1, 1]", "[0, 0, 0.5, 0.5, 1, 1]", "bodies.lower.patch.knots", "repeated more than order = 1 times"),
+    "knot lists": ("[0, 0, 1, 1], [0, 0, 1, 1]]", "[0, 0, 1, 1]]", "bodies.lower.patch.knots", "has 2 entries; allowed: at least 3"),
+    "NaN in knots": ("[0, 0, 0.5, 1, 1]", "[0, 0, nan, 1, 1]", "bodies.lower.patch.knots.0.2", "is nan; allowed: a finite number"),
+    "points": (", [1, 1, 0]]", "]", "bodies.lower.patch.control_points", "knots and orders ask for 3 x 2 x 2 = 12 points"),
+    "point": (", [1, 1, 0]]", ", [1, 1]]", "bodies.lower.patch.control_points.11", "is [1, 1]; allowed: a list of 3 numbers"),
+    "NaN in points": (", [1, 1, 0]]", ", [1, 1, nan]]", "bodies.lower.patch.control_points.11.2", "is nan; allowed: a finite number"),
+    "weights": ("weights = [1, 1,", "weights = [1, 0,", "bodies.lower.patch.weights", "weight 1 is 0; weights must be positive"),
+    "number of weights": (
+        "weights = [1, 1,",
+        "weights = [1,",
+        "bodies.lower.patch.weights",
+        "has 11 values; knots and orders ask for 3 x 2 x 2 = 12",
+    ),
+    "quadrature": ("[contacts.pair]", "[contacts.pair]\nquadrature = [6, 0]", "contacts.pair.quadrature.1", "greater than or equal to 1"),
+    "face": ('face = "upper.w1"', 'face = "upper.w2"', "supports.top.face", "upper has no face 'w2'; allowed: u0, u1, v0, v1, w0, w1"),
+    "body": (
+        'slave = "upper.w0"',
+        'slave = "uper.w0"',
+        "contacts.pair.slave",
+        "there is no body 'uper'; allowed: BODY.FACE with BODY one of upper, lower",
+    ),
+    "slave is master": ('master = "lower.w1"', 'master = "upper.w0"', "contacts.pair.master", "is the slave face 'upper.w0' itself"),
+    "no master": ('master = "lower.w1"\n', "", "contacts.pair", "has neither master nor plane; allowed: exactly one of them"),
+    "friction": (
+        'master = "lower.w1"',
+        'master = "lower.w1"\nfriction = -0.1',
+        "contacts.pair.friction",
+        "is -0.1; allowed: greater than or equal to 0",
+    ),
+    "normal": ("normal = [0, 0, 1]", "normal = [0, 0, 0]", "contacts.floor.plane.normal", "length zero"),
+    "tangent": (
+        "tangent = [1, 0, 0]",
+        "tangent = [0, 0, -5]",
+        "contacts.floor.plane.tangent",
+        "parallel to the normal; allowed: any other direction",
+    ),
+    "axis": ('face = "upper.w1"', 'face = "upper.w1"\naxis = [0, 0, 0]', "supports.top.axis", "length zero"),
+    "components": (
+        'face = "upper.w1"',
+        'face = "upper.w1"\ncomponents = ["x", "r"]',
+        "supports.top.components.1",
+        "is 'r'; allowed: 'x', 'y' or 'z'",
+    ),
+    "component twice": ('face = "upper.w1"', 'face = "upper.w1"\ncomponents = ["x", "x"]', "supports.top.components", "each once"),
+    "steps": ("steps = 3", "steps = 0", "stages.press.steps", "is 0; allowed: greater than or equal to 1"),
+    "motion of nobody": (
+        "motions.top.rotate",
+        "motions.tip.rotate",
+        "stages.turn.motions.tip",
+        "there is no such support; allowed: top, base",
+    ),
+    "stage twice": ('name = "turn"', 'name = "press"', "stages.1.name", "is the name of two stages"),
+    "free body": ('[supports.top]\nface = "upper.w1"', '[supports.top]\nface = "lower.u0"', "bodies.upper", "body 'upper' is free"),
+    "conflict": (
+        '[supports.base]\nface = "lower.w0"',
+        '[supports.base]\nface = "lower.w0"\n[supports.side]\nface = "upper.u0"',
+        "supports.side",
+        "prescribes x of 4 control points (the first at -0.5, -0.5, 1) that support 'top' moves differently",
+    ),
+    "solver": ("max_cuts = 4", "max_cuts = -1", "solver.max_cuts", "is -1; allowed: greater than or equal to 0"),
+    "solver option": ("max_cuts = 4", 'slip_sum = "papers"', "solver.slip_sum", "is 'papers'; allowed: 'local' or 'paper'"),
+    "curve": (
+        "[solver]",
+        '[[record.curves]]\nname = "drag"\nsupport = "tip"\n[solver]',
+        "record.curves.drag.support",
+        "allowed: top, base",
+    ),
+}
+
+
+def test_the_scene_that_the_cases_change_is_good() -> None:
+    assert Scene.from_toml(GOOD).problem().name == "good"
+
+
+@pytest.mark.parametrize(("old", "new", "field", "said"), CASES.values(), ids=CASES.keys())
+def test_bad_scene(old: str, new: str, field: str, said: str) -> None:
+    assert GOOD.count(old) >= 1
+    with pytest.raises(InputError) as error:
+        Scene.from_toml(GOOD.replace(old, new, 1)).problem()
+    assert error.value.field == field
+    assert said in str(error.value)
+    assert str(error.value).startswith(f"{field}: ")
+
+
+def test_a_free_body_without_contact_is_named() -> None:
+    text = GOOD[: GOOD.index("[contacts.pair]")] + GOOD[GOOD.index("[supports.top]") :].replace(
+        'face = "upper.w1"', 'face = "upper.w1"\ncomponents = ["z"]'
+    )
+    with pytest.raises(InputError, match="its supports leave a rigid motion") as error:
+        Scene.from_toml(text).problem()
+    assert error.value.field == "bodies.upper"
+
+
+def test_a_plane_holds_nobody() -> None:
+    text = Scene.load("press").to_toml()
+    text = text[: text.index("[supports.top]")] + '[[stages]]\nname = "rest"\nsteps = 1\n'
+    with pytest.raises(InputError, match="body 'block' is free"):
+        Scene.from_toml(text).problem()
+
+
+def test_a_closed_ring_has_no_faces_at_its_seam() -> None:
+    with pytest.raises(InputError, match="tire is closed in u") as error:
+        Scene.load("tire", ["contacts.road.slave=tire.u0"]).problem()
+    assert error.value.field == "contacts.road.slave"
+
+
+def test_supports_that_agree_may_share_control_points() -> None:
+    both = GOOD.replace('face = "lower.w0"\n[[', 'face = "lower.w0"\n[supports.side]\nface = "lower.u0"\n[[')
+    assert len(Scene.from_toml(both).problem().supports) == 3
+
+
+@pytest.mark.parametrize(
+    ("override", "field", "said"),
+    [
+        ("bodies.slave.mesh", None, "is not of the form path=value"),
+        ("bodies.slav.mesh.order=3", "bodies.slav", "bodies there: slave, master"),
+        ("stages.darg.steps=3", "stages.darg", "allowed: 0 to 1, drag, press"),
+        ("stages.2.steps=3", "stages.2", "allowed: 0 to 1, press, drag"),
+        ("bodies.slave.mesh.elements.3=3", "bodies.slave.mesh.elements.3", "allowed: 0 to 2"),
+        ("name.first=3", "name.first", "name is the single value 'iron'"),
+        ("solver.max_cuts=[3", None, "is not a TOML value"),
+        ("solver.max_cut=3", "solver.max_cut", "unknown key; allowed here: max_cuts"),
+        ("bodies.slave.mesh.odrer=3", "bodies.slave.mesh.odrer", "unknown key; allowed here: order"),
+    ],
+)
+def test_bad_override(override: str, field: str | None, said: str) -> None:
+    with pytest.raises(InputError) as error:
+        Scene.load("iron", [override])
+    assert error.value.field == field
+    assert said in str(error.value)
+
+
+def test_several_faults_are_told_at_once() -> None:
+    with pytest.raises(InputError) as error:
+        Scene.from_toml(GOOD.replace("steps = 3", "steps = 0").replace("max_cuts = 4", "max_cuts = -1"))
+    assert str(error.value).splitlines() == [
+        "stages.press.steps: is 0; allowed: greater than or equal to 1",
+        "solver.max_cuts: is -1; allowed: greater than or equal to 0",
+    ]
+
+
+def test_sources_that_are_no_scene(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"there is no scene file 'irn', and the bundled scenes are: iron, press"):
+        Scene.load("irn")
+    (tmp_path / "a.toml").write_text("format = = 1")
+    with pytest.raises(InputError, match=r"a is not valid TOML: .*line 1"):
+        Scene.load(tmp_path / "a.toml")
+    (tmp_path / "b.toml").write_bytes(b"\xff\xfe")
+    with pytest.raises(InputError, match="not a text file in UTF-8"):
+        Scene.load(tmp_path / "b.toml")
+
+
+def test_faults_of_a_geometry_file_name_the_file(tmp_path: Path) -> None:
+    scene = GOOD.replace('material = "cork"', 'material = "cork"\nfile = "lower.toml"', 1)
+    start, stop = scene.index("[bodies.lower.patch]"), scene.index("[contacts.pair]")
+    patch = scene[start:stop].replace("[bodies.lower.patch]", "")
+    scene = scene[:start] + scene[stop:]
+    (tmp_path / "lower.toml").write_text(patch)
+    assert len(Scene.from_toml(scene, tmp_path).problem().bodies) == 2
+    for old, new, said in (
+        ("order", "orders", "in lower.toml, orders: unknown key"),
+        ("0.5", "-0.5", "in lower.toml, knots: must not decrease"),
+    ):
+        (tmp_path / "lower.toml").write_text(patch.replace(old, new, 1))
+        with pytest.raises(InputError, match=said) as error:
+            Scene.from_toml(scene, tmp_path).problem()
+        assert error.value.field == "bodies.lower.file"
