@@ -5,15 +5,14 @@ cd "$(dirname "$0")/.."
 
 status=0
 while IFS= read -r file; do
-  .venv/bin/findent -ifree -i2 -c2 -k- --align_paren=0 <"$file" >"$file.formatted"
+  formatted=$(.venv/bin/findent -ifree -i2 -c2 -k- --align_paren=0 <"$file")
+  difference=$(diff --unified "$file" - <<<"$formatted") && continue
   if [ "${1-}" = --check ]; then
-    diff --unified "$file" "$file.formatted" || status=1
-    rm "$file.formatted"
-  elif cmp --silent "$file" "$file.formatted"; then
-    rm "$file.formatted"
+    printf '%s\n' "$difference"
+    status=1
   else
+    printf '%s\n' "$formatted" >"$file"
     echo "formatted $file"
-    mv "$file.formatted" "$file"
   fi
 done < <(find fortran tests -name '*.f90')
 exit $status
