@@ -13,6 +13,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+
 from isomortar.errors import ResultsError
 from isomortar.model.entities import Motion
 from isomortar.results.reader import Results
@@ -123,7 +124,7 @@ def test_only_the_last_state_is_kept_on_demand(tmp_path: Path) -> None:
             results.step(2)
 
 
-@pytest.mark.parametrize("states", ["all", "last"])
+@pytest.mark.parametrize("states", ["every", "last"])
 def test_resume_appends(tmp_path: Path, states: str) -> None:
     path = tmp_path / "run.h5"
     write(path, range(1, 3), states=states)
@@ -131,7 +132,7 @@ def test_resume_appends(tmp_path: Path, states: str) -> None:
     with Results(path) as results:
         assert list(results.steps) == [1, 2, 3, 4]
         assert same(results.last_step(), step_result(4))
-        if states == "all":
+        if states == "every":
             assert same(results.step(1), step_result(1))
 
 

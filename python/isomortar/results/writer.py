@@ -42,7 +42,7 @@ class ResultsWriter(Observer):
         Text of the scene file, stored as it is.
     version : str
         Version of the program.
-    states : {"all", "last"}
+    states : {"every", "last"}
         Keep the full state of every step, or of the newest only. Curves and log keep every step.
     resume : bool
         Append to an existing file (or begin one if there is none). Otherwise the file must not exist yet.
@@ -59,7 +59,7 @@ class ResultsWriter(Observer):
         problem: Problem,
         scene_text: str,
         version: str,
-        states: Literal["all", "last"] = "all",
+        states: Literal["every", "last"] = "every",
         resume: bool = False,
     ) -> None:
         self.path = Path(path)

@@ -1,0 +1,81 @@
+"""Patches as rational Bezier elements: what ParaView draws exactly, and what pictures sample.
+
+Along one direction both families, B-splines and Lagrange elements, are polynomials of order p on every element, so one
+matrix takes the coefficients of a direction to Bezier coefficients. Neighbouring elements share the Bezier point between
+them: E elements have p E + 1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.interpolate import BSpline
+from scipy.special import comb
+
+from isomortar.geometry.patch import Direction, FloatArray
+
+
+def bernstein(order: int, places: FloatArray) -> FloatArray:
+    """Bernstein polynomials at `places` in [0, 1], shape (places, order + 1)."""
+    k = np.arange(order + 1)
+    s = np.asarray(places)[:, None]
+    return comb(order, k) * s**k * (1.0 - s) ** (order - k)
+
+
+def bezier_matrix(direction: Direction) -> FloatArray:
+    """Matrix from the coefficients of a direction to its Bezier coefficients, shape (order * elements + 1, count).
+
+    On each element the functions are taken at order + 1 places and interpolated by Bernstein polynomials, which is exact.
+    """
+    p = direction.order
+    matrix = np.zeros((p * direction.elements + 1, direction.count))
+    places = 0.5 - 0.5 * np.cos(np.pi * (np.arange(p + 1) + 0.5) / (p + 1)) if direction.family == "N" else np.linspace(0, 1, p + 1)
+    to_bezier = np.linalg.inv(bernstein(p, places))
+    for element, (begin, end) in enumerate(zip(direction.boundaries[:-1], direction.boundaries[1:], strict=True)):
+        rows = slice(p * element, p * element + p + 1)
+        if direction.family == "N":
+            values = BSpline.design_matrix(begin + places * (end - begin), direction.knots, p).toarray()
+            matrix[rows] = to_bezier @ values
+        else:
+            matrix[rows, rows] = to_bezier
+    return matrix
+
+
+def sampling_matrix(direction: Direction, per_element: int) -> FloatArray:
+    """Matrix from the coefficients of a direction to values at `per_element` equal parts of each element.
+
+    Returns
+    -------
+    ndarray, shape (per_element * elements + 1, count)
+    """
+    p = direction.order
+    bezier = bezier_matrix(direction)
+    basis = bernstein(p, np.arange(per_element) / per_element)
+    inner = [basis @ bezier[p * element : p * element + p + 1] for element in range(direction.elements)]
+    return np.concatenate([*inner, bezier[-1:]])
+
+
+def rational(matrices: Sequence[FloatArray], weights: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Apply one matrix a direction to values at the control points of a rational tensor product.
+
+    Parameters
+    ----------
+    matrices : sequence of ndarray, shape (m_i, n_i)
+        `bezier_matrix` or `sampling_matrix` of each direction.
+    weights : ndarray, shape (n,)
+    values : ndarray, shape (n, k)
+        Any field given by the rational functions; n = n_1 n_2 ..., first direction fastest.
+
+    Returns
+    -------
+    values : ndarray, shape (m, k)
+        m = m_1 m_2 ..., first direction fastest.
+    weights : ndarray, shape (m,)
+    """
+    homogeneous = np.column_stack([weights[:, None] * values, weights])
+    grid = homogeneous.reshape(*(m.shape[1] for m in reversed(matrices)), -1)
+    for axis, matrix in enumerate(reversed(matrices)):
+        grid = np.moveaxis(np.tensordot(matrix, grid, axes=(1, axis)), 0, axis)
+    flat = grid.reshape(-1, values.shape[1] + 1)
+    return flat[:, :-1] / flat[:, -1:], flat[:, -1]

@@ -1,0 +1,71 @@
+"""Fields of a load step: positions of each body's control points, and contact quantities on the slave faces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from isomortar.geometry.patch import Direction, FloatArray, IntArray
+from isomortar.model.entities import Contact, Problem
+from isomortar.model.numbering import Numbering
+from isomortar.results.bezier import rational
+from isomortar.solve.record import StepResult
+
+
+@dataclass(frozen=True)
+class ContactSurface:
+    """A slave face with its contact quantities, everything by control point of the face (shape (n,), points (n, 3)).
+
+    The fields are p = sum R^I p^I and, for the magnitude of the traction, sum R^I |tau^I|.
+    """
+
+    contact: Contact
+    directions: tuple[Direction, Direction]
+    weights: FloatArray
+    reference_points: FloatArray
+    points: FloatArray
+    pressure: FloatArray
+    traction: FloatArray
+    status: IntArray
+
+    def fields(self, matrices: tuple[FloatArray, FloatArray]) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Points, shape (m, 3), pressure and traction magnitude, shape (m,), by matrices of `isomortar.results.bezier`."""
+        values, _ = rational(matrices, self.weights, np.column_stack([self.points, self.pressure, self.traction]))
+        return values[:, :3], values[:, 3], values[:, 4]
+
+
+def body_points(problem: Problem, positions: FloatArray) -> dict[str, FloatArray]:
+    """Positions of the control points of each body's patch, from all control points as in `State`."""
+    numbering = Numbering(problem)
+    return {name: positions[numbers] for name, numbers in numbering.points.items()}
+
+
+def contact_surfaces(problem: Problem, result: StepResult) -> list[ContactSurface]:
+    """The slave face of every contact pair at the end of a load step."""
+    numbering = Numbering(problem)
+    surfaces = []
+    for contact, state, measured in zip(problem.contacts, result.state.contacts, result.contacts, strict=True):
+        patch = problem.body(contact.slave.body).patch
+        face = patch.face_points(contact.slave.face)
+        points = numbering.points[contact.slave.body][face]
+        slave = _slave_numbers(points)
+        surfaces.append(
+            ContactSurface(
+                contact=contact,
+                directions=patch.face_directions(contact.slave.face),
+                weights=patch.weights[face],
+                reference_points=patch.control_points[face],
+                points=result.state.positions[points],
+                pressure=state.pressure[slave],
+                traction=measured.traction_norm[slave],
+                status=measured.status[slave],
+            )
+        )
+    return surfaces
+
+
+def _slave_numbers(points: IntArray) -> IntArray:
+    """Slave control points count in the order of the face; a point that the face meets twice (a closed ring) counts once."""
+    _, first, number = np.unique(points, return_index=True, return_inverse=True)
+    return np.argsort(np.argsort(first))[number].astype(np.int32)
