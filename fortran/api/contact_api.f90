@@ -191,6 +191,7 @@ subroutine multiplier_rows(nodes, basis, area, point, nlocal, nelements, nquad, 
   use isomortar_api_unpack, only: unpack_pattern, unpack_slave
   use isomortar_contact_augmentation, only: combine => multiplier_rows, law_t, response_t, trial_rows, trial_rows_summed
   use isomortar_contact_control, only: control_t
+  use isomortar_sparse_blocks, only: pattern_t
   implicit none
   integer(c_int), intent(in) :: nlocal, nelements, nquad, nslave, nrows, nkinds, nneighbours, nwide
   integer(c_int), intent(in) :: nodes(nlocal, nelements), point(nslave), summed, state(nslave)
@@ -203,6 +204,7 @@ subroutine multiplier_rows(nodes, basis, area, point, nlocal, nelements, nquad, 
   type(control_t) :: control
   type(law_t) :: law
   type(response_t) :: response
+  type(pattern_t) :: narrow, wide
   real(c_double), allocatable :: trial(:, :, :)
 
   control%weight = weight
@@ -217,15 +219,15 @@ subroutine multiplier_rows(nodes, basis, area, point, nlocal, nelements, nquad, 
   response%pressure_slope = pressure_slope
   response%traction_slope = traction_slope
   allocate (trial(3, 2, nwide))
-  associate (narrow => unpack_pattern(row_start, row_column), wide => unpack_pattern(wide_start, wide_column))
-    if (nkinds > 1 .and. summed /= 0) then
-      call trial_rows_summed(unpack_slave(nodes, basis, area, point), control, law, state /= 0, narrow, rows, &
-        unpack_pattern(neighbour_start, neighbour_column), wide, trial)
-    else if (nkinds > 1) then
-      call trial_rows(control, law, state /= 0, narrow, rows, trial)
-    end if
-    call combine(control, response, narrow, rows, wide, trial, changes)
-  end associate
+  narrow = unpack_pattern(row_start, row_column)
+  wide = unpack_pattern(wide_start, wide_column)
+  if (nkinds > 1 .and. summed /= 0) then
+    call trial_rows_summed(unpack_slave(nodes, basis, area, point), control, law, state /= 0, narrow, rows, &
+      unpack_pattern(neighbour_start, neighbour_column), wide, trial)
+  else if (nkinds > 1) then
+    call trial_rows(control, law, state /= 0, narrow, rows, trial)
+  end if
+  call combine(control, response, narrow, rows, wide, trial, changes)
 end subroutine multiplier_rows
 
 !> Condense multipliers into the tangent (isomortar_contact_augmentation).

@@ -31,8 +31,8 @@ contains
         first = first + count
       end associate
     end do
-    patch%point = point + 1
-    patch%weight = real(weight, wp)
+    allocate (patch%point, source=int(point) + 1)
+    allocate (patch%weight, source=real(weight, wp))
   end function unpack_patch
 
   !> A master. `kind` holds axis (1..3) and end (0, 1) of a face, then the layout of its patch; axis 0 is a plane, whose
@@ -56,10 +56,10 @@ contains
     type(slave_t) :: slave
 
     slave%count = size(point)
-    slave%nodes = nodes + 1
-    slave%basis = real(basis, wp)
-    slave%area = real(area, wp)
-    slave%point = point + 1
+    allocate (slave%nodes, source=int(nodes) + 1)
+    allocate (slave%basis, source=real(basis, wp))
+    allocate (slave%area, source=real(area, wp))
+    allocate (slave%point, source=int(point) + 1)
   end function unpack_slave
 
   !> A compressed pattern of blocks.
@@ -69,7 +69,7 @@ contains
 
     allocate (pattern%start(0:size(start) - 1))
     pattern%start(:) = start
-    pattern%column = column + 1
+    allocate (pattern%column, source=int(column) + 1)
   end function unpack_pattern
 
 end module isomortar_api_unpack

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -50,10 +50,12 @@ class PairMechanics:
         """Area that the penalties are divided by (formulation.md Section 5)."""
         return self.pair.contact.reference_area or self.pair.area
 
-    def no_contact(self) -> ContactState:
-        """State before the first load step."""
+    def initial(self, positions: FloatArray) -> ContactState:
+        """State before the first load step: no tractions; slips count from where the reference configuration projects."""
         n, q = len(self.pair.slave.point), len(self.pair.slave.area)
-        return ContactState(np.zeros(n), np.zeros((n, 2)), np.zeros((q, 2)), np.zeros(q, dtype=np.int32))
+        nowhere = ContactState(np.zeros(n), np.zeros((n, 2)), np.zeros((q, 2)), np.zeros(q, dtype=np.int32))
+        projections = self.kinematics(positions, nowhere).projections
+        return replace(nowhere, projection=projections.xi, projected=projections.found)
 
     def kinematics(self, positions: FloatArray, start: ContactState) -> Kinematics:
         """Project and integrate the control quantities; slips count from `start`."""

@@ -66,7 +66,8 @@ class Equilibrium:
 
     def initial_state(self) -> State:
         """The reference configuration without contact."""
-        return State(self.numbering.reference.copy(), tuple(pair.no_contact() for pair in self.pairs))
+        reference = self.numbering.reference
+        return State(reference.copy(), tuple(pair.initial(reference) for pair in self.pairs))
 
     def balance(self, positions: FloatArray, start: State, laws: Sequence[Law]) -> Balance:
         """Forces at given positions; slips count from `start`.

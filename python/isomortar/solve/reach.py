@@ -71,7 +71,7 @@ class Reach:
             shape = (len(pair.slave.nodes), pair.master_reach.shape[0])
             meets = sparse.csr_array((np.ones(len(touched), dtype=np.int32), (elements, masters)), shape=shape)
             reach = reach + meets @ pair.master_reach
-        chosen = sparse.diags_array(active.astype(np.int32), format="csr")
+        chosen = sparse.diags_array(active.astype(np.int32), format="csr", dtype=np.int32)
         rows = sparse.csr_array(chosen @ pair.elements_of_point @ reach)
         wide = sparse.csr_array(chosen @ pair.neighbour_matrix @ rows) if self._summed else rows
         tangent = sparse.csr_array(rows.T @ wide)
