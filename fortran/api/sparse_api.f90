@@ -16,7 +16,7 @@ subroutine sparse_analyse(n, nnz, indptr, indices, by_metis, handle, place, stat
 end subroutine sparse_analyse
 
 !> Factorise a matrix of the pattern analysed; when singular, `place` is the unknown of the smallest pivot.
-subroutine sparse_factorise(handle, n, nnz, indptr, indices, values, rcond_min, rcond, flops, peak_bytes, &
+recursive subroutine sparse_factorise(handle, n, nnz, indptr, indices, values, rcond_min, rcond, flops, peak_bytes, &
   factor_entries, place, status)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_sparse_factorisation, only: factorise
@@ -33,7 +33,7 @@ subroutine sparse_factorise(handle, n, nnz, indptr, indices, values, rcond_min, 
 end subroutine sparse_factorise
 
 !> Solve for several right-hand sides with at most `refine` steps of refinement each.
-subroutine sparse_solve(handle, n, nnz, columns, indptr, indices, values, b, refine, x, place, status)
+recursive subroutine sparse_solve(handle, n, nnz, columns, indptr, indices, values, b, refine, x, place, status)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_sparse_factorisation, only: solve
   implicit none

@@ -6,7 +6,8 @@
 !>
 !> Threads: `analyse` and `release` change the table and run one at a time (the caller holds Python's lock; METIS also
 !> draws from the random numbers of the whole process). `factorise` and `solve` touch their own slot only and may run at
-!> the same time for different handles: the table therefore never moves in memory.
+!> the same time for different handles: the table therefore never moves in memory, and what they call is `recursive`
+!> (locals of their own; without it Fortran 2008 lets them be shared).
 module isomortar_sparse_factorisation
   use, intrinsic :: iso_c_binding, only: c_associated, c_double, c_int64_t, c_null_ptr, c_ptr
   use isomortar_base_status, only: status_ok, status_singular, status_stale_handle, status_out_of_memory, &
@@ -81,8 +82,8 @@ contains
   !> Factorise a matrix of the pattern analysed; takes the place of the factors before.
   !>
   !> With a reciprocal condition below `rcond_min` (or none) the status is singular, and no factors are kept.
-  subroutine factorise(handle, indptr, indices, values, rcond_min, rcond, flops, peak_bytes, factor_entries, place, &
-    status)
+  recursive subroutine factorise(handle, indptr, indices, values, rcond_min, rcond, flops, peak_bytes, factor_entries, &
+    place, status)
     integer(c_int64_t), intent(in) :: handle
     integer(c_int64_t), contiguous, intent(in) :: indptr(:), indices(:)
     real(c_double), contiguous, intent(in) :: values(:)
@@ -129,7 +130,7 @@ contains
   end subroutine factorise
 
   !> Solve A x = b for several right-hand sides with the factors of the last `factorise`.
-  subroutine solve(handle, indptr, indices, values, b, refine, x, place, status)
+  recursive subroutine solve(handle, indptr, indices, values, b, refine, x, place, status)
     integer(c_int64_t), intent(in) :: handle
     !> The matrix that was factorised.
     integer(c_int64_t), contiguous, intent(in) :: indptr(:), indices(:)
@@ -191,7 +192,7 @@ contains
   end function free_slot
 
   !> Slot of a handle; `slots` when the handle was never given out or was released.
-  function slot_of(handle) result(slot)
+  recursive function slot_of(handle) result(slot)
     integer(c_int64_t), intent(in) :: handle
     integer(c_int64_t) :: slot
 
@@ -200,7 +201,7 @@ contains
   end function slot_of
 
   !> UMFPACK's settings for matrices of elements: nearly symmetric pattern, few rows that are really dense.
-  function settings(ordering, refine) result(control)
+  recursive function settings(ordering, refine) result(control)
     integer, intent(in) :: ordering, refine
     real(c_double) :: control(0:control_last)
 
@@ -216,7 +217,7 @@ contains
   end function settings
 
   !> Unknown (0-based) with the smallest pivot: the rows UMFPACK pivots are the columns of A.
-  function unknown_of_smallest_pivot(numeric, n) result(unknown)
+  recursive function unknown_of_smallest_pivot(numeric, n) result(unknown)
     type(c_ptr), intent(in) :: numeric
     integer, intent(in) :: n
     integer(c_int64_t) :: unknown
@@ -231,7 +232,7 @@ contains
   end function unknown_of_smallest_pivot
 
   !> Our status for a return code of UMFPACK.
-  pure function status_of(code) result(status)
+  pure recursive function status_of(code) result(status)
     integer(c_int64_t), intent(in) :: code
     integer :: status
 
