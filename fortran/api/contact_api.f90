@@ -2,7 +2,7 @@
 !> `nodes` are numbered within the face, from 0.
 subroutine slave_tables(layout, knots, nknots, point, weight, npoints, axis, side, gauss, reference, n, &
     nlocal, nelements, nquad, nodes, basis, area)
-  use iso_c_binding
+  use iso_c_binding, only: c_double, c_int
   use isomortar_api_unpack, only: unpack_patch
   use isomortar_contact_slave, only: tables => slave_tables
   use isomortar_nurbs_surface, only: face_of
@@ -20,7 +20,7 @@ end subroutine slave_tables
 !> Project every slave quadrature point (isomortar_contact_control). `xi` holds starts where `started` is 1.
 subroutine project_points(nodes, basis, area, point, nlocal, nelements, nquad, nslave, kind, knots, nknots, master_point, &
     master_weight, nmaster, x, n, started, origin, had, xi, element, found, slip, slips, status, place)
-  use iso_c_binding
+  use iso_c_binding, only: c_double, c_int
   use isomortar_api_unpack, only: unpack_master, unpack_slave
   use isomortar_contact_control, only: project => project_points, projections_t
   implicit none
@@ -54,7 +54,7 @@ end subroutine project_points
 !> Control quantities from projections (isomortar_contact_control).
 subroutine control_quantities(nodes, basis, area, point, nlocal, nelements, nquad, nslave, kind, knots, nknots, master_point, &
     master_weight, nmaster, x, n, xi, element, found, slip, weight, square, gap, control_slip, metric, point_metric)
-  use iso_c_binding
+  use iso_c_binding, only: c_double, c_int
   use isomortar_api_unpack, only: unpack_master, unpack_slave
   use isomortar_contact_control, only: control_t, integrate => control_quantities, projections_t
   implicit none
@@ -89,7 +89,7 @@ end subroutine control_quantities
 subroutine augmented_multipliers(nodes, basis, area, point, nlocal, nelements, nquad, nslave, weight, square, gap, control_slip, &
     metric, point_metric, summed, penalties, friction, pressure_k, traction_k, pressure, traction, state, pressure_slope, &
     traction_slope, field_slip)
-  use iso_c_binding
+  use iso_c_binding, only: c_double, c_int
   use isomortar_api_unpack, only: unpack_slave
   use isomortar_contact_augmentation, only: active_points, law_t, multipliers => augmented_multipliers, response_t
   use isomortar_contact_control, only: control_t, integrate_slip_sum
@@ -135,7 +135,7 @@ end subroutine augmented_multipliers
 !> Add contact forces; separately on slave and master control points (isomortar_contact_blocks).
 subroutine contact_forces(nodes, basis, area, point, nlocal, nelements, nquad, nslave, kind, knots, nknots, master_point, &
     master_weight, nmaster, x, n, xi, element, found, with_friction, pressure, traction, state, forces)
-  use iso_c_binding
+  use iso_c_binding, only: c_double, c_int
   use isomortar_api_unpack, only: unpack_master, unpack_slave
   use isomortar_contact_blocks, only: integrate_forces, multipliers_t
   use isomortar_contact_control, only: projections_t
@@ -159,7 +159,7 @@ end subroutine contact_forces
 subroutine contact_blocks(nodes, basis, area, point, nlocal, nelements, nquad, nslave, kind, knots, nknots, master_point, &
     master_weight, nmaster, x, n, xi, element, found, slips, with_friction, pressure, traction, state, field_slip, row_start, &
     row_column, nrows, nkinds, rows, start, nstart, column, nblocks, tangent)
-  use iso_c_binding
+  use iso_c_binding, only: c_double, c_int
   use isomortar_api_unpack, only: unpack_master, unpack_pattern, unpack_slave
   use isomortar_contact_blocks, only: integrate_blocks, multipliers_t
   use isomortar_contact_control, only: projections_t
@@ -187,7 +187,7 @@ end subroutine contact_blocks
 subroutine multiplier_rows(nodes, basis, area, point, nlocal, nelements, nquad, nslave, weight, square, control_slip, metric, &
     point_metric, summed, penalties, friction, state, pressure_slope, traction_slope, row_start, row_column, nrows, nkinds, rows, &
     neighbour_start, neighbour_column, nneighbours, wide_start, wide_column, nwide, changes)
-  use iso_c_binding
+  use iso_c_binding, only: c_double, c_int
   use isomortar_api_unpack, only: unpack_pattern, unpack_slave
   use isomortar_contact_augmentation, only: combine => multiplier_rows, law_t, response_t, trial_rows, trial_rows_summed
   use isomortar_contact_control, only: control_t
@@ -233,7 +233,7 @@ end subroutine multiplier_rows
 !> Condense multipliers into the tangent (isomortar_contact_augmentation).
 subroutine condense_multipliers(state, nslave, row_start, row_column, nrows, nkinds, rows, wide_start, wide_column, nwide, &
     changes, start, nstart, column, nblocks, tangent)
-  use iso_c_binding
+  use iso_c_binding, only: c_double, c_int
   use isomortar_api_unpack, only: unpack_pattern
   use isomortar_contact_augmentation, only: condense
   implicit none

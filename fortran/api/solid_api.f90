@@ -1,7 +1,7 @@
 !> Add internal forces and, if `with_tangent`, the tangent of one body (isomortar_solid_assembly).
 subroutine add_body(layout, knots, nknots, point, weight, npoints, gauss, bulk, shear, x, reference, n, forces, &
     with_tangent, start, nstart, column, tangent, nblocks, smallest_jacobian, status, place)
-  use iso_c_binding
+  use iso_c_binding, only: c_double, c_int
   use isomortar_api_unpack, only: unpack_patch, unpack_pattern
   use isomortar_solid_assembly, only: assemble_body => add_body
   implicit none
