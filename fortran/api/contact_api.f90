@@ -87,18 +87,18 @@ end subroutine control_quantities
 !> Control pressures, tractions, states and their slopes of the augmented law (isomortar_contact_augmentation).
 !> `field_slip` is the field of control slips at the quadrature points, with `summed` only.
 subroutine augmented_multipliers(nodes, basis, area, point, nlocal, nelements, nquad, nslave, weight, square, gap, control_slip, &
-    metric, point_metric, summed, penalties, friction, pressure_k, traction_k, pressure, traction, state, pressure_slope, &
-    traction_slope, field_slip)
+    metric, point_metric, summed, penalties, friction, pressure_k, traction_k, slip_margin, forgiving, held, pressure, traction, &
+    state, pressure_slope, traction_slope, field_slip)
   use iso_c_binding, only: c_double, c_int
   use isomortar_api_unpack, only: unpack_slave
   use isomortar_contact_augmentation, only: active_points, law_t, multipliers => augmented_multipliers, response_t
   use isomortar_contact_control, only: control_t, integrate_slip_sum
   implicit none
   integer(c_int), intent(in) :: nlocal, nelements, nquad, nslave
-  integer(c_int), intent(in) :: nodes(nlocal, nelements), point(nslave), summed
+  integer(c_int), intent(in) :: nodes(nlocal, nelements), point(nslave), summed, forgiving, held(nslave)
   real(c_double), intent(in) :: basis(nlocal, nquad), area(nquad), weight(nslave), square(nslave), gap(nslave)
   real(c_double), intent(in) :: control_slip(2, nslave), metric(3, nslave), point_metric(3, nquad), penalties(2), friction
-  real(c_double), intent(in) :: pressure_k(nslave), traction_k(2, nslave)
+  real(c_double), intent(in) :: pressure_k(nslave), traction_k(2, nslave), slip_margin
   real(c_double), intent(out) :: pressure(nslave), traction(2, nslave), pressure_slope(nslave), traction_slope(2, 6, nslave)
   real(c_double), intent(out) :: field_slip(2, nquad)
   integer(c_int), intent(out) :: state(nslave)
@@ -112,7 +112,7 @@ subroutine augmented_multipliers(nodes, basis, area, point, nlocal, nelements, n
   control%gap = gap
   control%slip = control_slip
   control%metric = metric
-  law = law_t(penalties(1), penalties(2), friction, pressure_k, traction_k)
+  law = law_t(penalties(1), penalties(2), friction, pressure_k, traction_k, slip_margin, forgiving /= 0, held /= 0)
   allocate (response%multipliers%pressure(nslave), response%multipliers%traction(2, nslave), response%multipliers%active(nslave), &
     response%state(nslave), response%pressure_slope(nslave), response%traction_slope(2, 6, nslave))
   field_slip = 0.0_c_double
@@ -183,10 +183,10 @@ subroutine contact_blocks(nodes, basis, area, point, nlocal, nelements, nquad, n
 end subroutine contact_blocks
 
 !> Rows of the multipliers' derivatives of the augmented law (isomortar_contact_augmentation): changes(component, multiplier, block)
-!> on the pattern `wide`; it and `neighbours` differ from the rows' pattern with `summed` only.
+!> and of their trial tractions, trial(component, a, block), on the pattern `wide`; it and `neighbours` differ from the rows' pattern with `summed` only.
 subroutine multiplier_rows(nodes, basis, area, point, nlocal, nelements, nquad, nslave, weight, square, control_slip, metric, &
     point_metric, summed, penalties, friction, state, pressure_slope, traction_slope, row_start, row_column, nrows, nkinds, rows, &
-    neighbour_start, neighbour_column, nneighbours, wide_start, wide_column, nwide, changes)
+    neighbour_start, neighbour_column, nneighbours, wide_start, wide_column, nwide, changes, trial)
   use iso_c_binding, only: c_double, c_int
   use isomortar_api_unpack, only: unpack_pattern, unpack_slave
   use isomortar_contact_augmentation, only: combine => multiplier_rows, law_t, response_t, trial_rows, trial_rows_summed
@@ -200,12 +200,11 @@ subroutine multiplier_rows(nodes, basis, area, point, nlocal, nelements, nquad, 
   real(c_double), intent(in) :: basis(nlocal, nquad), area(nquad), weight(nslave), square(nslave)
   real(c_double), intent(in) :: control_slip(2, nslave), metric(3, nslave), point_metric(3, nquad), penalties(2), friction
   real(c_double), intent(in) :: pressure_slope(nslave), traction_slope(2, 6, nslave), rows(3, nkinds, nrows)
-  real(c_double), intent(out) :: changes(3, 3, nwide)
+  real(c_double), intent(out) :: changes(3, 3, nwide), trial(3, 2, nwide)
   type(control_t) :: control
   type(law_t) :: law
   type(response_t) :: response
   type(pattern_t) :: narrow, wide
-  real(c_double), allocatable :: trial(:, :, :)
 
   control%weight = weight
   control%square = square
@@ -218,7 +217,7 @@ subroutine multiplier_rows(nodes, basis, area, point, nlocal, nelements, nquad, 
   response%state = state
   response%pressure_slope = pressure_slope
   response%traction_slope = traction_slope
-  allocate (trial(3, 2, nwide))
+  trial = 0.0_c_double
   narrow = unpack_pattern(row_start, row_column)
   wide = unpack_pattern(wide_start, wide_column)
   if (nkinds > 1 .and. summed /= 0) then

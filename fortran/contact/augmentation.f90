@@ -19,6 +19,12 @@ module isomortar_contact_augmentation
     real(wp) :: normal_penalty, tangential_penalty, friction
     real(wp), allocatable :: pressure(:)
     real(wp), allocatable :: traction(:, :)
+    !> Trials above (1 - slip_margin) mu p slip.
+    real(wp) :: slip_margin = 0.0_wp
+    !> Take the current traction for the radial part of the slip derivative.
+    logical :: forgiving = .false.
+    !> Control points that stick whatever their trial; none where not allocated.
+    logical, allocatable :: held(:)
   end type law_t
 
   !> What the law makes of the control quantities.
@@ -77,10 +83,35 @@ contains
         trial = matmul(metric_matrix(metric), control%slip(:, i))
       end if
       trial = law%traction(:, i) + law%tangential_penalty / control%weight(i) * trial
-      call return_map(trial, response%multipliers%pressure(i), law%friction, metric, response%multipliers%traction(:, i), &
-        response%state(i), response%traction_slope(:, :, i))
+      call apply_friction(law, i, trial, metric, response)
     end do
   end subroutine augmented_multipliers
+
+  !> Traction, state and slopes of one active control point from its trial traction.
+  pure subroutine apply_friction(law, i, trial, metric, response)
+    type(law_t), intent(in) :: law
+    integer, intent(in) :: i
+    real(wp), intent(in) :: trial(2), metric(3)
+    type(response_t), intent(inout) :: response
+
+    associate (pressure => response%multipliers%pressure(i), traction => response%multipliers%traction(:, i), &
+        slope => response%traction_slope(:, :, i))
+      if (allocated(law%held)) then
+        if (law%held(i)) then
+          traction = trial
+          slope(1, 2) = 1.0_wp
+          slope(2, 3) = 1.0_wp
+          return
+        end if
+      end if
+      if (law%forgiving) then
+        call return_map(trial, pressure, law%friction, metric, law%slip_margin, traction, response%state(i), slope, &
+          law%traction(:, i))
+      else
+        call return_map(trial, pressure, law%friction, metric, law%slip_margin, traction, response%state(i), slope)
+      end if
+    end associate
+  end subroutine apply_friction
 
   !> Rows of the trial traction, "local" slip sum: e_T (m_ab <R^I dxi^b> / w + dm_ab slip^b), shape (3, 2, blocks).
   pure subroutine trial_rows(control, law, active, pattern, rows, trial)

@@ -42,17 +42,20 @@ contains
   !> Return the trial traction of a control point under pressure to the disk of radius mu p.
   !>
   !> `derivative(a, :)` is d traction_a by the pressure (1), the trial traction (2:3) and the metric (4:6: 11, 12, 22).
-  pure subroutine return_map(trial, pressure, friction, metric, traction, state, derivative)
-    real(wp), intent(in) :: trial(2), pressure, friction, metric(3)
+  !> A trial above (1 - margin) mu p slips. `radial` replaces the traction in the part of the derivative that shortens the
+  !> trial: the current traction there is more forgiving on the way and the same at the solution (formulation.md Section 6).
+  pure subroutine return_map(trial, pressure, friction, metric, margin, traction, state, derivative, radial)
+    real(wp), intent(in) :: trial(2), pressure, friction, metric(3), margin
     real(wp), intent(out) :: traction(2)
     integer, intent(out) :: state
     real(wp), intent(out) :: derivative(2, 6)
-    real(wp) :: length, along(2), contravariant(2), ratio, by_metric(3)
+    real(wp), intent(in), optional :: radial(2)
+    real(wp) :: length, along(2), contravariant(2), ratio, by_metric(3), shortened(2)
     integer :: a
 
     length = metric_norm(trial, metric)
     derivative = 0.0_wp
-    if (length <= friction * pressure) then
+    if (length <= friction * pressure * (1.0_wp - margin)) then
       state = state_stick
       traction = trial
       derivative(1, 2) = 1.0_wp
@@ -64,13 +67,26 @@ contains
     contravariant = raise_index(along, metric)
     ratio = friction * pressure / length
     traction = friction * pressure * along
+    shortened = traction / length
+    if (present(radial)) shortened = onto_disk(radial, friction * pressure, metric) / length
     by_metric = -0.5_wp * length * [contravariant(1)**2, 2.0_wp * contravariant(1) * contravariant(2), contravariant(2)**2]
     do a = 1, 2
       derivative(a, 1) = friction * along(a)
       derivative(a, 1 + a) = ratio
-      derivative(a, 2:3) = derivative(a, 2:3) - ratio * along(a) * contravariant
-      derivative(a, 4:6) = -ratio * along(a) * by_metric
+      derivative(a, 2:3) = derivative(a, 2:3) - shortened(a) * contravariant
+      derivative(a, 4:6) = -shortened(a) * by_metric
     end do
   end subroutine return_map
+
+  !> A traction, shortened to a radius where it is longer.
+  pure function onto_disk(traction, radius, metric) result(shortened)
+    real(wp), intent(in) :: traction(2), radius, metric(3)
+    real(wp) :: shortened(2)
+    real(wp) :: length
+
+    shortened = traction
+    length = metric_norm(traction, metric)
+    if (length > radius) shortened = traction * (radius / length)
+  end function onto_disk
 
 end module isomortar_contact_friction

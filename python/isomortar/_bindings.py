@@ -91,13 +91,20 @@ class Control:
 
 @dataclass(frozen=True)
 class Law:
-    """Augmented penalty law: penalties (normal, tangential), friction, multipliers of the current augmentation."""
+    """Augmented penalty law: penalties (normal, tangential), friction, current multipliers, the paper's slip sum or the local one.
+
+    Trials above (1 - `slip_margin`) mu p slip; `held` control points (1) stick whatever their trial; `forgiving` takes the current
+    traction for the radial part of the slip derivative (formulation.md Section 6).
+    """
 
     penalties: FloatArray
     friction: float
     pressure: FloatArray
     traction: FloatArray
     summed: bool
+    held: IntArray
+    slip_margin: float = 0.0
+    forgiving: bool = False
 
 
 @dataclass(frozen=True)
@@ -231,6 +238,7 @@ def augmented_multipliers(slave: SlaveArrays, control: Control, law: Law) -> Res
     pressure, traction, state, pressure_slope, traction_slope, field_slip = _kernel.augmented_multipliers(
         slave.nodes.T, slave.basis.T, slave.area, slave.point, control.weight, control.square, control.gap, control.slip.T,
         control.metric.T, control.point_metric.T, int(law.summed), law.penalties, law.friction, law.pressure, law.traction.T,
+        law.slip_margin, int(law.forgiving), law.held,
     )  # fmt: skip
     return Response(pressure, traction.T, state, pressure_slope, traction_slope.T, field_slip.T)
 
@@ -285,15 +293,15 @@ def multiplier_rows(
     rows: FloatArray,
     neighbours: Pattern,
     wide: Pattern,
-) -> FloatArray:
-    """Derivatives of p, t_1, t_2 by the positions, shape (blocks of `wide`, 3, 3)."""
-    changes = _kernel.multiplier_rows(
+) -> tuple[FloatArray, FloatArray]:
+    """Derivatives by the positions of p, t_1, t_2, shape (blocks of `wide`, 3, 3), and of the trial tractions, (blocks, 2, 3)."""
+    changes, trial = _kernel.multiplier_rows(
         slave.nodes.T, slave.basis.T, slave.area, slave.point, control.weight, control.square, control.slip.T, control.metric.T,
         control.point_metric.T, int(law.summed), law.penalties, law.friction, response.state, response.pressure_slope,
         response.traction_slope.T, row_pattern.start, row_pattern.column, rows.T, neighbours.start, neighbours.column,
         wide.start, wide.column,
     )  # fmt: skip
-    return changes.T
+    return changes.T, trial.T
 
 
 def condense_multipliers(

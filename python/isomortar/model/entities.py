@@ -117,14 +117,21 @@ class Stage:
     steps: int
 
 
+#: What helps the monolithic Newton loop on the way to the solution (formulation.md Section 6); none changes the solution.
+#: forgiving: slip rows with the current traction in place of the cone's. margin: what slips at the start of an increment goes on
+#: slipping. reversal: predicted slip against its traction sticks instead. halving: updates that fold an element, lose a
+#: projection, return to an earlier set of states, or double the merit are halved.
+MEASURES = ("forgiving", "margin", "reversal", "halving")
+
+
 @dataclass(frozen=True)
 class SolverSettings:
     """How contact is enforced and when a load step has converged (`formulation.md` Section 5).
 
     Parameters
     ----------
-    method : {"uzawa"}
-        Enforcement of the contact conditions.
+    method : {"monolithic", "uzawa"}
+        Multipliers as unknowns of one Newton loop (Section 6), or augmentations around Newton's method (the paper's way).
     slip_sum : {"local", "paper"}
         The trial traction from the control point's own slip, or summed over active neighbours (Section 4).
     penalty_normal, penalty_tangential : float
@@ -135,11 +142,18 @@ class SolverSettings:
     augmentation_norm : {"separate", "paper"}
         Pressures and tractions tested each in their norm, or the paper's single mixed norm.
     newton_tolerance : float
+    complementarity_tolerance : float
+        Monolithic: relative distance of pressures and of tractions from the contact conditions.
     max_augmentations, max_iterations, max_cuts : int
         `max_cuts`: how often a load step may be halved.
+    measures : tuple of str
+        Monolithic: what helps Newton's method on the way (MEASURES; Section 6, steps 4, 6, 7).
+    path_tolerance : float or None
+        Relative error of the control multipliers that a load increment may make by itself, estimated by halving it; None: the
+        increments are the stages' load steps.
     """
 
-    method: Literal["uzawa"] = "uzawa"
+    method: Literal["monolithic", "uzawa"] = "monolithic"
     slip_sum: Literal["local", "paper"] = "local"
     penalty_normal: float = 100.0
     penalty_tangential: float = 10.0
@@ -148,9 +162,12 @@ class SolverSettings:
     augmentation_tolerance: float = 0.01
     augmentation_norm: Literal["separate", "paper"] = "separate"
     newton_tolerance: float = 1e-9
+    complementarity_tolerance: float = 1e-8
     max_augmentations: int = 100
-    max_iterations: int = 25
+    max_iterations: int = 30
     max_cuts: int = 8
+    measures: tuple[str, ...] = MEASURES
+    path_tolerance: float | None = None
 
 
 @dataclass(frozen=True)

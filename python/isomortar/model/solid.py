@@ -37,6 +37,7 @@ class Solid:
             total = total + elements.T @ elements
         self.pattern = pattern_of(sparse.csr_array(total))
         rows = np.repeat(np.arange(numbering.count), np.diff(self.pattern.start))
+        self._last: tuple[FloatArray, FloatArray, FloatArray] | None = None
         self._diagonal = np.flatnonzero(rows == self.pattern.column)
         try:
             self.forces(numbering.reference)
@@ -54,9 +55,14 @@ class Solid:
         return self._add(positions, None)
 
     def forces_and_tangent(self, positions: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Internal forces and tangent blocks, shape (blocks, 3, 3): block, row component, column component."""
-        tangent = np.zeros((len(self.pattern.column), 3, 3))
-        return self._add(positions, tangent), tangent
+        """Internal forces and tangent blocks, shape (blocks, 3, 3): block, row component, column component.
+
+        Those of the last positions are kept: the start of a load step asks for them twice.
+        """
+        if self._last is None or self._last[0] is not positions:
+            tangent = np.zeros((len(self.pattern.column), 3, 3))
+            self._last = (positions, self._add(positions, tangent), tangent)
+        return self._last[1], self._last[2]
 
     def _add(self, positions: FloatArray, tangent: FloatArray | None) -> FloatArray:
         forces = np.zeros_like(self._numbering.reference)
@@ -79,6 +85,7 @@ class Solid:
                 raise FoldedElementError(f"body {body.name!r}: {error} (element {place} along u, v, w)", error.place) from error
         return forces
 
-    def largest_diagonal(self, tangent: FloatArray) -> float:
+    def stiffness(self, positions: FloatArray) -> float:
         """Largest diagonal entry of the tangent, over all unknowns."""
+        _, tangent = self.forces_and_tangent(positions)
         return float(np.einsum("kii->ki", tangent[self._diagonal]).max())

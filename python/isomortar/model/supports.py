@@ -55,6 +55,12 @@ class Supports:
         shift = sum((share * np.asarray(motion.translate) for share, motion in zip(shares, support.motions, strict=True)), np.zeros(3))
         return np.asarray(support.centre, dtype=np.float64) + shift
 
+    def increment(self, positions: FloatArray, time: float) -> FloatArray:
+        """What the prescribed positions lack to where their supports put them, zero elsewhere, shape (control points, 3)."""
+        lacking = np.zeros_like(positions)
+        lacking.ravel()[self.prescribed] = (self.place(time) - positions).ravel()[self.prescribed]
+        return lacking
+
     def place(self, time: float) -> FloatArray:
         """Positions of all control points with the prescribed ones where their supports put them at a load time.
 

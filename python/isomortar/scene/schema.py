@@ -237,8 +237,8 @@ class StageTable(Table):
 class SolverTable(Table):
     """How contact is enforced and when a load step has converged."""
 
-    method: Literal["uzawa"] = _SOLVER.method
-    """Augmented Lagrange: penalty, corrected by augmentations (Uzawa)."""
+    method: Literal["monolithic", "uzawa"] = _SOLVER.method
+    """Multipliers as unknowns of one Newton loop per load step (monolithic), or penalties corrected by augmentations (uzawa)."""
     slip_sum: Literal["local", "paper"] = _SOLVER.slip_sum
     """Trial traction from the control point's own slip (local), or summed over active neighbours (paper)."""
     penalty_normal: Positive = _SOLVER.penalty_normal
@@ -255,12 +255,18 @@ class SolverTable(Table):
     """Pressures and tractions tested each in their norm (separate), or in the paper's single norm, which mixes units."""
     newton_tolerance: Positive = _SOLVER.newton_tolerance
     """Residual over the internal force below which Newton's method has converged."""
+    complementarity_tolerance: Positive = _SOLVER.complementarity_tolerance
+    """Monolithic: relative distance of pressures and tractions from the contact conditions."""
     max_augmentations: Count = _SOLVER.max_augmentations
     """Augmentations after which a load step is cut."""
     max_iterations: Count = _SOLVER.max_iterations
     """Newton iterations after which a load step is cut."""
     max_cuts: Annotated[int, Field(strict=True, ge=0)] = _SOLVER.max_cuts
     """How often a load step may be halved before the run ends."""
+    measures: tuple[Literal["forgiving", "margin", "reversal", "halving"], ...] = _SOLVER.measures
+    """Monolithic: what helps Newton's method on the way; leave one out to see what it does."""
+    path_tolerance: Positive | None = _SOLVER.path_tolerance
+    """Error of the multipliers that a load increment may make, estimated by halving it; absent: the load steps as given."""
 
     def settings(self) -> SolverSettings:
         """As plain data."""

@@ -26,11 +26,12 @@ class Kinematics:
 
 @dataclass(frozen=True)
 class Blocks:
-    """What a second pass gives: rows, derivatives of the multipliers, geometric tangent, and their patterns."""
+    """What a second pass gives: rows, derivatives of multipliers and trial tractions, geometric tangent, and their patterns."""
 
     patterns: ContactPatterns
     rows: FloatArray
     changes: FloatArray
+    trial: FloatArray
     geometric: FloatArray
 
 
@@ -41,7 +42,9 @@ class PairMechanics:
         self.pair = pair
         self.friction = pair.contact.friction
         self.summed = settings.slip_sum == "paper" and self.friction > 0
-        self.reach = Reach(pair, self.summed)
+        self.reach = Reach(pair, self.summed, settings.method == "uzawa")
+        n = len(pair.slave.point)
+        self.diagonal = Pattern(np.arange(n + 1, dtype=np.int32), np.arange(n, dtype=np.int32))
         self._ledger = ledger
         self._kinds = ROW_KINDS["frictionless" if self.friction <= 0 else ("paper" if self.summed else "local")]
 
@@ -67,9 +70,14 @@ class PairMechanics:
         self._ledger.counts["projections"] += len(pair.slave.area)
         return Kinematics(projections, control)
 
+    def parameters(self, control: Control, stiffness: float) -> FloatArray:
+        """Complementarity parameters of the monolithic method: K_max / median of w^I, normal and tangential."""
+        present = control.weight[control.weight > 0]
+        return np.full(2, stiffness / (np.median(present) if present.size else self.pair.area))
+
     def law(self, penalties: FloatArray, pressure: FloatArray, traction: FloatArray) -> Law:
         """The augmented law with given penalties (normal, tangential) and multipliers."""
-        return Law(penalties, self.friction, pressure, traction, self.summed)
+        return Law(penalties, self.friction, pressure, traction, self.summed, np.zeros(len(pressure), dtype=np.int32))
 
     def respond(self, kinematics: Kinematics, law: Law) -> Response:
         """Multipliers and states of the law."""
@@ -93,11 +101,11 @@ class PairMechanics:
                 self.pair.slave, self.pair.master, positions, kinematics.projections, self.friction, response,
                 patterns.rows, rows, patterns.tangent, geometric,
             )  # fmt: skip
-            changes = _bindings.multiplier_rows(
+            changes, trial = _bindings.multiplier_rows(
                 self.pair.slave, kinematics.control, law, response, patterns.rows, rows, self.pair.neighbours, patterns.wide
             )
         self._ledger.counts["contact tangents"] += 1
-        return Blocks(patterns, rows, changes, geometric)
+        return Blocks(patterns, rows, changes, trial, geometric)
 
     def condensed(self, response: Response, blocks: Blocks) -> tuple[Pattern, FloatArray]:
         """The contact tangent with the multipliers eliminated."""
@@ -108,13 +116,19 @@ class PairMechanics:
             )
         return blocks.patterns.tangent, tangent
 
-    def traction_norms(self, control: Control, traction: FloatArray) -> FloatArray:
-        """Metric norm of control tractions, shape (slave control points,)."""
+    def contravariant(self, control: Control, traction: FloatArray) -> FloatArray:
+        """Contravariant components of control tractions in the discrete metric, shape (slave control points, 2)."""
         m = control.metric / np.where(control.square > 0, control.square, 1.0)[:, None]
         determinant = m[:, 0] * m[:, 2] - m[:, 1] ** 2
-        t = traction
-        squared = m[:, 2] * t[:, 0] ** 2 - 2 * m[:, 1] * t[:, 0] * t[:, 1] + m[:, 0] * t[:, 1] ** 2
-        return np.sqrt(np.maximum(squared / np.where(determinant > 0, determinant, 1.0), 0.0))
+        raised = np.column_stack(
+            [m[:, 2] * traction[:, 0] - m[:, 1] * traction[:, 1], m[:, 0] * traction[:, 1] - m[:, 1] * traction[:, 0]]
+        )
+        return np.asarray(raised / np.where(determinant > 0, determinant, 1.0)[:, None])
+
+    def traction_norms(self, control: Control, traction: FloatArray) -> FloatArray:
+        """Metric norm of control tractions, shape (slave control points,)."""
+        squared = np.einsum("ia,ia->i", self.contravariant(control, traction), traction)
+        return np.sqrt(np.maximum(squared, 0.0))
 
     def result(self, positions: FloatArray, kinematics: Kinematics, response: Response) -> ContactResult:
         """Measured quantities at the end of a load step."""

@@ -59,7 +59,7 @@ class Equilibrium:
         self.supports = Supports(problem, self.numbering)
         self.solid = Solid(problem, self.numbering)
         self.pairs = [PairMechanics(Pair(c, problem, self.numbering), problem.settings, ledger) for c in problem.contacts]
-        self._solid_source = Source(self.solid.pattern, self.supports.equation, self.supports.equation)
+        self.solid_source = Source(self.solid.pattern, self.supports.equation, self.supports.equation)
         self._solid_entries: sparse.csr_array | None = None
         self._system: LinearSystem | None = None
         self._system_patterns: list[object] = []
@@ -92,7 +92,7 @@ class Equilibrium:
         with self.ledger.phase("solid"):
             _, solid = self.solid.forces_and_tangent(balance.positions)
         self.ledger.counts["solid tangents"] += 1
-        sources, values = [self._solid_source], [solid]
+        sources, values = [self.solid_source], [solid]
         for pair, law, kinematics, response in zip(self.pairs, laws, balance.kinematics, balance.responses, strict=True):
             if not np.any(response.state):
                 continue
@@ -114,30 +114,47 @@ class Equilibrium:
         if np.any(prescribed):
             for source, block in zip(sources, values, strict=True):
                 right += block_product(source.pattern, block, prescribed)
-        system = self._system_for(sources)
+        correction = prescribed.copy()
+        correction.ravel()[self.supports.free] -= self.solve(sources, values, right.ravel()[self.supports.free])
+        return correction
+
+    def solve(self, sources: list[Source], values: list[FloatArray], right: FloatArray) -> FloatArray:
+        """Solve the system of the given sources; the first is the solid's. Free unknowns come first, multipliers after them.
+
+        Raises
+        ------
+        SingularSystemError
+            Naming a body that nothing holds, or redundant contact constraints.
+        """
+        system = self._system_for(sources, len(right))
         try:
             system.factorise(values)
         except SingularSystemError as error:
-            point = int(self.supports.free[error.place]) // 3 if error.place >= 0 else 0
-            body = self.numbering.body_of(point)
-            raise SingularSystemError(
-                f"the tangent is singular (reciprocal condition {system.rcond:.1e}): body {body!r} can move freely at control "
-                f"point {point}; hold it by a support or by contact from the start",
-                point,
-            ) from error
-        correction = prescribed.copy()
-        correction.ravel()[self.supports.free] -= system.solve(right.ravel()[self.supports.free])
-        return correction
+            raise self._name_singularity(error.place, system.rcond) from error
+        return system.solve(right)
 
-    def _system_for(self, sources: list[Source]) -> LinearSystem:
+    def _name_singularity(self, place: int, rcond: float) -> SingularSystemError:
+        """The error that says what leaves equation `place` without a pivot."""
+        free = self.supports.free
+        said = f"the tangent is singular (reciprocal condition {rcond:.1e})"
+        if 0 <= place < len(free):
+            point = int(free[place]) // 3
+            body = self.numbering.body_of(point)
+            return SingularSystemError(
+                f"{said}: body {body!r} can move freely at control point {point}; hold it by a support, or bring it into contact", point
+            )
+        return SingularSystemError(
+            f"{said}: contact constraints are redundant (a slave finer and stiffer than its master, or supports on a slave face)", place
+        )
+
+    def _system_for(self, sources: list[Source], size: int) -> LinearSystem:
         """The linear system of these sources: the last one, as long as all patterns stand."""
         patterns: list[object] = [source.pattern for source in sources]
         if self._system is None or len(patterns) != len(self._system_patterns) or any(
             a is not b for a, b in zip(patterns, self._system_patterns, strict=True)
         ):
-            size = len(self.supports.free)
             if self._solid_entries is None:
-                self._solid_entries = self._solid_source.entries(size)
+                self._solid_entries = self.solid_source.entries(len(self.supports.free))
             self._system = LinearSystem(size, sources, self.ledger, self._solid_entries)
             self._system_patterns = patterns
         return self._system

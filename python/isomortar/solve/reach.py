@@ -26,11 +26,13 @@ class Reach:
     """Which control points the constraint rows of a pair reach.
 
     `update` keeps the patterns while everything needed is in them; else it rebuilds them, with what the same load step
-    needed before, so that Newton's iterations do not trade one pattern for another.
+    needed before, so that Newton's iterations do not trade one pattern for another. A `condensed` tangent couples all that
+    the rows of a control point reach; else it couples the control points of an element alone.
     """
 
-    def __init__(self, pair: Pair, summed: bool) -> None:
+    def __init__(self, pair: Pair, summed: bool, condensed: bool) -> None:
         self._pair = pair
+        self._condensed = condensed
         self._summed = summed
         self._touched = np.zeros(0, dtype=np.int64)
         self._active = np.zeros(len(pair.slave.point), dtype=bool)
@@ -74,5 +76,9 @@ class Reach:
         chosen = sparse.diags_array(active.astype(np.int32), format="csr", dtype=np.int32)
         rows = sparse.csr_array(chosen @ pair.elements_of_point @ reach)
         wide = sparse.csr_array(chosen @ pair.neighbour_matrix @ rows) if self._summed else rows
-        tangent = sparse.csr_array(rows.T @ wide)
+        if self._condensed:
+            tangent = sparse.csr_array(rows.T @ wide)
+        else:
+            chosen_elements = reach[active[pair.slave.nodes].any(axis=1)]
+            tangent = sparse.csr_array(chosen_elements.T @ chosen_elements)
         return ContactPatterns(pattern_of(rows), pattern_of(wide), pattern_of(tangent))

@@ -10,11 +10,15 @@ from isomortar.errors import ConvergenceError, FoldedElementError, LostProjectio
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Problem
 from isomortar.solve.equilibrium import Balance, Equilibrium
+from isomortar.solve.monolithic import Monolithic
 from isomortar.solve.record import AugmentationRecord, Observer, Reaction, State, StepResult
 from isomortar.solve.timing import Ledger
 from isomortar.solve.uzawa import Uzawa
 
 _REASONS_TO_CUT = (ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError)
+
+
+_METHODS: dict[str, type[Monolithic] | type[Uzawa]] = {"monolithic": Monolithic, "uzawa": Uzawa}
 
 
 class Simulation:
@@ -39,7 +43,7 @@ class Simulation:
         self.ledger = Ledger()
         self.equilibrium = Equilibrium(problem, self.ledger)
         self._observer = observer or Observer()
-        self._method = Uzawa(self.equilibrium, self._observer)
+        self._method = _METHODS[problem.settings.method](self.equilibrium, self._observer)
         self._step = resume_from.step if resume_from else 0
         self._increment = resume_from.next_increment if resume_from else 1.0
         self.state = resume_from.state if resume_from else self.equilibrium.initial_state()

@@ -15,7 +15,7 @@ from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.solve.timing import Ledger
 
 #: Systems with fewer unknowns are ordered by minimum degree, larger ones by nested dissection (measured: toolchain.md).
-SMALL_SYSTEM = 4000
+SMALL_SYSTEM = 1000
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,9 +45,10 @@ class LinearSystem:
     """A system of a fixed pattern: analysed once, assembled, factorised and solved many times."""
 
     def __init__(self, size: int, sources: Sequence[Source], ledger: Ledger, known: sparse.csr_array | None = None) -> None:
-        """`known` is the pattern of the first source, where it is at hand already."""
+        """`known` is the pattern of the first source in its own rows and columns, where it is at hand already."""
         self._ledger = ledger
-        total = sources[0].entries(size) if known is None else known
+        total = sources[0].entries(size) if known is None else known.copy()
+        total.resize((size, size))
         for source in sources[1:]:
             total = total + source.entries(size)
         total = sparse.csr_array(total)
@@ -84,7 +85,7 @@ class LinearSystem:
     def solve(self, right: FloatArray) -> FloatArray:
         """Solution for one right-hand side, shape (unknowns,)."""
         with self._ledger.phase("solve"):
-            solution = self._factors.solve(right)
+            solution = self._factors.solve(right, refine=0)
         self._ledger.counts["solves"] += 1
         return solution
 
@@ -94,6 +95,7 @@ class LinearSystem:
 
 
 def block_product(pattern: Pattern, values: FloatArray, vector: FloatArray) -> FloatArray:
-    """Product of a matrix of blocks with a field of control points, shape (control points, 3)."""
-    matrix = sparse.bsr_array((values, pattern.column, pattern.start), shape=(vector.size, vector.size))
-    return np.asarray(matrix @ vector.ravel()).reshape(vector.shape)
+    """Product of a matrix of blocks with a field of control points, shape (rows of blocks, 3)."""
+    rows = len(pattern.start) - 1
+    matrix = sparse.bsr_array((values, pattern.column, pattern.start), shape=(3 * rows, vector.size))
+    return np.asarray(matrix @ vector.ravel()).reshape(rows, 3)

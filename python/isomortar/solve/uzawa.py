@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,17 +10,9 @@ from isomortar._bindings import Law
 from isomortar.errors import ConvergenceError
 from isomortar.geometry.patch import FloatArray
 from isomortar.solve.equilibrium import Balance, Equilibrium
+from isomortar.solve.increment import Increment
 from isomortar.solve.newton import observed_order, solve_positions
 from isomortar.solve.record import AugmentationRecord, IterationRecord, Observer, State
-
-
-@dataclass(frozen=True)
-class Increment:
-    """A converged load increment: its balance, the log of its augmentations, Newton's observed orders."""
-
-    balance: Balance
-    augmentations: tuple[AugmentationRecord, ...]
-    orders: tuple[float, ...]
 
 
 class Uzawa:
@@ -40,11 +32,9 @@ class Uzawa:
             The increment has to be cut.
         """
         equilibrium = self._equilibrium
-        target = equilibrium.supports.place(time)
-        prescribed = np.zeros_like(target)
-        held = equilibrium.supports.prescribed
-        prescribed.ravel()[held] = target.ravel()[held] - start.positions.ravel()[held]
-        stiffness = self._stiffness(start.positions)
+        prescribed = equilibrium.supports.increment(start.positions, time)
+        with equilibrium.ledger.phase("solid"):
+            stiffness = equilibrium.solid.stiffness(start.positions)
         base = np.array([self._settings.penalty_normal, self._settings.penalty_tangential]) * stiffness
         laws = [
             pair.law(base / pair.penalty_area, s.pressure, s.traction) for pair, s in zip(equilibrium.pairs, start.contacts, strict=True)
@@ -78,12 +68,6 @@ class Uzawa:
             f"{self._settings.max_augmentations} augmentations left a relative change of the multipliers of {max(changes):.2e} "
             f"(solver.augmentation_tolerance is {self._settings.augmentation_tolerance:g})"
         )
-
-    def _stiffness(self, positions: FloatArray) -> float:
-        """Largest diagonal entry of the solid tangent at the last converged state."""
-        with self._equilibrium.ledger.phase("solid"):
-            _, tangent = self._equilibrium.solid.forces_and_tangent(positions)
-        return self._equilibrium.solid.largest_diagonal(tangent)
 
     def _changes(self, laws: list[Law], balance: Balance) -> tuple[float, float]:
         """Relative change of pressures and of tractions by the last augmentation (the paper's mixed norm: twice the same)."""

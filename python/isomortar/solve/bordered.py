@@ -1,0 +1,170 @@
+"""The bordered linear system: the stiffness with constraint rows and the linearised contact conditions around it.
+
+    [ K + K_geo   G^T ] [ dx ]     [ forces              ]
+    [ -target'    L   ] [ dl ] = - [ multiplier - target ]
+
+Rows of the contact conditions are scaled by w / e, multiplier columns by e (formulation.md Section 6, step 5).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from isomortar._bindings import Law, Pattern, Response
+from isomortar.geometry.patch import FloatArray, IntArray
+from isomortar.solve.contact import Blocks, PairMechanics
+from isomortar.solve.equilibrium import Balance, Equilibrium
+from isomortar.solve.system import Source, block_product
+
+
+@dataclass(frozen=True)
+class Correction:
+    """Newton's correction of positions, control pressures and control tractions (one array a pair)."""
+
+    positions: FloatArray
+    pressures: tuple[FloatArray, ...]
+    tractions: tuple[FloatArray, ...]
+
+
+@dataclass(frozen=True)
+class Border:
+    """What one pair adds to the system: its blocks, the equations of its multipliers, and their scales."""
+
+    pair: PairMechanics
+    blocks: Blocks
+    equation: IntArray
+    row_scale: FloatArray
+    column_scale: float
+    target: Response
+
+    def sources(self, unknowns: IntArray) -> tuple[list[Source], list[FloatArray]]:
+        """Geometric tangent, constraint columns, condition rows, and the multipliers' own block."""
+        patterns = self.blocks.patterns
+        columns = np.zeros((len(patterns.rows.column), 3, 3))
+        kinds = min(3, self.blocks.rows.shape[1])
+        columns[:, :kinds] = self.column_scale * self.blocks.rows[:, :kinds]
+        owner = np.repeat(np.arange(len(self.row_scale)), np.diff(patterns.wide.start))
+        conditions = -self.row_scale[owner, None, None] * self.blocks.changes
+        own = (self.row_scale * self.column_scale)[:, None, None] * self._own_block()
+        sources = [
+            Source(patterns.tangent, unknowns, unknowns),
+            Source(patterns.rows, self.equation, unknowns, transposed=True),
+            Source(patterns.wide, self.equation, unknowns),
+            Source(self.pair.diagonal, self.equation, self.equation),
+        ]
+        return sources, [self.blocks.geometric, columns, conditions, np.ascontiguousarray(own)]
+
+    def _own_block(self) -> FloatArray:
+        """Derivative of multiplier - target by the multipliers, shape (slave control points, 3, 3)."""
+        active = self.target.state > 0
+        own = np.zeros((len(active), 3, 3))
+        own[:, [0, 1, 2], [0, 1, 2]] = 1.0
+        own[active, 0, 0] = 0.0
+        slope = self.target.traction_slope[active]  # (control points, pressure | trial | metric, component)
+        own[active, 1:, 0] = -slope[:, 0]
+        own[active, 1:, 1:] -= slope[:, 1:3].transpose(0, 2, 1)
+        return own
+
+    def trial_change(self, correction: FloatArray) -> FloatArray:
+        """Change of the trial tractions with the positions, shape (slave control points, 2)."""
+        padded = np.zeros((len(self.blocks.trial), 3, 3))
+        padded[:, :2] = self.blocks.trial
+        return block_product(self.blocks.patterns.wide, padded, correction)[:, :2]
+
+
+def solve_bordered(
+    equilibrium: Equilibrium, balance: Balance, laws: Sequence[Law], targets: Sequence[Response], prescribed: FloatArray | None
+) -> tuple[Correction, list[Border | None]]:
+    """Newton's correction, with given increments of the prescribed positions.
+
+    `balance.responses` hold the current multipliers, `targets` what the contact conditions make of them.
+
+    Raises
+    ------
+    SingularSystemError
+    """
+    with equilibrium.ledger.phase("solid"):
+        _, solid = equilibrium.solid.forces_and_tangent(balance.positions)
+    equilibrium.ledger.counts["solid tangents"] += 1
+    unknowns = equilibrium.supports.equation
+    sources, values = [equilibrium.solid_source], [solid]
+    size = len(equilibrium.supports.free)
+    borders: list[Border | None] = []
+    for k, target in enumerate(targets):
+        border = _border(equilibrium, k, balance, laws[k], target, size)
+        borders.append(border)
+        if border is None:
+            continue
+        more_sources, more_values = border.sources(unknowns)
+        sources += more_sources
+        values += more_values
+        size += int(np.count_nonzero(border.equation >= 0))
+    right = _right_hand_side(equilibrium, balance, targets, borders, sources, values, prescribed, size)
+    solution = -equilibrium.solve(sources, values, right)
+    positions = np.zeros_like(balance.positions) if prescribed is None else prescribed.copy()
+    positions.ravel()[equilibrium.supports.free] += solution[: len(equilibrium.supports.free)]
+    changes = [_multiplier_change(border, target, solution) for border, target in zip(borders, targets, strict=True)]
+    return Correction(positions, tuple(c[:, 0] for c in changes), tuple(c[:, 1:] for c in changes)), borders
+
+
+def _border(equilibrium: Equilibrium, k: int, balance: Balance, law: Law, target: Response, first: int) -> Border | None:
+    """Border of one pair, its equations numbered from `first`; None where nothing is active."""
+    if not np.any(target.state):
+        return None
+    pair = equilibrium.pairs[k]
+    current = balance.responses[k]
+    blocks = pair.blocks(balance.positions, balance.kinematics[k], law, current)
+    reached = np.diff(blocks.patterns.rows.start) > 0
+    components = 1 if pair.friction <= 0 else 3
+    equation = np.full((len(reached), 3), -1, dtype=np.int32)
+    count = int(np.count_nonzero(reached)) * components
+    equation[reached, :components] = first + np.arange(count, dtype=np.int32).reshape(-1, components)
+    weight = balance.kinematics[k].control.weight
+    parameter = float(law.penalties[0])
+    row_scale = np.where(weight > 0, weight, np.median(weight)) / parameter
+    return Border(pair, blocks, equation.ravel(), row_scale, parameter, target)
+
+
+def _right_hand_side(
+    equilibrium: Equilibrium,
+    balance: Balance,
+    targets: Sequence[Response],
+    borders: Sequence[Border | None],
+    sources: Sequence[Source],
+    values: Sequence[FloatArray],
+    prescribed: FloatArray | None,
+    size: int,
+) -> FloatArray:
+    """Forces, and distances of the multipliers from their targets, with what the prescribed increment adds to both."""
+    right = np.zeros(size)
+    free = equilibrium.supports.free
+    right[: len(free)] = balance.total.ravel()[free]
+    for border, target, now in zip(borders, targets, balance.responses, strict=True):
+        if border is not None:
+            apart = np.column_stack([now.pressure - target.pressure, now.traction - target.traction])
+            kept = border.equation >= 0
+            right[border.equation[kept]] = (border.row_scale[:, None] * apart).ravel()[kept]
+    if prescribed is not None and np.any(prescribed):
+        for source, block in zip(sources, values, strict=True):
+            if source.column_of is equilibrium.supports.equation and not source.transposed:
+                _add_product(source.pattern, source.row_of, block, prescribed, right)
+    return right
+
+
+def _add_product(pattern: Pattern, row_of: IntArray, block: FloatArray, vector: FloatArray, right: FloatArray) -> None:
+    """right += block vector, in the equations of the block's rows."""
+    product = block_product(pattern, block, vector).ravel()
+    kept = row_of >= 0
+    right[row_of[kept]] += product[kept]
+
+
+def _multiplier_change(border: Border | None, target: Response, solution: FloatArray) -> FloatArray:
+    """Corrections of p, t_1, t_2 of one pair, shape (slave control points, 3)."""
+    change = np.zeros((len(target.state), 3))
+    if border is not None:
+        kept = border.equation >= 0
+        change.ravel()[kept] = border.column_scale * solution[border.equation[kept]]
+    return change

@@ -1,0 +1,232 @@
+"""The monolithic method: positions and multipliers in one semismooth Newton loop (formulation.md Section 6)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from isomortar._bindings import Law, Response
+from isomortar.errors import ConvergenceError, FoldedElementError, LostProjectionError
+from isomortar.geometry.patch import FloatArray
+from isomortar.solve.bordered import Border, Correction, solve_bordered
+from isomortar.solve.equilibrium import Balance, Equilibrium
+from isomortar.solve.increment import Increment
+from isomortar.solve.newton import observed_order, relative_residual
+from isomortar.solve.record import AugmentationRecord, IterationRecord, Observer, State
+
+#: Share of the cone within which a trial counts as slip at the start of an increment (Section 6, step 6).
+SLIP_MARGIN = 1e-6
+#: How often the predictor is solved again with reversed slips held.
+MAX_REVERSALS = 2
+#: Iterations after which a set of states that returns is taken for a cycle.
+CYCLE_FREE = 5
+#: How often an update is halved.
+MAX_HALVINGS = 5
+
+
+@dataclass(frozen=True)
+class Iterate:
+    """Positions and multipliers with all that follows from them.
+
+    `balance.responses` hold the current multipliers and the states; `targets` what the contact conditions make of them.
+    """
+
+    balance: Balance
+    laws: tuple[Law, ...]
+    targets: tuple[Response, ...]
+    residual: float
+    gap_pressure: float
+    gap_traction: float
+
+    @property
+    def merit(self) -> float:
+        """What an update should make smaller."""
+        return max(self.residual, self.gap_pressure, self.gap_traction)
+
+    @property
+    def states(self) -> bytes:
+        """The states of all control points, to compare with."""
+        return b"".join(response.state.tobytes() for response in self.targets)
+
+
+class Monolithic:
+    """Solves load increments for positions, control pressures and control tractions at once."""
+
+    def __init__(self, equilibrium: Equilibrium, observer: Observer) -> None:
+        self._equilibrium = equilibrium
+        self._settings = equilibrium.problem.settings
+        self._observer = observer
+
+    def advance(self, start: State, time: float, step: int) -> Increment:
+        """Solve the increment from a converged state to a load time.
+
+        Raises
+        ------
+        ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError
+            The increment has to be cut.
+        """
+        equilibrium = self._equilibrium
+        prescribed = equilibrium.supports.increment(start.positions, time)
+        with equilibrium.ledger.phase("solid"):
+            stiffness = equilibrium.solid.stiffness(start.positions)
+        for pair in equilibrium.pairs:
+            pair.reach.begin_step()
+        iterate = self._first(start, stiffness)
+        moves = bool(np.any(prescribed))
+        log: list[IterationRecord] = []
+        seen = [iterate.states]
+        notes: tuple[str, ...] = ()
+        for iteration in range(self._settings.max_iterations + 1):
+            record = self._record(iteration, iterate, notes)
+            log.append(record)
+            self._observer.iteration(step, time, 1, record)
+            if self._converged(iterate) and not (moves and iteration == 0):
+                return self._increment(iterate, log)
+            if iteration == self._settings.max_iterations or not np.isfinite(iterate.merit):
+                break
+            if iteration == 0:
+                iterate, correction, notes = self._predict(iterate, start, stiffness, prescribed)
+            else:
+                correction, notes = solve_bordered(equilibrium, iterate.balance, iterate.laws, iterate.targets, None)[0], ()
+            iterate, halved = self._update(iterate, correction, start, stiffness, seen if iteration >= CYCLE_FREE else [], iteration)
+            notes += halved
+            seen.append(iterate.states)
+        raise ConvergenceError(
+            f"Newton's method stopped at a relative residual of {iterate.residual:.2e} and {max(iterate.gap_pressure, iterate.gap_traction):.2e} "
+            f"off the contact conditions after {iteration} iterations{self._toggling(seen)}"
+        )
+
+    def _first(self, start: State, stiffness: float) -> Iterate:
+        """The converged state of the last increment as the first iterate."""
+        multipliers = [(contact.pressure, contact.traction) for contact in start.contacts]
+        margin = SLIP_MARGIN if "margin" in self._settings.measures else 0.0
+        return self._evaluate(start.positions, multipliers, start, stiffness, margin)
+
+    def _evaluate(
+        self,
+        positions: FloatArray,
+        multipliers: Sequence[tuple[FloatArray, FloatArray]],
+        start: State,
+        stiffness: float,
+        margin: float = 0.0,
+        held: Sequence[np.ndarray] | None = None,
+    ) -> Iterate:
+        """An iterate; multipliers of control points that turn out inactive are set to zero."""
+        equilibrium = self._equilibrium
+        forgiving = "forgiving" in self._settings.measures
+        with equilibrium.ledger.phase("solid"):
+            internal = equilibrium.solid.forces(positions)
+        total = internal.copy()
+        kinematics, laws, targets, currents = [], [], [], []
+        for k, (pair, (pressure, traction)) in enumerate(zip(equilibrium.pairs, multipliers, strict=True)):
+            kinematics.append(pair.kinematics(positions, start.contacts[k]))
+            law = pair.law(pair.parameters(kinematics[-1].control, stiffness), pressure, traction)
+            law = replace(law, slip_margin=margin, forgiving=forgiving, held=law.held if held is None else held[k])
+            targets.append(pair.respond(kinematics[-1], law))
+            active = targets[-1].state > 0
+            laws.append(replace(law, pressure=np.where(active, pressure, 0.0), traction=np.where(active[:, None], traction, 0.0)))
+            currents.append(replace(targets[-1], pressure=laws[-1].pressure, traction=laws[-1].traction))
+            pair.add_forces(positions, kinematics[-1], currents[-1], total)
+        balance = Balance(positions, internal, total, tuple(kinematics), tuple(currents))
+        residual = relative_residual(equilibrium, balance, stiffness)
+        return Iterate(balance, tuple(laws), tuple(targets), residual, *self._gaps(balance, targets))
+
+    def _gaps(self, balance: Balance, targets: Sequence[Response]) -> tuple[float, float]:
+        """Relative distance of pressures and tractions from what the contact conditions make of them."""
+        pressure, traction = np.zeros(2), np.zeros(2)
+        for pair, kinematics, now, target in zip(
+            self._equilibrium.pairs, balance.kinematics, balance.responses, targets, strict=True
+        ):
+            pressure += [np.sum((now.pressure - target.pressure) ** 2), np.sum(target.pressure**2)]
+            norms = [pair.traction_norms(kinematics.control, t) for t in (now.traction - target.traction, target.traction)]
+            floor = (0.01 * pair.friction) ** 2 * float(np.sum(target.pressure**2))
+            traction += [np.sum(norms[0] ** 2), max(float(np.sum(norms[1] ** 2)), floor)]
+        return tuple(float(np.sqrt(a / b)) if b > 0 else 0.0 for a, b in (pressure, traction))  # type: ignore[return-value]
+
+    def _converged(self, iterate: Iterate) -> bool:
+        tolerance = self._settings.complementarity_tolerance
+        return iterate.residual <= self._settings.newton_tolerance and max(iterate.gap_pressure, iterate.gap_traction) <= tolerance
+
+    def _predict(
+        self, iterate: Iterate, start: State, stiffness: float, prescribed: FloatArray
+    ) -> tuple[Iterate, Correction, tuple[str, ...]]:
+        """The first solve, with the prescribed increment; slips that would reverse stick instead, and it is repeated."""
+        equilibrium = self._equilibrium
+        correction, borders = solve_bordered(equilibrium, iterate.balance, iterate.laws, iterate.targets, prescribed)
+        if "reversal" not in self._settings.measures:
+            return iterate, correction, ()
+        held = [law.held for law in iterate.laws]
+        notes: tuple[str, ...] = ()
+        for _ in range(MAX_REVERSALS):
+            reversed_ = [self._reversals(k, iterate, correction, border) for k, border in enumerate(borders)]
+            if not any(r.any() for r in reversed_):
+                break
+            held = [np.maximum(h, r.astype(np.int32)) for h, r in zip(held, reversed_, strict=True)]
+            multipliers = [(law.pressure, law.traction) for law in iterate.laws]
+            margin = SLIP_MARGIN if "margin" in self._settings.measures else 0.0
+            iterate = self._evaluate(start.positions, multipliers, start, stiffness, margin, held)
+            correction, borders = solve_bordered(equilibrium, iterate.balance, iterate.laws, iterate.targets, prescribed)
+            notes = (f"reversal of {sum(int(h.sum()) for h in held)}",)
+        return iterate, correction, notes
+
+    def _reversals(self, k: int, iterate: Iterate, correction: Correction, border: Border | None) -> np.ndarray:
+        """Slipping control points whose predicted trial change opposes their traction: s^a dt_a < 0."""
+        target = iterate.targets[k]
+        if border is None or self._equilibrium.pairs[k].friction <= 0:
+            return np.zeros(len(target.state), dtype=bool)
+        change = correction.tractions[k] + border.trial_change(correction.positions)
+        raised = self._equilibrium.pairs[k].contravariant(iterate.balance.kinematics[k].control, iterate.laws[k].traction)
+        return (target.state == 2) & (np.einsum("ia,ia->i", raised, change) < 0.0)
+
+    def _update(
+        self, iterate: Iterate, correction: Correction, start: State, stiffness: float, seen: list[bytes], iteration: int
+    ) -> tuple[Iterate, tuple[str, ...]]:
+        """The next iterate: the full update, or one halved until it is admissible (Section 6, step 7)."""
+        halvings = MAX_HALVINGS if "halving" in self._settings.measures else 0
+        reason, share = "", 1.0
+        for halving in range(halvings + 1):
+            last = halving == halvings
+            try:
+                following = self._evaluate(
+                    iterate.balance.positions + share * correction.positions,
+                    [
+                        (law.pressure + share * dp, law.traction + share * dt)
+                        for law, dp, dt in zip(iterate.laws, correction.pressures, correction.tractions, strict=True)
+                    ],
+                    start,
+                    stiffness,
+                )
+            except (FoldedElementError, LostProjectionError) as error:
+                if last or iteration == 0:
+                    raise
+                reason = "folded element" if isinstance(error, FoldedElementError) else "lost projection"
+            else:
+                cycles = following.states != iterate.states and following.states in seen and halving == 0
+                doubles = iteration > 0 and following.merit > 2.0 * iterate.merit
+                if last or iteration == 0 or not (cycles or doubles):
+                    break
+                reason = "cycle" if cycles else "merit"
+            share *= 0.5
+        return following, (f"halved {halving} times: {reason}",) if reason else ()
+
+    def _record(self, iteration: int, iterate: Iterate, notes: tuple[str, ...]) -> IterationRecord:
+        active, slip = iterate.balance.active, iterate.balance.slipping
+        return IterationRecord(iteration, iterate.merit, active, active - slip, slip, notes)
+
+    def _increment(self, iterate: Iterate, log: list[IterationRecord]) -> Increment:
+        parameters = iterate.laws[0].penalties if iterate.laws else np.zeros(2)
+        record = AugmentationRecord(
+            1, float(parameters[0]), float(parameters[1]), iterate.gap_pressure, iterate.gap_traction, tuple(log)
+        )
+        return Increment(iterate.balance, (record,), (observed_order([r.residual for r in log]),))
+
+    def _toggling(self, seen: list[bytes]) -> str:
+        """The slave control points whose states changed in the last iterations, as a part of a sentence."""
+        states = np.array([np.frombuffer(s, dtype=np.int32) for s in seen[-6:]])
+        toggling = np.flatnonzero(np.any(states != states[0], axis=0)) if states.size else np.zeros(0)
+        if not toggling.size:
+            return ""
+        names = ", ".join(str(int(i)) for i in toggling[:10]) + (", ..." if len(toggling) > 10 else "")
+        return f"; slave control points {names} change their states from iteration to iteration"
