@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+
 from isomortar.geometry.patch import Direction, FloatArray, Patch
 from isomortar.model.entities import Body, Contact, Face, Material, Motion, Problem, RigidPlane, Stage, Support
 from isomortar.solve.record import (

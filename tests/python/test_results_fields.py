@@ -13,6 +13,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.interpolate import BSpline, lagrange
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import mutable
+from vtkmodules.vtkCommonDataModel import vtkBezierHexahedron
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 from isomortar.geometry.patch import Direction
 from isomortar.model.numbering import Numbering
@@ -93,8 +97,7 @@ def at_rest(path: Path) -> Path:
 
 
 def read(path: Path) -> Any:
-    xml = pytest.importorskip("vtkmodules.vtkIOXML", reason="the vtk wheel is a tool of development only")
-    reader = xml.vtkXMLUnstructuredGridReader()
+    reader = vtkXMLUnstructuredGridReader()
     reader.SetFileName(str(path))
     reader.Update()
     return reader.GetOutput()
@@ -121,21 +124,13 @@ def integrate(grid: Any, cell: int, dimension: int) -> float:
 def evaluate(cell: Any, place: np.ndarray) -> np.ndarray:
     point = [0.0, 0.0, 0.0]
     weights = [0.0] * cell.GetNumberOfPoints()
-    cell.EvaluateLocation(_mutable(0), list(place), point, weights)
+    cell.EvaluateLocation(mutable(0), list(place), point, weights)
     return np.array(point)
-
-
-def _mutable(value: int) -> Any:
-    from vtkmodules.vtkCommonCore import mutable
-
-    return mutable(value)
 
 
 def test_vtk_sees_the_exact_ring(tmp_path: Path) -> None:
     collection = export(at_rest(tmp_path / "run.h5"), tmp_path / "out")
     bodies = read(tmp_path / "out" / "run" / "bodies-0001.vtu")
-    from vtkmodules.util.numpy_support import vtk_to_numpy
-
     numbers = vtk_to_numpy(bodies.GetCellData().GetArray("number"))
     volumes = np.array([integrate(bodies, cell, 3) for cell in range(bodies.GetNumberOfCells())])
     assert volumes[numbers == 0].sum() == pytest.approx(np.pi * (OUTER**2 - INNER**2) * WIDTH, rel=1e-8)
@@ -157,7 +152,7 @@ def test_vtk_sees_the_pressure_field(tmp_path: Path) -> None:
     for number in range(contacts.GetNumberOfCells()):
         cell = contacts.GetCell(number)
         point, weights = [0.0] * 3, [0.0] * cell.GetNumberOfPoints()
-        cell.EvaluateLocation(_mutable(0), [0.5, 0.5, 0.0], point, weights)
+        cell.EvaluateLocation(mutable(0), [0.5, 0.5, 0.0], point, weights)
         seen.append(sum(w * pressure.GetValue(cell.GetPointId(i)) for i, w in enumerate(weights)))
     made = problem()
     expected = []
@@ -171,7 +166,6 @@ def test_vtk_sees_the_pressure_field(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("orders", [(1, 1, 1), (2, 3, 4), (3, 1, 2), (1, 4, 3)])
 def test_places_are_counted_as_vtk_does(orders: tuple[int, int, int]) -> None:
-    model = pytest.importorskip("vtkmodules.vtkCommonDataModel")
-    cell = model.vtkBezierHexahedron()
+    cell = vtkBezierHexahedron()
     counted = [cell.PointIndexFromIJK(i, j, k, [*orders, 0]) for i, j, k in _places(*orders)]
     assert counted == list(range(int(np.prod(np.add(orders, 1)))))

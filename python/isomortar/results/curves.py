@@ -1,0 +1,87 @@
+"""Curves over the load steps."""
+
+from __future__ import annotations
+
+from itertools import groupby
+from typing import Protocol
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from isomortar.geometry.patch import FloatArray
+from isomortar.model.entities import Support
+from isomortar.results import style
+from isomortar.results.reader import Results
+
+_COMPONENTS = {"x": (style.BLUE, "-"), "y": (style.GREEN, "--"), "z": (style.VERMILION, "-.")}
+
+
+class Curve(Protocol):
+    """A curve that a scene asks for: a component of a support's force or moment."""
+
+    @property
+    def name(self) -> str: ...  # noqa: D102
+    @property
+    def support(self) -> str: ...  # noqa: D102
+    @property
+    def quantity(self) -> str: ...  # noqa: D102
+    @property
+    def component(self) -> str: ...  # noqa: D102
+
+
+def moving_supports(results: Results) -> list[Support]:
+    """The supports that move in some stage; all of them if none does."""
+    moving = [s for s in results.problem.supports if any(any(m.translate) or m.rotate for m in s.motions)]
+    return moving or list(results.problem.supports)
+
+
+def draw_reactions(results: Results, support: str) -> Figure:
+    """Force that a support exerts, and its moment about the moving centre, by component."""
+    figure = Figure(figsize=(6.4, 5.0), layout="constrained")
+    force, moment = figure.subplots(2, 1, sharex=True)
+    for axes, quantity, label in ((force, "force", "force"), (moment, "moment", "moment about the centre")):
+        values = results.curve(quantity, support=support)
+        for number, (name, (colour, line)) in enumerate(_COMPONENTS.items()):
+            axes.plot(results.curve("time"), values[:, number], color=colour, linestyle=line, label=name)
+        axes.set_ylabel(label)
+    force.legend(ncols=3, loc="lower right", bbox_to_anchor=(1.0, 1.06), borderaxespad=0.0)
+    force.set_title(f"{results.problem.name}: reaction at support {support}", loc="left", pad=18)
+    _finish((force, moment), results)
+    return figure
+
+
+def draw_curve(results: Results, curve: Curve) -> Figure:
+    """A curve that the scene asks for."""
+    figure = Figure(figsize=(6.4, 3.2), layout="constrained")
+    axes = figure.subplots()
+    values: FloatArray = results.curve(curve.quantity, support=curve.support)
+    chosen = np.linalg.norm(values, axis=1) if curve.component == "norm" else values[:, "xyz".index(curve.component)]
+    axes.plot(results.curve("time"), chosen, color=style.BLUE)
+    of = f"|{curve.quantity}|" if curve.component == "norm" else f"{curve.quantity} {curve.component}"
+    axes.set_ylabel(of)
+    axes.set_title(f"{results.problem.name}: {curve.name} (support {curve.support})", loc="left", pad=18)
+    _finish((axes,), results)
+    return figure
+
+
+def _finish(panels: tuple[Axes, ...], results: Results) -> None:
+    """Shade every second stage and name the stages; put zero and the steps in sight."""
+    time = results.curve("time")
+    start = 0
+    for number, (stage, group) in enumerate(groupby(results.stages)):
+        end = start + len(list(group))
+        begin_time = time[start - 1] if start else 0.0
+        panels[0].annotate(
+            stage, (0.5 * (begin_time + time[end - 1]), 1.02), xycoords=("data", "axes fraction"), ha="center", color=style.GREY
+        )
+        for axes in panels:
+            if number % 2:
+                axes.axvspan(begin_time, time[end - 1], color="#F1F3F6", linewidth=0, zorder=0)
+        start = end
+    for axes in panels:
+        axes.axhline(0.0, color=style.GREY, linewidth=0.6, zorder=1)
+        axes.set_xlim(0.0, time[-1])
+        axes.grid(axis="y", color="#E3E6EA", linewidth=0.6)
+        axes.set_axisbelow(True)
+    panels[-1].set_xlabel("load time (steps)")

@@ -1,0 +1,113 @@
+"""Solid bodies drawn with Matplotlib: parallel projection, faces away from the eye left out, the rest painted from back to front."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from numpy.typing import NDArray
+
+from isomortar.geometry.patch import FloatArray
+
+_EDGE = np.array([0.16, 0.18, 0.22])
+
+
+@dataclass(frozen=True)
+class Camera:
+    """Direction of view: `azimuth` and `elevation` of the eye in degrees, about the vertical z."""
+
+    azimuth: float
+    elevation: float
+
+    @property
+    def axes(self) -> FloatArray:
+        """Rows: to the right, upwards, towards the eye."""
+        a, e = np.radians([self.azimuth, self.elevation])
+        eye = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
+        right = np.array([-np.sin(a), np.cos(a), 0.0])
+        return np.array([right, np.cross(eye, right), eye])
+
+
+class Canvas:
+    """Collects surfaces and paints them."""
+
+    def __init__(self, camera: Camera) -> None:
+        self._axes = camera.axes
+        self._shapes: list[FloatArray] = []
+        self._depths: list[FloatArray] = []
+        self._colours: list[FloatArray] = []
+        self._widths: list[FloatArray] = []
+
+    def add_floor(self, corners: FloatArray, colour: FloatArray) -> None:
+        """Add a flat polygon, shape (n, 3), behind everything else."""
+        self._add((corners @ self._axes.T)[None], -np.inf, colour[None], 0.0)
+
+    def add_surface(
+        self,
+        points: FloatArray,
+        colours: FloatArray,
+        outward: int,
+        lines: tuple[NDArray[np.int64], NDArray[np.int64]],
+        shading: float = 1.0,
+    ) -> None:
+        """Add a surface that is seen from its outer side only.
+
+        Parameters
+        ----------
+        points : ndarray, shape (m2, m1, 3)
+        colours : ndarray, shape (m2 - 1, m1 - 1, 3)
+            Of each small quadrilateral, before shading.
+        outward : {-1, 1}
+            Sign of a1 x a2 along the outward normal.
+        lines : tuple of ndarray
+            Columns and rows of points along which an element boundary is drawn.
+        shading : float
+            1: as light falls; 0: the colours as they are.
+        """
+        seen = points @ self._axes.T
+        normals = outward * np.cross(seen[1:, 1:] - seen[:-1, :-1], seen[1:, :-1] - seen[:-1, 1:])
+        normals /= np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), 1e-300)
+        front = normals[..., 2] > 0
+        corners = np.stack([seen[:-1, :-1], seen[:-1, 1:], seen[1:, 1:], seen[1:, :-1]], axis=2)[front]
+        brightness = 1.0 - shading * (1.0 - _brightness(normals))
+        self._add(corners, 0.0, (colours * brightness[..., None])[front], 0.3)
+        self._add_lines(seen, front, lines[1])
+        self._add_lines(seen.swapaxes(0, 1), front.T, lines[0])
+
+    def _add_lines(self, seen: FloatArray, front: NDArray[np.bool_], rows: NDArray[np.int64]) -> None:
+        """Lines along rows of points, where the surface on one of their sides is seen; nearer to the eye than that surface."""
+        beside = np.clip(np.stack([rows - 1, rows]), 0, len(front) - 1)
+        segments = np.stack([seen[rows, :-1], seen[rows, 1:]], axis=2)[front[beside].any(axis=0)]
+        across = np.linalg.norm(np.diff(seen, axis=0), axis=-1)
+        self._add(segments, 1.5 * float(np.median(across)), np.broadcast_to(_EDGE, (len(segments), 3)), 0.55)
+
+    def paint(self, axes: Axes) -> None:
+        """Paint all that was added, and fit the axes to it."""
+        depth = np.concatenate(self._depths)
+        order = np.argsort(depth)
+        shapes = [shape for group in self._shapes for shape in group[..., :2]]
+        colours = np.concatenate(self._colours)[order]
+        widths = np.concatenate(self._widths)[order]
+        collection = PolyCollection([shapes[i] for i in order], facecolors=colours, edgecolors=colours, linewidths=widths)
+        collection.set_capstyle("round")
+        collection.set_joinstyle("round")
+        axes.add_collection(collection)
+        everything = np.concatenate([group.reshape(-1, 3) for group in self._shapes])
+        low, high = everything[:, :2].min(axis=0), everything[:, :2].max(axis=0)
+        margin = 0.01 * (high - low).max()
+        axes.set(xlim=(low[0] - margin, high[0] + margin), ylim=(low[1] - margin, high[1] + margin), aspect="equal")
+        axes.axis("off")
+
+    def _add(self, shapes: FloatArray, nearer: float, colours: FloatArray, width: float) -> None:
+        self._shapes.append(shapes)
+        self._depths.append(shapes[..., 2].mean(axis=1) + nearer)
+        self._colours.append(np.clip(colours, 0, 1))
+        self._widths.append(np.full(len(shapes), width))
+
+
+def _brightness(normals: FloatArray) -> FloatArray:
+    """Brightness by a main light from above left of the eye and a weak one from the right."""
+    main, fill = np.array([-0.45, 0.65, 0.61]), np.array([0.7, 0.1, 0.7])
+    return 0.52 + 0.42 * np.maximum(normals @ main, 0) + 0.14 * np.maximum(normals @ fill, 0)

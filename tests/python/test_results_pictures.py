@@ -1,0 +1,129 @@
+"""Figures: all are drawn; what lies in front hides what lies behind; the map puts control points where they belong."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from isomortar.errors import ResultsError
+from isomortar.geometry.patch import Direction
+from isomortar.model.numbering import Numbering
+from isomortar.results import Results, ResultsWriter
+from isomortar.results.bodies import draw_bodies
+from isomortar.results.curves import draw_curve, draw_reactions
+from isomortar.results.maps import _greville, draw_map
+from isomortar.results.pictures import plot
+from isomortar.results.rendering import Camera, Canvas
+from isomortar.solve.record import StepResult
+from results_samples import problem, step_result
+
+
+@dataclass(frozen=True)
+class Curve:
+    name: str = "drag"
+    support: str = "rim"
+    quantity: str = "force"
+    component: str = "norm"
+
+
+def quiet(number: int) -> StepResult:
+    """A step with little deformation, so that the bodies look like bodies."""
+    made, result = problem(), step_result(number)
+    rest = Numbering(made).reference
+    return replace(result, state=replace(result.state, positions=rest + 0.1 * (result.state.positions - rest)))
+
+
+@pytest.fixture
+def results_path(tmp_path: Path) -> Path:
+    path = tmp_path / "run.h5"
+    writer = ResultsWriter(path, problem(), "", "0")
+    for number in range(1, 6):
+        writer.recorded(quiet(number))
+    return path
+
+
+def test_plot_draws_every_support_that_moves_and_every_contact(results_path: Path, tmp_path: Path) -> None:
+    paths = plot(results_path, tmp_path / "figures", [Curve()])
+    names = {path.name for path in paths}
+    assert {"reactions-rim.png", "reactions-rim.pdf", "curve-drag.png", "bodies-tread.png", "pressure-ground.pdf"} <= names
+    assert not any("bed" in name for name in names)
+    assert all(path.stat().st_size > 5000 for path in paths)
+
+
+def test_nothing_to_draw_is_told(tmp_path: Path) -> None:
+    ResultsWriter(tmp_path / "run.h5", problem(), "", "0")
+    with pytest.raises(ResultsError, match="no load step"):
+        plot(tmp_path / "run.h5", tmp_path)
+
+
+def test_curves_show_the_recorded_numbers(results_path: Path) -> None:
+    with Results(results_path) as results:
+        force, moment = draw_reactions(results, "rim").axes
+        assert np.array_equal(force.lines[2].get_ydata(), results.curve("force", support="rim", component="z"))
+        assert np.array_equal(moment.lines[0].get_ydata(), results.curve("moment", support="rim", component="x"))
+        norm = np.linalg.norm(results.curve("force", support="rim"), axis=1)
+        assert draw_curve(results, Curve()).axes[0].lines[0].get_ydata() == pytest.approx(norm)
+        shown = draw_curve(results, Curve(quantity="moment", component="y")).axes[0].lines[0].get_ydata()
+        assert np.array_equal(shown, results.curve("moment", support="rim", component="y"))
+
+
+def test_the_map_shows_each_state_at_its_control_points() -> None:
+    made = problem()
+    step = step_result(1)
+    status = np.zeros(16, np.int32)
+    status[[5, 6]] = 1, 2  # the face runs along w first: points (w, u) = (1, 2) and (0, 3)
+    first = replace(step.contacts[0], status=status)
+    axes = draw_map(made, replace(step, contacts=(first, step.contacts[1])), 0).axes[0]
+    shown = {line.get_label(): np.column_stack(line.get_data()) for line in axes.lines}
+    assert len(shown["open"]) == 18 - 2
+    assert shown["stick"] == pytest.approx(np.array([[1.0, 1.0]]))  # u to the right
+    assert shown["slip"] == pytest.approx(np.array([[1.5, 0.0]]))
+
+
+def test_places_of_control_points() -> None:
+    assert _greville(Direction("N", 2, [0, 0, 0, 1, 3, 3, 3])) == pytest.approx([0, 0.5, 2, 3])
+    assert _greville(Direction("L", 2, [0, 1, 3])) == pytest.approx([0, 0.5, 1, 2, 3])
+
+
+def test_bodies_are_drawn_with_the_pressure_in_colour() -> None:
+    figure = draw_bodies(problem(), quiet(3), 0)
+    assert [axes.get_title(loc="left") for axes in figure.axes[:2]] == ["rolling, load step 3 (press)", "tyre from the master's side"]
+
+
+def square(height: float, size: float) -> np.ndarray:
+    """A level square about the z-axis as a grid of points, a1 x a2 upwards."""
+    x = np.linspace(-size, size, 9)
+    return np.stack([*np.meshgrid(x, x), np.full((9, 9), height)], axis=-1)
+
+
+def colour_at_centre(canvas: Canvas) -> np.ndarray:
+    figure = Figure(figsize=(1, 1), dpi=100)
+    canvas.paint(figure.add_axes((0, 0, 1, 1)))
+    agg = FigureCanvasAgg(figure)
+    agg.draw()
+    return np.asarray(agg.buffer_rgba())[50, 50, :3]
+
+
+@pytest.mark.parametrize("upper_first", [True, False])
+def test_what_lies_in_front_hides_what_lies_behind(upper_first: bool) -> None:
+    nowhere = (np.array([], int), np.array([], int))
+    red, blue = np.broadcast_to([1.0, 0, 0], (8, 8, 3)), np.broadcast_to([0, 0, 1.0], (8, 8, 3))
+    canvas = Canvas(Camera(azimuth=-90.0, elevation=80.0))
+    layers = [(square(0.1, 0.5), red), (square(0.0, 1.0), blue)]
+    for points, colours in layers if upper_first else layers[::-1]:
+        canvas.add_surface(points, colours, 1, nowhere, shading=0.0)
+    canvas.add_floor(square(1.0, 2.0)[[0, 0, -1, -1], [0, -1, -1, 0]], np.zeros(3))
+    assert list(colour_at_centre(canvas)) == [255, 0, 0]
+
+
+def test_a_surface_seen_from_its_inner_side_is_left_out() -> None:
+    nowhere = (np.array([], int), np.array([], int))
+    canvas = Canvas(Camera(azimuth=-90.0, elevation=80.0))
+    canvas.add_surface(square(0.1, 0.5), np.zeros((8, 8, 3)), -1, nowhere)
+    canvas.add_surface(square(0.0, 1.0), np.ones((8, 8, 3)), 1, nowhere, shading=0.0)
+    assert list(colour_at_centre(canvas)) == [255, 255, 255]
