@@ -196,9 +196,7 @@ def slave_tables(
     return np.ascontiguousarray(nodes.T), np.ascontiguousarray(basis.T), area
 
 
-def project_points(
-    slave: SlaveArrays, master: MasterArrays, positions: FloatArray, origin: FloatArray, had: IntArray
-) -> Projections:
+def project_points(slave: SlaveArrays, master: MasterArrays, positions: FloatArray, origin: FloatArray, had: IntArray) -> Projections:
     """Project every slave quadrature point, from `origin` where `had` is 1, from a coarse search elsewhere.
 
     `origin` is also where the slip increment is counted from.
@@ -323,9 +321,7 @@ def find_places(
     KernelError
         The system lacks an entry of the source.
     """
-    places, missing = _kernel.find_places(
-        pattern.start, pattern.column, row_of, column_of, int(transposed), system_start, system_column
-    )
+    places, missing = _kernel.find_places(pattern.start, pattern.column, row_of, column_of, int(transposed), system_start, system_column)
     if missing:
         raise KernelError("the pattern of the linear system lacks an entry of one of its sources")
     return places.T

@@ -87,9 +87,7 @@ class PairMechanics:
     def add_forces(self, positions: FloatArray, kinematics: Kinematics, response: Response, forces: FloatArray) -> None:
         """Add the contact forces of both sides to `forces`, shape (control points, 3)."""
         with self._ledger.phase("contact"):
-            _bindings.contact_forces(
-                self.pair.slave, self.pair.master, positions, kinematics.projections, self.friction, response, forces
-            )
+            _bindings.contact_forces(self.pair.slave, self.pair.master, positions, kinematics.projections, self.friction, response, forces)
 
     def blocks(self, positions: FloatArray, kinematics: Kinematics, law: Law, response: Response) -> Blocks:
         """Constraint rows, derivatives of the multipliers and the geometric tangent."""
@@ -120,9 +118,7 @@ class PairMechanics:
         """Contravariant components of control tractions in the discrete metric, shape (slave control points, 2)."""
         m = control.metric / np.where(control.square > 0, control.square, 1.0)[:, None]
         determinant = m[:, 0] * m[:, 2] - m[:, 1] ** 2
-        raised = np.column_stack(
-            [m[:, 2] * traction[:, 0] - m[:, 1] * traction[:, 1], m[:, 0] * traction[:, 1] - m[:, 1] * traction[:, 0]]
-        )
+        raised = np.column_stack([m[:, 2] * traction[:, 0] - m[:, 1] * traction[:, 1], m[:, 0] * traction[:, 1] - m[:, 1] * traction[:, 0]])
         return np.asarray(raised / np.where(determinant > 0, determinant, 1.0)[:, None])
 
     def traction_norms(self, control: Control, traction: FloatArray) -> FloatArray:

@@ -150,8 +150,10 @@ class Equilibrium:
     def _system_for(self, sources: list[Source], size: int) -> LinearSystem:
         """The linear system of these sources: the last one, as long as all patterns stand."""
         patterns: list[object] = [source.pattern for source in sources]
-        if self._system is None or len(patterns) != len(self._system_patterns) or any(
-            a is not b for a, b in zip(patterns, self._system_patterns, strict=True)
+        if (
+            self._system is None
+            or len(patterns) != len(self._system_patterns)
+            or any(a is not b for a, b in zip(patterns, self._system_patterns, strict=True))
         ):
             if self._solid_entries is None:
                 self._solid_entries = self.solid_source.entries(len(self.supports.free))

@@ -136,9 +136,7 @@ class Monolithic:
     def _gaps(self, balance: Balance, targets: Sequence[Response]) -> tuple[float, float]:
         """Relative distance of pressures and tractions from what the contact conditions make of them."""
         pressure, traction = np.zeros(2), np.zeros(2)
-        for pair, kinematics, now, target in zip(
-            self._equilibrium.pairs, balance.kinematics, balance.responses, targets, strict=True
-        ):
+        for pair, kinematics, now, target in zip(self._equilibrium.pairs, balance.kinematics, balance.responses, targets, strict=True):
             pressure += [np.sum((now.pressure - target.pressure) ** 2), np.sum(target.pressure**2)]
             norms = [pair.traction_norms(kinematics.control, t) for t in (now.traction - target.traction, target.traction)]
             floor = (0.01 * pair.friction) ** 2 * float(np.sum(target.pressure**2))
@@ -217,9 +215,7 @@ class Monolithic:
 
     def _increment(self, iterate: Iterate, log: list[IterationRecord]) -> Increment:
         parameters = iterate.laws[0].penalties if iterate.laws else np.zeros(2)
-        record = AugmentationRecord(
-            1, float(parameters[0]), float(parameters[1]), iterate.gap_pressure, iterate.gap_traction, tuple(log)
-        )
+        record = AugmentationRecord(1, float(parameters[0]), float(parameters[1]), iterate.gap_pressure, iterate.gap_traction, tuple(log))
         return Increment(iterate.balance, (record,), (observed_order([r.residual for r in log]),))
 
     def _toggling(self, seen: list[bytes]) -> str:

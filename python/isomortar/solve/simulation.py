@@ -100,9 +100,7 @@ class Simulation:
         return self.problem.stages[int(np.searchsorted(ends, step))].name
 
     def _state_of(self, balance: Balance) -> State:
-        contacts = [
-            pair.state(k, r) for pair, k, r in zip(self.equilibrium.pairs, balance.kinematics, balance.responses, strict=True)
-        ]
+        contacts = [pair.state(k, r) for pair, k, r in zip(self.equilibrium.pairs, balance.kinematics, balance.responses, strict=True)]
         return State(balance.positions, tuple(contacts))
 
     def _reactions(self, time: float, positions: FloatArray, total: FloatArray) -> tuple[Reaction, ...]:

@@ -54,9 +54,7 @@ class LinearSystem:
         total = sparse.csr_array(total)
         total.sort_indices()
         self._start, self._column = total.indptr.astype(np.int64), total.indices.astype(np.int64)
-        self._places = [
-            _bindings.find_places(s.pattern, s.row_of, s.column_of, s.transposed, self._start, self._column) for s in sources
-        ]
+        self._places = [_bindings.find_places(s.pattern, s.row_of, s.column_of, s.transposed, self._start, self._column) for s in sources]
         self.values = np.zeros(len(self._column))
         with ledger.phase("factor"):
             self._factors = SparseLU(self._start, self._column, ordering="amd" if size < SMALL_SYSTEM else "metis")

@@ -8,7 +8,6 @@ import numpy as np
 
 from isomortar._bindings import Law
 from isomortar.errors import ConvergenceError
-from isomortar.geometry.patch import FloatArray
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.increment import Increment
 from isomortar.solve.newton import observed_order, solve_positions
@@ -73,9 +72,7 @@ class Uzawa:
         """Relative change of pressures and of tractions by the last augmentation (the paper's mixed norm: twice the same)."""
         pressure, traction, mixed = np.zeros(2), np.zeros(2), np.zeros(2)
         floor = 0.0
-        for pair, law, kinematics, response in zip(
-            self._equilibrium.pairs, laws, balance.kinematics, balance.responses, strict=True
-        ):
+        for pair, law, kinematics, response in zip(self._equilibrium.pairs, laws, balance.kinematics, balance.responses, strict=True):
             new_p, new_t = response.pressure - law.pressure, response.traction - law.traction
             pressure += [np.sum(new_p**2), np.sum(law.pressure**2)]
             norms = pair.traction_norms(kinematics.control, new_t), pair.traction_norms(kinematics.control, law.traction)
