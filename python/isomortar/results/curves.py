@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Support
+from isomortar.model.numbering import Numbering
 from isomortar.results import style
 from isomortar.results.reader import Results
 
@@ -40,11 +41,16 @@ def draw_reactions(results: Results, support: str) -> Figure:
     """Force that a support exerts, and its moment about the moving centre, by component."""
     figure = Figure(figsize=(6.4, 5.0), layout="constrained")
     force, moment = figure.subplots(2, 1, sharex=True)
-    for axes, quantity, label in ((force, "force", "force"), (moment, "moment", "moment about the centre")):
+    time = results.curve("time")
+    scale = max(float(np.abs(results.curve("force", support=support)).max()), 1e-300)
+    length = Numbering(results.problem).size
+    for axes, quantity, label, size in ((force, "force", "force", scale), (moment, "moment", "moment about the centre", scale * length)):
         values = results.curve(quantity, support=support)
         for number, (name, (colour, line)) in enumerate(_COMPONENTS.items()):
-            axes.plot(results.curve("time"), values[:, number], color=colour, linestyle=line, label=name)
+            axes.plot(time, values[:, number], line, color=colour, label=name, marker=_marker(time), markersize=3)
         axes.set_ylabel(label)
+        if np.abs(values).max() < 1e-9 * size:  # round-off: show it as nothing
+            axes.set_ylim(-0.01 * size, 0.01 * size)
     force.legend(ncols=3, loc="lower right", bbox_to_anchor=(1.0, 1.06), borderaxespad=0.0)
     force.set_title(f"{results.problem.name}: reaction at support {support}", loc="left", pad=18)
     _finish((force, moment), results)
@@ -57,12 +63,18 @@ def draw_curve(results: Results, curve: Curve) -> Figure:
     axes = figure.subplots()
     values: FloatArray = results.curve(curve.quantity, support=curve.support)
     chosen = np.linalg.norm(values, axis=1) if curve.component == "norm" else values[:, "xyz".index(curve.component)]
-    axes.plot(results.curve("time"), chosen, color=style.BLUE)
+    time = results.curve("time")
+    axes.plot(time, chosen, color=style.BLUE, marker=_marker(time), markersize=3)
     of = f"|{curve.quantity}|" if curve.component == "norm" else f"{curve.quantity} {curve.component}"
     axes.set_ylabel(of)
     axes.set_title(f"{results.problem.name}: {curve.name} (support {curve.support})", loc="left", pad=18)
     _finish((axes,), results)
     return figure
+
+
+def _marker(time: FloatArray) -> str:
+    """Few steps are shown one by one."""
+    return "o" if len(time) <= 25 else ""
 
 
 def _finish(panels: tuple[Axes, ...], results: Results) -> None:
