@@ -7,7 +7,7 @@ Control points, elements and unknowns count from 0.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -119,7 +119,7 @@ class Response:
     field_slip: FloatArray
 
 
-def _checked(name: str, array: NDArray, dtype: type, *shape: int) -> NDArray:
+def _checked(name: str, array: NDArray[Any], dtype: type, *shape: int) -> NDArray[Any]:
     """The array, if it has the type, the shape and the memory order that the kernel reads without a copy."""
     if array.dtype != dtype or array.shape != shape or not array.flags.c_contiguous:
         raise InputError(f"is {array.dtype}{array.shape}; the kernel needs contiguous {np.dtype(dtype).name}{shape}", name)

@@ -121,7 +121,8 @@ class Stage:
 #: forgiving: slip rows with the current traction in place of the cone's. margin: what slips at the start of an increment goes on
 #: slipping. reversal: predicted slip against its traction sticks instead. halving: updates that fold an element, lose a
 #: projection, return to an earlier set of states, or double the merit are halved.
-MEASURES = ("forgiving", "margin", "reversal", "halving")
+Measure = Literal["forgiving", "margin", "reversal", "halving"]
+MEASURES: tuple[Measure, ...] = ("forgiving", "margin", "reversal", "halving")
 
 
 @dataclass(frozen=True)
@@ -166,7 +167,7 @@ class SolverSettings:
     max_augmentations: int = 100
     max_iterations: int = 30
     max_cuts: int = 8
-    measures: tuple[str, ...] = MEASURES
+    measures: tuple[Measure, ...] = MEASURES
     path_tolerance: float | None = None
 
 

@@ -11,7 +11,7 @@ from pydantic_core import PydanticCustomError, core_schema
 
 from isomortar.geometry.patch import Direction, Family, Patch
 from isomortar.geometry.primitives import bowl, box, ring
-from isomortar.model.entities import Material, Motion, SolverSettings
+from isomortar.model.entities import Material, Measure, Motion, SolverSettings
 from isomortar.scene.types import (
     Axis,
     Count,
@@ -263,7 +263,7 @@ class SolverTable(Table):
     """Newton iterations after which a load step is cut."""
     max_cuts: Annotated[int, Field(strict=True, ge=0)] = _SOLVER.max_cuts
     """How often a load step may be halved before the run ends."""
-    measures: tuple[Literal["forgiving", "margin", "reversal", "halving"], ...] = _SOLVER.measures
+    measures: tuple[Measure, ...] = _SOLVER.measures
     """Monolithic: what helps Newton's method on the way; leave one out to see what it does."""
     path_tolerance: Positive | None = _SOLVER.path_tolerance
     """Error of the multipliers that a load increment may make, estimated by halving it; absent: the load steps as given."""

@@ -15,3 +15,8 @@ class Increment:
     balance: Balance
     augmentations: tuple[AugmentationRecord, ...]
     orders: tuple[float, ...]
+
+    @property
+    def iterations(self) -> int:
+        """Linear solves of the longest Newton loop."""
+        return max(len(record.iterations) - 1 for record in self.augmentations)

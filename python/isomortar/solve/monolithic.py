@@ -94,8 +94,9 @@ class Monolithic:
             notes += halved
             seen.append(iterate.states)
         raise ConvergenceError(
-            f"Newton's method stopped at a relative residual of {iterate.residual:.2e} and {max(iterate.gap_pressure, iterate.gap_traction):.2e} "
-            f"off the contact conditions after {iteration} iterations{self._toggling(seen)}"
+            f"Newton's method stopped at a relative residual of {iterate.residual:.2e} and "
+            f"{max(iterate.gap_pressure, iterate.gap_traction):.2e} off the contact conditions after {iteration} iterations"
+            + self._toggling(seen)
         )
 
     def _first(self, start: State, stiffness: float) -> Iterate:

@@ -61,7 +61,7 @@ class Reach:
         if pair.master_reach is None:
             return np.zeros(0, dtype=np.int64)
         element = np.repeat(np.arange(len(pair.slave.nodes)), pair.points_per_element)
-        counts = (projections.found > 0) & active[pair.slave.nodes].any(axis=1)[element]
+        counts = (projections.found > 0) & np.any(active[pair.slave.nodes], axis=1)[element]
         first, second = projections.element[counts, 0], projections.element[counts, 1]
         return np.unique(element[counts].astype(np.int64) * pair.master_reach.shape[0] + first + pair.master_elements[0] * second)
 

@@ -9,7 +9,9 @@ import numpy as np
 from isomortar.errors import ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Problem
+from isomortar.solve.advice import StepAdvice, advice_on_problem
 from isomortar.solve.equilibrium import Balance, Equilibrium
+from isomortar.solve.increment import Increment
 from isomortar.solve.monolithic import Monolithic
 from isomortar.solve.record import AugmentationRecord, Observer, Reaction, State, StepResult
 from isomortar.solve.timing import Ledger
@@ -17,6 +19,9 @@ from isomortar.solve.uzawa import Uzawa
 
 _REASONS_TO_CUT = (ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError)
 
+
+#: Newton loops of at most this many linear solves let a cut load increment grow back; of this many make the next one shorter.
+EASY_ITERATIONS, HARD_ITERATIONS = 12, 25
 
 _METHODS: dict[str, type[Monolithic] | type[Uzawa]] = {"monolithic": Monolithic, "uzawa": Uzawa}
 
@@ -57,10 +62,15 @@ class Simulation:
             A load increment did not converge and could not be cut further. Steps yielded before stand.
         """
         self._observer.started(self.problem.total_steps, self._step + 1)
+        for warning in advice_on_problem(self.problem, self.equilibrium.pairs):
+            self._observer.warned(warning)
+        advice = StepAdvice(self.problem)
         while self._step < self.problem.total_steps:
             result = self._advance_step(self._step + 1)
             self._step, self.state = result.step, result.state
             self._observer.recorded(result)
+            for warning in advice.after_step(result.step, result.contacts, [contact.pressure for contact in self.state.contacts]):
+                self._observer.warned(warning)
             yield result
 
     def _advance_step(self, step: int) -> StepResult:
@@ -73,17 +83,51 @@ class Simulation:
             increment = min(self._increment, step - time)
             target = float(step) if increment > step - time - 1e-12 else time + increment
             try:
-                converged = self._method.advance(state, target, step)
+                parts = self._advance(state, time, target, step)
             except _REASONS_TO_CUT as error:
                 self._cut(step, target, increment, error)
                 cuts += 1
                 continue
-            time, substeps = target, substeps + 1
-            state = self._state_of(converged.balance)
-            log += converged.augmentations
-            orders += [order for order in converged.orders if np.isfinite(order)]
-            self._increment = min(1.0, 2.0 * increment) if increment < 1.0 else 1.0
-        return self._result(step, state, converged.balance, tuple(log), orders, substeps, cuts)
+            time, substeps = target, substeps + len(parts)
+            state = self._state_of(parts[-1].balance)
+            for part in parts:
+                log += part.augmentations
+                orders += [order for order in part.orders if np.isfinite(order)]
+            self._grow(increment, max(part.iterations for part in parts))
+        return self._result(step, state, parts[-1].balance, tuple(log), orders, substeps, cuts)
+
+    def _advance(self, state: State, time: float, target: float, step: int) -> list[Increment]:
+        """One load increment; with a path tolerance in two halves, whose distance from the whole estimates its error."""
+        whole = self._method.advance(state, target, step)
+        tolerance = self.problem.settings.path_tolerance
+        if tolerance is None:
+            return [whole]
+        first = self._method.advance(state, 0.5 * (time + target), step)
+        second = self._method.advance(self._state_of(first.balance), target, step)
+        error = self._distance(whole.balance, second.balance)
+        if error > tolerance:
+            raise ConvergenceError(f"the path error of the multipliers is {error:.2e}, above solver.path_tolerance = {tolerance:g}")
+        return [first, second]
+
+    def _distance(self, whole: Balance, halves: Balance) -> float:
+        """Largest relative distance between the pressures, or the tractions, of two solutions of an increment."""
+        worst = 0.0
+        for pair, kinematics, a, b in zip(self.equilibrium.pairs, halves.kinematics, whole.responses, halves.responses, strict=True):
+            pressure = float(np.linalg.norm(b.pressure))
+            if pressure > 0.0:
+                traction = np.linalg.norm(pair.traction_norms(kinematics.control, a.traction - b.traction))
+                size = max(float(np.linalg.norm(pair.traction_norms(kinematics.control, b.traction))), 0.01 * pair.friction * pressure)
+                worst = max(worst, float(np.linalg.norm(a.pressure - b.pressure)) / pressure, float(traction) / size if size else 0.0)
+        return worst
+
+    def _grow(self, increment: float, iterations: int) -> None:
+        """The next load increment: longer after few iterations, shorter after many, a recorded step at the most."""
+        if iterations <= EASY_ITERATIONS:
+            self._increment = min(1.0, 2.0 * increment)
+        elif iterations >= HARD_ITERATIONS:
+            self._increment = 0.5 * increment
+        else:
+            self._increment = min(1.0, max(increment, self._increment))
 
     def _cut(self, step: int, time: float, increment: float, error: Exception) -> None:
         """Halve the load increment, or give up with a sentence that says where and why."""

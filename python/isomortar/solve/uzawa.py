@@ -52,7 +52,8 @@ class Uzawa:
             balance = solve_positions(equilibrium, positions, prescribed, start, laws, stiffness, report)
             orders.append(observed_order([record.residual for record in log]))
             changes = self._changes(laws, balance)
-            record = AugmentationRecord(augmentation, *(growth * base), *changes, tuple(log))
+            normal, tangential = (float(penalty) for penalty in growth * base)
+            record = AugmentationRecord(augmentation, normal, tangential, changes[0], changes[1], tuple(log))
             records.append(record)
             self._observer.augmented(step, time, record)
             if max(changes) <= self._settings.augmentation_tolerance:
