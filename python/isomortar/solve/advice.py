@@ -1,0 +1,70 @@
+"""Warnings that help: what a scene or a step shows that is likely to disappoint, and what to do about it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from isomortar.model.entities import Problem, RigidPlane
+from isomortar.solve.contact import PairMechanics
+from isomortar.solve.record import ContactResult
+
+#: A slave this many times stiffer than its master, and finer, has nearly redundant constraints (formulation.md Section 6).
+STIFFER = 10.0
+#: Control pressures this many times above the field's largest value oscillate.
+OSCILLATION = 1.5
+
+
+def advice_on_problem(problem: Problem, pairs: Sequence[PairMechanics]) -> Iterator[str]:
+    """Warnings that are due before the first load step."""
+    for contact, pair in zip(problem.contacts, pairs, strict=True):
+        if isinstance(contact.master, RigidPlane):
+            continue
+        slave, master = problem.body(contact.slave.body), problem.body(contact.master.body)
+        stiffer = slave.material.young / master.material.young
+        elements = np.prod(pair.pair.master_elements)
+        master_area = _area(master.patch.control_points[master.patch.face_points(contact.master.face)])
+        finer = (master_area / elements) / (pair.pair.area / len(pair.pair.slave.nodes))
+        if stiffer > STIFFER and finer > 1.0:
+            yield (
+                f"contact {contact.name!r}: the slave {slave.name!r} is {stiffer:.0f} times stiffer and its elements are {finer:.1f} times "
+                "smaller than the master's; control pressures may be far off. Swap slave and master, or refine the master"
+            )
+
+
+def _area(points: np.ndarray) -> float:
+    """Rough area of a face: product of the two largest extents of its control points."""
+    return float(np.prod(np.sort(np.ptp(points, axis=0))[1:]))
+
+
+class StepAdvice:
+    """Warnings at recorded load steps; each is given once a contact."""
+
+    def __init__(self, problem: Problem) -> None:
+        self._names = [contact.name for contact in problem.contacts]
+        self._given: set[tuple[str, str]] = set()
+        self._excluded: list[int] | None = None
+
+    def after_step(self, step: int, results: Sequence[ContactResult], pressures: Sequence[np.ndarray]) -> Iterator[str]:
+        """Warnings that the end of a load step gives rise to."""
+        before = self._excluded or [result.excluded for result in results]
+        self._excluded = [result.excluded for result in results]
+        for name, result, pressure, excluded in zip(self._names, results, pressures, before, strict=True):
+            if result.active and result.excluded > excluded and self._first(name, "leaving"):
+                yield (
+                    f"contact {name!r}, load step {step}: {result.excluded - excluded} slave quadrature points have left the master; what "
+                    "they carried is gone in a jump. Use a larger master or smaller load steps"
+                )
+            largest, field = float(pressure.max()), float(result.pressure_field[1])
+            if result.active > 3 and largest > OSCILLATION * field > 0.0 and self._first(name, "oscillation"):
+                yield (
+                    f"contact {name!r}, load step {step}: control pressures reach {largest:.3g} where the pressure field reaches "
+                    f"{field:.3g}; single coefficients oscillate (conditioning of the basis): look at the field, not at them"
+                )
+
+    def _first(self, name: str, kind: str) -> bool:
+        if (name, kind) in self._given:
+            return False
+        self._given.add((name, kind))
+        return True
