@@ -1,0 +1,125 @@
+"""Load steps: both methods find the same solution, keep the contact conditions, and say what goes wrong."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from isomortar.errors import ConvergenceError
+from isomortar.model.entities import Motion, Problem, Stage
+from isomortar.scene import Scene
+from isomortar.solve.record import Observer, StepResult
+from isomortar.solve.simulation import Simulation
+
+TWO_BODIES = [
+    "bodies.slave.mesh.elements=[2,2,1]",
+    "bodies.master.mesh.elements=[3,3,1]",
+    "bodies.master.mesh.order=[2,2,1]",
+    "stages.press.steps=8",
+    "solver.newton_tolerance=1e-11",
+]
+
+
+class Listener(Observer):
+    """Keeps warnings and cuts."""
+
+    def __init__(self) -> None:
+        self.warnings: list[str] = []
+        self.cuts: list[str] = []
+
+    def warned(self, message: str) -> None:
+        self.warnings.append(message)
+
+    def cut(self, step: int, time: float, increment: float, reason: str) -> None:
+        self.cuts.append(reason)
+
+
+def small_iron(**settings: object) -> Problem:
+    """Iron on coarse meshes: eight steps down, three along, one back."""
+    problem = Scene.load("iron", [*TWO_BODIES, "stages.drag.steps=3"]).problem()
+    forth = replace(problem.supports[0], motions=(Motion((0.0, 0.0, -0.4)), Motion((0.3, 0.0, 0.0)), Motion((-0.1, 0.0, 0.0))))
+    bottom = replace(problem.supports[1], motions=(Motion(), Motion(), Motion()))
+    stages = (*problem.stages, Stage("back", 1))
+    names = [support.name for support in problem.supports]
+    supports = (forth, bottom) if names.index("top") == 0 else (bottom, forth)
+    return replace(problem, stages=stages, supports=supports, settings=replace(problem.settings, **settings))
+
+
+def run(problem: Problem, observer: Observer | None = None) -> list[StepResult]:
+    return list(Simulation(problem, observer).run())
+
+
+@pytest.mark.parametrize("slip_sum", ["local", "paper"])
+def test_both_methods_find_the_same_solution(slip_sum: str) -> None:
+    monolithic = run(small_iron(method="monolithic", slip_sum=slip_sum))
+    softly = {"penalty_normal": 20.0, "penalty_tangential": 2.0, "augmentation_tolerance": 1e-9, "max_augmentations": 200}
+    uzawa = run(small_iron(method="uzawa", slip_sum=slip_sum, **softly))
+    assert max(result.contacts[0].slip for result in monolithic) > 0
+    assert sum(result.cuts for result in (*monolithic, *uzawa)) == 0  # a cut is another path, with friction another solution
+    for a, b in zip(monolithic, uzawa, strict=True):
+        scale = np.linalg.norm(monolithic[-1].reactions[0].force)
+        np.testing.assert_allclose(a.reactions[0].force, b.reactions[0].force, atol=1e-7 * scale)
+        np.testing.assert_allclose(a.state.positions, b.state.positions, atol=1e-7)
+
+
+@pytest.mark.parametrize("left_out", ["forgiving", "margin", "reversal", "halving", "nothing"])
+def test_measures_on_the_way_do_not_change_the_solution(left_out: str) -> None:
+    everything = small_iron()
+    kept = tuple(m for m in everything.settings.measures if m != left_out)
+    a, b = run(everything)[-1], run(replace(everything, settings=replace(everything.settings, measures=kept)))[-1]
+    np.testing.assert_allclose(a.state.positions, b.state.positions, atol=1e-9)
+
+
+def test_contact_conditions_after_every_step() -> None:
+    problem = small_iron()
+    for result in run(problem):
+        contact, state = result.contacts[0], result.state.contacts[0]
+        friction = problem.contacts[0].friction
+        largest = max(float(state.pressure.max()), 1e-12)
+        assert np.all(state.pressure >= 0)
+        assert np.all(contact.traction_norm <= friction * state.pressure + 1e-8 * friction * largest)
+        sliding = contact.status == 2
+        np.testing.assert_allclose(contact.traction_norm[sliding], friction * state.pressure[sliding], rtol=1e-7)
+        assert np.all(np.abs(contact.gap[contact.status > 0]) < 1e-8)
+        assert np.all(contact.gap[contact.status == 0] <= 0)
+        assert result.cuts == 0
+
+
+def test_momentum_balance_at_the_interface() -> None:
+    for result in run(small_iron()):
+        contact = result.contacts[0]
+        scale = max(float(np.linalg.norm(contact.force_slave)), 1e-9)
+        assert np.linalg.norm(contact.force_slave + contact.force_master) <= 1e-12 * scale
+        assert np.linalg.norm(contact.moment_slave + contact.moment_master) <= 1e-12 * scale * 3.0
+
+
+def test_path_tolerance_makes_increments_smaller() -> None:
+    plain, controlled = run(small_iron()), run(small_iron(path_tolerance=0.05))
+    assert sum(r.substeps for r in controlled) > sum(r.substeps for r in plain)
+    assert [r.step for r in controlled] == [r.step for r in plain]
+
+
+def test_unconverged_step_is_cut_and_then_named() -> None:
+    listener = Listener()
+    with pytest.raises(ConvergenceError, match=r"load step 4 \(stage 'press'\) does not converge"):
+        run(small_iron(max_iterations=1, max_cuts=2), listener)
+    assert len(listener.cuts) == 2
+
+
+def test_stiff_and_fine_slave_is_warned_about() -> None:
+    problem = Scene.load(
+        "iron", [*TWO_BODIES, "bodies.slave.mesh.elements=[6,6,1]", "stages.press.steps=1", "stages.drag.steps=1"]
+    ).problem()
+    stiff = [replace(b, material=replace(b.material, young=1000.0)) if b.name == "slave" else b for b in problem.bodies]
+    listener = Listener()
+    next(Simulation(replace(problem, bodies=tuple(stiff)), listener).run())
+    assert any("100 times stiffer" in warning for warning in listener.warnings)
+
+
+def test_resuming_gives_the_same_numbers() -> None:
+    problem = small_iron()
+    whole = run(problem)
+    rest = list(Simulation(problem, resume_from=whole[8]).run())
+    np.testing.assert_allclose(rest[-1].state.positions, whole[-1].state.positions, atol=1e-12)
