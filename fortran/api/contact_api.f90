@@ -183,7 +183,8 @@ subroutine contact_blocks(nodes, basis, area, point, nlocal, nelements, nquad, n
 end subroutine contact_blocks
 
 !> Rows of the multipliers' derivatives of the augmented law (isomortar_contact_augmentation): changes(component, multiplier, block)
-!> and of their trial tractions, trial(component, a, block), on the pattern `wide`; it and `neighbours` differ from the rows' pattern with `summed` only.
+!> and of their trial tractions, trial(component, a, block), on the pattern `wide`; it and `neighbours` differ from the rows'
+!> pattern with `summed` only.
 subroutine multiplier_rows(nodes, basis, area, point, nlocal, nelements, nquad, nslave, weight, square, control_slip, metric, &
     point_metric, summed, penalties, friction, state, pressure_slope, traction_slope, row_start, row_column, nrows, nkinds, rows, &
     neighbour_start, neighbour_column, nneighbours, wide_start, wide_column, nwide, changes, trial)

@@ -155,7 +155,7 @@ def _right_hand_side(
 
 
 def _add_product(pattern: Pattern, row_of: IntArray, block: FloatArray, vector: FloatArray, right: FloatArray) -> None:
-    """Right += block vector, in the equations of the block's rows."""
+    """Add block times vector to the equations of the block's rows."""
     product = block_product(pattern, block, vector).ravel()
     kept = row_of >= 0
     right[row_of[kept]] += product[kept]
