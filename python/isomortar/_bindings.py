@@ -12,7 +12,7 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from isomortar import _kernel
+from isomortar._compiled import kernel as _kernel
 from isomortar.errors import FoldedElementError, InputError, KernelError, LostProjectionError
 
 FloatArray = NDArray[np.float64]

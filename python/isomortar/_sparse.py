@@ -10,7 +10,7 @@ from typing import Literal, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from isomortar import _kernel
+from isomortar._compiled import kernel as _kernel
 from isomortar.errors import InputError, KernelError, SingularSystemError
 
 FloatArray = NDArray[np.float64]
