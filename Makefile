@@ -17,8 +17,8 @@ $(READY): pyproject.toml tools/setup.sh
 	@bash tools/setup.sh
 
 demo: $(READY) ## run the ironing scene; curve and picture go to results/
-	@mkdir -p results
-	$(BIN)/isomortar run iron --output results/iron.h5
+	$(BIN)/isomortar run iron --overwrite
+	@printf '==> Curves and pictures:\n'
 	$(BIN)/isomortar plot results/iron.h5
 
 test: lint ## linters, then all tests

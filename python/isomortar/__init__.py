@@ -1,0 +1,50 @@
+"""Isogeometric frictional contact between deformable bodies in three dimensions.
+
+>>> import isomortar
+>>> scene = isomortar.Scene.load("press")
+>>> with isomortar.run(scene, "press.h5") as results:  # doctest: +SKIP
+...     force = results.curve("force", support="top", component="z")
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from isomortar.driver import run as run
+    from isomortar.errors import IsomortarError as IsomortarError
+    from isomortar.results.paraview import export as export
+    from isomortar.results.pictures import plot as plot
+    from isomortar.results.reader import Results as Results
+    from isomortar.scene.scene import Scene as Scene
+    from isomortar.solve.record import Observer as Observer
+    from isomortar.solve.simulation import Simulation as Simulation
+
+    __version__: str
+
+_HOMES = {
+    "IsomortarError": "errors",
+    "Observer": "solve.record",
+    "Results": "results.reader",
+    "Scene": "scene.scene",
+    "Simulation": "solve.simulation",
+    "export": "results.paraview",
+    "plot": "results.pictures",
+    "run": "driver",
+}
+
+__all__ = ["IsomortarError", "Observer", "Results", "Scene", "Simulation", "export", "plot", "run"]
+
+
+def __getattr__(name: str) -> Any:
+    """Import what is asked for: `import isomortar` alone stays quick, and reading a results file needs no Matplotlib."""
+    if name == "__version__":
+        return import_module("importlib.metadata").version("isomortar")
+    if name not in _HOMES:
+        raise AttributeError(f"module 'isomortar' has no attribute {name!r}")
+    return getattr(import_module(f"isomortar.{_HOMES[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return [*__all__, "__version__"]

@@ -70,7 +70,7 @@ class ResultsWriter(Observer):
         elif resume:
             self._check_same_scene()
         else:
-            raise ResultsError(f"{self.path} exists already: resume it, remove it, or name another results file")
+            raise ResultsError(f"{self.path} exists already: resume it, overwrite it, or name another results file")
 
     def recorded(self, result: StepResult) -> None:
         """Append the step; on return it is on the disk."""

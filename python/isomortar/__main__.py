@@ -1,0 +1,5 @@
+"""``python -m isomortar``: the command line."""
+
+from isomortar.cli import main
+
+main()

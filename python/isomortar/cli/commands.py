@@ -1,0 +1,157 @@
+"""The commands: each says what it does, and leaves the doing to the package."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+import isomortar
+from isomortar.errors import ConvergenceError, InputError, IsomortarError
+
+#: Exit codes; 130 is what shells expect of a program that Ctrl-C ended.
+FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130
+
+app = typer.Typer(
+    add_completion=False,
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    rich_markup_mode="markdown",
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+ResultsArgument = Annotated[Path, typer.Argument(metavar="RESULTS", help="Results file of `isomortar run`.")]
+
+
+def main() -> None:
+    """Run the command line; what the package raises on purpose becomes one sentence and an exit code."""
+    try:
+        app()
+    except IsomortarError as error:
+        print(f"isomortar: {error}", file=sys.stderr)
+        sys.exit(BAD_INPUT if isinstance(error, InputError) else FAILED)
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        print(f"isomortar {isomortar.__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def isomortar_command(
+    version: Annotated[bool, typer.Option("--version", help="Show the version and exit.", callback=_show_version, is_eager=True)] = False,
+) -> None:
+    """Frictional contact between deformable NURBS bodies: a scene file in, results, curves and pictures out.
+
+    First steps:
+
+    - `isomortar scenes` lists the scenes that come with the program
+    - `isomortar run press` computes one of them into results/press.h5
+    - `isomortar plot results/press.h5` draws its curves and pictures
+
+    Exit codes: 0 done, 1 failed, 2 bad input, 130 interrupted. `isomortar COMMAND --help` says more.
+    """
+
+
+@app.command()
+def run(
+    scene: Annotated[str, typer.Argument(metavar="SCENE", help="A scene file (.toml), or a bundled scene by its name.")],
+    overrides: Annotated[
+        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change one value of the scene; may be repeated.")
+    ] = None,
+    output: Annotated[Path | None, typer.Option(help="Results file.", show_default="results/NAME.h5, NAME being the scene's")] = None,
+    resume: Annotated[bool, typer.Option("--resume", help="Go on after the last load step that the results file holds.")] = False,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Begin anew where the results file exists.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress; warnings and errors still show.")] = False,
+) -> None:
+    """Compute a scene.
+
+    Every load step is on the disk when it is done: after Ctrl-C, a crash or a power cut `--resume` goes on from the last one, and
+    the results file can be read meanwhile. An existing file is an error without `--resume` or `--overwrite`.
+
+    For example:
+
+    - `isomortar run iron`
+    - `isomortar run iron --resume`
+    - `isomortar run my_scene.toml --output my_results.h5`
+    - `isomortar run twist --set "bodies.master.mesh.order=[3,3,2]" --set contacts.interface.friction=0.5`
+    - `isomortar run press --set stages.press.steps=10 --output fine.h5`
+
+    Progress goes to stderr, the name of the results file to stdout.
+    """
+    from isomortar.cli.progress import progress
+
+    if resume and overwrite:
+        raise InputError("--resume and --overwrite exclude each other: go on with the results file, or begin anew")
+    chosen = isomortar.Scene.load(scene, overrides or ())
+    path = output or Path("results") / f"{chosen.name}.h5"
+    if path.exists() and not (resume or overwrite):
+        raise InputError(f"{path} exists already: go on with --resume, begin anew with --overwrite, or name another file with --output")
+    with progress(chosen.problem(), quiet) as observer:
+        try:
+            isomortar.run(chosen, path, observer, resume=resume, overwrite=overwrite).close()
+        except KeyboardInterrupt:
+            observer.stopped(path, "; to go on, repeat the command with --resume")
+            raise typer.Exit(INTERRUPTED) from None
+        except ConvergenceError:
+            observer.stopped(path)
+            raise
+    print(path)
+
+
+@app.command()
+def plot(
+    results: ResultsArgument,
+    output: Annotated[Path | None, typer.Option(help="Folder of the figures.", show_default="RESULTS-plots, beside the file")] = None,
+) -> None:
+    """Draw force curves, bodies and contact pressure (PNG; curves and pressure also as PDF), and print where they lie.
+
+    Works while the computation is still running: it draws the load steps that are done.
+
+    For example: `isomortar plot results/iron.h5`
+    """
+    with isomortar.Results(results) as stored:
+        curves = isomortar.Scene.from_toml(stored.scene_text).record.curves or ()
+    for path in isomortar.plot(results, output or _beside(results, "plots"), curves):
+        print(path)
+
+
+@app.command()
+def export(
+    results: ResultsArgument,
+    output: Annotated[Path | None, typer.Option(help="Folder of the export.", show_default="RESULTS-paraview, beside the file")] = None,
+) -> None:
+    """Write fields for ParaView (Bezier cells of the true order and weights), and print the file to open.
+
+    For example: `isomortar export results/iron.h5`, then `paraview results/iron-paraview/iron.pvd`
+    """
+    print(isomortar.export(results, output or _beside(results, "paraview")))
+
+
+@app.command()
+def scenes() -> None:
+    """List the bundled scenes."""
+    from isomortar.scene import bundled_scenes
+
+    names = bundled_scenes()
+    for name in names:
+        print(f"{name:<{max(map(len, names))}}  {isomortar.Scene.load(name).title}")
+
+
+@app.command()
+def schema() -> None:
+    """Print the JSON schema of scene files, for editors that complete and check TOML.
+
+    For example: `isomortar schema > scene.schema.json`
+    """
+    from isomortar.scene import json_schema
+
+    print(json.dumps(json_schema(), indent=2))
+
+
+def _beside(results: Path, kind: str) -> Path:
+    return results.with_name(f"{results.stem}-{kind}")

@@ -1,0 +1,134 @@
+"""What a person sees of a run: one line that lives on a terminal, plain lines elsewhere."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from time import monotonic
+
+from rich.console import Console
+from rich.live import Live
+from rich.progress_bar import ProgressBar
+from rich.table import Table
+from rich.text import Text
+
+from isomortar.model.entities import Problem
+from isomortar.solve.record import IterationRecord, Observer, StepResult
+
+
+class Progress(Observer):
+    """Plain lines: one a recorded step, and what happens out of the ordinary.
+
+    Parameters
+    ----------
+    problem : Problem
+    console : Console
+    quiet : bool
+        Warnings only.
+    """
+
+    def __init__(self, problem: Problem, console: Console, quiet: bool) -> None:
+        self._problem, self._console, self._quiet = problem, console, quiet
+        self._stages = [stage.name for stage in problem.stages for _ in range(stage.steps)]
+        self._total, self._first, self._done = problem.total_steps, 1, 0
+        self._begin = monotonic()
+
+    def started(self, total_steps: int, first_step: int) -> None:
+        """Say how much there is to do."""
+        self._first, self._done, self._begin = first_step, first_step - 1, monotonic()
+        if first_step > total_steps:
+            self._say(f"{self._problem.name}: all {total_steps} load steps are there already")
+        elif first_step > 1:
+            self._say(f"{self._problem.name}: {first_step - 1} of {total_steps} load steps are there, going on")
+        else:
+            self._say(f"{self._problem.name}: {total_steps} load steps")
+
+    def recorded(self, result: StepResult) -> None:
+        """One line a load step."""
+        self._done = result.step
+        self._say(self._step_line(result))
+
+    def cut(self, step: int, time: float, increment: float, reason: str) -> None:
+        """Say what failed and what is tried next."""
+        self._say(f"step {step}: load increment to {time:.6g} failed, cut to 1/{round(1 / increment)} step: {reason}")
+
+    def warned(self, message: str) -> None:
+        """Pass it on, also when quiet."""
+        self._print(f"warning: {message}")
+
+    def stopped(self, path: Path, advice: str = "") -> None:
+        """Say what is left of a run that came to no end."""
+        self._print(f"stopped after load step {self._done} of {self._total}; what was done is in {path}{advice}")
+
+    def _print(self, line: str) -> None:
+        self._console.print(line, markup=False, highlight=False, soft_wrap=True)
+
+    def _say(self, line: str) -> None:
+        if not self._quiet:
+            self._print(line)
+
+    def _step_line(self, result: StepResult) -> str:
+        iterations = [iteration for record in result.augmentations for iteration in record.iterations]
+        last = iterations[-1]
+        many = f", {len(result.augmentations)} augmentations" if len(result.augmentations) > result.substeps else ""
+        cuts = f", {result.substeps} increments" if result.substeps > 1 else ""
+        return (
+            f"step {result.step:>{len(str(self._total))}}/{self._total}  {result.stage}: "
+            f"{len(iterations)} iterations{many}{cuts}, residual {last.residual:.1e}; "
+            f"active {last.active} (stick {last.stick}, slip {last.slip}); {self._clock()}"
+        )
+
+    def _clock(self) -> str:
+        """Time that has passed, and an estimate of what is left from the mean of the steps so far."""
+        elapsed, computed = monotonic() - self._begin, self._done - self._first + 1
+        left = f", left about {_minutes(elapsed / computed * (self._total - self._done))}" if computed > 0 else ""
+        return f"elapsed {_minutes(elapsed)}{left}"
+
+
+class LiveProgress(Progress):
+    """On a terminal: a bar and the newest iteration, redrawn in place."""
+
+    def __init__(self, problem: Problem, console: Console) -> None:
+        super().__init__(problem, console, quiet=False)
+        self._now = ("", "")
+
+    def iteration(self, step: int, time: float, augmentation: int, record: IterationRecord) -> None:
+        """Keep the newest iteration for the next redraw."""
+        self._now = (
+            f"{self._stages[step - 1]}: step {step}/{self._total}  load time {time:.6g}  augmentation {augmentation}  "
+            f"iteration {record.iteration}",
+            f"residual {record.residual:.1e}  active {record.active}  stick {record.stick}  slip {record.slip}",
+        )
+
+    def recorded(self, result: StepResult) -> None:
+        """Move the bar."""
+        self._done = result.step
+
+    def __rich__(self) -> Table:
+        table = Table.grid(padding=(0, 1))
+        bar = Table.grid(padding=(0, 1))
+        bar.add_row(self._problem.name, ProgressBar(self._total, self._done, width=40), f"{self._done}/{self._total}", self._clock())
+        table.add_row(bar)
+        for line in self._now:
+            table.add_row(Text(line, overflow="ellipsis", no_wrap=True))
+        return table
+
+
+def _minutes(seconds: float) -> str:
+    """As 0:07, 12:34 or 1:02:03."""
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours}:{minutes:02d}:{rest:02d}" if hours else f"{minutes}:{rest:02d}"
+
+
+@contextmanager
+def progress(problem: Problem, quiet: bool) -> Iterator[Progress]:
+    """The observer that suits where stderr goes."""
+    console = Console(stderr=True)
+    if quiet or not console.is_terminal:
+        yield Progress(problem, console, quiet)
+        return
+    observer = LiveProgress(problem, console)
+    with Live(observer, console=console, refresh_per_second=5):
+        yield observer
