@@ -48,12 +48,12 @@ def measure(scene: str, discretisation: str, method: str) -> str:
     problem = Scene.load(scene, overrides).problem()
     simulation = Simulation(problem)
     solves: list[int] = []
-    cuts, before, ended, last = 0, 0, "", None
+    cuts, ended, last = 0, "", None
     start = time.process_time()
     try:
         for last in simulation.run():
-            solves.append(last.counters["solves"] - before)
-            before, cuts = last.counters["solves"], cuts + last.cuts
+            solves.append(last.counters["solves"])
+            cuts += last.cuts
     except IsomortarError as error:
         ended = f"  ended after step {len(solves)} of {problem.total_steps}: {error}"
     seconds = time.process_time() - start

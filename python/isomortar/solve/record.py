@@ -119,9 +119,9 @@ class StepResult:
     next_increment : float
         Load increment that the step-size control would try next (part of the restart state).
     timings : dict
-        Seconds by phase: solid, projection, contact, factor, solve, other.
+        Seconds by phase within the step: solid, projection, contact, factor, solve, other.
     counters : dict
-        Kernel counters: solves, factorisations, analyses, projections, ...
+        Kernel counters within the step: solves, factorisations, analyses, projections, ...
     """
 
     step: int

@@ -160,6 +160,7 @@ class Simulation:
         self, step: int, state: State, balance: Balance, log: tuple[AugmentationRecord, ...], orders: list[float], substeps: int, cuts: int
     ) -> StepResult:
         pairs = zip(self.equilibrium.pairs, balance.kinematics, balance.responses, strict=True)
+        timings, counters = self.ledger.take()
         return StepResult(
             step=step,
             stage=self._stage_of(step),
@@ -172,6 +173,6 @@ class Simulation:
             substeps=substeps,
             cuts=cuts,
             next_increment=self._increment,
-            timings=self.ledger.totals(),
-            counters=dict(self.ledger.counts),
+            timings=timings,
+            counters=counters,
         )

@@ -11,7 +11,7 @@ PHASES = ("solid", "projection", "contact", "factor", "solve")
 
 
 class Ledger:
-    """Running totals of a computation: `seconds` by phase of PHASES, `counts` by name."""
+    """Seconds by phase of PHASES and counts by name, since the last `take`."""
 
     def __init__(self) -> None:
         self.seconds: dict[str, float] = dict.fromkeys(PHASES, 0.0)
@@ -27,7 +27,12 @@ class Ledger:
         finally:
             self.seconds[name] += perf_counter() - start
 
-    def totals(self) -> dict[str, float]:
-        """Seconds by phase; what is not in one of them is `other`."""
+    def take(self) -> tuple[dict[str, float], dict[str, int]]:
+        """Seconds by phase (what is in none of them is `other`) and counts; both begin anew."""
         total = perf_counter() - self._start
-        return {**self.seconds, "other": total - sum(self.seconds.values()), "total": total}
+        seconds = {**self.seconds, "other": total - sum(self.seconds.values()), "total": total}
+        counts = dict(self.counts)
+        self.seconds = dict.fromkeys(PHASES, 0.0)
+        self.counts.clear()
+        self._start += total
+        return seconds, counts

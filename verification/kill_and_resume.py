@@ -1,0 +1,123 @@
+"""Kill a run with SIGKILL at random moments, resume it each time, and compare the end with an uninterrupted run.
+
+    python verification/kill_and_resume.py [SCENE] [--kills 10] [--seed 1] [--set KEY=VALUE ...]
+
+Half of the kills come at random times, half at a moment when the results file is being replaced. After each kill the results file
+must be readable and hold complete load steps only; at the end every curve and state of every step must equal the uninterrupted run's to round-off.
+"""
+
+from __future__ import annotations
+
+import argparse
+import random
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+from isomortar import Results
+from isomortar.results import layout
+
+#: A coarse ironing scene: sticking, slipping, and a changing contact set in a second a step or less.
+COARSE = (
+    "bodies.slave.mesh.elements=[3,3,2]",
+    "bodies.master.mesh.elements=[6,3,2]",
+    "stages.press.steps=6",
+    "stages.drag.steps=14",
+)
+#: Largest relative difference that counts as round-off: what a Newton iteration stopped at its tolerance leaves.
+ROUND_OFF = 1e-10
+
+
+def start(scene: str, settings: Sequence[str], output: Path) -> subprocess.Popen[bytes]:
+    """Start or resume a run in a process of its own."""
+    options = [word for setting in settings for word in ("--set", setting)]
+    return subprocess.Popen([sys.executable, "-m", "isomortar", "run", scene, *options, "--output", str(output), "--resume", "--quiet"])
+
+
+def wait_until(process: subprocess.Popen[bytes], moment: Callable[[], bool]) -> bool:
+    """Wait for the moment; false where the process ended before."""
+    while process.poll() is None:
+        if moment():
+            return True
+        time.sleep(0.001)
+    return False
+
+
+def kill(process: subprocess.Popen[bytes], output: Path, seconds: float, while_writing: bool) -> bool:
+    """Kill the process some seconds after it went on computing, or at the first writing after that; false where it ended before."""
+    began, copy = time.monotonic(), output.with_name(f".{output.name}.new")
+    if not wait_until(process, lambda: time.monotonic() - began > seconds and (copy.exists() or not while_writing)):
+        return False
+    process.send_signal(signal.SIGKILL)
+    return process.wait() == -signal.SIGKILL
+
+
+def recorded_steps(output: Path) -> int:
+    """Number of load steps in the file, each read whole; no file: none."""
+    if not output.exists():
+        return 0
+    with Results(output) as results:
+        for number in results.steps:
+            results.step(int(number))
+        return len(results.steps)
+
+
+def largest_difference(one: Path, other: Path) -> tuple[float, str]:
+    """Largest relative difference of all physical quantities over all steps, and where it is."""
+    worst = (0.0, "nowhere")
+    with Results(one) as a, Results(other) as b:
+        if not np.array_equal(a.steps, b.steps):
+            sys.exit(f"the runs have different load steps: {a.steps} and {b.steps}")
+        quantities = {f"{s.name} {q}": [r.curve(q, support=s.name) for r in (a, b)] for s in a.problem.supports for q in layout.REACTION}
+        quantities |= {f"{c.name} {q}": [r.curve(q, contact=c.name) for r in (a, b)] for c in a.problem.contacts for q in layout.CONTACT}
+        for contact in a.problem.contacts:
+            histories = a.contact(contact.name), b.contact(contact.name)
+            for name in ("pressure", "traction", "gap", "status"):
+                quantities[f"{contact.name} {name}"] = [getattr(history, name) for history in histories]
+        quantities["positions"] = [np.array([r.step(int(n)).state.positions for n in r.steps]) for r in (a, b)]
+    for name, (ours, theirs) in quantities.items():
+        size = float(np.abs(theirs).max()) or 1.0
+        worst = max(worst, (float(np.abs(np.subtract(ours, theirs, dtype=np.float64)).max()) / size, name))
+    return worst
+
+
+def main() -> None:
+    """Command line; exit code 1 where the resumed run differs."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("scene", nargs="?", default="iron")
+    parser.add_argument("--kills", type=int, default=10)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--set", action="append", metavar="KEY=VALUE", help="settings of the scene; default: a coarse ironing scene")
+    options = parser.parse_args()
+    settings = options.set or (COARSE if options.scene == "iron" else ())
+    chance = random.Random(options.seed)
+
+    with TemporaryDirectory() as folder:
+        whole, killed = Path(folder) / "whole.h5", Path(folder) / "killed.h5"
+        began = time.monotonic()
+        if start(options.scene, settings, whole).wait():
+            sys.exit("the uninterrupted run failed")
+        duration = time.monotonic() - began
+        print(f"uninterrupted: {recorded_steps(whole)} load steps in {duration:.1f} s", flush=True)
+        for number in range(1, options.kills + 1):
+            writing = number % 2 == 0
+            seconds = 1.0 + chance.uniform(0.0, 1.5) * duration / options.kills
+            if not kill(start(options.scene, settings, killed), killed, seconds, writing):
+                sys.exit(f"the run ended before kill {number}: take a longer scene or fewer kills")
+            moment = "while writing" if writing else "at random"
+            print(f"kill {number:2d} after {seconds:4.1f} s, {moment:<13}: {recorded_steps(killed)} load steps are complete", flush=True)
+        if start(options.scene, settings, killed).wait():
+            sys.exit("the resumed run failed")
+        difference, place = largest_difference(killed, whole)
+    print(f"largest relative difference over all steps: {difference:.1e} ({place}); allowed {ROUND_OFF:.0e}")
+    sys.exit(0 if difference <= ROUND_OFF else 1)
+
+
+if __name__ == "__main__":
+    main()
