@@ -1,0 +1,173 @@
+"""Comparison that fails closed: what is not plainly within its bounds does not pass."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from isomortar.geometry.patch import FloatArray
+from isomortar.harness.cases import Bound, Cell, Claim, Matches, Order, Shown
+from isomortar.harness.measurement import Measurement, Stored, convergence_of, curve_of
+from isomortar.harness.orders import OrderEstimate, estimate_order
+
+#: Best first. Only ``passed`` passes.
+State = Literal["passed", "missing reference", "not measured", "skipped", "failed", "crashed", "timed out"]
+STATES: tuple[State, ...] = ("passed", "missing reference", "not measured", "skipped", "failed", "crashed", "timed out")
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """Largest error of a comparison, as a share of its tolerance, and whether it is within."""
+
+    agrees: bool
+    why: str
+    share: float = np.nan
+
+
+@dataclass(frozen=True)
+class Check:
+    """Verdict on one number: its state, the value to show (worst entry), the limit in words, what was found, the order if it was one."""
+
+    name: str
+    state: State
+    value: float
+    limit: str
+    found: str
+    reason: str
+    order: OrderEstimate | None = None
+
+
+@dataclass(frozen=True)
+class Expected:
+    """A dataset of a reference: values, uncertainty (one number or the values' shape), and the reference's class."""
+
+    values: FloatArray
+    uncertainty: FloatArray
+    kind: str
+
+
+#: Finds the dataset of a reference for a cell and a number; None: there is none.
+Lookup = Callable[[str, Cell, str], Expected | None]
+
+
+def worst(states: Iterable[State]) -> State:
+    """The worst of some states; of none: not measured."""
+    return max(states, key=STATES.index, default="not measured")
+
+
+def agree(measured: ArrayLike, expected: ArrayLike, tolerance: ArrayLike) -> Agreement:
+    """Compare entry by entry, absolutely: shapes equal, not empty, finite on both sides, error <= tolerance."""
+    try:
+        a, b, t = np.asarray(measured, float), np.asarray(expected, float), np.asarray(tolerance, float)
+    except (TypeError, ValueError):
+        return Agreement(False, "not numbers")
+    if a.shape != b.shape:
+        return Agreement(False, f"shapes differ: {a.shape} and {b.shape}")
+    if t.shape not in ((), b.shape):
+        return Agreement(False, f"tolerance has shape {t.shape}, the values {b.shape}")
+    if a.size == 0:
+        return Agreement(False, "nothing to compare")
+    for side, values in (("measured", a), ("expected", b), ("tolerance", t)):
+        if not np.isfinite(values).all():
+            return Agreement(False, f"{side}: not finite")
+    if not (t >= 0).all():
+        return Agreement(False, "negative tolerance")
+    with np.errstate(all="ignore"):
+        error = np.abs(a - b)
+        share = np.where(error == 0, 0.0, error / t)
+    within = bool(np.all(error <= t))
+    return Agreement(within, f"largest error {error.max():.3g}, {share.max():.3g} of the tolerance", float(share.max()))
+
+
+def agree_all(measured: Mapping[str, Any], expected: Mapping[str, Any], tolerance: Mapping[str, Any]) -> dict[str, Agreement]:
+    """Compare named values; a name that one side lacks disagrees, and so does comparing nothing."""
+    names = [*dict.fromkeys([*expected, *measured, *tolerance])]
+    verdicts = {}
+    for name in names:
+        missing = [
+            side for side, values in (("measured", measured), ("expected", expected), ("tolerance", tolerance)) if name not in values
+        ]
+        verdicts[name] = (
+            Agreement(False, f"missing: {', '.join(missing)}") if missing else agree(measured[name], expected[name], tolerance[name])
+        )
+    return verdicts or {"": Agreement(False, "nothing to compare")}
+
+
+def judge(cell: Cell, measurement: Measurement, lookup: Lookup) -> list[Check]:
+    """A check for every bound of a cell, and for every number that has none."""
+    claims = cell.case.bounds_of(cell.settings)
+    if measurement.ending != "measured":
+        state: State = "failed" if measurement.ending == "raised" else measurement.ending
+        line = measurement.message.strip().splitlines()[-1] if measurement.message.strip() else measurement.ending
+        return [Check(name, state, np.nan, _limit(claim), line, claim.reason) for name, claim in claims.items()]
+    checks = []
+    for name, claim in claims.items():
+        value = measurement.numbers.get(name)
+        if value is None:
+            checks.append(Check(name, "not measured", np.nan, _limit(claim), "the case returned no such number", claim.reason))
+        else:
+            checks.append(_check(cell, name, claim, value, lookup))
+    for name in measurement.numbers.keys() - claims.keys():
+        checks.append(Check(name, "failed", np.nan, "none", "a number without a bound: bound it, or declare it Shown", ""))
+    return checks
+
+
+def _check(cell: Cell, name: str, claim: Claim, value: Stored, lookup: Lookup) -> Check:
+    if isinstance(claim, Order):
+        return _check_order(name, claim, value)
+    curve = curve_of(value)
+    if curve is None and isinstance(value, dict):
+        return Check(name, "failed", np.nan, _limit(claim), "a convergence sequence: its claim must be an Order", claim.reason)
+    entries = np.asarray(value if curve is None else curve.y, float)
+    if isinstance(claim, Matches):
+        return _check_match(name, claim, entries, lookup(claim.reference, cell, name))
+    low, high = (claim.low, claim.high) if isinstance(claim, Bound) else (-np.inf, np.inf)
+    if entries.size == 0:
+        return Check(name, "failed", np.nan, _limit(claim), "an empty array", claim.reason)
+    if not np.isfinite(entries).all():
+        return Check(name, "failed", np.nan, _limit(claim), "not finite", claim.reason)
+    extreme = float(entries.min() if high == np.inf and low > -np.inf else entries.flat[np.argmax(np.abs(entries))])
+    within = bool(np.all((entries >= low) & (entries <= high)))
+    found = "" if entries.ndim == 0 else f"{entries.size} values, {entries.min():.4g} to {entries.max():.4g}"
+    return Check(name, "passed" if within else "failed", extreme, _limit(claim), found, claim.reason)
+
+
+def _check_order(name: str, claim: Order, value: Stored) -> Check:
+    convergence = convergence_of(value)
+    if convergence is None:
+        return Check(name, "failed", np.nan, _limit(claim), "not a Convergence", claim.reason)
+    estimate = estimate_order(convergence, claim.expected)
+    state: State = "passed" if estimate.judgement == "confirmed" else "failed"
+    return Check(name, state, estimate.order, _limit(claim), f"{estimate.judgement}: {estimate.why}", claim.reason, estimate)
+
+
+def _check_match(name: str, claim: Matches, entries: FloatArray, expected: Expected | None) -> Check:
+    shown = float(entries) if entries.ndim == 0 else np.nan
+    if expected is None:
+        return Check(name, "missing reference", shown, _limit(claim), f"{claim.reference} has no such dataset", claim.reason)
+    allowance = claim.allowance * float(np.max(np.abs(expected.values), initial=0.0))
+    agreement = agree(entries, expected.values, 2 * expected.uncertainty + allowance)
+    note = " (shows change, not correctness)" if expected.kind == "self" else ""
+    state: State = "passed" if agreement.agrees else "failed"
+    return Check(name, state, shown, _limit(claim), f"reference of class {expected.kind}{note}: {agreement.why}", claim.reason)
+
+
+def _limit(claim: Claim) -> str:
+    """The limit in words."""
+    match claim:
+        case Bound(at_most=None):
+            return f"≥ {claim.low:.4g}"
+        case Bound(at_least=None):
+            return f"≤ {claim.high:.4g}"
+        case Bound():
+            return f"{claim.low:.6g} to {claim.high:.6g}"
+        case Order():
+            return f"order {claim.expected:g}"
+        case Matches():
+            return f"as {claim.reference}" + (f" ± {claim.allowance:.3g}" if claim.allowance else "")
+        case Shown():
+            return "shown"

@@ -1,0 +1,133 @@
+"""Observed orders of accuracy: estimate, confidence interval and a verdict that does not flatter."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy import stats
+
+from isomortar.geometry.patch import FloatArray
+
+Judgement = Literal["confirmed", "pre-asymptotic", "at the floor", "diverging", "invalid"]
+
+#: Meshes that the regression takes, the finest ones, and fewest meshes that make an order.
+WINDOW = 4
+#: Two meshes whose sizes differ by less tell noise, not order.
+SMALLEST_RATIO = 1.2
+#: Other sources of error must stay below this share of the error that is measured.
+BUDGET = 0.1
+#: No interval is taken to be narrower: sizes of curved meshes mean no more.
+RESOLUTION = 0.05
+#: A wider interval holds two whole numbers and confirms neither.
+WIDEST = 0.5
+
+
+@dataclass(frozen=True)
+class Convergence:
+    """Errors on a sequence of meshes, coarsest first; what a case returns when its claim is an order.
+
+    Parameters
+    ----------
+    sizes : array_like, shape (n,)
+        Element sizes h, strictly decreasing, at least four.
+    errors : array_like, shape (n,)
+        Errors, positive, in any norm.
+    others : dict, optional
+        Error budget: for each other source (``"quadrature"``, ``"augmentation"``, ``"load step"``, ``"penalty"``,
+        ``"reference"``, ...) its share of the error on each mesh, shape (n,), or one number for all: the change of the
+        result when that source alone is tightened.
+    """
+
+    sizes: ArrayLike
+    errors: ArrayLike
+    others: dict[str, ArrayLike] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class OrderEstimate:
+    """Order of accuracy: estimate, 95 % interval, order between neighbouring meshes, verdict and its reason."""
+
+    order: float
+    low: float
+    high: float
+    steps: tuple[float, ...]
+    judgement: Judgement
+    why: str
+
+
+def estimate_order(convergence: Convergence, expected: float) -> OrderEstimate:
+    """Order of accuracy by regression of log(error) on log(size) over the four finest meshes.
+
+    The interval is Student's, 95 %, from the scatter about the line: a sequence that still bends has a wide one. ``confirmed`` needs the
+    expected order inside an interval that does not reach the next whole number.
+
+    Parameters
+    ----------
+    convergence : Convergence
+    expected : float
+        From theory.
+    """
+    fault = _fault(convergence, expected)
+    if fault:
+        return OrderEstimate(np.nan, np.nan, np.nan, (), "invalid", fault)
+    sizes, errors = np.asarray(convergence.sizes, float), np.asarray(convergence.errors, float)
+    steps = np.diff(np.log(errors)) / np.diff(np.log(sizes))
+    line = stats.linregress(np.log(sizes[-WINDOW:]), np.log(errors[-WINDOW:]))
+    half = max(float(stats.t.ppf(0.975, WINDOW - 2) * line.stderr), RESOLUTION)
+    order = float(line.slope)
+    judgement, why = _judge(order, half, expected, steps[-WINDOW + 1 :], _over_budget(convergence, errors))
+    return OrderEstimate(order, order - half, order + half, tuple(float(s) for s in steps), judgement, why)
+
+
+def _fault(convergence: Convergence, expected: float) -> str:
+    """What makes the sequence no measurement, or nothing."""
+    try:
+        sizes, errors = np.asarray(convergence.sizes, float), np.asarray(convergence.errors, float)
+        others = {name: np.asarray(values, float) for name, values in convergence.others.items()}
+    except (TypeError, ValueError):
+        return "sizes, errors and other errors must be numbers"
+    if sizes.ndim != 1 or sizes.shape != errors.shape:
+        return f"sizes and errors must be lists of one length; shapes are {sizes.shape} and {errors.shape}"
+    if len(sizes) < WINDOW:
+        return f"{len(sizes)} meshes; an order needs at least {WINDOW}"
+    if not (np.isfinite(sizes).all() and np.isfinite(errors).all()):
+        return "a size or an error is not finite"
+    if not (sizes > 0).all() or not (sizes[:-1] >= SMALLEST_RATIO * sizes[1:]).all():
+        return f"sizes must be positive and fall by a factor of at least {SMALLEST_RATIO} from mesh to mesh"
+    if not (errors > 0).all():
+        return "an error is zero or negative: not a measured error"
+    for name, values in others.items():
+        if values.shape not in ((), errors.shape) or not (np.isfinite(values) & (values >= 0)).all():
+            return f"the {name} error must be one number, or one a mesh, finite and not negative"
+    if not (np.isfinite(expected) and expected > 0):
+        return f"the expected order is {expected}; it must be positive"
+    return ""
+
+
+def _over_budget(convergence: Convergence, errors: FloatArray) -> str:
+    """The other source of error that takes too large a share on the meshes of the regression, or nothing."""
+    for name, values in convergence.others.items():
+        share = float(np.max((np.asarray(values, float) / errors)[-WINDOW:]))
+        if not share < BUDGET:
+            return f"{name} makes {share:.0%} of the error"
+    return ""
+
+
+def _judge(order: float, half: float, expected: float, steps: FloatArray, over_budget: str) -> tuple[Judgement, str]:
+    found = f"order {order:.2f} ± {half:.2f}, expected {expected:g}"
+    if order < RESOLUTION:
+        return "diverging", f"{found}: the error does not fall"
+    if over_budget:
+        return "at the floor", f"{found}: {over_budget}"
+    if steps[-1] < expected / 2 and steps.max() > 0.75 * expected:
+        return "at the floor", f"{found}: the error had fallen with order {steps.max():.2f} and falls with {steps[-1]:.2f} at last"
+    if steps[-1] < RESOLUTION:
+        return "diverging", f"{found}: the error does not fall on the finest mesh"
+    if half > WIDEST:
+        return "pre-asymptotic", f"{found}: the interval holds more than one whole number"
+    if not order - half <= expected <= order + half:
+        return "pre-asymptotic", f"{found}: outside the interval"
+    return "confirmed", found

@@ -1,0 +1,47 @@
+"""Rational functions of contact surfaces at the quadrature points, weights spread over six decades."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from isomortar import _bindings
+from isomortar.geometry.patch import FloatArray, Patch
+from isomortar.geometry.primitives import box
+from isomortar.geometry.refinement import mesh
+from isomortar.harness import LAGRANGE, NURBS, Bound, case
+from isomortar.model.numbering import patch_arrays
+
+EPSILON = float(np.finfo(float).eps)
+
+
+def functions(kind: str) -> FloatArray:
+    """Functions at the quadrature points of a face of 4 x 3 elements, shape (points, functions of an element)."""
+    family, order = kind[0], int(kind[1:])
+    meshed = mesh(box((0, 0, 0), (1, 1, 1)), (family,) * 3, (order,) * 3, (4, 3, 1))
+    weights = 10.0 ** np.random.default_rng(order).uniform(-3, 3, len(meshed.weights))
+    patch = Patch(meshed.directions, meshed.control_points, weights if family == "N" else meshed.weights)
+    arrays = patch_arrays(patch, np.arange(len(weights), dtype=np.int32))
+    _, values, _ = _bindings.slave_tables(arrays, 3, 1, (order + 2, order + 2), patch.control_points, (order + 1) ** 2, 12)
+    return values
+
+
+@case(
+    claim="The functions of a surface add up to one at every point.",
+    tier="gate",
+    grid={"kind": NURBS + LAGRANGE},
+    bounds={"error": Bound(at_most=50 * EPSILON, reason="round-off: 50 units in the last place of the sum")},
+)
+def partition_of_unity(kind: str) -> dict[str, float]:
+    """Largest deviation of the sum of all functions from one."""
+    return {"error": float(np.abs(functions(kind).sum(axis=1) - 1).max())}
+
+
+@case(
+    claim="NURBS functions are never negative.",
+    tier="gate",
+    grid={"kind": NURBS},
+    bounds={"smallest": Bound(at_least=0.0, reason="theory: sums and quotients of non-negative terms, whatever the rounding")},
+)
+def non_negative(kind: str) -> dict[str, float]:
+    """Smallest value of any function at any point."""
+    return {"smallest": float(functions(kind).min())}
