@@ -36,7 +36,7 @@ def mesh_overrides(scene: str, discretisation: str) -> list[str]:
         ]
     if family == "L":
         raise SystemExit(f"{scene}: the paper leaves Lagrange masters out; choose N orders for it")
-    orders = f"[{order},{order},2]" if scene.startswith("twist") else f"[{order},2,2]"
+    orders = f"[{order},{order},2]" if scene.startswith("twist") or scene == "reversal" else f"[{order},2,2]"
     return [f"bodies.master.mesh.order={orders}"]
 
 

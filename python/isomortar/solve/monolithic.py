@@ -9,7 +9,7 @@ import numpy as np
 
 from isomortar._bindings import Law, Response
 from isomortar.errors import ConvergenceError, FoldedElementError, LostProjectionError
-from isomortar.geometry.patch import FloatArray
+from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.solve.bordered import Border, Correction, solve_bordered
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.increment import Increment
@@ -50,6 +50,11 @@ class Iterate:
         """The states of all control points, to compare with."""
         return b"".join(response.state.tobytes() for response in self.targets)
 
+    @property
+    def elements(self) -> IntArray:
+        """Master elements that the slave quadrature points project on, shape (points of all pairs, 2)."""
+        return np.concatenate([k.projections.element for k in self.balance.kinematics] or [np.zeros((0, 2), dtype=np.int32)])
+
 
 class Monolithic:
     """Solves load increments for positions, control pressures and control tractions at once."""
@@ -77,6 +82,7 @@ class Monolithic:
         moves = bool(np.any(prescribed))
         log: list[IterationRecord] = []
         seen = [iterate.states]
+        visited = [iterate.elements]
         notes: tuple[str, ...] = ()
         for iteration in range(self._settings.max_iterations + 1):
             record = self._record(iteration, iterate, notes)
@@ -93,10 +99,11 @@ class Monolithic:
             iterate, halved = self._update(iterate, correction, start, stiffness, seen if iteration >= CYCLE_FREE else [], iteration)
             notes += halved
             seen.append(iterate.states)
+            visited.append(iterate.elements)
         raise ConvergenceError(
             f"Newton's method stopped at a relative residual of {iterate.residual:.2e} and "
             f"{max(iterate.gap_pressure, iterate.gap_traction):.2e} off the contact conditions after {iteration} iterations"
-            + self._toggling(seen)
+            + _toggling(seen, visited)
         )
 
     def _first(self, start: State, stiffness: float) -> Iterate:
@@ -219,11 +226,22 @@ class Monolithic:
         record = AugmentationRecord(1, float(parameters[0]), float(parameters[1]), iterate.gap_pressure, iterate.gap_traction, tuple(log))
         return Increment(iterate.balance, (record,), (observed_order([r.residual for r in log]),))
 
-    def _toggling(self, seen: list[bytes]) -> str:
-        """The slave control points whose states changed in the last iterations, as a part of a sentence."""
-        states = np.array([np.frombuffer(s, dtype=np.int32) for s in seen[-6:]])
-        toggling = np.flatnonzero(np.any(states != states[0], axis=0)) if states.size else np.zeros(0)
-        if not toggling.size:
-            return ""
-        names = ", ".join(str(int(i)) for i in toggling[:10]) + (", ..." if len(toggling) > 10 else "")
-        return f"; slave control points {names} change their states from iteration to iteration"
+
+def _toggling(seen: Sequence[bytes], visited: Sequence[IntArray]) -> str:
+    """What changed to and fro in the last iterations, as a part of a sentence."""
+    states = np.array([np.frombuffer(s, dtype=np.int32) for s in seen[-6:]])
+    points = np.flatnonzero(np.any(states != states[0], axis=0))
+    if points.size:
+        return f"; slave control points {_first_few(points)} change their states from iteration to iteration"
+    elements = np.array(visited[-6:])
+    crossing = np.flatnonzero(np.any(elements != elements[0], axis=(0, 2)))
+    if crossing.size:
+        return (
+            f"; slave quadrature points {_first_few(crossing)} cross a knot line of the master from iteration to iteration, where the "
+            "curvature of a master of order 2 jumps (order 3 and more has no such jump)"
+        )
+    return ""
+
+
+def _first_few(numbers: np.ndarray) -> str:
+    return ", ".join(str(int(i)) for i in numbers[:10]) + (", ..." if len(numbers) > 10 else "")
