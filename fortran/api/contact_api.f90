@@ -91,8 +91,8 @@ subroutine augmented_multipliers(nodes, basis, area, point, nlocal, nelements, n
     state, pressure_slope, traction_slope, field_slip)
   use iso_c_binding, only: c_double, c_int
   use isomortar_api_unpack, only: unpack_slave
-  use isomortar_contact_augmentation, only: active_points, law_t, multipliers => augmented_multipliers, response_t
-  use isomortar_contact_control, only: control_t, integrate_slip_sum
+  use isomortar_contact_augmentation, only: law_t, respond, response_t
+  use isomortar_contact_control, only: control_t
   implicit none
   integer(c_int), intent(in) :: nlocal, nelements, nquad, nslave
   integer(c_int), intent(in) :: nodes(nlocal, nelements), point(nslave), summed, forgiving, held(nslave)
@@ -105,26 +105,15 @@ subroutine augmented_multipliers(nodes, basis, area, point, nlocal, nelements, n
   type(control_t) :: control
   type(law_t) :: law
   type(response_t) :: response
-  real(c_double) :: slips(2, nslave), totals(2, nslave)
 
   control%weight = weight
   control%square = square
   control%gap = gap
   control%slip = control_slip
   control%metric = metric
+  control%point_metric = point_metric
   law = law_t(penalties(1), penalties(2), friction, pressure_k, traction_k, slip_margin, forgiving /= 0, held /= 0)
-  allocate (response%multipliers%pressure(nslave), response%multipliers%traction(2, nslave), response%multipliers%active(nslave), &
-    response%state(nslave), response%pressure_slope(nslave), response%traction_slope(2, 6, nslave))
-  field_slip = 0.0_c_double
-  if (summed /= 0) then
-    call active_points(control, law, response%multipliers%pressure, response%multipliers%active)
-    slips = 0.0_c_double
-    where (spread(response%multipliers%active, 1, 2)) slips = control_slip / spread(weight, 1, 2)
-    call integrate_slip_sum(unpack_slave(nodes, basis, area, point), point_metric, slips, field_slip, totals)
-    call multipliers(control, law, response, totals)
-  else
-    call multipliers(control, law, response)
-  end if
+  call respond(unpack_slave(nodes, basis, area, point), control, law, summed /= 0, response, field_slip)
   pressure = response%multipliers%pressure
   traction = response%multipliers%traction
   state = response%state

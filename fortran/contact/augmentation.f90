@@ -2,14 +2,14 @@
 module isomortar_contact_augmentation
   use isomortar_base_kinds, only: wp
   use isomortar_contact_blocks, only: multipliers_t, row_gap, row_metric, row_slip, row_slip_sum
-  use isomortar_contact_control, only: control_t
+  use isomortar_contact_control, only: control_t, integrate_slip_sum
   use isomortar_contact_friction, only: metric_matrix, return_map, state_open, state_stick
   use isomortar_contact_slave, only: slave_t
   use isomortar_sparse_blocks, only: mark_row, pattern_t
   implicit none
   private
 
-  public :: active_points, augmented_multipliers, condense, multiplier_rows, trial_rows, trial_rows_summed
+  public :: condense, multiplier_rows, respond, trial_rows, trial_rows_summed
 
   !> A control point whose weight w^I is below this share of the largest has left the master.
   real(wp), parameter :: least_weight = 1.0e-10_wp
@@ -38,6 +38,33 @@ module isomortar_contact_augmentation
   end type response_t
 
 contains
+
+  !> What the law makes of the control quantities, with the paper's slip sum if `summed`, whose field of control slips at the
+  !> quadrature points is `field_slip` (else zero).
+  pure subroutine respond(slave, control, law, summed, response, field_slip)
+    type(slave_t), intent(in) :: slave
+    type(control_t), intent(in) :: control
+    type(law_t), intent(in) :: law
+    logical, intent(in) :: summed
+    type(response_t), intent(out) :: response
+    real(wp), intent(out) :: field_slip(:, :)
+    real(wp) :: slips(2, slave%count), totals(2, slave%count)
+
+    associate (n => slave%count)
+      allocate (response%multipliers%pressure(n), response%multipliers%traction(2, n), response%multipliers%active(n), &
+        response%state(n), response%pressure_slope(n), response%traction_slope(2, 6, n))
+    end associate
+    field_slip = 0.0_wp
+    if (summed) then
+      call active_points(control, law, response%multipliers%pressure, response%multipliers%active)
+      slips = 0.0_wp
+      where (spread(response%multipliers%active, 1, 2)) slips = control%slip / spread(control%weight, 1, 2)
+      call integrate_slip_sum(slave, control%point_metric, slips, field_slip, totals)
+      call augmented_multipliers(control, law, response, totals)
+    else
+      call augmented_multipliers(control, law, response)
+    end if
+  end subroutine respond
 
   !> Active control points [2.12]: w p > 0. The pressure of the current augmentation is zero for inactive ones.
   pure subroutine active_points(control, law, pressure, active)

@@ -1,0 +1,116 @@
+!> Everything of a contact pair whose derivatives the tangent is made of, as a function of positions and multipliers: projected,
+!> integrated and put through the law anew. The twin forms differences of it.
+module isomortar_api_difference
+  use isomortar_base_kinds, only: wp
+  use isomortar_base_status, only: status_ok
+  use isomortar_contact_augmentation, only: law_t, respond, response_t
+  use isomortar_contact_blocks, only: integrate_forces, multipliers_t
+  use isomortar_contact_control, only: control_quantities, control_t, project_points, projections_t
+  use isomortar_contact_master, only: master_t
+  use isomortar_contact_slave, only: slave_t
+  implicit none
+  private
+
+  public :: difference, evaluate_contact
+
+  !> What stays while positions and multipliers move.
+  type, public :: fixed_t
+    type(slave_t) :: slave
+    type(master_t) :: master
+    !> Starts of the projections.
+    real(wp), allocatable :: start(:, :)
+    !> Projections at the last converged load step, and whether there were any.
+    real(wp), allocatable :: origin(:, :)
+    logical, allocatable :: had(:)
+    !> Multipliers of the parts that are differentiated with multipliers held.
+    type(multipliers_t) :: frozen
+    logical :: summed = .false.
+  end type fixed_t
+
+  !> The quantities: <R g>, <R xi>, <R (xi - xi_n)>, <R R a_ab>, control pressures and tractions, contact forces with the frozen
+  !> pressures alone, with the frozen tractions alone, and with the multipliers of the law.
+  type, public :: quantities_t
+    type(projections_t) :: projections
+    type(control_t) :: control
+    type(response_t) :: response
+    real(wp), allocatable :: coordinates(:, :)
+    real(wp), allocatable :: normal_forces(:, :), tangential_forces(:, :), forces(:, :)
+  end type quantities_t
+
+contains
+
+  !> (upper - lower) / (2 step).
+  elemental function difference(upper, lower, step) result(slope)
+    real(wp), intent(in) :: upper, lower, step
+    real(wp) :: slope
+
+    slope = (upper - lower) / (2.0_wp * step)
+  end function difference
+
+  !> The quantities at given positions and multipliers.
+  subroutine evaluate_contact(fixed, positions, law, quantities, status, place)
+    type(fixed_t), intent(in) :: fixed
+    real(wp), intent(in) :: positions(:, :)
+    type(law_t), intent(in) :: law
+    type(quantities_t), intent(out) :: quantities
+    integer, intent(out) :: status, place
+    type(multipliers_t) :: pressures, tractions
+    type(control_t) :: coordinates
+    type(projections_t) :: absolute
+    real(wp), allocatable :: field_slip(:, :)
+    logical, allocatable :: started(:)
+    integer :: n, points
+
+    n = fixed%slave%count
+    points = size(fixed%slave%area)
+    allocate (quantities%projections%place(2, points), quantities%projections%found(points), &
+      quantities%projections%slip(2, points), quantities%projections%slips(points), started(points), field_slip(2, points))
+    quantities%projections%xi = fixed%start
+    quantities%projections%place = 0
+    started = .true.
+    call project_points(fixed%slave, fixed%master, positions, started, fixed%origin, fixed%had, quantities%projections, status, &
+      place)
+    if (status /= status_ok) return
+
+    call reserve(n, points, quantities%control)
+    call control_quantities(fixed%slave, fixed%master, positions, quantities%projections, quantities%control)
+    call reserve(n, points, coordinates)
+    absolute = quantities%projections
+    absolute%slip = absolute%xi
+    call control_quantities(fixed%slave, fixed%master, positions, absolute, coordinates)
+    quantities%coordinates = coordinates%slip
+    call respond(fixed%slave, quantities%control, law, fixed%summed, quantities%response, field_slip)
+
+    pressures = fixed%frozen
+    pressures%traction = 0.0_wp
+    tractions = fixed%frozen
+    tractions%pressure = 0.0_wp
+    call contact_forces(fixed, positions, quantities%projections, law, pressures, quantities%normal_forces)
+    call contact_forces(fixed, positions, quantities%projections, law, tractions, quantities%tangential_forces)
+    call contact_forces(fixed, positions, quantities%projections, law, quantities%response%multipliers, quantities%forces)
+  end subroutine evaluate_contact
+
+  !> Contact forces alone.
+  subroutine contact_forces(fixed, positions, projections, law, multipliers, forces)
+    type(fixed_t), intent(in) :: fixed
+    real(wp), intent(in) :: positions(:, :)
+    type(projections_t), intent(in) :: projections
+    type(law_t), intent(in) :: law
+    type(multipliers_t), intent(in) :: multipliers
+    real(wp), allocatable, intent(out) :: forces(:, :)
+
+    allocate (forces(3, size(positions, 2)))
+    forces = 0.0_wp
+    call integrate_forces(fixed%slave, fixed%master, positions, projections, law%friction > 0.0_wp, multipliers, forces)
+  end subroutine contact_forces
+
+  !> Make room for n control points and m quadrature points.
+  pure subroutine reserve(n, m, control)
+    integer, intent(in) :: n, m
+    type(control_t), intent(inout) :: control
+
+    allocate (control%weight(n), control%square(n), control%gap(n), control%slip(2, n), control%metric(3, n), &
+      control%point_metric(3, m))
+  end subroutine reserve
+
+end module isomortar_api_difference
