@@ -23,7 +23,7 @@ import numpy as np
 from isomortar import Results
 from isomortar.results import layout
 
-#: A coarse ironing scene: sticking, slipping, and a changing contact set in a second a step or less.
+#: A coarse ironing scene: sticking, slipping and a changing contact set, a second a step or less.
 COARSE = (
     "bodies.slave.mesh.elements=[3,3,2]",
     "bodies.master.mesh.elements=[6,3,2]",

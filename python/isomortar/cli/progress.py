@@ -32,7 +32,7 @@ class Progress(Observer):
         self._problem, self._console, self._quiet = problem, console, quiet
         self._stages = [stage.name for stage in problem.stages for _ in range(stage.steps)]
         self._total, self._first, self._done = problem.total_steps, 1, 0
-        self._begin = monotonic()
+        self._begin: float | None = None
 
     def started(self, total_steps: int, first_step: int) -> None:
         """Say how much there is to do."""
@@ -59,7 +59,10 @@ class Progress(Observer):
 
     def stopped(self, path: Path, advice: str = "") -> None:
         """Say what is left of a run that came to no end."""
-        self._print(f"stopped after load step {self._done} of {self._total}; what was done is in {path}{advice}")
+        if self._begin is None:
+            self._print("stopped before the first load step")
+        else:
+            self._print(f"stopped with {self._done} of {self._total} load steps done; they are in {path}{advice}")
 
     def _print(self, line: str) -> None:
         self._console.print(line, markup=False, highlight=False, soft_wrap=True)
@@ -81,7 +84,8 @@ class Progress(Observer):
 
     def _clock(self) -> str:
         """Time that has passed, and an estimate of what is left from the mean of the steps so far."""
-        elapsed, computed = monotonic() - self._begin, self._done - self._first + 1
+        elapsed = monotonic() - self._begin if self._begin is not None else 0.0
+        computed = self._done - self._first + 1
         left = f", left about {_minutes(elapsed / computed * (self._total - self._done))}" if computed > 0 else ""
         return f"elapsed {_minutes(elapsed)}{left}"
 
