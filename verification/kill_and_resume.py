@@ -3,7 +3,8 @@
     python verification/kill_and_resume.py [SCENE] [--kills 10] [--seed 1] [--set KEY=VALUE ...]
 
 Half of the kills come at random times, half at a moment when the results file is being replaced. After each kill the results file
-must be readable and hold complete load steps only; at the end every curve and state of every step must equal the uninterrupted run's to round-off.
+must be readable and hold complete load steps only; at the end every curve and state of every step must equal the uninterrupted
+run's to round-off.
 """
 
 from __future__ import annotations

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import re
 import signal
@@ -12,10 +13,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from rich.console import Console
 
 import isomortar
 from isomortar import cli
-from isomortar.solve.record import StepResult
+from isomortar.cli.progress import LiveProgress
+from isomortar.solve.record import IterationRecord, StepResult
 
 SMALL = ("bodies.block.mesh.elements=[3,3,2]", "stages.press.steps=3")
 README = Path(__file__).parents[2] / "README.md"
@@ -141,6 +144,20 @@ def test_ctrl_c_says_how_to_go_on(tmp_path: Path) -> None:
     isomortar.Results(tmp_path / "iron.h5").close()
 
 
+def test_live_progress_shows_where_the_run_is() -> None:
+    text = io.StringIO()
+    console = Console(file=text, width=80)
+    problem = isomortar.Scene.load("iron").problem()
+    progress = LiveProgress(problem, console)
+    progress.started(50, 12)
+    progress.iteration(12, 11.5, 2, IterationRecord(3, 1.5e-7, 9, 4, 5))
+    console.print(progress)
+    shown = text.getvalue()
+    for part in ("11/50", "elapsed 0:00", "drag: step 12/50", "load time 11.5", "augmentation 2", "iteration 3", "1.5e-07"):
+        assert part in shown
+    assert "active 9  stick 4  slip 5" in shown
+
+
 def test_step_that_cannot_be_cut_ends_with_what_was_done(invoke: Invoke) -> None:
     # Three small steps converge; the last one crushes the block.
     crush = "[[stages]]\nname = 'crush'\nsteps = 1\nmotions.top.translate = [0, 0, -9]\n"
@@ -188,6 +205,20 @@ def test_unknown_scene_and_results(invoke: Invoke) -> None:
     assert code == 1
     assert "nothing.h5 does not exist" in err
     assert invoke("fly")[0] == 2
+
+
+def test_output_must_be_writable(invoke: Invoke) -> None:
+    code, _, err = invoke("run", "press", "--output", ".")
+    assert code == 2
+    assert "directory" in err
+    Path("file").touch()
+    code, _, err = invoke("run", "press", *settings(SMALL), "--output", "file/results.h5")
+    assert code == 1
+    assert "file/results.h5 cannot be written" in err
+    assert invoke("run", "press", *settings(SMALL))[0] == 0
+    code, _, err = invoke("plot", "results/press.h5", "--output", "file/plots")
+    assert code == 1
+    assert "file/plots" in err
 
 
 def test_listings(invoke: Invoke) -> None:

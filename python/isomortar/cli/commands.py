@@ -33,6 +33,9 @@ def main() -> None:
     except IsomortarError as error:
         print(f"isomortar: {error}", file=sys.stderr)
         sys.exit(BAD_INPUT if isinstance(error, InputError) else FAILED)
+    except OSError as error:
+        print(f"isomortar: {error.strerror}: {error.filename}", file=sys.stderr)
+        sys.exit(FAILED)
 
 
 def _show_version(wanted: bool) -> None:
@@ -63,7 +66,9 @@ def run(
     overrides: Annotated[
         list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change one value of the scene; may be repeated.")
     ] = None,
-    output: Annotated[Path | None, typer.Option(help="Results file.", show_default="results/NAME.h5, NAME being the scene's")] = None,
+    output: Annotated[
+        Path | None, typer.Option(dir_okay=False, help="Results file.", show_default="results/NAME.h5, NAME being the scene's")
+    ] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Go on after the last load step that the results file holds.")] = False,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Begin anew where the results file exists.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress; warnings and errors still show.")] = False,
@@ -106,7 +111,9 @@ def run(
 @app.command()
 def plot(
     results: ResultsArgument,
-    output: Annotated[Path | None, typer.Option(help="Folder of the figures.", show_default="RESULTS-plots, beside the file")] = None,
+    output: Annotated[
+        Path | None, typer.Option(file_okay=False, help="Folder of the figures.", show_default="RESULTS-plots, beside the file")
+    ] = None,
 ) -> None:
     """Draw force curves, bodies and contact pressure (PNG; curves and pressure also as PDF), and print where they lie.
 
@@ -123,7 +130,9 @@ def plot(
 @app.command()
 def export(
     results: ResultsArgument,
-    output: Annotated[Path | None, typer.Option(help="Folder of the export.", show_default="RESULTS-paraview, beside the file")] = None,
+    output: Annotated[
+        Path | None, typer.Option(file_okay=False, help="Folder of the export.", show_default="RESULTS-paraview, beside the file")
+    ] = None,
 ) -> None:
     """Write fields for ParaView (Bezier cells of the true order and weights), and print the file to open.
 
