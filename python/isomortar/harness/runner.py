@@ -1,0 +1,153 @@
+"""Running cells: what is measured already is taken from the store, the rest goes to local processes or to a Dask cluster."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor, as_completed
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+from isomortar.errors import InputError
+from isomortar.harness.cases import TIERS, Case, Cell, Tier
+from isomortar.harness.compare import Check, Lookup, State, judge, worst
+from isomortar.harness.measurement import Measurement
+from isomortar.harness.store import Store
+from isomortar.harness.worker import Worker, task_of
+
+#: Starts the measurement of a task.
+Submit = Callable[[dict[str, Any]], "Future[Measurement]"]
+
+
+@dataclass(frozen=True)
+class Result:
+    """A cell, its measurement, the checks of its numbers; `fresh`: measured in this run."""
+
+    cell: Cell
+    measurement: Measurement
+    checks: tuple[Check, ...]
+    fresh: bool
+
+    @property
+    def state(self) -> State:
+        """The worst state of its checks."""
+        return worst(check.state for check in self.checks)
+
+
+def select(cases: Sequence[Case], tier: Tier, family: str | None = None, name: str | None = None) -> list[Cell]:
+    """Cells of a tier and of those below it, of one family or of one case or cell if asked.
+
+    Raises
+    ------
+    InputError
+        Nothing is left.
+    """
+    chosen = [c for c in cases if family in (None, c.family)]
+    if not chosen:
+        raise InputError(f"there is no family {family!r}; there are {', '.join(sorted({c.family for c in cases}))}", "family")
+    cells = [cell for c in chosen for cell in c.cells if name in (None, c.name, cell.name)]
+    if not cells:
+        raise InputError(f"there is no case {name!r}; there are {', '.join(c.name for c in chosen)}", "case")
+    within = [cell for cell in cells if TIERS.index(cell.tier) <= TIERS.index(tier)]
+    if not within:
+        raise InputError(f"no cell in tier {tier}; what was asked for is {', '.join(sorted({cell.tier for cell in cells}))}", "tier")
+    return within
+
+
+def run(
+    cells: Sequence[Cell],
+    store: Store,
+    lookup: Lookup,
+    submit: Submit,
+    fresh: bool = False,
+    finished: Callable[[Result], None] = lambda _: None,
+) -> list[Result]:
+    """Measure cells, judge them, and tell of each as it ends.
+
+    Parameters
+    ----------
+    cells : sequence of Cell
+    store : Store
+        Taken from and added to.
+    lookup : callable
+        Finds references.
+    submit : callable
+        Of `local_processes` or `dask_cluster`.
+    fresh : bool
+        Measure again what the store holds.
+    finished : callable
+        Called in this thread with every result.
+
+    Returns
+    -------
+    list of Result
+        In the order of `cells`.
+    """
+    results: dict[str, Result] = {}
+
+    def keep(cell: Cell, measurement: Measurement, is_fresh: bool) -> None:
+        results[cell.name] = Result(cell, measurement, tuple(judge(cell, measurement, lookup)), is_fresh)
+        finished(results[cell.name])
+
+    waiting = {}
+    for cell in cells:
+        known = None if fresh else store.get(cell)
+        if known:
+            keep(cell, known, False)
+        else:
+            waiting[submit(task_of(cell))] = cell
+    for future in as_completed(waiting):
+        cell, error = waiting[future], future.exception()
+        measurement = Measurement("crashed", message=f"{type(error).__name__}: {error}") if error else future.result()
+        store.put(cell, measurement)
+        keep(cell, measurement, True)
+    return [results[cell.name] for cell in cells]
+
+
+@contextmanager
+def local_processes(jobs: int) -> Iterator[Submit]:
+    """A pool of `jobs` measuring processes on this machine."""
+    if jobs < 1:
+        raise InputError(f"is {jobs}; at least one process is needed", "jobs")
+    mine = threading.local()
+    with ExitStack() as workers, ThreadPoolExecutor(jobs) as threads:
+
+        def measure(task: dict[str, Any]) -> Measurement:
+            if not hasattr(mine, "worker"):
+                mine.worker = workers.enter_context(Worker())
+            return mine.worker.measure(task)
+
+        try:
+            yield lambda task: threads.submit(measure, task)
+        except BaseException:
+            threads.shutdown(wait=False, cancel_futures=True)
+            workers.close()
+            raise
+
+
+@contextmanager
+def dask_cluster(address: str) -> Iterator[Submit]:
+    """Workers of a Dask cluster that sees the same files (a shared file system, the same environment).
+
+    Raises
+    ------
+    InputError
+        Dask is not installed, or nobody answers there.
+    """
+    try:
+        from distributed import Client  # optional
+    except ImportError:
+        raise InputError("Dask is not installed: pip install 'isomortar[dask]'", "dask") from None
+    try:
+        client = Client(address, timeout="10s")  # type: ignore[no-untyped-call]
+    except OSError as error:
+        raise InputError(f"no Dask scheduler answers at {address}: {error}", "dask") from None
+    with client, ThreadPoolExecutor(max_workers=64) as waiters:
+        yield lambda task: waiters.submit(client.submit(_measure_alone, task, pure=False).result)
+
+
+def _measure_alone(task: dict[str, Any]) -> Measurement:
+    """On a Dask worker: a cell in a process of its own, whose crash leaves the Dask worker alive."""
+    with Worker() as worker:
+        return worker.measure(task)

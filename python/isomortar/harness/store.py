@@ -1,0 +1,117 @@
+"""Measurements on disk, one file a cell, keyed by all that the numbers depend on."""
+
+from __future__ import annotations
+
+import ast
+import functools
+import hashlib
+import importlib.util
+import json
+import os
+import re
+import tempfile
+from collections.abc import Iterable, Iterator
+from dataclasses import asdict
+from pathlib import Path
+
+from isomortar.harness.cases import Cell
+from isomortar.harness.measurement import Measurement
+
+_PACKAGE = Path(__file__).parent.parent
+#: What of the package does not touch a case's numbers.
+_ASIDE = (_PACKAGE / "harness", _PACKAGE / "cli.py")  # of the harness what a case imports is added
+
+
+class Store:
+    """A folder of measurements. Files are written whole or not at all, so that a killed run can go on."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+
+    def get(self, cell: Cell) -> Measurement | None:
+        """The measurement of a cell as it is now; None when there is none, or when it did not end by itself."""
+        try:
+            content = json.loads(self._path(cell).read_text())
+            return Measurement(**content["measurement"])
+        except (OSError, ValueError, KeyError, TypeError):
+            return None
+
+    def put(self, cell: Cell, measurement: Measurement) -> None:
+        """Keep a measurement. Crashes and timeouts are not kept: the next run tries again."""
+        if measurement.ending in ("measured", "skipped", "raised"):
+            content = {"cell": cell.name, "settings": cell.settings, "program": program_hash(), "measurement": asdict(measurement)}
+            write_whole(self._path(cell), json.dumps(content, indent=1))
+
+    def _path(self, cell: Cell) -> Path:
+        return self.folder / cell.case.family / f"{cell.case.function.__name__}-{cell_key(cell)[:20]}.json"
+
+
+def write_whole(path: Path, text: str) -> None:
+    """Write a file so that a reader finds the old or the new one, never a part."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.NamedTemporaryFile("w", dir=path.parent, prefix=".", suffix=".part", delete=False) as part:
+        part.write(text)
+        part.flush()
+        os.fsync(part.fileno())
+    Path(part.name).replace(path)
+
+
+def cell_key(cell: Cell) -> str:
+    """Hash of all that a cell's numbers depend on: the program, its case's files, its settings."""
+    settings = json.dumps(cell.settings, sort_keys=True)
+    return _hash([program_hash().encode(), _case_hash(cell.case.path, cell.case.files).encode(), cell.name.encode(), settings.encode()])
+
+
+@functools.cache
+def kernel_hash() -> str:
+    """Hash of the compiled kernel and its extended-precision twin."""
+    return _hash(path.read_bytes() for path in _kernel_files())
+
+
+@functools.cache
+def program_hash() -> str:
+    """Hash of the kernel and of the package's own sources, bundled scenes included, without the harness."""
+    sources = sorted(p for p in _PACKAGE.rglob("*") if p.suffix in (".py", ".toml") and not any(p.is_relative_to(a) for a in _ASIDE))
+    return _hash([kernel_hash().encode(), *(path.read_bytes() for path in sources)])
+
+
+@functools.cache
+def compiler() -> str:
+    """The compiler that made the kernel, as it signed the binary."""
+    signature = re.search(rb"GCC: \([^)]*\) [\d.]+", next(_kernel_files()).read_bytes())
+    return signature.group().decode() if signature else "unknown"
+
+
+def _kernel_files() -> Iterator[Path]:
+    for module in ("isomortar._kernel", "isomortar._extended"):
+        found = importlib.util.find_spec(module)
+        if found and found.origin:
+            yield Path(found.origin)
+
+
+@functools.cache
+def _case_hash(path: Path, files: tuple[Path, ...]) -> str:
+    return _hash(file.read_bytes() for file in [*sorted(_with_imports(path, (path.parent.parent, _PACKAGE.parent), set())), *files])
+
+
+def _with_imports(path: Path, roots: tuple[Path, ...], seen: set[Path]) -> set[Path]:
+    """A file and the files below `roots` that it imports, and so on."""
+    seen.add(path)
+    for node in ast.walk(ast.parse(path.read_text())):
+        names: list[str] = []
+        if isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            names = [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)]
+        for imported in (root.joinpath(*name.split(".")).with_suffix(".py") for name in names for root in roots):
+            if imported.is_file() and imported not in seen:
+                _with_imports(imported, roots, seen)
+    return seen
+
+
+def _hash(parts: Iterable[bytes]) -> str:
+    """One hash of several contents; where one ends and the next begins counts."""
+    total = hashlib.sha256()
+    for part in parts:
+        total.update(hashlib.sha256(part).digest())
+    return total.hexdigest()
