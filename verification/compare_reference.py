@@ -14,8 +14,8 @@ Pressures: over the largest of that step and kind, or 1e-6 of that of the run; t
 largest pressure. Positions: over the diagonal. Final control values: largest difference over the largest value. Counts: must be equal.
 
 A missing key, a value that is not finite, another number of load steps, or a run that stops is a failure. A reference that says that
-it did not complete is followed for the load steps that it has; one that does not number its slave control points has them in ascending
-order. Exit code 1 if any scene fails.
+it did not complete is followed for the load steps that it has; its end lies somewhere after them and is not compared. One that does not
+number its slave control points has them in ascending order. Exit code 1 if any scene fails.
 """
 
 from __future__ import annotations
@@ -91,10 +91,11 @@ def compare(source: Path, settings: Iterable[str], folder: Path) -> Comparison:
         For the scene file and its geometry files.
     """
     reference = json.loads(source.with_suffix(".result.json").read_text(encoding="utf-8"))
+    completed = reference.get("completed", True)
     comparison = Comparison()
     simulation = Simulation(Scene.load(convert(source, folder), settings).problem())
     records = reference["records"]
-    if reference.get("completed", True) and len(records) != simulation.problem.total_steps:
+    if completed and len(records) != simulation.problem.total_steps:
         comparison.faults.append(f"the reference has {len(records)} load steps, the scene {simulation.problem.total_steps}")
     results = []
     try:
@@ -107,8 +108,9 @@ def compare(source: Path, settings: Iterable[str], folder: Path) -> Comparison:
     comparison.steps = len(results)
     diagonal = simulation.equilibrium.numbering.size
     compare_steps(comparison, results, records, diagonal)
-    slave_points = simulation.equilibrium.pairs[0].pair.slave.point if simulation.equilibrium.pairs else np.zeros(0, dtype=np.int32)
-    compare_end(comparison, results[-1], reference["final"], slave_points, diagonal)
+    if completed:
+        slave_points = np.concatenate([np.zeros(0, np.int32), *(pair.pair.slave.point for pair in simulation.equilibrium.pairs)])
+        compare_end(comparison, results[-1], reference["final"], slave_points, diagonal)
     return comparison
 
 
