@@ -19,7 +19,7 @@ from isomortar.harness.measurement import Measurement
 
 _PACKAGE = Path(__file__).parent.parent
 #: What of the package does not touch a case's numbers.
-_ASIDE = (_PACKAGE / "harness", _PACKAGE / "cli.py")  # of the harness what a case imports is added
+_ASIDE = (_PACKAGE / "harness", _PACKAGE / "cli", _PACKAGE / "__main__.py")  # of the harness what a case imports is added
 
 
 class Store:

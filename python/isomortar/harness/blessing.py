@@ -1,0 +1,103 @@
+"""Blessing: the numbers of a green run become the reference that later runs are compared with."""
+
+from __future__ import annotations
+
+import getpass
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+import numpy as np
+
+from isomortar.errors import InputError
+from isomortar.geometry.patch import FloatArray
+from isomortar.harness.cases import Case, Cell, Matches
+from isomortar.harness.compare import Lookup
+from isomortar.harness.measurement import curve_of
+from isomortar.harness.references import Kind, dataset_name, write_reference
+from isomortar.harness.runner import Result
+from isomortar.harness.store import compiler, kernel_hash, program_hash
+
+
+@dataclass(frozen=True)
+class Change:
+    """What blessing one number changes: new values, the old ones (None: there were none) and their uncertainty."""
+
+    cell: Cell
+    number: str
+    reference: str
+    new: FloatArray
+    old: FloatArray | None
+    old_uncertainty: float
+
+    @property
+    def difference(self) -> float:
+        """Largest absolute difference; NaN where there is nothing to compare with, infinity where shapes differ."""
+        if self.old is None:
+            return np.nan
+        return float(np.abs(self.new - self.old).max()) if self.new.shape == self.old.shape else np.inf
+
+
+def changes(results: Sequence[Result], lookup: Lookup) -> list[Change]:
+    """What blessing these results changes.
+
+    Raises
+    ------
+    InputError
+        The run is not green but for its references, or the case is compared with none.
+    """
+    found = []
+    for result in results:
+        claims = result.cell.case.bounds_of(result.cell.settings)
+        for check in result.checks:
+            claim = claims.get(check.name)
+            if not isinstance(claim, Matches):
+                if check.state != "passed":
+                    raise InputError(f"{check.state} ({check.found}): only a green run can be blessed", f"{result.cell.name}.{check.name}")
+                continue
+            if result.measurement.ending != "measured" or check.state == "not measured":
+                raise InputError("was not measured: only a green run can be blessed", f"{result.cell.name}.{check.name}")
+            value = result.measurement.numbers[check.name]
+            curve = curve_of(value)
+            new = np.asarray(value if curve is None else curve.y, float)
+            old = lookup(claim.reference, result.cell, check.name)
+            worth = float(old.uncertainty.max()) if old else np.nan
+            found.append(Change(result.cell, check.name, claim.reference, new, old.values if old else None, worth))
+    if not found:
+        raise InputError("is compared with no reference: none of its bounds is Matches", results[0].cell.case.name)
+    return found
+
+
+def bless(case: Case, found: Sequence[Change], folder: Path, reason: str, kind: Kind, uncertainty: float) -> list[Path]:
+    """Write the references that a case is compared with; `uncertainty` is relative to each number's largest value.
+
+    Returns
+    -------
+    list of Path
+        The folders written.
+    """
+    if not reason.strip():
+        raise InputError("say why the new numbers are right", "reason")
+    if not (np.isfinite(uncertainty) and uncertainty > 0):
+        raise InputError(f"is {uncertainty}; must be positive: no run is exact", "uncertainty")
+    written = []
+    for name in dict.fromkeys(change.reference for change in found):
+        mine = [change for change in found if change.reference == name]
+        datasets = {dataset_name(c.cell, c.number): (c.new, uncertainty * float(np.abs(c.new).max())) for c in mine}
+        record = {
+            "title": case.claim,
+            "class": kind,
+            "origin": f"This program: case {case.name}",
+            "made": f"isomortar bless {case.name}",
+            "uncertainty": f"{uncertainty:g} of the largest value of each number",
+            "reason": reason,
+            "who": getpass.getuser(),
+            "when": datetime.now(UTC).isoformat(timespec="seconds"),
+            "kernel": kernel_hash(),
+            "program": program_hash(),
+            "compiler": compiler(),
+        }
+        write_reference(folder / name, datasets, record)
+        written.append(folder / name)
+    return written

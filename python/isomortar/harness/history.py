@@ -1,0 +1,79 @@
+"""Results of earlier runs, one line of JSON a run, and the places where a number changed for good."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from isomortar.harness.runner import Result
+from isomortar.harness.store import program_hash
+
+#: Runs before a point that it is compared with.
+_BEFORE = 8
+
+
+@dataclass(frozen=True)
+class Run:
+    """One earlier run: when, of which program, and by cell name its state, seconds and checked values."""
+
+    when: str
+    program: str
+    cells: dict[str, dict[str, Any]]
+
+
+def append(path: Path, results: Sequence[Result]) -> None:
+    """Add a run to the history."""
+    cells = {
+        result.cell.name: {
+            "state": result.state,
+            "seconds": round(result.measurement.seconds, 3),
+            "values": {check.name: check.value for check in result.checks},
+        }
+        for result in results
+    }
+    line = json.dumps({"when": datetime.now(UTC).isoformat(timespec="seconds"), "program": program_hash()[:12], "cells": cells})
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with path.open("a") as file:
+        file.write(line + "\n")
+
+
+def read(path: Path, last: int = 60) -> list[Run]:
+    """The last runs, oldest first; a line that was cut short by a crash is left out."""
+    runs = []
+    for line in path.read_text().splitlines()[-last:] if path.exists() else []:
+        try:
+            runs.append(Run(**json.loads(line)))
+        except (ValueError, TypeError):
+            continue
+    return runs
+
+
+def values_of(runs: Sequence[Run], cell: str, number: str) -> list[float]:
+    """A number over the runs; NaN where it was not measured."""
+    return [float(run.cells.get(cell, {}).get("values", {}).get(number, np.nan)) for run in runs]
+
+
+def change_points(values: Sequence[float], noise: float = 0.02) -> list[int]:
+    """Indices at which a series went to another level.
+
+    A point counts when it is further from the median of the (up to eight) points since the last change than five of their robust
+    standard deviations, and than `noise` times that median, and the next point does not return. Values that are not finite are passed over.
+    """
+    finite = [(i, v) for i, v in enumerate(values) if np.isfinite(v)]
+    found: list[int] = []
+    begin = 0
+    for k in range(1, len(finite)):
+        before = np.array([v for _, v in finite[max(begin, k - _BEFORE) : k]])
+        middle = float(np.median(before))
+        width = max(5 * 1.4826 * float(np.median(np.abs(before - middle))), noise * abs(middle))
+        after = [v for _, v in finite[k : k + 2]]
+        if all(abs(v - middle) > width for v in after):
+            found.append(finite[k][0])
+            begin = k
+    return found
