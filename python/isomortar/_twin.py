@@ -1,0 +1,113 @@
+"""The only importer of the extended-precision twin: directional derivatives that measure the tangent's error.
+
+The twin is the same kernel in quadruple precision. It forms central differences of forces and control quantities itself, with
+a step so small that the difference's own error is far below double precision.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from isomortar import _extended
+from isomortar._bindings import FloatArray, Law, MasterArrays, PatchArrays, Projections, Response, SlaveArrays
+from isomortar.errors import KernelError
+
+#: Step of the differences, times the direction: errors of its square and of quadruple round-off over it, both about 1e-22.
+STEP = 1e-11
+
+
+@dataclass(frozen=True)
+class ContactChange:
+    """Directional derivatives of a contact pair.
+
+    Of the control quantities <R g>, <R xi>, <R (xi - xi_n)>, <R R a_ab>, of control pressures and tractions, and of the contact
+    forces with the pressures held and no tractions, with the tractions held and no pressures, and with those of the law.
+    """
+
+    gap: FloatArray
+    coordinates: FloatArray
+    slip: FloatArray
+    metric: FloatArray
+    pressure: FloatArray
+    traction: FloatArray
+    normal_forces: FloatArray
+    tangential_forces: FloatArray
+    forces: FloatArray
+
+
+def solid_difference(
+    patch: PatchArrays,
+    gauss: tuple[int, int, int],
+    bulk: float,
+    shear: float,
+    positions: FloatArray,
+    along: FloatArray,
+    reference: FloatArray,
+    step: float = STEP,
+) -> FloatArray:
+    """Derivative of one body's internal forces along a change of the positions, shape (control points, 3).
+
+    Raises
+    ------
+    KernelError
+        An element is folded.
+    """
+    forces, status, place = _extended.solid_difference(
+        patch.layout, patch.knots, patch.point, patch.weight, np.asarray(gauss, np.int32), bulk, shear, positions.T, along.T, step,
+        reference.T,
+    )  # fmt: skip
+    _check(status, place)
+    return np.ascontiguousarray(forces.T)
+
+
+def contact_difference(
+    slave: SlaveArrays,
+    master: MasterArrays,
+    positions: FloatArray,
+    along: FloatArray,
+    projections: Projections,
+    origin: FloatArray,
+    had: np.ndarray,
+    law: Law,
+    pressure_along: FloatArray,
+    traction_along: FloatArray,
+    held: Response,
+) -> tuple[ContactChange, int]:
+    """Derivatives of a contact pair along a change of positions and of the law's multipliers.
+
+    Parameters
+    ----------
+    along, pressure_along, traction_along : ndarray
+        The direction; shapes of positions, pressures and tractions.
+    projections : Projections
+        Those of the double-precision kernel: where the projections start, and the branch that is asked for.
+    origin, had : ndarray
+        Projections at the last converged load step.
+    held : Response
+        The multipliers of the parts with multipliers held, and the states that are asked for.
+
+    Returns
+    -------
+    ContactChange
+    int
+        Points and control points whose branch (projection, master element, state) is not the same on both sides of the difference.
+
+    Raises
+    ------
+    KernelError
+        A projection is lost.
+    """
+    *changes, switched, status, place = _extended.contact_difference(
+        slave.nodes.T, slave.basis.T, slave.area, slave.point, master.kind, master.knots, master.point, master.weight, positions.T,
+        along.T, STEP, projections.xi.T, projections.element.T, projections.found, origin.T, had, int(law.summed), law.penalties,
+        law.friction, law.pressure, law.traction.T, pressure_along, traction_along.T, held.pressure, held.traction.T, held.state,
+    )  # fmt: skip
+    _check(status, place)
+    return ContactChange(*[np.ascontiguousarray(change.T) for change in changes]), switched
+
+
+def _check(status: int, place: int) -> None:
+    if status:
+        raise KernelError(f"the extended-precision twin returned status {status} at {place - 1}", place - 1)
