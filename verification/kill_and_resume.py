@@ -36,9 +36,13 @@ ROUND_OFF = 1e-10
 
 
 def start(scene: str, settings: Sequence[str], output: Path) -> subprocess.Popen[bytes]:
-    """Start or resume a run in a process of its own."""
+    """Start or resume a run in a process of its own; on return it computes."""
     options = [word for setting in settings for word in ("--set", setting)]
-    return subprocess.Popen([sys.executable, "-m", "isomortar", "run", scene, *options, "--output", str(output), "--resume", "--quiet"])
+    command = [sys.executable, "-m", "isomortar", "run", scene, *options, "--output", str(output), "--resume"]
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+    assert process.stderr is not None
+    process.stderr.readline()
+    return process
 
 
 def wait_until(process: subprocess.Popen[bytes], moment: Callable[[], bool]) -> bool:
@@ -51,7 +55,7 @@ def wait_until(process: subprocess.Popen[bytes], moment: Callable[[], bool]) -> 
 
 
 def kill(process: subprocess.Popen[bytes], output: Path, seconds: float, while_writing: bool) -> bool:
-    """Kill the process some seconds after it went on computing, or at the first writing after that; false where it ended before."""
+    """Kill the computing process after some seconds, or at the first writing after that; false where it ended before."""
     began, copy = time.monotonic(), output.with_name(f".{output.name}.new")
     if not wait_until(process, lambda: time.monotonic() - began > seconds and (copy.exists() or not while_writing)):
         return False
@@ -84,8 +88,16 @@ def largest_difference(one: Path, other: Path) -> tuple[float, str]:
         quantities["positions"] = [np.array([r.step(int(n)).state.positions for n in r.steps]) for r in (a, b)]
     for name, (ours, theirs) in quantities.items():
         size = float(np.abs(theirs).max()) or 1.0
-        worst = max(worst, (float(np.abs(np.subtract(ours, theirs, dtype=np.float64)).max()) / size, name))
+        difference = float(np.abs(np.subtract(ours, theirs, dtype=np.float64)).max()) / size
+        worst = max(worst, (difference if np.isfinite(difference) else np.inf, name))
     return worst
+
+
+def finished(process: subprocess.Popen[bytes], killed: Path, whole: Path) -> tuple[float, str]:
+    """The largest difference once the resumed run has come to its end."""
+    if process.wait():
+        sys.exit("the resumed run failed")
+    return largest_difference(killed, whole)
 
 
 def main() -> None:
@@ -101,21 +113,30 @@ def main() -> None:
 
     with TemporaryDirectory() as folder:
         whole, killed = Path(folder) / "whole.h5", Path(folder) / "killed.h5"
+        uninterrupted = start(options.scene, settings, whole)
         began = time.monotonic()
-        if start(options.scene, settings, whole).wait():
+        if uninterrupted.wait():
             sys.exit("the uninterrupted run failed")
         duration = time.monotonic() - began
         print(f"uninterrupted: {recorded_steps(whole)} load steps in {duration:.1f} s", flush=True)
-        for number in range(1, options.kills + 1):
-            writing = number % 2 == 0
-            seconds = 1.0 + chance.uniform(0.0, 1.5) * duration / options.kills
-            if not kill(start(options.scene, settings, killed), killed, seconds, writing):
-                sys.exit(f"the run ended before kill {number}: take a longer scene or fewer kills")
-            moment = "while writing" if writing else "at random"
-            print(f"kill {number:2d} after {seconds:4.1f} s, {moment:<13}: {recorded_steps(killed)} load steps are complete", flush=True)
-        if start(options.scene, settings, killed).wait():
-            sys.exit("the resumed run failed")
-        difference, place = largest_difference(killed, whole)
+        number = 0
+        differences = []
+        while number < options.kills:
+            writing = number % 2 == 1
+            seconds = chance.uniform(0.0, 1.8) * duration / options.kills
+            process = start(options.scene, settings, killed)
+            if kill(process, killed, seconds, writing):
+                number += 1
+                moment = "while writing" if writing else "at random"
+                print(
+                    f"kill {number:2d} after {seconds:4.1f} s, {moment:<13}: {recorded_steps(killed)} load steps are complete", flush=True
+                )
+            else:
+                differences.append(finished(process, killed, whole))
+                killed.unlink()
+                print("the run has come to its end before the next kill; another one begins")
+        differences.append(finished(start(options.scene, settings, killed), killed, whole))
+        difference, place = max(differences)
     print(f"largest relative difference over all steps: {difference:.1e} ({place}); allowed {ROUND_OFF:.0e}")
     sys.exit(0 if difference <= ROUND_OFF else 1)
 
