@@ -189,11 +189,9 @@ class PairTangent:
             start.projected, law, np.zeros_like(law.pressure) if pressure_along is None else pressure_along,
             np.zeros_like(law.traction) if traction_along is None else traction_along, self.response,
         )  # fmt: skip
-        if change.switched:
+        if switched:
             name = self.pair.pair.contact.name
-            raise KernelError(
-                f"contact {name!r}: {change.switched} branches switch within the step of the differences; there is no tangent"
-            )
+            raise KernelError(f"contact {name!r}: {switched} branches switch within the step of the differences; there is no tangent")
         return change
 
     def along_positions(self, along: FloatArray) -> tuple[list[Sample], FloatArray, FloatArray]:
