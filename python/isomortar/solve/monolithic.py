@@ -20,7 +20,7 @@ from isomortar.solve.record import AugmentationRecord, IterationRecord, Observer
 SLIP_MARGIN = 1e-6
 #: How often the predictor is solved again with reversed slips held.
 MAX_REVERSALS = 2
-#: Iterations after which a set of states that returns is taken for a cycle.
+#: Iterations that find the active set: before, states may return and the merit may grow without being halved.
 CYCLE_FREE = 5
 #: How often an update is halved.
 MAX_HALVINGS = 5
@@ -210,7 +210,7 @@ class Monolithic:
                 reason = "folded element" if isinstance(error, FoldedElementError) else "lost projection"
             else:
                 cycles = following.states != iterate.states and following.states in seen and halving == 0
-                doubles = iteration > 0 and following.merit > 2.0 * iterate.merit
+                doubles = iteration >= CYCLE_FREE and following.merit > 2.0 * iterate.merit
                 if last or iteration == 0 or not (cycles or doubles):
                     break
                 reason = "cycle" if cycles else "merit"
