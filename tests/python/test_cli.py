@@ -111,7 +111,7 @@ class Interrupts(isomortar.Observer):
     def __init__(self, step: int) -> None:
         self.step = step
 
-    def iteration(self, step: int, time: float, augmentation: int, record: object) -> None:  # noqa: ARG002
+    def iteration(self, step: int, time: float, augmentation: int, record: object) -> None:
         if step == self.step and getattr(record, "iteration", 0) == 2:
             raise KeyboardInterrupt
 
@@ -197,6 +197,16 @@ def test_folded_element_leaves_old_results(invoke: Invoke) -> None:
     assert Path("results/press.h5").read_bytes() == before
 
 
+def test_tangent_is_checked_part_by_part(invoke: Invoke) -> None:
+    code, out, _ = invoke("check-tangent", "press", *settings(SMALL), "--step", "2")
+    assert code == 0
+    assert "load step 2" in out
+    assert all(re.search(rf"{part}.*passes", out) for part in ("solid", "stick", "whole", "symmetry"))
+    code, _, err = invoke("check-tangent", "press", *settings(SMALL), "--step", "4")
+    assert code == 2
+    assert "step 4" in err
+
+
 def test_unknown_scene_and_results(invoke: Invoke) -> None:
     code, _, err = invoke("run", "presss")
     assert code == 2
@@ -231,7 +241,7 @@ def test_listings(invoke: Invoke) -> None:
     assert invoke("--version")[1] == f"isomortar {isomortar.__version__}\n"
 
 
-@pytest.mark.parametrize("command", ["run", "plot", "export", "schema"])
+@pytest.mark.parametrize("command", ["run", "plot", "export", "check-tangent", "schema"])
 def test_help_shows_an_example(invoke: Invoke, command: str) -> None:
     code, out, _ = invoke(command, "--help")
     assert code == 0

@@ -23,6 +23,8 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
+SceneArgument = Annotated[str, typer.Argument(metavar="SCENE", help="A scene file (.toml), or a bundled scene by its name.")]
+Overrides = Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change one value of the scene; may be repeated.")]
 ResultsArgument = Annotated[Path, typer.Argument(metavar="RESULTS", help="Results file of `isomortar run`.")]
 
 
@@ -62,10 +64,8 @@ def isomortar_command(
 
 @app.command()
 def run(
-    scene: Annotated[str, typer.Argument(metavar="SCENE", help="A scene file (.toml), or a bundled scene by its name.")],
-    overrides: Annotated[
-        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change one value of the scene; may be repeated.")
-    ] = None,
+    scene: SceneArgument,
+    overrides: Overrides = None,
     output: Annotated[
         Path | None, typer.Option(dir_okay=False, help="Results file.", show_default="results/NAME.h5, NAME being the scene's")
     ] = None,
@@ -139,6 +139,27 @@ def export(
     For example: `isomortar export results/iron.h5`, then `paraview results/iron-paraview/iron.pvd`
     """
     print(isomortar.export(results, output or _beside(results, "paraview")))
+
+
+@app.command()
+def check_tangent(
+    scene: SceneArgument,
+    overrides: Overrides = None,
+    step: Annotated[int | None, typer.Option(min=1, help="Load step.", show_default="mid-run")] = None,
+) -> None:
+    """Measure the tangent's error, part by part, at the states that Newton's method visits in a load step.
+
+    The reference is the same kernel in extended precision. Runs the scene up to the step; exit code 1 where a part is above its bound.
+
+    For example: `isomortar check-tangent iron --step 20`
+    """
+    from rich.console import Console
+
+    from isomortar.harness.tangents import check_tangent
+
+    report = check_tangent(isomortar.Scene.load(scene, overrides or ()).problem(), step)
+    Console().print(report)
+    raise typer.Exit(0 if report.passes else FAILED)
 
 
 @app.command()
