@@ -103,7 +103,7 @@ class Monolithic:
         raise ConvergenceError(
             f"Newton's method stopped at a relative residual of {iterate.residual:.2e} and "
             f"{max(iterate.gap_pressure, iterate.gap_traction):.2e} off the contact conditions after {iteration} iterations"
-            + _toggling(seen, visited)
+            + _toggling(seen, visited, self._settings.slip_sum == "paper")
         )
 
     def _first(self, start: State, stiffness: float) -> Iterate:
@@ -227,12 +227,13 @@ class Monolithic:
         return Increment(iterate.balance, (record,), (observed_order([r.residual for r in log]),))
 
 
-def _toggling(seen: Sequence[bytes], visited: Sequence[IntArray]) -> str:
+def _toggling(seen: Sequence[bytes], visited: Sequence[IntArray], summed: bool) -> str:
     """What changed to and fro in the last iterations, as a part of a sentence."""
     states = np.array([np.frombuffer(s, dtype=np.int32) for s in seen[-6:]])
     points = np.flatnonzero(np.any(states != states[0], axis=0))
     if points.size:
-        return f"; slave control points {_first_few(points)} change their states from iteration to iteration"
+        hint = ' (solver.slip_sum = "local" has no jump where a neighbour becomes active)' if summed else ""
+        return f"; slave control points {_first_few(points)} change their states from iteration to iteration{hint}"
     elements = np.array(visited[-6:])
     crossing = np.flatnonzero(np.any(elements != elements[0], axis=(0, 2)))
     if crossing.size:
