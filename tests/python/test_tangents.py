@@ -1,0 +1,190 @@
+"""The tangent against the extended-precision twin, and the check itself: it sees an error of 1e-6 in any part."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from isomortar import _twin
+from isomortar.errors import InputError, KernelError
+from isomortar.harness.tangents import PairTangent, TangentReport, check_tangent, measure
+from isomortar.harness.visits import Visit, visited_states
+from isomortar.model.entities import Problem
+from isomortar.model.solid import Solid
+from isomortar.scene import Scene
+from isomortar.solve.contact import Blocks, PairMechanics
+from isomortar.solve.equilibrium import Equilibrium
+from isomortar.solve.timing import Ledger
+
+#: A bowl pressed onto the side of a ring and turned: curved, rational master, orders 1 to 3, stick and slip at once.
+CURVED = """
+format = 1
+name = "curved"
+
+[bodies.block]
+geometry = { kind = "bowl", centre = [0.25, 0.02], half_width = 0.1, bottom = 0.46, rise = 0.02, top = 0.7 }
+mesh = { order = [2, 3, 1], elements = [3, 2, 1] }
+
+[bodies.ring]
+geometry = { kind = "ring", centre = [0, 0, 0], inner = 0.3, outer = 0.5, width = 0.4 }
+mesh = { order = [3, 1, 2], elements = [12, 1, 2] }
+
+[contacts.interface]
+slave = "block.w0"
+master = "ring.v1"
+friction = 0.4
+
+[supports.top]
+face = "block.w1"
+
+[supports.hub]
+face = "ring.v0"
+
+[[stages]]
+name = "press"
+steps = 3
+motions.top = { translate = [-0.04, 0, -0.1] }
+
+[[stages]]
+name = "turn"
+steps = 2
+motions.top = { translate = [0.02, 0.01, -0.01], rotate = 5 }
+"""
+
+STEP = 4
+
+
+def curved(*overrides: str) -> Problem:
+    return Scene.from_toml(CURVED, overrides=overrides).problem()
+
+
+@pytest.fixture(scope="module")
+def problem() -> Problem:
+    return curved()
+
+
+@pytest.fixture(scope="module")
+def visits(problem: Problem) -> list[Visit]:
+    return visited_states(problem, STEP)
+
+
+def errors(report: TangentReport) -> dict[str, float]:
+    return {row.part: row.error for row in report.rows}
+
+
+@pytest.mark.parametrize("slip_sum", ["local", "paper"])
+def test_curved_pair_with_friction(slip_sum: str) -> None:
+    report = check_tangent(curved(f"solver.slip_sum={slip_sum}"), STEP, directions=2)
+    assert report.passes, report
+    assert len(report.active) == 3
+    assert min(report.stick) > 0
+    assert min(report.slip) > 0
+    assert {"solid", "normal, geometric", "tangential, geometric", "stick", "slip", "multipliers", "symmetry"} <= set(errors(report))
+
+
+def test_body_without_contact() -> None:
+    text = """
+        format = 1
+        bodies.block.geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }
+        supports.base.face = "block.w0"
+        supports.top.face = "block.w1"
+        stages = [{ name = "pull", steps = 1, motions.top.translate = [0.2, 0, 0.3] }]
+    """
+    report = check_tangent(Scene.from_toml(text).problem(), directions=1)
+    assert report.passes, report
+    assert set(errors(report)) == {"solid", "whole", "symmetry"}
+
+
+def test_visited_states_are_apart_and_end_in_the_converged_one(visits: list[Visit]) -> None:
+    distances = [np.abs(visit.positions - visits[-1].positions).max() for visit in visits]
+    assert distances[0] > 1e-6 > distances[1] > distances[2] == 0.0
+    assert all(np.abs(visit.pairs[0].law.pressure).max() > 0 for visit in visits)
+    assert not any(visit.pairs[0].law.forgiving or visit.pairs[0].law.slip_margin for visit in visits)
+
+
+def test_step_that_does_not_exist(problem: Problem) -> None:
+    with pytest.raises(InputError, match="load step 6 does not exist; the scene has steps 1 to 5"):
+        check_tangent(problem, 6)
+
+
+def _scaled_rows(kind: int) -> Callable[[Blocks], Blocks]:
+    def change(blocks: Blocks) -> Blocks:
+        rows = blocks.rows.copy()
+        rows[:, kind] *= 1.0 + 1e-6
+        return replace(blocks, rows=rows)
+
+    return change
+
+
+def _scaled_multiplier(multiplier: int) -> Callable[[Blocks], Blocks]:
+    def change(blocks: Blocks) -> Blocks:
+        changes = blocks.changes.copy()
+        changes[:, multiplier] *= 1.0 + 1e-6
+        return replace(blocks, changes=changes)
+
+    return change
+
+
+def _one_block(blocks: Blocks) -> Blocks:
+    geometric = blocks.geometric.copy()
+    geometric[np.argmax(np.abs(geometric).sum(axis=(1, 2)))] *= 1.0 + 1e-6
+    return replace(blocks, geometric=geometric)
+
+
+def _no_geometric(blocks: Blocks) -> Blocks:
+    return replace(blocks, geometric=np.zeros_like(blocks.geometric))
+
+
+@pytest.mark.parametrize(
+    ("change", "part"),
+    [
+        (_scaled_rows(0), "normal, gap"),
+        (_scaled_rows(1), "tangential, projection"),
+        (_scaled_rows(4), "tangential, slip increment"),
+        (_scaled_rows(6), "tangential, metric"),
+        (_scaled_multiplier(0), "normal, pressure"),
+        (_scaled_multiplier(1), "stick"),
+        (_scaled_multiplier(2), "slip"),
+        (_one_block, "normal, geometric"),
+        (_one_block, "tangential, geometric"),
+        (_no_geometric, "normal, geometric"),
+        (_no_geometric, "tangential, geometric"),
+        (_no_geometric, "whole"),
+    ],
+)
+def test_check_sees_a_wrong_part(
+    problem: Problem, visits: list[Visit], monkeypatch: pytest.MonkeyPatch, change: Callable[[Blocks], Blocks], part: str
+) -> None:
+    right = PairMechanics.blocks
+    monkeypatch.setattr(PairMechanics, "blocks", lambda *arguments: change(right(*arguments)))
+    monkeypatch.setattr(_twin, "solid_difference", lambda *arguments: np.zeros_like(arguments[5]))  # slow, and not what is tested
+    report = measure(problem, STEP, visits[:1], directions=1)
+    assert not report.passes
+    assert errors(report)[part] > 1e-11
+
+
+def test_check_sees_a_wrong_solid(problem: Problem, visits: list[Visit], monkeypatch: pytest.MonkeyPatch) -> None:
+    right = Solid.forces_and_tangent
+
+    def wrong(self: Solid, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        forces, tangent = right(self, positions)
+        tangent = tangent.copy()
+        tangent[len(tangent) // 2, 0, 1] *= 1.0 + 1e-6
+        return forces, tangent
+
+    monkeypatch.setattr(Solid, "forces_and_tangent", wrong)
+    report = errors(measure(problem, STEP, visits[:1], directions=1))
+    assert report["solid"] > 1e-11
+    assert report["symmetry"] > 1e-13
+
+
+def test_state_between_stick_and_slip_has_no_tangent(problem: Problem, visits: list[Visit]) -> None:
+    equilibrium = Equilibrium(problem, Ledger())
+    tangent = PairTangent(equilibrium.pairs[0], visits[-1].positions, visits[-1].pairs[0])
+    flipped = np.where(tangent.response.state == 2, 1, tangent.response.state).astype(np.int32)
+    tangent.response = replace(tangent.response, state=flipped)
+    with pytest.raises(KernelError, match="branches switch"):
+        tangent.twin(np.zeros_like(visits[-1].positions))
