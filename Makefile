@@ -1,6 +1,6 @@
 # What a person does with a working copy. `make` alone prints this list.
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test lint format
+.PHONY: help setup demo verify test lint format
 
 # One BLAS thread is as fast as two on systems of this size; the cores go to cases.
 export OPENBLAS_NUM_THREADS ?= 1
@@ -20,6 +20,9 @@ demo: $(READY) ## run the ironing scene; curve and picture go to results/
 	$(BIN)/isomortar run iron --overwrite
 	@printf '==> Curves and pictures:\n'
 	$(BIN)/isomortar plot results/iron.h5
+
+verify: $(READY) ## run the verification cases of the gate; the report goes to results/verification/
+	$(BIN)/isomortar verify
 
 test: lint ## linters, then all tests
 	$(BIN)/python -m pytest

@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 import isomortar
+from isomortar.cli.verification import bless, verify
 from isomortar.errors import ConvergenceError, InputError, IsomortarError
 
 #: Exit codes; 130 is what shells expect of a program that Ctrl-C ended.
@@ -181,6 +182,10 @@ def schema() -> None:
     from isomortar.scene import json_schema
 
     print(json.dumps(json_schema(), indent=2))
+
+
+app.command()(verify)
+app.command()(bless)
 
 
 def _beside(results: Path, kind: str) -> Path:

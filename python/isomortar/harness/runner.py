@@ -55,54 +55,52 @@ def select(cases: Sequence[Case], tier: Tier, family: str | None = None, name: s
     return within
 
 
-def run(
-    cells: Sequence[Cell],
-    store: Store,
-    lookup: Lookup,
-    submit: Submit,
-    fresh: bool = False,
-    finished: Callable[[Result], None] = lambda _: None,
-) -> list[Result]:
-    """Measure cells, judge them, and tell of each as it ends.
+@dataclass(frozen=True)
+class Measuring:
+    """A cell that is being measured, or was already (then it is not `fresh`)."""
 
-    Parameters
-    ----------
-    cells : sequence of Cell
-    store : Store
-        Taken from and added to.
-    lookup : callable
-        Finds references.
-    submit : callable
-        Of `local_processes` or `dask_cluster`.
-    fresh : bool
-        Measure again what the store holds.
-    finished : callable
-        Called in this thread with every result.
+    cell: Cell
+    future: Future[Measurement]
+    fresh: bool
+
+    def result(self, lookup: Lookup, store: Store) -> Result:
+        """Wait for the measurement, keep it and judge it. Whatever goes wrong with it is a failure of this cell."""
+        error = self.future.exception()
+        measurement = Measurement("crashed", message=f"{type(error).__name__}: {error}") if error else self.future.result()
+        if self.fresh:
+            store.put(self.cell, measurement)
+        return Result(self.cell, measurement, tuple(judge(self.cell, measurement, lookup)), self.fresh)
+
+
+def start(cells: Sequence[Cell], store: Store, submit: Submit, fresh: bool = False) -> list[Measuring]:
+    """Begin to measure cells, `fresh` also those that the store holds."""
+    started = []
+    for cell in cells:
+        known = None if fresh else store.get(cell)
+        future: Future[Measurement] = Future()
+        if known:
+            future.set_result(known)
+        else:
+            future = submit(task_of(cell))
+        started.append(Measuring(cell, future, known is None))
+    return started
+
+
+def run(started: Sequence[Measuring], lookup: Lookup, store: Store, finished: Callable[[Result], None] = lambda _: None) -> list[Result]:
+    """Wait for all cells; `finished` is called in this thread with every result as it comes.
 
     Returns
     -------
     list of Result
-        In the order of `cells`.
+        In the order of `started`.
     """
+    by_future = {measuring.future: measuring for measuring in started}
     results: dict[str, Result] = {}
-
-    def keep(cell: Cell, measurement: Measurement, is_fresh: bool) -> None:
-        results[cell.name] = Result(cell, measurement, tuple(judge(cell, measurement, lookup)), is_fresh)
-        finished(results[cell.name])
-
-    waiting = {}
-    for cell in cells:
-        known = None if fresh else store.get(cell)
-        if known:
-            keep(cell, known, False)
-        else:
-            waiting[submit(task_of(cell))] = cell
-    for future in as_completed(waiting):
-        cell, error = waiting[future], future.exception()
-        measurement = Measurement("crashed", message=f"{type(error).__name__}: {error}") if error else future.result()
-        store.put(cell, measurement)
-        keep(cell, measurement, True)
-    return [results[cell.name] for cell in cells]
+    for future in as_completed(by_future):
+        result = by_future[future].result(lookup, store)
+        results[result.cell.name] = result
+        finished(result)
+    return [results[measuring.cell.name] for measuring in started]
 
 
 @contextmanager

@@ -1,0 +1,154 @@
+"""``isomortar verify`` and ``isomortar bless``."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections import Counter
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
+from datetime import datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+if TYPE_CHECKING:
+    from isomortar.harness import blessing
+    from isomortar.harness.cases import Cell
+    from isomortar.harness.compare import Lookup
+    from isomortar.harness.runner import Result, Submit
+
+FAILED = 1
+
+CasesOption = Annotated[Path, typer.Option("--cases", file_okay=False, help="Folder of families of cases.")]
+ReferencesOption = Annotated[Path, typer.Option("--references", file_okay=False, help="Folder of references.")]
+ResultsOption = Annotated[Path, typer.Option("--results", file_okay=False, help="Folder of measurements, history and report.")]
+JobsOption = Annotated[int, typer.Option("-j", "--jobs", min=1, help="Cells measured at the same time.", show_default="one a core")]
+DaskOption = Annotated[str | None, typer.Option("--dask", metavar="ADDRESS", help="Measure on a Dask cluster: tcp://HOST:PORT.")]
+
+CORES = os.cpu_count() or 1
+CASES, REFERENCES, RESULTS = Path("verification"), Path("reference_data"), Path("results/verification")
+
+
+def verify(
+    tier: Annotated[str, typer.Option(help="gate (seconds a cell), nightly (minutes) or weekly; each holds those before it.")] = "gate",
+    family: Annotated[str | None, typer.Option(help="Only this family.")] = None,
+    case: Annotated[str | None, typer.Option(help="Only this case, FAMILY/NAME, or one cell of it, FAMILY/NAME[SETTINGS].")] = None,
+    jobs: JobsOption = CORES,
+    fresh: Annotated[bool, typer.Option("--fresh", help="Measure again what did not change since it was measured.")] = False,
+    report: Annotated[
+        Path | None,
+        typer.Option(dir_okay=False, help="The HTML page; .xml (JUnit) and .json go beside it.", show_default="RESULTS/report.html"),
+    ] = None,
+    dask: DaskOption = None,
+    cases: CasesOption = CASES,
+    references: ReferencesOption = REFERENCES,
+    results: ResultsOption = RESULTS,
+) -> None:
+    """Run verification cases, judge their numbers, and write the report.
+
+    What was measured with the same program, case and settings is not measured again; a run that was killed goes on where it was.
+    Exit code 0 only if every cell passes: a number that is missing, not finite, skipped or without its reference does not pass.
+
+    For example:
+
+    - `isomortar verify`
+    - `isomortar verify --tier nightly -j 2`
+    - `isomortar verify --family solid --fresh`
+    - `isomortar verify --case "basis/non_negative[kind=N2]"`
+    """
+    from isomortar.errors import InputError
+    from isomortar.harness import history
+    from isomortar.harness import report as reports
+    from isomortar.harness.cases import TIERS
+    from isomortar.harness.collection import collect
+    from isomortar.harness.references import finder
+    from isomortar.harness.runner import select
+
+    if tier not in TIERS:
+        raise InputError(f"is {tier!r}; allowed: {', '.join(TIERS)}", "tier")
+    page = report or results / "report.html"
+    cells = select(collect(cases), next(t for t in TIERS if t == tier), family, case)
+    started, clock = datetime.now().astimezone(), time.perf_counter()
+    measured = _measured(cells, results, finder(references), _submitter(jobs, dask), fresh)
+    history.append(results / "history.jsonl", measured)
+    context = reports.Context(tier, time.perf_counter() - clock, started, history.read(results / "history.jsonl"))
+    reports.write(page, measured, context)
+    counts = Counter(result.state for result in measured)
+    print(", ".join(f"{count} {state}" for state, count in counts.items()))
+    print(page)
+    if set(counts) != {"passed"}:
+        raise typer.Exit(FAILED)
+
+
+def bless(
+    case: Annotated[str, typer.Argument(metavar="CASE", help="The case, FAMILY/NAME.")],
+    reason: Annotated[str, typer.Option(help="Why the new numbers are right; goes into the record.")],
+    kind: Annotated[str, typer.Option("--class", help="What the reference is worth: self (shows change only) or over-refined.")] = "self",
+    uncertainty: Annotated[float, typer.Option(help="Of each number, relative to its largest value.")] = 1e-9,
+    yes: Annotated[bool, typer.Option("--yes", help="Do not ask.")] = False,
+    jobs: JobsOption = CORES,
+    cases: CasesOption = CASES,
+    references: ReferencesOption = REFERENCES,
+    results: ResultsOption = RESULTS,
+) -> None:
+    """Make the numbers of a case the reference that it is compared with, after showing what that changes.
+
+    For example: `isomortar bless paper/ironing --reason "Exact tangent of the slip rows"`
+    """
+    from isomortar.errors import InputError
+    from isomortar.harness import blessing
+    from isomortar.harness.collection import find
+    from isomortar.harness.references import finder
+
+    if kind not in ("self", "over-refined"):
+        raise InputError(f"is {kind!r}; a run of this program is self or over-refined", "class")
+    chosen, lookup = find(cases, case), finder(references)
+    measured = _measured(chosen.cells, results, lookup, _submitter(jobs, None), False)
+    found = blessing.changes(measured, lookup)
+    Console().print(_table(found))
+    if not yes:
+        typer.confirm("Make these the reference?", abort=True)
+    for path in blessing.bless(chosen, found, references, reason, "self" if kind == "self" else "over-refined", uncertainty):
+        print(path)
+
+
+def _submitter(jobs: int, dask: str | None) -> AbstractContextManager[Submit]:
+    from isomortar.harness.runner import dask_cluster, local_processes
+
+    return dask_cluster(dask) if dask else local_processes(jobs)
+
+
+def _measured(cells: Sequence[Cell], folder: Path, lookup: Lookup, submitter: AbstractContextManager[Submit], fresh: bool) -> list[Result]:
+    """Measure with a progress bar on stderr, under which whatever does not pass is told of at once."""
+    from isomortar.harness.report import sentence
+    from isomortar.harness.runner import run, start
+    from isomortar.harness.store import Store
+
+    console = Console(stderr=True, highlight=False)
+    columns = (BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TextColumn("{task.description}", markup=False))
+    with Progress(*columns, console=console, transient=True) as progress, submitter as submit:
+        bar = progress.add_task("", total=len(cells))
+
+        def finished(result: Result) -> None:
+            progress.update(bar, advance=1, description=result.cell.name)
+            if result.state != "passed":
+                lines = [result.cell.name, *(f"  {sentence(check)}" for check in result.checks if check.state != "passed")]
+                console.print("\n".join(lines), markup=False, style="red", soft_wrap=True)
+
+        store = Store(folder / "cells")
+        return run(start(cells, store, submit, fresh), lookup, store, finished)
+
+
+def _table(found: Sequence[blessing.Change]) -> Table:
+    """What a blessing changes, as numbers."""
+    table = Table("cell", "number", "values", "largest, old", "largest, new", "difference", "old uncertainty")
+    for change in found:
+        old = "none" if change.old is None else f"{abs(change.old).max():.6g}"
+        new, difference, worth = (f"{v:.6g}" for v in (abs(change.new).max(), change.difference, change.old_uncertainty))
+        table.add_row(change.cell.name, change.number, str(change.new.size), old, new, difference, worth)
+    return table

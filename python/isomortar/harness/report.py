@@ -1,0 +1,228 @@
+"""The report of a run: one HTML page that needs nothing else, JUnit XML for machines that know it, JSON for all others."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from datetime import datetime
+from itertools import groupby
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import jinja2
+import numpy as np
+
+from isomortar.harness import history, svg
+from isomortar.harness.cases import Order
+from isomortar.harness.compare import STATES, Check
+from isomortar.harness.measurement import convergence_of, curve_of
+from isomortar.harness.runner import Result
+from isomortar.harness.store import compiler, kernel_hash, program_hash, write_whole
+
+
+@dataclass(frozen=True)
+class Context:
+    """What was run: tier, seconds of the whole, time of its start, and the runs before (the present one the last)."""
+
+    tier: str
+    seconds: float
+    started: datetime
+    runs: Sequence[history.Run]
+
+
+def write(path: Path, results: Sequence[Result], context: Context) -> None:
+    """Write the page, and beside it the same as ``.xml`` (JUnit) and ``.json``."""
+    write_whole(path, page(results, context))
+    write_whole(path.with_suffix(".xml"), junit(results, context))
+    write_whole(path.with_suffix(".json"), json.dumps(_plain(as_data(results, context)), indent=1))
+
+
+def as_data(results: Sequence[Result], context: Context) -> dict[str, Any]:
+    """All of a run as plain data."""
+    return {
+        "started": context.started.isoformat(timespec="seconds"),
+        "tier": context.tier,
+        "seconds": context.seconds,
+        "program": program_hash(),
+        "kernel": kernel_hash(),
+        "compiler": compiler(),
+        "states": dict(Counter(result.state for result in results)),
+        "cells": [
+            {
+                "name": result.cell.name,
+                "claim": result.cell.case.claim,
+                "tier": result.cell.tier,
+                "settings": result.cell.settings,
+                "state": result.state,
+                "checks": [asdict(check) for check in result.checks],
+                "measurement": asdict(result.measurement),
+            }
+            for result in results
+        ],
+    }
+
+
+def junit(results: Sequence[Result], context: Context) -> str:
+    """JUnit XML: a suite a family, a test case a cell; only `passed` is a success."""
+    root = ElementTree.Element("testsuites", name="isomortar verify", time=f"{context.seconds:.3f}")
+    for family, group in _by_family(results):
+        bad = [r for r in group if r.state != "passed"]
+        suite = ElementTree.SubElement(root, "testsuite", name=family, tests=str(len(group)), failures=str(len(bad)))
+        for result in group:
+            name, seconds = result.cell.name, f"{result.measurement.seconds:.3f}"
+            item = ElementTree.SubElement(suite, "testcase", classname=family, name=name, time=seconds)
+            if result.state != "passed":
+                failure = ElementTree.SubElement(item, "failure", message=result.state)
+                failure.text = "\n".join([*(sentence(check) for check in _bad(result)), result.measurement.message])
+    ElementTree.indent(root)
+    return ElementTree.tostring(root, encoding="unicode", xml_declaration=True)
+
+
+def sentence(check: Check) -> str:
+    """A check in one line."""
+    return f"{check.name}: {check.state}: {number(check.value)}, limit {check.limit}" + (f"; {check.found}" if check.found else "")
+
+
+def number(value: float) -> str:
+    """A number as people read it; a dash where there is none."""
+    return f"{value:.4g}" if math.isfinite(value) else "-"
+
+
+def page(results: Sequence[Result], context: Context) -> str:
+    """The HTML page."""
+    loader = jinja2.FileSystemLoader(Path(__file__).parent)
+    environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined)
+    environment.filters["number"] = number
+    environment.filters["duration"] = _duration
+    counts = Counter(result.state for result in results)
+    return environment.get_template("report.html").render(
+        context=context,
+        counts=[(state, counts[state]) for state in STATES if counts[state]],
+        total=len(results),
+        bad=[(result, _bad(result)) for result in results if result.state != "passed"],
+        families=[_family(name, group, context) for name, group in _by_family(results)],
+        news=_news(results, context),
+        program=program_hash()[:12],
+        kernel=kernel_hash()[:12],
+        compiler=compiler(),
+        reused=sum(not result.fresh for result in results),
+    )
+
+
+def _family(name: str, results: list[Result], context: Context) -> dict[str, Any]:
+    cases = [list(group) for _, group in groupby(results, key=lambda r: r.cell.case.name)]
+    passed = sum(result.state == "passed" for result in results)
+    seconds = sum(result.measurement.seconds for result in results)
+    return {"name": name, "results": results, "passed": passed, "seconds": seconds, "cases": [_case(c, context) for c in cases]}
+
+
+def _case(results: list[Result], context: Context) -> dict[str, Any]:
+    case = results[0].cell.case
+    names = [*dict.fromkeys(check.name for result in results for check in result.checks)]
+    return {
+        "case": case,
+        "about": (case.function.__doc__ or "").strip().split("\n\n")[0],
+        "anchor": anchor(case.name),
+        "passed": sum(r.state == "passed" for r in results),
+        "total": len(results),
+        "green": all(r.state == "passed" for r in results),
+        "seconds": sum(r.measurement.seconds for r in results),
+        "bounds": _bounds(results, names),
+        "names": names,
+        "rows": [_row(result, names, context) for result in results],
+        "plots": [text for text in (_plot(results, name) for name in names) if text],
+        "tiers": sorted({r.cell.tier for r in results}),
+    }
+
+
+def _bounds(results: list[Result], names: list[str]) -> list[tuple[str, str, str]]:
+    """Name, limit (a range of limits where cells differ) and reason of every number of a case."""
+    rows = []
+    for name in names:
+        checks = [check for result in results for check in result.checks if check.name == name]
+        limits = [*dict.fromkeys(check.limit for check in checks)]
+        reasons = [*dict.fromkeys(check.reason for check in checks if check.reason)]
+        rows.append((name, limits[0] if len(limits) == 1 else f"{limits[0]} … {limits[-1]}", "; ".join(reasons)))
+    return rows
+
+
+def _row(result: Result, names: list[str], context: Context) -> dict[str, Any]:
+    checks = {check.name: check for check in result.checks}
+    sparks = {}
+    for name in names:
+        values = history.values_of(context.runs, result.cell.name, name)
+        sparks[name] = svg.sparkline(values, history.change_points(values))
+    return {"result": result, "checks": [checks.get(name) for name in names], "sparks": [sparks[name] for name in names]}
+
+
+def _plot(results: list[Result], name: str) -> str:
+    """All convergence sequences of a number in one plot, with the expected slope under each; or all its curves."""
+    lines: list[svg.Line] = []
+    labels = ("h", name, True, True)
+    for result in results:
+        value = result.measurement.numbers.get(name)
+        short = ", ".join(str(v) for v in result.cell.settings.values())
+        convergence, curve = convergence_of(value), curve_of(value)
+        claim = result.cell.case.bounds_of(result.cell.settings).get(name)
+        if convergence:
+            sizes, errors = np.asarray(convergence.sizes, float), np.asarray(convergence.errors, float)
+            if sizes.shape != errors.shape:
+                continue
+            lines.append(svg.Line(short, sizes, errors))
+            if isinstance(claim, Order) and sizes.size:
+                ends = sizes[[-1, max(-4, -sizes.size)]]
+                lines.append(svg.Line("", ends, errors[-1] * (ends / ends[0]) ** claim.expected, guide=True))
+        elif curve and np.shape(curve.x) == np.shape(curve.y):
+            labels = (curve.x_label, curve.y_label, curve.log_x, curve.log_y)
+            lines.append(svg.Line(short, np.asarray(curve.x, float), np.asarray(curve.y, float)))
+    return svg.plot(lines, *labels)
+
+
+def _news(results: Sequence[Result], context: Context) -> list[str]:
+    """What is otherwise than in the run before: states, and numbers that went to another level now."""
+    found = []
+    before = context.runs[-2].cells if len(context.runs) > 1 else {}
+    for result in results:
+        earlier = before.get(result.cell.name)
+        if earlier is None:
+            continue
+        if earlier["state"] != result.state:
+            found.append(f"{result.cell.name}: {earlier['state']} → {result.state}")
+        for check in result.checks:
+            values = history.values_of(context.runs, result.cell.name, check.name)
+            if len(values) - 1 in history.change_points(values):
+                found.append(f"{result.cell.name}: {check.name} {number(values[-2])} → {number(values[-1])}")
+    return found
+
+
+def _bad(result: Result) -> list[Check]:
+    return [check for check in result.checks if check.state != "passed"]
+
+
+def _by_family(results: Sequence[Result]) -> list[tuple[str, list[Result]]]:
+    ordered = sorted(results, key=lambda r: r.cell.case.name)
+    return [(family, list(group)) for family, group in groupby(ordered, key=lambda r: r.cell.case.family)]
+
+
+def anchor(name: str) -> str:
+    """A case's name as the target of a link."""
+    return name.replace("/", "-")
+
+
+def _duration(seconds: float) -> str:
+    if seconds < 1:
+        return f"{1000 * seconds:.0f} ms"
+    return f"{seconds:.1f} s" if seconds < 90 else f"{seconds / 60:.0f} min"
+
+
+def _plain(value: Any) -> Any:
+    """The same with null for numbers that are not finite, which JSON has no word for."""
+    if isinstance(value, dict):
+        return {name: _plain(entry) for name, entry in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(entry) for entry in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
