@@ -252,9 +252,10 @@ def test_a_kill_at_any_moment_leaves_the_last_completed_step(tmp_path: Path) -> 
         assert child.stdout is not None
         first = child.stdout.readline()
         assert first == f"{reached + 1}\n"  # it resumes where the file ends
+        told = [first, child.stdout.readline(), child.stdout.readline()]
         time.sleep(0.1 * random.random())
         child.send_signal(signal.SIGKILL)
-        told = [first, *child.stdout]
+        told += child.stdout
         child.wait()
         recorded = max(int(line) for line in told if line.endswith("\n"))
         with Results(path) as results:
@@ -262,4 +263,4 @@ def test_a_kill_at_any_moment_leaves_the_last_completed_step(tmp_path: Path) -> 
             assert reached in (recorded, recorded + 1)  # killed between taking the name and telling
             assert same(results.last_step(), step_result(reached))
             assert same(results.step(1 + reached // 2), step_result(1 + reached // 2))
-    assert reached > 20
+    assert reached >= 30

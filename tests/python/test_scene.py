@@ -59,7 +59,7 @@ def test_numbers_of_control_points_of_the_iron(overrides: list[str], count: int)
 
 
 def test_bundled_scenes_are_there_and_converge_on_their_own_text() -> None:
-    assert bundled_scenes() == ("iron", "press", "tire", "twist", "twist-sharp")
+    assert bundled_scenes() == ("iron", "press", "reversal", "tire", "twist", "twist-sharp")
     for name in bundled_scenes():
         scene = Scene.load(name)
         assert (scene.name, bool(scene.title)) == (name, True)
@@ -81,8 +81,9 @@ def test_load_history_and_friction_of_the_bundled_scenes() -> None:
     assert (roll[0], roll[2]) == (90, 270)
     assert roll[1] == pytest.approx((0.47 * math.radians(270), 0, 0), rel=1e-15)
     friction = {name: Scene.load(name).problem().contacts[0].friction for name in bundled_scenes()}
-    assert friction == {"press": 0.3, "twist": 0.3, "twist-sharp": 0.3, "iron": 0.1, "tire": 0.1}
-    assert all(Scene.load(name).problem().contacts[0].reference_area == 1.0 for name in bundled_scenes())
+    assert friction == {"press": 0.3, "reversal": 0.3, "twist": 0.3, "twist-sharp": 0.3, "iron": 0.1, "tire": 0.1}
+    areas = {name: Scene.load(name).problem().contacts[0].reference_area for name in bundled_scenes()}
+    assert areas == {"press": 1.0, "reversal": None, "twist": 1.0, "twist-sharp": 1.0, "iron": 1.0, "tire": 1.0}
 
 
 def test_places_of_the_bundled_scenes() -> None:
@@ -232,8 +233,8 @@ def test_a_body_may_be_held_by_another_that_it_touches() -> None:
 def test_solver_table_is_the_dataclass_with_explanations() -> None:
     assert {f.name: f.default for f in fields(SolverSettings)} == {n: f.default for n, f in SolverTable.model_fields.items()}
     assert all(field.description for field in SolverTable.model_fields.values())
-    hints = get_type_hints(SolverSettings)
-    assert all(field.annotation == hints[name] for name, field in SolverTable.model_fields.items())
+    table, settings = get_type_hints(SolverTable), get_type_hints(SolverSettings)
+    assert {name: table[name] for name in SolverTable.model_fields} == settings
 
 
 def test_published_schema_is_the_one_of_the_program() -> None:
