@@ -185,6 +185,22 @@ def add_body(
     return float(jacobian)
 
 
+def surface_functions(patch: PatchArrays, axis: int, side: int, xi: FloatArray) -> tuple[IntArray, FloatArray]:
+    """Functions of a face (axis 1..3, side 0 or 1) at coordinates of shape (points, 2).
+
+    Returns
+    -------
+    nodes : ndarray of int32, shape (points, local)
+        Control points within the face.
+    functions : ndarray, shape (points, 10, local)
+        Values and partial derivatives: 1, u, v, uu, uv, vv, uuu, uuv, uvv, vvv.
+    """
+    orders = patch.layout[3:6]
+    local = int(np.prod(orders + 1)) // int(orders[axis - 1] + 1)
+    nodes, functions = _kernel.surface_functions(patch.layout, patch.knots, patch.point, patch.weight, axis, side, xi.T, local)
+    return np.ascontiguousarray(nodes.T), np.ascontiguousarray(functions.T)
+
+
 def slave_tables(
     patch: PatchArrays, axis: int, side: int, gauss: tuple[int, int], reference: FloatArray, local: int, elements: int
 ) -> tuple[IntArray, FloatArray, FloatArray]:

@@ -82,7 +82,27 @@ def test_curved_pair_with_friction(slip_sum: str) -> None:
     assert len(report.active) == 3
     assert min(report.stick) > 0
     assert min(report.slip) > 0
-    assert {"solid", "normal, geometric", "tangential, geometric", "stick", "slip", "multipliers", "symmetry"} <= set(errors(report))
+    assert {"solid", "normal, geometric", "tangential, geometric", "stick", "slip", "whole", "symmetry"} <= set(errors(report))
+
+
+def test_states_of_the_augmentations() -> None:
+    report = check_tangent(curved("solver.method=uzawa", "solver.penalty_normal=10", "solver.penalty_tangential=1"), 2, directions=1)
+    assert report.passes, report
+
+
+def test_pair_without_friction() -> None:
+    report = check_tangent(curved("contacts.interface.friction=0"), 3, directions=2)
+    assert report.passes, report
+    assert set(errors(report)) == {"solid", "normal, geometric", "normal, gap", "normal, pressure", "whole", "symmetry"}
+
+
+def test_plane_has_no_geometric_part() -> None:
+    changes = ["bodies.block.mesh.elements=[3,3,1]", "bodies.block.mesh.order=[2,3,2]", "contacts.floor.friction=0.1"]
+    report = check_tangent(Scene.load("press", changes).problem(), directions=1)
+    assert report.step == 3
+    assert report.passes, report
+    assert {"stick", "slip"} & set(errors(report))
+    assert not {"normal, geometric", "tangential, geometric", "tangential, metric"} & set(errors(report))
 
 
 def test_body_without_contact() -> None:

@@ -1,0 +1,67 @@
+"""The closest-point projection onto a cylinder: the same point from any start, and the exact one."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from isomortar import _bindings
+from isomortar._bindings import MasterArrays, Projections, SlaveArrays
+from isomortar.geometry.primitives import ring
+from isomortar.geometry.refinement import mesh
+from isomortar.model.numbering import patch_arrays
+
+RADIUS = 0.5
+
+
+def cylinder(order: int, elements: int) -> tuple[MasterArrays, np.ndarray]:
+    """The outer face of a ring about the y-axis (coordinates: across, round), and the control points of the ring."""
+    patch = mesh(ring((0.0, 0.0, 0.0), 0.3, RADIUS, 2.0), ("N", "N", "N"), (order, 1, 1), (elements, 1, 2))
+    arrays = patch_arrays(patch, np.arange(len(patch.weights), dtype=np.int32))
+    kind = np.concatenate([[2, 1], arrays.layout]).astype(np.int32)
+    return MasterArrays(kind, arrays.knots, arrays.point, arrays.weight), patch.control_points
+
+
+def project(order: int, elements: int, points: np.ndarray, starts: np.ndarray | None) -> tuple[Projections, np.ndarray]:
+    """Projections of points from starts (None: the coarse search), and their gaps."""
+    master, control_points = cylinder(order, elements)
+    positions = np.ascontiguousarray(np.concatenate([control_points, points]))
+    number = np.arange(len(points), dtype=np.int32)
+    slave = SlaveArrays(number[:, None].copy(), np.ones((len(points), 1)), np.ones(len(points)), number + len(control_points))
+    had = np.full(len(points), int(starts is not None), dtype=np.int32)
+    projections = _bindings.project_points(slave, master, positions, np.zeros((len(points), 2)) if starts is None else starts, had)
+    control = _bindings.control_quantities(slave, master, positions, replace(projections, slip=np.zeros((len(points), 2))))
+    return projections, control.gap
+
+
+def scattered(count: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """Points near and away from the cylinder, inside and outside, and their distances from its axis."""
+    random = np.random.default_rng(seed)
+    angle, distance = random.uniform(0.0, 2.0 * np.pi, count), random.uniform(0.1, 1.0, count)
+    points = np.column_stack([distance * np.sin(angle), random.uniform(-0.9, 0.9, count), distance * np.cos(angle)])
+    return points, distance
+
+
+@pytest.mark.parametrize(("order", "elements"), [(2, 4), (2, 16), (3, 12), (4, 8)])
+def test_gap_is_the_distance_from_the_cylinder(order: int, elements: int) -> None:
+    points, distance = scattered(200, seed=1)
+    projections, gap = project(order, elements, points, None)
+    assert np.all(projections.found == 1)
+    np.testing.assert_allclose(gap, RADIUS - distance, rtol=0, atol=1e-14)
+
+
+@pytest.mark.parametrize(("order", "elements"), [(2, 16), (3, 12)])
+def test_the_same_point_from_any_start_on_the_side_of_the_point(order: int, elements: int) -> None:
+    """From anywhere within a quarter turn and across the whole width."""
+    points, distance = scattered(40, seed=2)
+    exact, _ = project(order, elements, points, None)
+    random = np.random.default_rng(3)
+    for _ in range(20):
+        starts = exact.xi + np.column_stack([np.zeros(40), random.uniform(-1.0, 1.0, 40)])  # a unit of u is a quarter turn
+        starts[:, 1] = np.clip(starts[:, 1], 0.0, 4.0)
+        starts[:, 0] = random.uniform(0.0, 1.0, 40)
+        found, gap = project(order, elements, points, starts)
+        np.testing.assert_allclose(gap, RADIUS - distance, rtol=0, atol=1e-14)
+        np.testing.assert_allclose(found.xi, exact.xi, rtol=0, atol=1e-13)

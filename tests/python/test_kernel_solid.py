@@ -1,0 +1,70 @@
+"""The material near zero strain: residual and tangent keep their digits."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from isomortar import _bindings, _twin
+from isomortar._bindings import Pattern
+from isomortar.geometry.primitives import box
+from isomortar.geometry.refinement import mesh
+from isomortar.model.entities import Material
+from isomortar.model.numbering import patch_arrays
+
+MATERIAL = Material(10.0, 0.3)
+PATCH = mesh(box((0.0, 0.0, 0.0), (1.0, 2.0, 1.0)), ("N", "N", "N"), (2, 1, 2), (1, 1, 1))
+ARRAYS = patch_arrays(PATCH, np.arange(len(PATCH.weights), dtype=np.int32))
+REFERENCE = PATCH.control_points
+#: Displacements that add to the (dyadic) reference positions without rounding.
+SHAPE = np.random.default_rng(2).integers(-8, 9, REFERENCE.shape) / 8.0
+GAUSS = (3, 3, 3)
+
+
+def forces(positions: np.ndarray) -> np.ndarray:
+    result = np.zeros_like(REFERENCE)
+    _bindings.add_body(ARRAYS, GAUSS, MATERIAL.bulk, MATERIAL.shear, positions, REFERENCE, result)
+    return result
+
+
+def tangent(positions: np.ndarray) -> np.ndarray:
+    """The tangent as a dense matrix."""
+    n = len(REFERENCE)
+    pattern = Pattern(np.arange(0, n * n + 1, n, dtype=np.int32), np.tile(np.arange(n, dtype=np.int32), n))
+    blocks = np.zeros((n * n, 3, 3))
+    _bindings.add_body(ARRAYS, GAUSS, MATERIAL.bulk, MATERIAL.shear, positions, REFERENCE, np.zeros_like(REFERENCE), pattern, blocks)
+    return blocks.reshape(n, n, 3, 3).transpose(0, 2, 1, 3).reshape(3 * n, 3 * n)
+
+
+@pytest.mark.parametrize("power", [-20, -30, -40])
+def test_stress_of_small_strains_keeps_its_digits(power: int) -> None:
+    """At 2^-30 (1e-9), and far below: forces over strain against the twin's slope, even in strain up to its square."""
+    strain = 2.0**power
+    slope = _twin.solid_difference(ARRAYS, GAUSS, MATERIAL.bulk, MATERIAL.shear, REFERENCE, SHAPE, REFERENCE, step=strain)
+    odd = (forces(REFERENCE + strain * SHAPE) - forces(REFERENCE - strain * SHAPE)) / (2.0 * strain)
+    assert np.linalg.norm(odd - slope) < 1e-13 * np.linalg.norm(slope)
+
+
+@pytest.mark.parametrize("strain", [0.0, 2.0**-30, 2.0**-4])
+def test_tangent_from_no_strain_to_a_large_one(strain: float) -> None:
+    positions, along = REFERENCE + strain * SHAPE, np.random.default_rng(3).standard_normal(REFERENCE.shape)
+    twin = _twin.solid_difference(ARRAYS, GAUSS, MATERIAL.bulk, MATERIAL.shear, positions, along, REFERENCE)
+    matrix = tangent(positions)
+    assert np.linalg.norm(matrix @ along.ravel() - twin.ravel()) < 1e-14 * np.linalg.norm(twin)
+    assert np.linalg.norm(matrix - matrix.T) < 1e-15 * np.linalg.norm(matrix)
+
+
+def test_rigid_motion_leaves_no_forces() -> None:
+    turn = np.array([[0.6, -0.8, 0.0], [0.8, 0.6, 0.0], [0.0, 0.0, 1.0]])
+    size = np.linalg.norm(forces(REFERENCE * 1.01))
+    assert np.linalg.norm(forces(REFERENCE @ turn.T + [3.0, -2.0, 1.0])) < 1e-12 * size
+
+
+def test_twin_is_in_extended_precision() -> None:
+    """Where the difference of two nearly equal double-precision forces has four digits left, the twin's has all."""
+    positions, step = REFERENCE + 0.03 * SHAPE, 1e-12
+    rough = (forces(positions + step * SHAPE) - forces(positions - step * SHAPE)) / (2.0 * step)
+    fine = _twin.solid_difference(ARRAYS, GAUSS, MATERIAL.bulk, MATERIAL.shear, positions, SHAPE, REFERENCE, step=step)
+    exact = (tangent(positions) @ SHAPE.ravel()).reshape(-1, 3)
+    assert np.linalg.norm(fine - exact) < 1e-13 * np.linalg.norm(exact)
+    assert np.linalg.norm(rough - exact) > 1e-7 * np.linalg.norm(exact)
