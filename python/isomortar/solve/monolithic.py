@@ -224,7 +224,7 @@ class Monolithic:
     def _increment(self, iterate: Iterate, log: list[IterationRecord]) -> Increment:
         parameters = iterate.laws[0].penalties if iterate.laws else np.zeros(2)
         record = AugmentationRecord(1, float(parameters[0]), float(parameters[1]), iterate.gap_pressure, iterate.gap_traction, tuple(log))
-        return Increment(iterate.balance, (record,), (observed_order([r.residual for r in log]),))
+        return Increment(iterate.balance, (record,), (observed_order(log),))
 
 
 def _toggling(seen: Sequence[bytes], visited: Sequence[IntArray], summed: bool) -> str:

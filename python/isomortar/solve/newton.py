@@ -16,6 +16,9 @@ from isomortar.solve.record import IterationRecord, State
 #: rigidly, internal forces are round-off and no relative test would pass (formulation.md Section 5).
 FORCE_FLOOR = 1e-4
 
+#: Round-off of a relative residual at most: that of a force is the unit round-off times stiffness times size.
+ROUND_OFF = float(np.finfo(np.float64).eps) / FORCE_FLOOR
+
 
 def relative_residual(equilibrium: Equilibrium, balance: Balance, stiffness: float) -> float:
     """Residual at the free unknowns relative to the internal forces or their floor."""
@@ -68,12 +71,17 @@ def solve_positions(
     raise ConvergenceError(f"Newton's method stopped at a relative residual of {residual:.2e} after {iteration} iterations")
 
 
-def observed_order(residuals: Sequence[float], floor: float = 1e-13) -> float:
-    """Observed order of convergence from the last three residuals above round-off; NaN where there are too few.
+def observed_order(log: Sequence[IterationRecord]) -> float:
+    """Observed order of convergence of one Newton loop; NaN where it can not be told.
 
-    The order q solves r_(k+1) = C r_k^q over three successive residuals.
+    The order q solves r_(k+1) = C r_k^q over three successive residuals. Taken are the last three that fall, with unchanged numbers of
+    active and slipping control points and nothing else acting, and that are not at round-off: at order two the third would be
+    r_1^3 / r_0^2, and must then still be above ROUND_OFF. (A slower convergence is above it as well, so that none is left out for it.)
     """
-    above = [r for r in residuals if r > floor]
-    if len(above) < 3 or not above[-3] > above[-2] > above[-1]:
-        return float("nan")
-    return float(np.log(above[-1] / above[-2]) / np.log(above[-2] / above[-3]))
+    for first, second, third in zip(log[-3::-1], log[-2:0:-1], log[:1:-1], strict=True):
+        a, b, c = first.residual, second.residual, third.residual
+        steady = (first.active, first.slip) == (second.active, second.slip) == (third.active, third.slip)
+        undisturbed = not (first.notes or second.notes or third.notes)
+        if steady and undisturbed and a > b > c > 0.0 and b**3 / a**2 > ROUND_OFF:
+            return float(np.log(c / b) / np.log(b / a))
+    return float("nan")

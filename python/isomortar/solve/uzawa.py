@@ -50,7 +50,7 @@ class Uzawa:
                 self._observer.iteration(step, time, number, record)
 
             balance = solve_positions(equilibrium, positions, prescribed, start, laws, stiffness, report)
-            orders.append(observed_order([record.residual for record in log]))
+            orders.append(observed_order(log))
             changes = self._changes(laws, balance)
             normal, tangential = (float(penalty) for penalty in growth * base)
             record = AugmentationRecord(augmentation, normal, tangential, changes[0], changes[1], tuple(log))
