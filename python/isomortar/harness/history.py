@@ -59,11 +59,11 @@ def values_of(runs: Sequence[Run], cell: str, number: str) -> list[float]:
     return [float(run.cells.get(cell, {}).get("values", {}).get(number, np.nan)) for run in runs]
 
 
-def change_points(values: Sequence[float], noise: float = 0.02) -> list[int]:
+def change_points(values: Sequence[float], least: float = 0.0) -> list[int]:
     """Indices at which a series went to another level.
 
-    A point counts when it is further from the median of the (up to eight) points since the last change than five of their robust
-    standard deviations, and than `noise` times that median, and the next point does not return. Values that are not finite are passed over.
+    A point counts when it is further from the median of the (up to eight) points since the last change than `least`, than 2 % of that
+    median, and than five robust standard deviations, and the next point does not return. Values that are not finite are passed over.
     """
     finite = [(i, v) for i, v in enumerate(values) if np.isfinite(v)]
     found: list[int] = []
@@ -71,7 +71,7 @@ def change_points(values: Sequence[float], noise: float = 0.02) -> list[int]:
     for k in range(1, len(finite)):
         before = np.array([v for _, v in finite[max(begin, k - _BEFORE) : k]])
         middle = float(np.median(before))
-        width = max(5 * 1.4826 * float(np.median(np.abs(before - middle))), noise * abs(middle))
+        width = max(5 * 1.4826 * float(np.median(np.abs(before - middle))), 0.02 * abs(middle), least)
         after = [v for _, v in finite[k : k + 2]]
         if all(abs(v - middle) > width for v in after):
             found.append(finite[k][0])

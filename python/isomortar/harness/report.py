@@ -17,7 +17,7 @@ import jinja2
 import numpy as np
 
 from isomortar.harness import history, svg
-from isomortar.harness.cases import Order
+from isomortar.harness.cases import Bound, Order
 from isomortar.harness.compare import STATES, Check
 from isomortar.harness.measurement import convergence_of, curve_of
 from isomortar.harness.runner import Result
@@ -155,7 +155,7 @@ def _row(result: Result, names: list[str], context: Context) -> dict[str, Any]:
     sparks = {}
     for name in names:
         values = history.values_of(context.runs, result.cell.name, name)
-        sparks[name] = svg.sparkline(values, history.change_points(values))
+        sparks[name] = svg.sparkline(values, _change_points(result, name, values))
     return {"result": result, "checks": [checks.get(name) for name in names], "sparks": [sparks[name] for name in names]}
 
 
@@ -194,9 +194,16 @@ def _news(results: Sequence[Result], context: Context) -> list[str]:
             found.append(f"{result.cell.name}: {earlier['state']} → {result.state}")
         for check in result.checks:
             values = history.values_of(context.runs, result.cell.name, check.name)
-            if len(values) - 1 in history.change_points(values):
+            if len(values) - 1 in _change_points(result, check.name, values):
                 found.append(f"{result.cell.name}: {check.name} {number(values[-2])} → {number(values[-1])}")
     return found
+
+
+def _change_points(result: Result, name: str, values: Sequence[float]) -> list[int]:
+    """Changes that mean something: those of an error far below its limit do not."""
+    claim = result.cell.case.bounds_of(result.cell.settings).get(name)
+    limit = claim.at_most if isinstance(claim, Bound) and claim.at_most is not None else 0.0
+    return history.change_points(values, 0.02 * abs(limit))
 
 
 def _bad(result: Result) -> list[Check]:

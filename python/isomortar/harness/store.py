@@ -83,6 +83,7 @@ def compiler() -> str:
 
 
 def _kernel_files() -> Iterator[Path]:
+    """The compiled kernel, and its extended-precision twin."""
     for module in ("isomortar._kernel", "isomortar._extended"):
         found = importlib.util.find_spec(module)
         if found and found.origin:

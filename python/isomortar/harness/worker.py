@@ -67,7 +67,8 @@ class Worker:
         if self._process is None:
             self._errors.truncate(0)
             command = [sys.executable, "-m", "isomortar.harness.worker"]
-            self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._errors)
+            pipe = subprocess.PIPE
+            self._process = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=self._errors)
         return self._process
 
     def _end(self) -> None:
