@@ -1,0 +1,153 @@
+"""Contact patch test: two blocks of one material, cut by a plane, shrink alike in all directions.
+
+The stress is a uniform pressure, so it is in balance across a plane of any tilt, without friction and whatever the meshes. Shape
+functions and control quantities of the slave are integrated exactly; the master's are not, because master knots fall inside slave
+elements and the integrals are not segmented: what is left is the error of that quadrature.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from isomortar.geometry.patch import Direction, FloatArray, Patch
+from isomortar.geometry.quadrature import contact_points, volume_points
+from isomortar.geometry.refinement import mesh
+from isomortar.harness import Bound, Curve, Shown, case
+from isomortar.model.entities import Body, Contact, Face, Material, Motion, Problem, SolverSettings, Stage, Support
+from isomortar.solve.simulation import Simulation
+
+#: All lengths become this many times as long.
+STRETCH = 0.95
+MATERIAL = Material()
+#: Elements of the slave along and across; a master of twice as many has its knots on slave element boundaries or in their middle.
+SLAVE_ELEMENTS = 3
+ORDERS = (1, 2, 3)
+TILTS = (0.0, 30.0)
+
+
+def exact_pressure() -> float:
+    """Contact pressure per reference area of P = A1 ln J F^-T with F = STRETCH times the identity (formulation.md Section 1)."""
+    return -3.0 * MATERIAL.bulk * float(np.log(STRETCH)) / STRETCH
+
+
+def wedge(slope: float, part: str, families: str, order: int, elements: int) -> Patch:
+    """The part below or above the plane z = 1/2 + slope (y - 1/2) of the unit square's column between z = 0 and z = 1."""
+    x, y = np.array([0.0, 1.0, 0.0, 1.0]), np.array([0.0, 0.0, 1.0, 1.0])
+    cut = 0.5 + slope * (y - 0.5)
+    heights = (np.zeros(4), cut) if part == "below" else (cut, np.ones(4))
+    points = np.vstack([np.column_stack([x, y, z]) for z in heights])
+    straight = Direction("N", 1, np.array([0.0, 0.0, 1.0, 1.0]))
+    family = "L" if families == "L" else "N"
+    return mesh(Patch((straight,) * 3, points, np.ones(8)), (family,) * 3, (order, order, 1), (elements, elements, 2))
+
+
+def shrink(body: str, face: str) -> Support:
+    """Hold the normal component of a face and move it towards the origin, which stays where it is."""
+    axis, end = "uvw".index(face[0]), int(face[1])
+    motion = [0.0, 0.0, 0.0]
+    motion[axis] = (STRETCH - 1.0) * end
+    return Support(f"{body}-{face}", Face(body, face), (Motion((motion[0], motion[1], motion[2])),), components=(axis,))
+
+
+def problem(slave_order: int, master_order: int, tilt: float, points: int, master_elements: int, family: str = "N") -> Problem:
+    """The two blocks, held at all faces but the interface in their normal components.
+
+    Parameters
+    ----------
+    slave_order, master_order : int
+        Along the interface; across it both are linear.
+    tilt : float
+        Of the interface, in degrees.
+    points : int
+        Quadrature points per slave element and direction.
+    master_elements : int
+        Along either direction of the interface; the slave has SLAVE_ELEMENTS.
+    family : {"N", "L"}
+    """
+    slope = float(np.tan(np.radians(tilt)))
+    patches = {
+        "slave": wedge(slope, "above", family, slave_order, SLAVE_ELEMENTS),
+        "master": wedge(slope, "below", family, master_order, master_elements),
+    }
+    bodies = tuple(
+        Body(name, patch, MATERIAL, tuple(volume_points(d) + 1 for d in patch.directions))  # type: ignore[arg-type]
+        for name, patch in patches.items()
+    )
+    outer = {"slave": ("u0", "u1", "v0", "v1", "w1"), "master": ("u0", "u1", "v0", "v1", "w0")}
+    return Problem(
+        name="contact-patch-test",
+        bodies=bodies,
+        contacts=(Contact("interface", Face("slave", "w0"), Face("master", "w1"), 0.0, (points, points)),),
+        supports=tuple(shrink(body, face) for body, faces in outer.items() for face in faces),
+        stages=(Stage("shrink", 1),),
+        settings=SolverSettings(newton_tolerance=1e-13),
+    )
+
+
+@dataclass(frozen=True)
+class PatchErrors:
+    """Relative errors: pressure field at the quadrature points, control pressures, positions over the size of the column."""
+
+    field: float
+    control: float
+    position: float
+
+
+def errors(given: Problem) -> PatchErrors:
+    """Run a patch test and measure its distance from the uniform state."""
+    simulation = Simulation(given)
+    (result,) = simulation.run()
+    pressure = exact_pressure()
+    field: FloatArray = result.contacts[0].pressure_field
+    positions = result.state.positions - STRETCH * simulation.equilibrium.numbering.reference
+    return PatchErrors(
+        field=float(np.abs(field / pressure - 1.0).max()),
+        control=float(np.abs(result.state.contacts[0].pressure / pressure - 1.0).max()),
+        position=float(np.abs(positions).max()),
+    )
+
+
+@case(
+    claim="A uniform pressure passes an interface whose master knots fall on slave element boundaries, to round-off.",
+    tier="gate",
+    grid={"slave_order": ORDERS, "master_order": ORDERS, "tilt": TILTS},
+    bounds={"pressure": Bound(at_most=1e-11, reason="round-off: every integral is exact; Newton stops at 1e-13")},
+)
+def uniform_pressure_nested(slave_order: int, master_order: int, tilt: float) -> dict[str, float]:
+    """Error of the pressure field, master of one element per slave element."""
+    given = problem(slave_order, master_order, tilt, slave_order + master_order + 1, SLAVE_ELEMENTS)
+    return {"pressure": errors(given).field}
+
+
+@case(
+    claim="A uniform pressure passes a non-matching interface to the accuracy of the default quadrature.",
+    tier="gate",
+    grid={"slave_order": ORDERS, "master_order": ORDERS, "tilt": TILTS},
+    bounds={
+        "pressure": Bound(at_most=2e-2, reason="quadrature: master knots inside slave elements are not segmented"),
+        "position": Shown(reason="quadrature: the same error in the shape"),
+    },
+)
+def uniform_pressure(slave_order: int, master_order: int, tilt: float) -> dict[str, float]:
+    """Error of the pressure field, four master elements on three slave elements, default contact quadrature."""
+    points = contact_points(Direction("N", slave_order, np.repeat([0.0, 1.0], slave_order + 1)))
+    found = errors(problem(slave_order, master_order, tilt, points, SLAVE_ELEMENTS + 1))
+    return {"pressure": found.field, "position": found.position}
+
+
+@case(
+    claim="The error of the contact patch test falls with the number of quadrature points.",
+    tier="nightly",
+    grid={"slave_order": ORDERS, "master_order": ORDERS, "tilt": TILTS},
+    bounds={
+        "curve": Shown(reason="quadrature: error against points; it falls unevenly, as knots come to lie nearer to points or not"),
+        "last": Bound(at_most=2e-3, reason="quadrature: 24 points"),
+    },
+)
+def pressure_against_points(slave_order: int, master_order: int, tilt: float) -> dict[str, object]:
+    """Errors of the pressure field for 4 to 24 points per slave element and direction (even: none lies on a master knot)."""
+    points = [4, 6, 8, 12, 16, 24]
+    found = [errors(problem(slave_order, master_order, tilt, n, SLAVE_ELEMENTS + 1)).field for n in points]
+    return {"curve": Curve(points, found, "points per direction", "relative error of the pressure", log_x=True), "last": found[-1]}
