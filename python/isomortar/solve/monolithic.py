@@ -11,10 +11,10 @@ from isomortar._bindings import Law, Response
 from isomortar.errors import ConvergenceError, FoldedElementError, LostProjectionError
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.solve.bordered import Border, Correction, solve_bordered
-from isomortar.solve.equilibrium import Balance, Equilibrium
-from isomortar.solve.increment import Increment
+from isomortar.solve.equilibrium import Balance
+from isomortar.solve.method import Increment, Method
 from isomortar.solve.newton import observed_order, relative_residual
-from isomortar.solve.record import AugmentationRecord, IterationRecord, Observer, State
+from isomortar.solve.record import AugmentationRecord, IterationRecord, State
 
 #: Share of the cone within which a trial counts as slip at the start of an increment (Section 6, step 6).
 SLIP_MARGIN = 1e-6
@@ -56,28 +56,12 @@ class Iterate:
         return np.concatenate([k.projections.element for k in self.balance.kinematics] or [np.zeros((0, 2), dtype=np.int32)])
 
 
-class Monolithic:
+class Monolithic(Method):
     """Solves load increments for positions, control pressures and control tractions at once."""
 
-    def __init__(self, equilibrium: Equilibrium, observer: Observer) -> None:
-        self._equilibrium = equilibrium
-        self._settings = equilibrium.problem.settings
-        self._observer = observer
-
     def advance(self, start: State, time: float, step: int) -> Increment:
-        """Solve the increment from a converged state to a load time.
-
-        Raises
-        ------
-        ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError
-            The increment has to be cut.
-        """
-        equilibrium = self._equilibrium
-        prescribed = equilibrium.supports.increment(start.positions, time)
-        with equilibrium.ledger.phase("solid"):
-            stiffness = equilibrium.solid.stiffness(start.positions)
-        for pair in equilibrium.pairs:
-            pair.reach.begin_step()
+        """Solve the increment; see `Method.advance`."""
+        prescribed, stiffness = self._begin(start, time)
         iterate = self._first(start, stiffness)
         moves = bool(np.any(prescribed))
         log: list[IterationRecord] = []
@@ -95,7 +79,7 @@ class Monolithic:
             if iteration == 0:
                 iterate, correction, notes = self._predict(iterate, start, stiffness, prescribed)
             else:
-                correction, notes = solve_bordered(equilibrium, iterate.balance, iterate.laws, iterate.targets, None)[0], ()
+                correction, notes = solve_bordered(self._equilibrium, iterate.balance, iterate.laws, iterate.targets, None)[0], ()
             iterate, halved = self._update(iterate, correction, start, stiffness, seen if iteration >= CYCLE_FREE else [], iteration)
             notes += halved
             seen.append(iterate.states)

@@ -11,7 +11,7 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Problem
 from isomortar.solve.advice import StepAdvice, advice_on_problem
 from isomortar.solve.equilibrium import Balance, Equilibrium
-from isomortar.solve.increment import Increment
+from isomortar.solve.method import Increment, Method
 from isomortar.solve.monolithic import Monolithic
 from isomortar.solve.record import AugmentationRecord, Observer, Reaction, State, StepResult
 from isomortar.solve.timing import Ledger
@@ -23,7 +23,7 @@ _REASONS_TO_CUT = (ConvergenceError, FoldedElementError, LostProjectionError, Si
 #: Newton loops of at most this many linear solves let a cut load increment grow back; of this many make the next one shorter.
 EASY_ITERATIONS, HARD_ITERATIONS = 12, 25
 
-_METHODS: dict[str, type[Monolithic] | type[Uzawa]] = {"monolithic": Monolithic, "uzawa": Uzawa}
+_METHODS: dict[str, type[Method]] = {"monolithic": Monolithic, "uzawa": Uzawa}
 
 
 class Simulation:

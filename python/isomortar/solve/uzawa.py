@@ -8,38 +8,23 @@ import numpy as np
 
 from isomortar._bindings import Law
 from isomortar.errors import ConvergenceError
-from isomortar.solve.equilibrium import Balance, Equilibrium
-from isomortar.solve.increment import Increment
+from isomortar.solve.equilibrium import Balance
+from isomortar.solve.method import Increment, Method
 from isomortar.solve.newton import observed_order, solve_positions
-from isomortar.solve.record import AugmentationRecord, IterationRecord, Observer, State
+from isomortar.solve.record import AugmentationRecord, IterationRecord, State
 
 
-class Uzawa:
+class Uzawa(Method):
     """Solves load increments by augmentations of control pressures and tractions."""
 
-    def __init__(self, equilibrium: Equilibrium, observer: Observer) -> None:
-        self._equilibrium = equilibrium
-        self._settings = equilibrium.problem.settings
-        self._observer = observer
-
     def advance(self, start: State, time: float, step: int) -> Increment:
-        """Solve the increment from a converged state to a load time.
-
-        Raises
-        ------
-        ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError
-            The increment has to be cut.
-        """
+        """Solve the increment; see `Method.advance`."""
         equilibrium = self._equilibrium
-        prescribed = equilibrium.supports.increment(start.positions, time)
-        with equilibrium.ledger.phase("solid"):
-            stiffness = equilibrium.solid.stiffness(start.positions)
+        prescribed, stiffness = self._begin(start, time)
         base = np.array([self._settings.penalty_normal, self._settings.penalty_tangential]) * stiffness
         laws = [
             pair.law(base / pair.penalty_area, s.pressure, s.traction) for pair, s in zip(equilibrium.pairs, start.contacts, strict=True)
         ]
-        for pair in equilibrium.pairs:
-            pair.reach.begin_step()
 
         positions, records, orders, growth = start.positions, [], [], 1.0
         for augmentation in range(1, self._settings.max_augmentations + 1):

@@ -1,0 +1,52 @@
+"""What every method of enforcing contact has in common: it takes a load increment from one converged state to the next."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+
+from isomortar.geometry.patch import FloatArray
+from isomortar.solve.equilibrium import Balance, Equilibrium
+from isomortar.solve.record import AugmentationRecord, Observer, State
+
+
+@dataclass(frozen=True)
+class Increment:
+    """Balance at the end of the increment, the log of its augmentations (monolithic: one), Newton's observed orders."""
+
+    balance: Balance
+    augmentations: tuple[AugmentationRecord, ...]
+    orders: tuple[float, ...]
+
+    @property
+    def iterations(self) -> int:
+        """Linear solves of the longest Newton loop."""
+        return max(len(record.iterations) - 1 for record in self.augmentations)
+
+
+class Method(ABC):
+    """A way of solving load increments."""
+
+    def __init__(self, equilibrium: Equilibrium, observer: Observer) -> None:
+        self._equilibrium = equilibrium
+        self._settings = equilibrium.problem.settings
+        self._observer = observer
+
+    @abstractmethod
+    def advance(self, start: State, time: float, step: int) -> Increment:
+        """Solve the increment from a converged state to a load time.
+
+        Raises
+        ------
+        ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError
+            The increment has to be cut.
+        """
+
+    def _begin(self, start: State, time: float) -> tuple[FloatArray, float]:
+        """Increment of the prescribed positions, and the largest diagonal entry of the solid tangent at the start."""
+        equilibrium = self._equilibrium
+        for pair in equilibrium.pairs:
+            pair.reach.begin_step()
+        with equilibrium.ledger.phase("solid"):
+            stiffness = equilibrium.solid.stiffness(start.positions)
+        return equilibrium.supports.increment(start.positions, time), stiffness
