@@ -1,0 +1,175 @@
+"""The comparison fails closed: a corpus of bad results, all of which must go red."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from isomortar.errors import InputError
+from isomortar.harness.cases import Bound, Case, Cell, Curve, Matches, Order, Shown, case
+from isomortar.harness.compare import Expected, agree, agree_all, judge, worst
+from isomortar.harness.measurement import Measurement, measure, stored
+from isomortar.harness.orders import Convergence
+
+NAN, INF = np.nan, np.inf
+H = np.array([0.5, 0.25, 0.125, 0.0625])
+
+
+def cell_of(claim) -> Cell:
+    return Cell(Case(dict, "It holds.", {"value": claim}, "gate", {}, None, ()), {})
+
+
+def state(claim, value, expected=None):
+    numbers = {} if value is None else {"value": stored(value)}
+    (check,) = judge(cell_of(claim), Measurement("measured", numbers), lambda *_: expected)
+    return check.state
+
+
+def test_equal_values_agree():
+    assert agree([1.0, 2.0], [1.0, 2.0], 0.0).agrees
+    assert agree(1.0, 1.0 + 1e-10, 1e-9).agrees
+
+
+@pytest.mark.parametrize(
+    ("measured", "expected", "tolerance"),
+    [
+        (NAN, 1.0, 1.0), (1.0, NAN, 1.0), (NAN, NAN, 1.0), (INF, INF, 1.0), (INF, 1.0, INF), (1.0, 1.0, NAN), (1.0, 1.0, INF),
+        (1.0, 1.0, -1.0), ([], [], 1.0), ([1.0], 1.0, 1.0), ([1.0, 1.0], [1.0], 1.0), ([[1.0]], [1.0], 1.0), ([1.0], [1.0], [1.0, 1.0]),
+        (None, 1.0, 1.0), ("one", 1.0, 1.0), ([1.0, [2.0]], [1.0, 2.0], 1.0), ([1.0, NAN], [1.0, 1.0], 1.0), (1.1, 1.0, 0.05),
+        (1j, 1.0, 2.0),
+    ],
+)  # fmt: skip
+def test_bad_values_do_not_agree(measured, expected, tolerance):
+    assert not agree(measured, expected, tolerance).agrees
+
+
+@given(st.floats(allow_nan=True, allow_infinity=True), st.floats(allow_nan=True, allow_infinity=True), st.floats())
+def test_agreement_is_only_a_finite_error_within_a_finite_tolerance(a, b, t):
+    good = bool(np.isfinite([a, b, t]).all()) and abs(a - b) <= t
+    assert agree(a, b, t).agrees == good
+
+
+def test_names_must_be_the_same():
+    whole = {"a": 1.0, "b": 2.0}
+    tolerance = {"a": 0.1, "b": 0.1}
+    assert all(v.agrees for v in agree_all(whole, whole, tolerance).values())
+    for sides in (({"a": 1.0}, whole, tolerance), (whole, {"a": 1.0}, tolerance), (whole, whole, {"a": 0.1})):
+        assert not agree_all(*sides)["b"].agrees
+    assert not all(v.agrees for v in agree_all({}, {}, {}).values())
+
+
+def test_bounds():
+    bound = Bound(at_most=1e-3, reason="theory: so")
+    assert state(bound, 1e-3) == "passed"
+    assert state(bound, 0.0) == "passed"
+    assert state(bound, np.full((2, 3), 1e-4)) == "passed"
+    assert state(Bound(at_least=2.0, reason="theory: so"), 2.0) == "passed"
+    assert state(Bound(at_least=-1.0, at_most=1.0, reason="theory: so"), [-1.0, 1.0]) == "passed"
+    assert state(bound, Curve([1, 2], [1e-3, 1e-4], "x", "y")) == "passed"
+
+
+@pytest.mark.parametrize(
+    "value",
+    [1.1e-3, -1.0, NAN, INF, -INF, [], [1e-4, NAN], [1e-4, 2e-3], [[1e-4], [-1e-9]], Curve([1], [1.0], "x", "y"), Convergence(H, H)],
+)
+def test_bad_values_break_a_bound(value):
+    assert state(Bound(at_most=1e-3, reason="theory: so"), value) == "failed"
+
+
+@pytest.mark.parametrize("value", [NAN, INF, [], [1.0, NAN]])
+def test_bad_values_break_lower_bounds_and_what_is_only_shown(value):
+    assert state(Bound(at_least=0.0, reason="theory: so"), value) == "failed"
+    assert state(Shown("to see"), value) == "failed"
+
+
+def test_orders():
+    assert state(Order(2, "theory: so"), Convergence(H, H**2)) == "passed"
+    for value in (2.0, H**2, Convergence(H, H), Convergence(H[:3], H[:3] ** 2), Convergence(H, H * NAN), Curve(H, H**2, "h", "e")):
+        assert state(Order(2, "theory: so"), value) == "failed"
+
+
+def test_references():
+    claim = Matches("hertz", "reference: its uncertainty", allowance=0.01)
+    exact = Expected(np.array([100.0, 50.0]), np.array(0.25), "exact")
+    assert state(claim, [101.5, 50.0], exact) == "passed"  # 2 * 0.25 + 0.01 * 100
+    assert state(claim, [101.6, 50.0], exact) == "failed"
+    assert state(claim, [100.0, NAN], exact) == "failed"
+    assert state(claim, [100.0], exact) == "failed"
+    assert state(claim, [100.0, 50.0], None) == "missing reference"
+    (check,) = judge(
+        cell_of(claim), Measurement("measured", {"value": [100.0, 50.0]}), lambda *_: Expected(exact.values, exact.uncertainty, "self")
+    )
+    assert "not correctness" in check.found
+
+
+def test_a_number_that_is_not_there_is_not_measured():
+    assert state(Bound(at_most=1.0, reason="theory: so"), None) == "not measured"
+    (check,) = judge(cell_of(Bound(at_most=1.0, reason="theory: so")), Measurement("measured", {"value": None}), lambda *_: None)
+    assert check.state == "not measured"
+
+
+def test_a_number_without_a_bound_fails():
+    checks = judge(cell_of(Bound(at_most=1.0, reason="theory: so")), Measurement("measured", {"value": 0.5, "more": 0.1}), lambda *_: None)
+    assert [c.state for c in checks] == ["passed", "failed"]
+
+
+@pytest.mark.parametrize(
+    ("ending", "expected"), [("skipped", "skipped"), ("raised", "failed"), ("crashed", "crashed"), ("timed out", "timed out")]
+)
+def test_what_did_not_end_well_does_not_pass(ending, expected):
+    (check,) = judge(cell_of(Shown("to see")), Measurement(ending, message="why"), lambda *_: None)
+    assert check.state == expected
+    assert check.found == "why"
+
+
+def test_worst_state():
+    assert worst([]) == "not measured"
+    assert worst(["passed", "skipped", "failed", "passed"]) == "failed"
+    assert worst(["passed"]) == "passed"
+
+
+@pytest.mark.parametrize("value", ["text", 1j, [[1.0], [1.0, 2.0]], {"a": 1.0}, object()])
+def test_a_case_that_returns_something_else_has_failed(value):
+    made = case(claim="It holds.", bounds={"value": Shown("to see")})(lambda: {"value": value})
+    assert measure(made.cells[0]).ending == "raised"
+
+
+@pytest.mark.parametrize("value", [None, 3, [1.0]])
+def test_a_case_that_returns_no_names_has_failed(value):
+    made = case(claim="It holds.", bounds={"value": Shown("to see")})(lambda: value)
+    assert measure(made.cells[0]).ending == "raised"
+
+
+def test_definitions_that_could_not_fail_are_refused():
+    good = {"claim": "It holds.", "bounds": {"value": Bound(at_most=1.0, reason="theory: so")}}
+    assert case(**good)(dict).cells[0].tier == "gate"
+    for wrong in (
+        {"bounds": {}}, {"claim": " "}, {"tier": "sometimes"}, {"grid": {"order": [1]}}, {"bounds": {"value": 1.0}},
+    ):  # fmt: skip
+        with pytest.raises(InputError):
+            case(**{**good, **wrong})(dict)
+    with pytest.raises(InputError, match="grid"):
+        case(**good, grid={"order": []})(lambda order: {"value": order})
+    for limits in ({}, {"at_most": NAN}, {"at_most": INF}, {"at_most": -1.0}, {"at_least": 2.0, "at_most": 1.0}):
+        with pytest.raises(InputError):
+            Bound(**limits, reason="theory: so")
+    for reason in ("", "because", "theory:", "hope: so"):
+        with pytest.raises(InputError, match="reason"):
+            Bound(at_most=1.0, reason=reason)
+    for expected in (0, -1, NAN):
+        with pytest.raises(InputError):
+            Order(expected, "theory: so")
+    with pytest.raises(InputError):
+        Matches("hertz", "reference: so", allowance=-1.0)
+
+
+def test_bounds_and_tier_may_depend_on_the_settings():
+    made = case(
+        claim="It holds.",
+        grid={"order": [1, 4]},
+        tier=lambda order: "gate" if order < 3 else "nightly",
+        bounds=lambda order: {"value": Order(order + 1, "theory: so")},
+    )(lambda order: {"value": Convergence(H, H ** (order + 1))})
+    assert [cell.tier for cell in made.cells] == ["gate", "nightly"]
+    for cell in made.cells:
+        assert [c.state for c in judge(cell, measure(cell), lambda *_: None)] == ["passed"]
