@@ -1,0 +1,279 @@
+"""A small folder of cases, run as the command, the pytest plugin and Dask run them; killed, resumed, blessed, reported."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from xml.etree import ElementTree
+
+import h5py
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from isomortar.cli.commands import app
+from isomortar.errors import InputError
+from isomortar.harness import history
+from isomortar.harness.collection import collect, find
+from isomortar.harness.references import Reference, finder, write_reference
+from isomortar.harness.runner import dask_cluster, local_processes, run, select, start
+from isomortar.harness.store import Store, cell_key
+
+GOOD = """
+import numpy as np
+from isomortar.harness import Bound, Convergence, Matches, Order, Shown, case
+from helper import SCALE
+
+SMALL = Bound(at_most=1e-12, reason="round-off: some")
+
+@case(claim="Sines are bounded.", bounds={"error": SMALL, "seen": Shown("to see")}, grid={"order": [1, 2, 3]})
+def sine(order: int):
+    return {"error": 1e-16 * order * SCALE, "seen": np.sin(np.arange(order) / 3)}
+
+@case(claim="Errors fall.", bounds=lambda order: {"L2": Order(order + 1, "theory: interpolation")}, grid={"order": [1, 2]})
+def rate(order: int):
+    h = 0.5 ** np.arange(1, 6)
+    return {"L2": Convergence(h, h ** (order + 1))}
+"""
+BAD = """
+import os, time
+from isomortar.harness import Bound, case, skip
+
+B = {"error": Bound(at_most=1.0, reason="theory: so")}
+
+@case(claim="Crashes.", bounds=B)
+def crash():
+    os.abort()
+
+@case(claim="Raises.", bounds=B)
+def raising():
+    raise ValueError("no such thing")
+
+@case(claim="Skips.", bounds=B)
+def skipping():
+    skip("no library")
+
+@case(claim="Lies.", bounds=B)
+def nan():
+    return {"error": float("nan")}
+
+@case(claim="Is late.", bounds=B)
+def late():
+    time.sleep(60)
+
+@case(claim="Prints and is fine.", bounds=B)
+def printing():
+    print("hello")
+    return {"error": 0.5}
+"""
+MATCH = '''
+from isomortar.harness import Bound, Matches, case
+
+@case(claim="As before.", bounds={"value": Matches("kept", "reference: as it was"), "error": Bound(at_most=1.0, reason="theory: so")},
+      grid={"kind": ["N1", "N2"]})
+def same(kind):
+    return {"value": [1.0, 2.0], "error": 0.0}
+'''  # fmt: skip
+
+
+@pytest.fixture
+def root(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    folder = tmp_path / f"cases_{tmp_path.name}"
+    family = folder / f"family_{tmp_path.name}"  # a name of its own: modules stay imported
+    family.mkdir(parents=True)
+    (folder / "helper.py").write_text("SCALE = 1\n")
+    (family / "good.py").write_text(GOOD)
+    yield folder
+    for name in [n for n in sys.modules if n == "helper" or n.startswith("family_")]:
+        del sys.modules[name]
+    sys.path[:] = [p for p in sys.path if p != str(folder)]
+
+
+def measured(root: Path, jobs: int = 2, fresh: bool = False):
+    store = Store(root.parent / "store")
+    with local_processes(jobs) as submit:
+        results = run(start(select(collect(root), "gate"), store, submit, fresh), finder(root.parent / "references"), store)
+    return {r.cell.name.partition("/")[2]: r for r in results}
+
+
+def test_measured_once_until_something_changes(root):
+    first = measured(root)
+    assert {r.state for r in first.values()} == {"passed"}
+    assert all(r.fresh for r in first.values())
+    again = measured(root)
+    assert not any(r.fresh for r in again.values())
+    assert {n: r.measurement.numbers for n, r in again.items()} == {n: r.measurement.numbers for n, r in first.items()}
+    assert all(r.fresh for r in measured(root, fresh=True).values())
+
+
+def test_the_key_holds_what_the_numbers_depend_on(root):
+    from isomortar.harness import store
+
+    cells = select(collect(root), "gate")
+    keys = {cell_key(cell) for cell in cells}
+    assert len(keys) == len(cells)
+    (root / "helper.py").write_text("SCALE = 2\n")
+    store._case_hash.cache_clear()
+    assert keys.isdisjoint({cell_key(cell) for cell in cells})
+
+
+def test_a_damaged_file_is_measured_again(root):
+    measured(root)
+    for path in (root.parent / "store").rglob("*.json"):
+        path.write_text(path.read_text()[:40])
+    assert all(r.fresh for r in measured(root).values())
+
+
+def test_bad_cells_fail_and_the_run_goes_on(root, monkeypatch):
+    monkeypatch.setitem(__import__("isomortar.harness.cases").harness.cases.TIMEOUTS, "gate", 8.0)
+    next(root.glob("family_*")).joinpath("bad.py").write_text(BAD)
+    results = measured(root)
+    states = {name: result.state for name, result in results.items() if "[" not in name}
+    assert states == {
+        "crash": "crashed", "raising": "failed", "skipping": "skipped", "nan": "failed", "late": "timed out", "printing": "passed",
+    }  # fmt: skip
+    assert "SIGABRT" in results["crash"].measurement.message
+    assert "no such thing" in results["raising"].measurement.message
+    again = measured(root)
+    assert again["crash"].fresh
+    assert not again["skipping"].fresh
+
+
+def test_selection(root):
+    cases = collect(root)
+    family = cases[0].family
+    assert len(select(cases, "gate")) == 5
+    assert len(select(cases, "weekly", family, f"{family}/sine")) == 3
+    assert len(select(cases, "gate", None, f"{family}/sine[order=2]")) == 1
+    for tier, other, name in (("gate", "none", None), ("gate", None, "none")):
+        with pytest.raises(InputError):
+            select(cases, tier, other, name)
+    with pytest.raises(InputError):
+        find(root, "none")
+    with pytest.raises(InputError):
+        collect(root / "nowhere")
+
+
+def test_command_and_its_report(root):
+    options = ["verify", "--cases", str(root), "--results", "out", "-j", "1"]
+    assert CliRunner().invoke(app, options).exit_code == 0
+    next(root.glob("family_*")).joinpath("match.py").write_text(MATCH)
+    assert CliRunner().invoke(app, options).exit_code == 1  # no reference
+    report = json.loads(Path("out/report.json").read_text())
+    assert report["states"] == {"passed": 5, "missing reference": 2}
+    suite = ElementTree.parse("out/report.xml").getroot()[0]
+    assert (suite.get("tests"), suite.get("failures"), len(suite.findall("testcase/failure"))) == ("7", "2", 2)
+    page = Path("out/report.html").read_text()
+    assert "2 of 7 cells do not pass" in page
+    assert "missing reference" in page
+    assert "<svg" in page
+    for outside in ("http://", "https://", "src=", "<script", "@import", "url("):
+        assert outside not in page
+    assert len(history.read(Path("out/history.jsonl"))) == 2
+
+
+def test_blessing(root):
+    family = next(root.glob("family_*"))
+    family.joinpath("match.py").write_text(MATCH)
+    options = ["--cases", str(root), "--results", "out", "--references", "references", "-j", "1"]
+    command = ["bless", f"{family.name}/same", "--reason", "first", *options]
+    assert CliRunner().invoke(app, command, input="n\n").exit_code == 1
+    assert not Path("references").exists()
+    assert CliRunner().invoke(app, [*command, "--yes"]).exit_code == 0
+    reference = Reference(Path("references/kept"))
+    assert reference.record["class"] == "self"
+    assert {"who", "when", "reason", "kernel", "compiler"} <= reference.record.keys()
+    assert CliRunner().invoke(app, ["verify", *options]).exit_code == 0
+    with h5py.File("references/kept/data.h5", "a") as file:
+        file["kind=N1/value"][0] = 1.5
+    with pytest.raises(InputError, match="hash"):
+        Reference(Path("references/kept"))
+
+
+def test_only_a_green_run_is_blessed(root):
+    family = next(root.glob("family_*"))
+    family.joinpath("match.py").write_text(MATCH.replace('"error": 0.0', '"error": 2.0'))
+    with pytest.raises(InputError, match="green"):
+        CliRunner().invoke(
+            app, ["bless", f"{family.name}/same", "--reason", "x", "--yes", "--cases", str(root), "-j", "1"], catch_exceptions=False
+        )
+
+
+@pytest.mark.parametrize(("values", "uncertainty"), [([np.nan], 1.0), ([], 1.0), ([1.0], np.nan), ([1.0], -1.0)])
+def test_bad_references_are_refused(tmp_path, values, uncertainty):
+    record = {"title": "t", "class": "exact", "origin": "o", "made": "m", "uncertainty": "u"}
+    with pytest.raises(InputError):
+        write_reference(tmp_path / "r", {"value": (np.array(values), uncertainty)}, record)
+    write_reference(tmp_path / "good", {"value": (np.array([1.0]), 0.1)}, record)
+    with pytest.raises(InputError, match="class"):
+        write_reference(tmp_path / "r", {"value": (np.array([1.0]), 0.1)}, {**record, "class": "believed"})
+    with pytest.raises(InputError, match="made"):
+        write_reference(tmp_path / "r", {"value": (np.array([1.0]), 0.1)}, {**record, "made": " "})
+
+
+def test_killed_and_resumed(root):
+    slow = GOOD.replace("    return {", "    import time; time.sleep(0.3)\n    return {").replace("[1, 2, 3]", "list(range(1, 13))")
+    next(root.glob("family_*")).joinpath("good.py").write_text(slow)
+    command = [sys.executable, "-m", "isomortar", "verify", "--cases", str(root), "--results", "out", "-j", "2"]
+    for _ in range(2):
+        process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        kept = len(list(Path("out").rglob("*.json")))
+        end = time.monotonic() + 60
+        while len(list(Path("out").rglob("*.json"))) < kept + 3 and time.monotonic() < end:
+            time.sleep(0.02)
+        os.kill(process.pid, signal.SIGKILL)
+        process.wait()
+    resumed = subprocess.run(command, check=False, capture_output=True)
+    assert resumed.returncode == 0, resumed.stderr.decode()
+    report = json.loads(Path("out/report.json").read_text())
+    subprocess.run([*command[:-4], "--results", "whole", "-j", "2"], check=True, capture_output=True)
+    whole = json.loads(Path("whole/report.json").read_text())
+    for cell in (*report["cells"], *whole["cells"]):
+        for time_of in ("seconds", "cpu_seconds"):
+            del cell["measurement"][time_of]
+    assert report["cells"] == whole["cells"]
+
+
+def test_dask_gives_the_same_bits(root):
+    distributed = pytest.importorskip("distributed")
+    local = measured(root)
+    store = Store(root.parent / "other")
+    options = {"n_workers": 1, "threads_per_worker": 1, "processes": True, "dashboard_address": None}
+    with distributed.LocalCluster(**options) as cluster, dask_cluster(cluster.scheduler_address) as submit:
+        results = run(start(select(collect(root), "gate"), store, submit), finder(root.parent / "references"), store)
+    assert {r.cell.name.partition("/")[2]: r.measurement.numbers for r in results} == {n: r.measurement.numbers for n, r in local.items()}
+
+
+def test_history_marks_changes_and_not_noise():
+    rng = np.random.default_rng(1)
+    noise = 1 + 0.01 * rng.standard_normal(30)
+    assert history.change_points(list(noise)) == []
+    stepped = noise * np.where(np.arange(30) < 12, 1.0, 1.5)
+    assert history.change_points(list(stepped)) == [12]
+    assert history.change_points([1.0] * 9 + [2.0]) == [9]
+    assert history.change_points([1.0, 1.0, 9.0, 1.0, 1.0]) == []  # an outlier
+    assert history.change_points([np.nan, 1.0, np.nan, 1.0]) == []
+    assert history.change_points([1e-16, 5e-16], least=1e-14) == []
+
+
+pytest_plugins = ["pytester"]
+
+
+def test_pytest_collects_cells(pytester):
+    family = pytester.mkdir("cases_of_ours").joinpath("family_of_ours")
+    family.mkdir()
+    family.joinpath("helper.py").write_text("")
+    family.joinpath("good.py").write_text(GOOD.replace("from helper import SCALE", "SCALE = 1"))
+    family.joinpath("more.py").write_text(
+        "from isomortar.harness import Bound, case\n"
+        "B = {'error': Bound(at_most=1.0, reason='theory: so')}\n"
+        "@case(claim='Too large.', bounds=B)\ndef large():\n    return {'error': 2.0}\n"
+        "@case(claim='Slow.', bounds=B, tier='nightly')\ndef slow():\n    return {'error': 0.0}\n"
+    )
+    result = pytester.runpytest_subprocess("cases_of_ours", "-m", "gate", "--strict-markers")
+    result.assert_outcomes(passed=5, failed=1, deselected=1)
+    result.stdout.fnmatch_lines(["*error: failed: 2, limit*"])
