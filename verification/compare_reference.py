@@ -42,10 +42,11 @@ from isomortar.solve.simulation import Simulation
 #: Share of the largest value of a run below which a quantity counts as nothing.
 FLOOR = 1e-6
 
-#: Solver settings of the groups of references that an explicit scene does not state.
+#: Solver settings of the groups of references that an explicit scene does not state. The tight ones stopped by the paper's norm as well:
+#: with it press_N3 agrees to round-off, with the separate test, which asks for more augmentations, only to 3e-6 in its tractions.
 SETTINGS: dict[str, dict[str, str]] = {
     "local": {"method": "monolithic", "slip_sum": "local"},
-    "tight": {"method": "uzawa", "slip_sum": "paper", "augmentation_norm": "separate"},
+    "tight": {"method": "uzawa", "slip_sum": "paper", "augmentation_norm": "paper"},
     "paper": {"method": "uzawa", "slip_sum": "paper", "augmentation_norm": "paper"},
 }
 
