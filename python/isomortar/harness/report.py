@@ -18,7 +18,7 @@ import numpy as np
 
 from isomortar.harness import history, svg
 from isomortar.harness.cases import Bound, Order
-from isomortar.harness.compare import STATES, Check
+from isomortar.harness.compare import STATES, Check, worst
 from isomortar.harness.measurement import convergence_of, curve_of
 from isomortar.harness.runner import Result
 from isomortar.harness.store import compiler, kernel_hash, program_hash, write_whole
@@ -129,12 +129,13 @@ def _case(results: list[Result], context: Context) -> dict[str, Any]:
         "anchor": anchor(case.name),
         "passed": sum(r.state == "passed" for r in results),
         "total": len(results),
-        "green": all(r.state == "passed" for r in results),
+        "state": worst(r.state for r in results),
         "seconds": sum(r.measurement.seconds for r in results),
         "bounds": _bounds(results, names),
         "names": names,
         "rows": [_row(result, names, context) for result in results],
         "plots": [text for text in (_plot(results, name) for name in names) if text],
+        "orders": any(check.order for result in results for check in result.checks),
         "tiers": sorted({r.cell.tier for r in results}),
     }
 
@@ -183,19 +184,19 @@ def _plot(results: list[Result], name: str) -> str:
 
 
 def _news(results: Sequence[Result], context: Context) -> list[str]:
-    """What is otherwise than in the run before: states, and numbers that went to another level now."""
+    """What is otherwise than when the cell was run before: states, and numbers that went to another level now."""
     found = []
-    before = context.runs[-2].cells if len(context.runs) > 1 else {}
     for result in results:
-        earlier = before.get(result.cell.name)
+        name = result.cell.name
+        earlier = next((run.cells[name] for run in reversed(context.runs[:-1]) if name in run.cells), None)
         if earlier is None:
             continue
         if earlier["state"] != result.state:
-            found.append(f"{result.cell.name}: {earlier['state']} → {result.state}")
+            found.append(f"{name}: {earlier['state']} → {result.state}")
         for check in result.checks:
-            values = history.values_of(context.runs, result.cell.name, check.name)
+            values = history.values_of(context.runs, name, check.name)
             if len(values) - 1 in _change_points(result, check.name, values):
-                found.append(f"{result.cell.name}: {check.name} {number(values[-2])} → {number(values[-1])}")
+                found.append(f"{name}: {check.name} {number(values[-2])} → {number(values[-1])}")
     return found
 
 
