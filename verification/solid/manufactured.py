@@ -1,0 +1,190 @@
+"""Manufactured solution in finite deformation of a cylinder sector that goes on along its axis for ever.
+
+All three components of the displacement vary with radius and angle, and vanish on the curved and the cut faces; along the axis one
+element whose two ends move alike stands for the infinite body, so that fine meshes cost seconds. The stress P follows in closed
+form, and the load of a function N is the integral of P : grad N: what a body force of -div P does. Functions, geometry, load and
+errors are computed here, independently of the kernel; forces and tangent are the kernel's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from scipy import sparse
+from scipy.interpolate import BSpline
+from scipy.sparse.linalg import SuperLU, splu
+from shapes import cylinder_sector
+
+from isomortar.geometry.patch import Direction, FloatArray, IntArray, Patch
+from isomortar.geometry.refinement import mesh
+from isomortar.harness import Convergence, Order, case
+from isomortar.model.entities import Body, Material, Problem
+from isomortar.model.numbering import Numbering
+from isomortar.model.pattern import element_points
+from isomortar.model.solid import Solid
+
+MATERIAL = Material()
+INNER, OUTER, ANGLE, HEIGHT = 1.0, 2.0, np.pi / 3, 0.5
+#: The displacement is this vector times a function between 0 and 1; its gradient reaches a half.
+AMPLITUDE = np.array([0.12, -0.10, 0.15])
+#: Gauss points beyond the order in every integral, and beyond that for the error of the quadrature.
+POINTS, MORE = 2, 2
+
+
+def displacement(x: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Manufactured displacement and its gradient at points of shape (n, 3): shapes (n, 3) and (n, 3, 3)."""
+    radius, angle = np.hypot(x[:, 0], x[:, 1]), np.arctan2(x[:, 1], x[:, 0])
+    places = np.pi * np.stack([(radius - INNER) / (OUTER - INNER), angle / ANGLE])
+    (s, t), (ds, dt) = np.sin(places), np.pi * np.cos(places)
+    outward = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
+    around = np.stack([-np.sin(angle), np.cos(angle), 0 * angle], axis=1)
+    gradient = (ds * t / (OUTER - INNER))[:, None] * outward + (s * dt / (ANGLE * radius))[:, None] * around
+    return (s * t)[:, None] * AMPLITUDE, AMPLITUDE[:, None] * gradient[:, None, :]
+
+
+def stress(gradient: FloatArray) -> FloatArray:
+    """First Piola stress (formulation.md Section 1) of displacement gradients, shape (n, 3, 3)."""
+    f = np.eye(3) + gradient
+    j = np.linalg.det(f)[:, None, None]
+    inverse = np.swapaxes(np.linalg.inv(f), 1, 2)
+    square = np.einsum("nij,nij->n", f, f)[:, None, None]
+    return MATERIAL.bulk * np.log(j) * inverse + MATERIAL.shear * j ** (-2 / 3) * (f - square / 3 * inverse)
+
+
+def lines(direction: Direction, count: int) -> list[tuple[FloatArray, FloatArray, FloatArray]]:
+    """Values and slopes of the functions of each element at its Gauss points, shape (points, order + 1), and Gauss weights."""
+    t, gauss = np.polynomial.legendre.leggauss(count)
+    p, tables = direction.order, []
+    for element, (low, high) in enumerate(zip(direction.boundaries[:-1], direction.boundaries[1:], strict=True)):
+        u, half = low + (high - low) * (t + 1) / 2, (high - low) / 2
+        if direction.family == "N":
+            first = int(np.searchsorted(direction.knots, low, side="right")) - 1 - p
+            functions = [BSpline(direction.knots, np.eye(direction.count)[first + a], p) for a in range(p + 1)]
+            values, slopes = [np.column_stack([f(u, nu) for f in functions]) for nu in (0, 1)]
+        else:
+            nodes = np.linspace(-1, 1, p + 1)
+            coefficients = np.linalg.inv(np.vander(nodes, increasing=True))
+            powers = np.vander(t, p + 1, increasing=True)
+            derivatives = np.column_stack([np.zeros(count)] + [k * powers[:, k - 1] for k in range(1, p + 1)])
+            values, slopes = powers @ coefficients, derivatives @ coefficients / half
+        tables.append((values, slopes, gauss * half))
+    return tables
+
+
+def elements(patch: Patch, points: IntArray, gauss: tuple[int, ...]) -> Iterator[tuple[IntArray, FloatArray, FloatArray, FloatArray]]:
+    """For each element its control points, functions (points, a), their gradients by position (points, a, 3), and volumes."""
+    tables = [lines(direction, count) for direction, count in zip(patch.directions, gauss, strict=True)]
+    numbers = element_points(patch, points)
+    shape = [direction.elements for direction in patch.directions]
+    for e, nodes in enumerate(numbers):
+        (u, du, gu), (v, dv, gv), (w, dw, gw) = (table[i] for table, i in zip(tables, np.unravel_index(e, shape, order="F"), strict=True))
+        weight = patch.weights[nodes]
+
+        def product(a: FloatArray, b: FloatArray, c: FloatArray, weight: FloatArray = weight) -> FloatArray:
+            return np.einsum("kc,jb,ia->kjicba", c, b, a).reshape(-1, len(weight)) * weight
+
+        top = product(u, v, w)
+        slopes = np.stack([product(du, v, w), product(u, dv, w), product(u, v, dw)], axis=2)
+        total = top.sum(axis=1)[:, None]
+        functions = top / total
+        parametric = (slopes - functions[:, :, None] * slopes.sum(axis=1)[:, None, :]) / total[:, :, None]
+        jacobian = np.einsum("ai,qap->qip", patch.control_points[nodes], parametric)
+        volume = np.einsum("k,j,i->kji", gw, gv, gu).ravel() * np.linalg.det(jacobian)
+        yield nodes, functions, parametric @ np.linalg.inv(jacobian), volume
+
+
+def load(patch: Patch, points: IntArray, gauss: tuple[int, ...]) -> FloatArray:
+    """The manufactured load, shape (control points, 3)."""
+    total = np.zeros_like(patch.control_points)
+    for nodes, functions, gradients, volume in elements(patch, points, gauss):
+        exact = stress(displacement(functions @ patch.control_points[nodes])[1])
+        total[nodes] += np.einsum("q,qij,qaj->ai", volume, exact, gradients)
+    return total
+
+
+def norms(patch: Patch, points: IntArray, field: FloatArray, gauss: tuple[int, ...], exact: bool) -> FloatArray:
+    """L2 norms of a displacement field and of its gradient; of their errors where `exact`."""
+    squares = np.zeros(2)
+    for nodes, functions, gradients, volume in elements(patch, points, gauss):
+        value, slope = functions @ field[nodes], np.einsum("ai,qaj->qij", field[nodes], gradients)
+        if exact:
+            u, gradient = displacement(functions @ patch.control_points[nodes])
+            value, slope = value - u, slope - gradient
+        squares += [volume @ (value**2).sum(axis=1), volume @ (slope**2).sum(axis=(1, 2))]
+    return np.sqrt(squares)
+
+
+def discretised(kind: str, count: int) -> Patch:
+    """The sector with `count` elements along radius and angle, one along the axis.
+
+    N1 can not hold an arc: its control points are on it like those of L1, with weights that vary smoothly.
+    """
+    family, order = ("L", 1) if kind == "N1" else (kind[0], int(kind[1:]))
+    coarse = cylinder_sector(INNER, OUTER, ANGLE, HEIGHT)
+    patch = mesh(coarse, (family,) * 3, (order, order, 1), (count, count, 1))  # type: ignore[arg-type]
+    if kind != "N1":
+        return patch
+    u, v, w = (Direction("N", 1, np.concatenate([d.knots[:1], d.knots, d.knots[-1:]])) for d in patch.directions)
+    return Patch((u, v, w), patch.control_points, np.exp(0.5 * np.sin(2 * patch.control_points[:, :2].sum(axis=1))))
+
+
+def unknowns(patch: Patch) -> sparse.csc_array:
+    """All displacements from the free ones: none on the curved and the cut faces, the same at both ends of the axis."""
+    layer = patch.shape[0] * patch.shape[1]
+    held = np.unique(np.concatenate([patch.face_points(face) for face in ("u0", "u1", "v0", "v1")]))
+    free = (3 * np.setdiff1d(np.arange(layer), held)[:, None] + np.arange(3)).ravel()
+    return sparse.vstack([sparse.eye_array(3 * layer, format="csc")[:, free]] * 2, format="csc")
+
+
+def solved(patch: Patch, solid: Solid, wanted: FloatArray) -> tuple[FloatArray, SuperLU]:
+    """Displacements in balance with a load, and the factors of the tangent there."""
+    spread = unknowns(patch)
+    field = np.zeros_like(patch.control_points)
+    for _ in range(20):
+        forces, tangent = solid.forces_and_tangent(patch.control_points + field)
+        matrix = sparse.bsr_array((tangent, solid.pattern.column, solid.pattern.start)).tocsc()
+        factors = splu((spread.T @ matrix @ spread).tocsc())
+        step = spread @ factors.solve(spread.T @ (wanted - forces).ravel())
+        field = field + step.reshape(-1, 3)
+        if np.abs(step).max() < 1e-12:
+            return field, factors
+    raise RuntimeError("Newton's method does not converge")
+
+
+def errors(kind: str, count: int) -> tuple[FloatArray, FloatArray]:
+    """Errors of displacement and gradient with `count` elements a side, and what the quadrature makes of them."""
+    patch = discretised(kind, count)
+    order = int(kind[1:])
+    gauss, more = (order + POINTS, order + POINTS, 2), (order + POINTS + MORE, order + POINTS + MORE, 2)
+    coarse, fine = (Problem("manufactured", (Body("body", patch, MATERIAL, g),), (), (), ()) for g in (gauss, more))
+    numbering = Numbering(coarse)
+    points = numbering.points["body"]
+    field, factors = solved(patch, Solid(coarse, numbering), load(patch, points, gauss))
+    spread = unknowns(patch)
+    missing = load(patch, points, more) - Solid(fine, numbering).forces(patch.control_points + field)
+    change = (spread @ factors.solve(spread.T @ missing.ravel())).reshape(-1, 3)
+    return norms(patch, points, field, more, exact=True), norms(patch, points, change, gauss, exact=False)
+
+
+#: Elements a side, by discretisation: the errors of smooth functions bend for longer, so that they need finer meshes.
+MESHES = {
+    "N1": (6, 9, 13, 18), "N2": (12, 16, 22, 30), "N3": (12, 16, 20, 26), "N4": (10, 13, 17, 22),
+    "L1": (6, 9, 13, 18), "L2": (4, 6, 9, 13), "L3": (4, 6, 8, 11),
+}  # fmt: skip
+
+
+@case(
+    claim="The error of a manufactured solution in finite deformation falls with order p + 1, that of its gradient with order p.",
+    tier=lambda kind: "gate" if kind in ("N1", "L1", "L2") else "nightly",
+    grid={"kind": list(MESHES)},
+    bounds=lambda kind: {
+        "L2": Order(int(kind[1:]) + 1, reason="theory: best approximation by order p, smooth solution, convex section"),
+        "H1": Order(int(kind[1:]), reason="theory: best approximation by order p, smooth solution"),
+    },
+)
+def orders(kind: str) -> dict[str, Convergence]:
+    """L2 norms of the errors of displacement and displacement gradient."""
+    found, quadrature = (np.array(both) for both in zip(*[errors(kind, count) for count in MESHES[kind]], strict=True))
+    sizes = 1.0 / np.array(MESHES[kind])
+    return {name: Convergence(sizes, found[:, i], {"quadrature": quadrature[:, i]}) for i, name in enumerate(("L2", "H1"))}
