@@ -15,8 +15,12 @@ NAN, INF = np.nan, np.inf
 H = np.array([0.5, 0.25, 0.125, 0.0625])
 
 
+def nothing():
+    return {}
+
+
 def cell_of(claim) -> Cell:
-    return Cell(Case(dict, "It holds.", {"value": claim}, "gate", {}, None, ()), {})
+    return Cell(Case(nothing, "It holds.", {"value": claim}, "gate", {}, None, ()), {})
 
 
 def state(claim, value, expected=None):
@@ -142,12 +146,12 @@ def test_a_case_that_returns_no_names_has_failed(value):
 
 def test_definitions_that_could_not_fail_are_refused():
     good = {"claim": "It holds.", "bounds": {"value": Bound(at_most=1.0, reason="theory: so")}}
-    assert case(**good)(dict).cells[0].tier == "gate"
+    assert case(**good)(nothing).cells[0].tier == "gate"
     for wrong in (
         {"bounds": {}}, {"claim": " "}, {"tier": "sometimes"}, {"grid": {"order": [1]}}, {"bounds": {"value": 1.0}},
     ):  # fmt: skip
         with pytest.raises(InputError):
-            case(**{**good, **wrong})(dict)
+            case(**{**good, **wrong})(nothing)
     with pytest.raises(InputError, match="grid"):
         case(**good, grid={"order": []})(lambda order: {"value": order})
     for limits in ({}, {"at_most": NAN}, {"at_most": INF}, {"at_most": -1.0}, {"at_least": 2.0, "at_most": 1.0}):
