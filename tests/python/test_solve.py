@@ -123,3 +123,20 @@ def test_resuming_gives_the_same_numbers() -> None:
     whole = run(problem)
     rest = list(Simulation(problem, resume_from=whole[8]).run())
     np.testing.assert_allclose(rest[-1].state.positions, whole[-1].state.positions, atol=1e-12)
+
+
+@pytest.mark.parametrize("exponent", [-6, 6])
+def test_units_do_not_make_the_system_singular(exponent: int) -> None:
+    problem = Scene.load("press", ["bodies.slave.mesh.elements=[3,3,1]"]).problem()
+    length, stress = 10.0**exponent, 10.0**-exponent
+    first = run(problem)[-1]
+    (body,), (contact,) = problem.bodies, problem.contacts
+    sized = replace(body.patch, control_points=length * body.patch.control_points)
+    bodies = (replace(body, patch=sized, material=replace(body.material, young=stress * body.material.young)),)
+    area = None if contact.reference_area is None else length**2 * contact.reference_area
+    supports = tuple(
+        replace(s, motions=tuple(Motion(tuple(length * u for u in m.translate), m.rotate) for m in s.motions))  # type: ignore[arg-type]
+        for s in problem.supports
+    )
+    other = run(replace(problem, bodies=bodies, supports=supports, contacts=(replace(contact, reference_area=area),)))[-1]
+    assert other.reactions[0].force / (stress * length**2) == pytest.approx(first.reactions[0].force, rel=1e-9, abs=1e-9)

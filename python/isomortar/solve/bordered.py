@@ -3,7 +3,8 @@
     [ K + K_geo   G^T ] [ dx ]     [ forces              ]
     [ -target'    L   ] [ dl ] = - [ multiplier - target ]
 
-Rows of the contact conditions are scaled by w / e, multiplier columns by e (formulation.md Section 6, step 5).
+Multiplier columns are scaled by e, rows of the contact conditions by w (formulation.md Section 6, step 5), and those of the covariant
+tractions by the lengths of the master's tangent vectors: all entries then have the unit of the stiffness, whatever the units and knots.
 """
 
 from __future__ import annotations
@@ -36,8 +37,8 @@ class Border:
     pair: PairMechanics
     blocks: Blocks
     equation: IntArray
-    row_scale: FloatArray
-    column_scale: float
+    row_scale: FloatArray  # (slave control points, 3)
+    column_scale: FloatArray  # (3,)
     target: Response
 
     def sources(self, unknowns: IntArray) -> tuple[list[Source], list[FloatArray]]:
@@ -45,10 +46,10 @@ class Border:
         patterns = self.blocks.patterns
         columns = np.zeros((len(patterns.rows.column), 3, 3))
         kinds = min(3, self.blocks.rows.shape[1])
-        columns[:, :kinds] = self.column_scale * self.blocks.rows[:, :kinds]
+        columns[:, :kinds] = self.column_scale[:kinds, None] * self.blocks.rows[:, :kinds]
         owner = np.repeat(np.arange(len(self.row_scale)), np.diff(patterns.wide.start))
-        conditions = -self.row_scale[owner, None, None] * self.blocks.changes
-        own = (self.row_scale * self.column_scale)[:, None, None] * self._own_block()
+        conditions = -self.row_scale[owner, :, None] * self.blocks.changes
+        own = self.row_scale[:, :, None] * self._own_block() * self.column_scale
         sources = [
             Source(patterns.tangent, unknowns, unknowns),
             Source(patterns.rows, self.equation, unknowns, transposed=True),
@@ -122,10 +123,10 @@ def _border(equilibrium: Equilibrium, k: int, balance: Balance, law: Law, target
     equation = np.full((len(reached), 3), -1, dtype=np.int32)
     count = int(np.count_nonzero(reached)) * components
     equation[reached, :components] = first + np.arange(count, dtype=np.int32).reshape(-1, components)
-    weight = balance.kinematics[k].control.weight
-    parameter = float(law.penalties[0])
-    row_scale = np.where(weight > 0, weight, np.median(weight)) / parameter
-    return Border(pair, blocks, equation.ravel(), row_scale, parameter, target)
+    control = balance.kinematics[k].control
+    lengths = np.concatenate([[1.0], pair.tangent_lengths(control)])
+    weight = np.where(control.weight > 0, control.weight, np.median(control.weight))
+    return Border(pair, blocks, equation.ravel(), weight[:, None] / lengths, float(law.penalties[0]) * lengths, target)
 
 
 def _right_hand_side(
@@ -146,7 +147,7 @@ def _right_hand_side(
         if border is not None:
             apart = np.column_stack([now.pressure - target.pressure, now.traction - target.traction])
             kept = border.equation >= 0
-            right[border.equation[kept]] = (border.row_scale[:, None] * apart).ravel()[kept]
+            right[border.equation[kept]] = (border.row_scale * apart).ravel()[kept]
     if prescribed is not None and np.any(prescribed):
         for source, block in zip(sources, values, strict=True):
             if source.column_of is equilibrium.supports.equation and not source.transposed:
@@ -166,5 +167,6 @@ def _multiplier_change(border: Border | None, target: Response, solution: FloatA
     change = np.zeros((len(target.state), 3))
     if border is not None:
         kept = border.equation >= 0
-        change.ravel()[kept] = border.column_scale * solution[border.equation[kept]]
+        change.ravel()[kept] = solution[border.equation[kept]]
+        change *= border.column_scale
     return change

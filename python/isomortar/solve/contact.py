@@ -121,6 +121,12 @@ class PairMechanics:
         raised = np.column_stack([m[:, 2] * traction[:, 0] - m[:, 1] * traction[:, 1], m[:, 0] * traction[:, 1] - m[:, 1] * traction[:, 0]])
         return np.asarray(raised / np.where(determinant > 0, determinant, 1.0)[:, None])
 
+    def tangent_lengths(self, control: Control) -> FloatArray:
+        """Typical lengths of the master's tangent vectors a_1, a_2 where the slave projects, shape (2,)."""
+        present = control.square > 0
+        squared = control.metric[present][:, [0, 2]] / control.square[present, None]
+        return np.sqrt(np.median(squared, axis=0)) if np.any(present) and self.friction > 0 else np.ones(2)
+
     def traction_norms(self, control: Control, traction: FloatArray) -> FloatArray:
         """Metric norm of control tractions, shape (slave control points,)."""
         squared = np.einsum("ia,ia->i", self.contravariant(control, traction), traction)

@@ -1,0 +1,118 @@
+"""Rotations, units, mirror images, parametrisations and names leave the results of a scene with friction."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from small_scenes import bowl
+from transforms import mirrored, relabelled, scaled, turned, with_knots, with_weights
+
+from isomortar.geometry.patch import FloatArray
+from isomortar.harness import Bound, case
+from isomortar.model.entities import Problem
+from isomortar.solve.simulation import Simulation
+
+#: No axis, plane or round number is kept by this rotation.
+TURN = np.linalg.qr(np.array([[0.3, -1.1, 0.7], [0.9, 0.4, -0.2], [-0.5, 0.8, 1.3]]))[0]
+TURN = TURN * np.sign(np.linalg.det(TURN))
+MIRROR = np.diag([-1.0, 1.0, 1.0])
+MASTERS = ("block", "plane")
+
+_REASON = "round-off: Newton stops at 1e-12 and converges quadratically; what is left grows with the condition of the system"
+BOUNDS = {
+    "forces": Bound(at_most=1e-10, reason=_REASON),
+    "moments": Bound(at_most=1e-10, reason=_REASON),
+    "pressures": Bound(at_most=1e-9, reason=f"{_REASON}, that of single control pressures the most"),
+    "tractions": Bound(at_most=1e-9, reason=f"{_REASON}, that of single control tractions the most"),
+    "states": Bound(at_most=0.0, reason="theory: the same control points stick and slip"),
+}
+
+#: Forces and moments on the supports, sorted control pressures, traction norms, and states; by load step.
+Measured = dict[str, FloatArray]
+
+
+def measure(problem: Problem) -> Measured:
+    """Run a problem; pressures, traction norms and states are sorted, so that numbering does not count."""
+    results = list(Simulation(problem).run())
+    return {
+        "forces": np.array([[reaction.force for reaction in result.reactions] for result in results]),
+        "moments": np.array([[reaction.moment for reaction in result.reactions] for result in results]),
+        "pressures": np.array([np.sort(result.state.contacts[0].pressure) for result in results]),
+        "tractions": np.array([np.sort(result.contacts[0].traction_norm) for result in results]),
+        "states": np.array([np.sort(result.contacts[0].status) for result in results], dtype=float),
+    }
+
+
+def change(
+    master: str, transform: Callable[[Problem], Problem], back: Callable[[Measured], Measured] = lambda found: found
+) -> dict[str, float]:
+    """Largest change of each measured quantity over its largest value, when `back` has taken the transformed results back."""
+    problem = bowl(master)
+    before, after = measure(problem), back(measure(transform(problem)))
+    return {name: float(np.abs(after[name] - value).max() / np.abs(value).max()) for name, value in before.items()}
+
+
+@case(claim="A rotation of the whole scene changes no result.", tier="gate", grid={"master": MASTERS}, bounds=BOUNDS)
+def rotation(master: str) -> dict[str, float]:
+    """Geometry, rigid plane and motions turned; forces and moments turned back."""
+    return change(
+        master,
+        lambda problem: turned(problem, TURN),
+        lambda found: found | {"forces": found["forces"] @ TURN, "moments": found["moments"] @ TURN},
+    )
+
+
+@case(
+    claim="The units of length and of stress change no result.",
+    tier="gate",
+    grid={"master": ("block",), "length": (1e-6, 1.0, 1e6), "stress": (1e-6, 1e6)},
+    bounds=BOUNDS,
+)
+def units(master: str, length: float, stress: float) -> dict[str, float]:
+    """Lengths and stresses in other units; results taken back to the first ones."""
+    return change(
+        master,
+        lambda problem: scaled(problem, length, stress),
+        lambda found: {
+            "forces": found["forces"] / (stress * length**2),
+            "moments": found["moments"] / (stress * length**3),
+            "pressures": found["pressures"] / stress,
+            "tractions": found["tractions"] / stress,
+            "states": found["states"],
+        },
+    )
+
+
+@case(claim="The mirror image of a scene has the mirror image of its results.", tier="gate", grid={"master": MASTERS}, bounds=BOUNDS)
+def mirror_image(master: str) -> dict[str, float]:
+    """Reflected in the plane x = 0; moments are axial vectors."""
+    return change(master, mirrored, lambda found: found | {"forces": found["forces"] @ MIRROR, "moments": -found["moments"] @ MIRROR})
+
+
+@case(
+    claim="Other knots for the same functions change no result.",
+    tier="gate",
+    grid={"factor": (1e-3, 4096.0), "shift": (0.0, 0.7)},
+    bounds=BOUNDS,
+)
+def knot_scaling(factor: float, shift: float) -> dict[str, float]:
+    """Knots of all directions times a factor, and shifted by a share of their range."""
+    return change("block", lambda problem: with_knots(problem, factor, shift * factor))
+
+
+@case(claim="A factor of all weights changes no result.", tier="gate", grid={"factor": (1e-3, 7.0)}, bounds=BOUNDS)
+def weight_scaling(factor: float) -> dict[str, float]:
+    """All weights times a factor."""
+    return change("block", lambda problem: with_weights(problem, factor))
+
+
+@case(
+    claim="The order of the bodies, the sense and the names of their directions change no result.",
+    tier="gate",
+    grid={"master": MASTERS},
+    bounds=BOUNDS,
+)
+def relabelling(master: str) -> dict[str, float]:
+    """Bodies in reverse order, u and v reversed, u, v, w called w, u, v."""
+    return change(master, relabelled)

@@ -1,0 +1,148 @@
+"""Changes of a problem that must leave its results: motions, units, parametrisations, order of bodies."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from isomortar.geometry.patch import FACES, Direction, FloatArray, Patch
+from isomortar.model.entities import Contact, Face, Motion, Problem, RigidPlane, Support
+
+Vector = tuple[float, float, float]
+
+
+def vector(values: FloatArray) -> Vector:
+    """Three floats."""
+    x, y, z = (float(value) for value in values)
+    return x, y, z
+
+
+def with_patches(problem: Problem, change: Callable[[Patch], Patch]) -> Problem:
+    """The problem with every body's patch changed."""
+    return replace(problem, bodies=tuple(replace(body, patch=change(body.patch)) for body in problem.bodies))
+
+
+def turned(problem: Problem, turn: FloatArray) -> Problem:
+    """Geometry, rigid planes and motions turned by a rotation matrix, shape (3, 3). Supports must hold all components."""
+    return replace(
+        with_patches(problem, lambda patch: replace(patch, control_points=patch.control_points @ turn.T)),
+        contacts=tuple(_turned_contact(contact, turn) for contact in problem.contacts),
+        supports=tuple(_turned_support(support, turn, 1.0) for support in problem.supports),
+    )
+
+
+def mirrored(problem: Problem) -> Problem:
+    """The mirror image in the plane x = 0, direction u reversed to keep the volume positive."""
+    mirror = np.diag([-1.0, 1.0, 1.0])
+    image = with_patches(problem, lambda patch: reversed_along(replace(patch, control_points=patch.control_points @ mirror), (0,)))
+    return replace(
+        image,
+        contacts=tuple(_turned_contact(contact, mirror) for contact in problem.contacts),
+        supports=tuple(_turned_support(support, mirror, -1.0) for support in problem.supports),
+    )
+
+
+def scaled(problem: Problem, length: float, stress: float) -> Problem:
+    """Other units: all lengths times `length`, all stresses times `stress`."""
+    sized = with_patches(problem, lambda patch: replace(patch, control_points=length * patch.control_points))
+    bodies = tuple(replace(body, material=replace(body.material, young=stress * body.material.young)) for body in sized.bodies)
+    return replace(
+        sized,
+        bodies=bodies,
+        contacts=tuple(_scaled_contact(contact, length) for contact in problem.contacts),
+        supports=tuple(_scaled_support(support, length) for support in problem.supports),
+    )
+
+
+def with_knots(problem: Problem, factor: float, shift: float) -> Problem:
+    """All knots times `factor` plus `shift`."""
+
+    def changed(patch: Patch) -> Patch:
+        u, v, w = (replace(direction, knots=factor * direction.knots + shift) for direction in patch.directions)
+        return replace(patch, directions=(u, v, w))
+
+    return with_patches(problem, changed)
+
+
+def with_weights(problem: Problem, factor: float) -> Problem:
+    """All weights times `factor`."""
+    return with_patches(problem, lambda patch: replace(patch, weights=factor * patch.weights))
+
+
+def relabelled(problem: Problem) -> Problem:
+    """Bodies in reverse order, directions u and v of every body reversed, then u, v, w called w, u, v."""
+    bodies = tuple(
+        replace(body, patch=permuted(reversed_along(body.patch, (0, 1))), quadrature=(*body.quadrature[1:], body.quadrature[0]))
+        for body in reversed(problem.bodies)
+    )
+    faces = {face: "wuv"["uvw".index(face[0])] + (face[1] if face[0] == "w" else "10"[int(face[1])]) for face in FACES}
+    return replace(
+        problem,
+        bodies=bodies,
+        contacts=tuple(
+            replace(
+                contact,
+                slave=_named(contact.slave, faces),
+                master=_named(contact.master, faces) if isinstance(contact.master, Face) else contact.master,
+            )
+            for contact in problem.contacts
+        ),
+        supports=tuple(replace(support, place=_named(support.place, faces)) for support in problem.supports),
+    )
+
+
+def reversed_along(patch: Patch, axes: tuple[int, ...]) -> Patch:
+    """The same body with some of its directions reversed."""
+    grid = np.flip(_grid(patch), axes)
+    directions = [_reversed(d) if axis in axes else d for axis, d in enumerate(patch.directions)]
+    return _patch((directions[0], directions[1], directions[2]), grid)
+
+
+def permuted(patch: Patch) -> Patch:
+    """The same body, its directions v, w, u taken as u, v, w."""
+    u, v, w = patch.directions
+    return _patch((v, w, u), np.transpose(_grid(patch), (1, 2, 0, 3)))
+
+
+def _named(face: Face, names: dict[str, str]) -> Face:
+    return replace(face, face=names[face.face])
+
+
+def _reversed(direction: Direction) -> Direction:
+    return replace(direction, knots=direction.knots[0] + direction.knots[-1] - direction.knots[::-1])
+
+
+def _grid(patch: Patch) -> FloatArray:
+    return np.column_stack([patch.control_points, patch.weights]).reshape((*patch.shape, 4), order="F")
+
+
+def _patch(directions: tuple[Direction, Direction, Direction], grid: FloatArray) -> Patch:
+    values = grid.reshape((-1, 4), order="F")
+    return Patch(directions, values[:, :3], values[:, 3])
+
+
+def _turned_contact(contact: Contact, turn: FloatArray) -> Contact:
+    if isinstance(contact.master, Face):
+        return contact
+    plane = contact.master
+    return replace(contact, master=RigidPlane(*(vector(turn @ np.array(v)) for v in (plane.point, plane.normal, plane.tangent))))
+
+
+def _turned_support(support: Support, turn: FloatArray, sense: float) -> Support:
+    motions = tuple(Motion(vector(turn @ np.array(m.translate)), sense * m.rotate) for m in support.motions)
+    centre, axis = (vector(turn @ np.array(v)) for v in (support.centre, support.axis))
+    return replace(support, motions=motions, centre=centre, axis=axis)
+
+
+def _scaled_contact(contact: Contact, length: float) -> Contact:
+    area = None if contact.reference_area is None else length**2 * contact.reference_area
+    if isinstance(contact.master, Face):
+        return replace(contact, reference_area=area)
+    return replace(contact, reference_area=area, master=replace(contact.master, point=vector(length * np.array(contact.master.point))))
+
+
+def _scaled_support(support: Support, length: float) -> Support:
+    motions = tuple(replace(m, translate=vector(length * np.array(m.translate))) for m in support.motions)
+    return replace(support, motions=motions, centre=vector(length * np.array(support.centre)))
