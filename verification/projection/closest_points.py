@@ -1,0 +1,183 @@
+"""Closest-point projection onto curved faces: exact from any start, and a defined result where there is no ordinary one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from shapes import cylinder_sector, turned_sector
+
+from isomortar import _bindings
+from isomortar._bindings import MasterArrays, Projections, SlaveArrays
+from isomortar.geometry.patch import FloatArray, Patch
+from isomortar.geometry.refinement import mesh
+from isomortar.harness import Bound, case
+from isomortar.model.numbering import patch_arrays
+
+RADIUS, MAJOR, TURN = 0.7, 2.0, 1.2
+SECTION = (-0.5, 0.8)
+#: Coarse patch, and the face that is projected onto.
+PATCHES = {
+    "cylinder": (cylinder_sector(0.3, RADIUS, TURN, 1.0), "u1"),
+    "sphere": (turned_sector(0.0, 0.3, RADIUS, SECTION, TURN), "v1"),
+    "torus": (turned_sector(MAJOR, 0.3, RADIUS, SECTION, TURN), "v1"),
+}
+
+
+@dataclass(frozen=True)
+class Surface:
+    """A face with the kernel's view of it."""
+
+    patch: Patch
+    face: str
+
+    @property
+    def ends(self) -> FloatArray:
+        """Lower and upper bounds of both coordinates, shape (2, 2)."""
+        return np.array([d.boundaries[[0, -1]] for d in self.patch.face_directions(self.face)]).T
+
+    def points(self, xi: FloatArray) -> FloatArray:
+        """Points at coordinates, shape (n, 3)."""
+        return np.einsum("qa,qai->qi", *self._functions(xi))
+
+    def _functions(self, xi: FloatArray) -> tuple[FloatArray, FloatArray]:
+        arrays = patch_arrays(self.patch, np.arange(len(self.patch.weights), dtype=np.int32))
+        nodes, values = _bindings.surface_functions(arrays, "uvw".index(self.face[0]) + 1, int(self.face[1]), np.ascontiguousarray(xi))
+        return values[:, 0], self.patch.control_points[self.patch.face_points(self.face)][nodes]
+
+    def project(self, targets: FloatArray, starts: FloatArray | None = None) -> Projections:
+        """The kernel's projections: each target is a slave of one quadrature point; without starts from its coarse search."""
+        n, own = len(targets), len(self.patch.weights)
+        arrays = patch_arrays(self.patch, np.arange(own, dtype=np.int32))
+        head = ["uvw".index(self.face[0]) + 1, int(self.face[1])]
+        master = MasterArrays(np.concatenate([head, arrays.layout]).astype(np.int32), arrays.knots, arrays.point, arrays.weight)
+        numbers = np.arange(n, dtype=np.int32)
+        slave = SlaveArrays(numbers[:, None].copy(), np.ones((n, 1)), np.ones(n), numbers + np.int32(own))
+        positions = np.ascontiguousarray(np.concatenate([self.patch.control_points, targets]))
+        had = np.full(n, starts is not None, dtype=np.int32)
+        origin = np.zeros((n, 2)) if starts is None else np.ascontiguousarray(starts)
+        return _bindings.project_points(slave, master, positions, origin, had)
+
+    def sampled_distance(self, targets: FloatArray, count: int = 81) -> FloatArray:
+        """Least distance of each target to a grid of points, shape (n,)."""
+        u, v = (np.linspace(*end, count) for end in self.ends.T)
+        grid = self.points(np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2))
+        return np.array([np.linalg.norm(grid - target, axis=1).min() for target in targets])
+
+
+def surface(shape: str, family: str, order: int) -> Surface:
+    """A refined face; Lagrange faces are faceted, with lines that are only continuous."""
+    patch, face = PATCHES[shape]
+    elements = [1 if d.order == 1 and shape != "cylinder" else 3 for d in patch.directions]
+    return Surface(mesh(patch, (family,) * 3, (order,) * 3, elements), face)  # type: ignore[arg-type]
+
+
+def normal(shape: str, points: FloatArray) -> FloatArray:
+    """Outward unit normals of the exact surface, shape (n, 3)."""
+    across = points[:, :2] / np.linalg.norm(points[:, :2], axis=1)[:, None]
+    flat = np.column_stack([across, np.zeros(len(points))])
+    if shape == "cylinder":
+        return flat
+    return (points - (MAJOR if shape == "torus" else 0.0) * flat) / RADIUS
+
+
+@case(
+    claim="Points off an exact cylinder, sphere or torus are projected onto the foot of their normal, from any start.",
+    tier="gate",
+    grid={"shape": list(PATCHES), "order": [2, 3, 4]},
+    bounds={
+        "foot": Bound(at_most=2e-14, reason="round-off: of the surface's points; Newton's method ends below it"),
+        "found": Bound(at_least=1.0, at_most=1.0, reason="definition: every target has its foot inside the patch"),
+    },
+)
+def exact_foot(shape: str, order: int) -> dict[str, float]:
+    """Largest distance from the foot, over targets inside elements, on knot lines, on either side, and random starts; share found."""
+    face = surface(shape, "N", order)
+    low, high = face.ends
+    random = np.random.default_rng(order)
+    share = np.concatenate([random.uniform(0.02, 0.98, (40, 2)), [[1 / 3, 0.4], [0.4, 2 / 3], [1 / 3, 1 / 3], [2 / 3, 1 / 3]]])
+    feet = face.points(low + share * (high - low))
+    targets = feet + random.uniform(-0.3, 0.3, (len(feet), 1)) * normal(shape, feet)
+    worst, found = 0.0, []
+    for starts in (None, *(low + random.uniform(0, 1, (len(feet), 2)) * (high - low) for _ in range(5))):
+        projections = face.project(targets, starts)
+        worst = max(worst, float(np.linalg.norm(face.points(projections.xi) - feet, axis=1).max()))
+        found.append(projections.found)
+    return {"foot": worst, "found": float(np.mean(found))}
+
+
+@case(
+    claim="Beyond the edge of a patch there is no projection, and at its corners the nearest point is the corner.",
+    tier="gate",
+    grid={"shape": list(PATCHES), "kind": ["N2", "N3", "N4"]},
+    bounds={
+        "found": Bound(at_most=0.0, reason="definition: a target beyond the edge takes no part in contact"),
+        "outside": Bound(at_most=0.0, reason="definition: coordinates stay within the patch"),
+        "corner": Bound(at_most=1e-7, reason="round-off: the distance is flat at its least, so that the foot has half of the digits at worst"),
+    },
+)
+def edges_and_corners(shape: str, kind: str) -> dict[str, float]:
+    """Targets beyond the corners that are found, how far coordinates leave the patch, and feet of targets above the corners."""
+    face = surface(shape, kind[0], int(kind[1:]))
+    low, high = face.ends
+    corners = np.array([[low[0], low[1]], [high[0], low[1]], [low[0], high[1]], [high[0], high[1]]])
+    places = face.points(corners)
+    inwards = face.points(0.9 * corners + 0.1 * (low + high) / 2) - places
+    beyond = face.project(places - 2.0 * inwards)
+    above = face.project(places - 1e-9 * inwards + 0.1 * normal(shape, places))
+    xi = np.concatenate([beyond.xi, above.xi])
+    return {
+        "found": float(np.sum(beyond.found)),
+        "outside": float(max(np.max(low - xi), np.max(xi - high), 0.0)),
+        "corner": float(np.linalg.norm(face.points(above.xi) - places, axis=1).max()),
+    }
+
+
+@case(
+    claim="A target as near to many places as to one gets one of them, at the right distance.",
+    tier="gate",
+    grid={"shape": list(PATCHES), "order": [2, 3]},
+    bounds={"distance": Bound(at_most=1e-14, reason="round-off: all points of the section are at the same distance")},
+)
+def equidistant(shape: str, order: int) -> dict[str, float]:
+    """Error of the distance from the axis of the cylinder, the centre of the sphere, the centres of the torus' sections."""
+    face = surface(shape, "N", order)
+    angles = np.linspace(0.2, TURN - 0.2, 7)
+    circle = np.column_stack([np.cos(angles), np.sin(angles), 0 * angles])
+    centres = {"cylinder": angles[:, None] / TURN * [0, 0, 1], "sphere": 0 * circle, "torus": MAJOR * circle}[shape]
+    starts = face.ends[0] + np.random.default_rng(1).uniform(0, 1, (7, 2)) * (face.ends[1] - face.ends[0])
+    worst = 0.0
+    for origin in (None, starts):
+        xi = face.project(centres, origin).xi
+        worst = max(worst, float(np.abs(np.linalg.norm(face.points(xi) - centres, axis=1) - RADIUS).max()))
+    return {"distance": worst}
+
+
+@case(
+    claim="On a master with lines that are only continuous the projection is the nearest point, on such a line where it must be.",
+    tier="gate",
+    grid={"shape": list(PATCHES), "kind": ["L1", "L2"]},
+    bounds={
+        "excess": Bound(at_most=1e-13, reason="definition: no sampled point may be nearer"),
+        "found": Bound(at_least=1.0, at_most=1.0, reason="definition: a line inside the patch is no edge"),
+        "on_line": Bound(at_least=1e-6, at_most=1.0, reason="definition: some of the targets do have their foot on a line"),
+    },
+)
+def continuous_lines(shape: str, kind: str) -> dict[str, float]:
+    """Distance beyond that to a grid of samples; share found; share of feet on an inner line."""
+    face = surface(shape, kind[0], int(kind[1:]))
+    low, high = face.ends
+    random = np.random.default_rng(5)
+    share = random.uniform(0.15, 0.85, (60, 2))
+    share[:30, 0], share[15:45, 1] = random.choice([1 / 3, 2 / 3], 30), random.choice([1 / 3, 2 / 3], 30)
+    feet = face.points(low + share * (high - low))
+    targets = feet + random.uniform(0.02, 0.3, (60, 1)) * normal(shape, feet)
+    projections = face.project(targets)
+    reached = np.linalg.norm(face.points(projections.xi) - targets, axis=1)
+    lines = [d.boundaries[1:-1] for d in face.patch.face_directions(face.face)]
+    on = [np.isclose(projections.xi[:, a, None], lines[a], rtol=0, atol=1e-13).any(axis=1) for a in (0, 1)]
+    return {
+        "excess": float(max(0.0, np.max(reached - face.sampled_distance(targets)))),
+        "found": float(np.mean(projections.found)),
+        "on_line": float(np.mean(on[0] | on[1])),
+    }
