@@ -6,6 +6,7 @@ A function is carried through the recursion as its Taylor series about the point
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import Any
 
 import mpmath
@@ -33,7 +34,7 @@ def line(along: Direction, u: float) -> Series:
     """Taylor coefficients of all functions about u to the third, shape (functions, 4)."""
     knots = [mpmath.mpf(float(k)) for k in along.knots]
     at = mpmath.mpf(float(u))
-    table = [np.array([mpmath.mpf(a <= at < b), *[mpmath.mpf(0)] * 3]) for a, b in zip(knots[:-1], knots[1:], strict=True)]
+    table = [np.array([mpmath.mpf(a <= at < b), *[mpmath.mpf(0)] * 3]) for a, b in pairwise(knots)]
 
     def ramp(series: Series, start: mpmath.mpf, length: mpmath.mpf) -> Series:
         """The series times (u - start) / length; none over no length."""

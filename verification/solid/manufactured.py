@@ -9,6 +9,7 @@ errors are computed here, independently of the kernel; forces and tangent are th
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import pairwise
 
 import numpy as np
 from scipy import sparse
@@ -56,7 +57,7 @@ def lines(direction: Direction, count: int) -> list[tuple[FloatArray, FloatArray
     """Values and slopes of the functions of each element at its Gauss points, shape (points, order + 1), and Gauss weights."""
     t, gauss = np.polynomial.legendre.leggauss(count)
     p, tables = direction.order, []
-    for element, (low, high) in enumerate(zip(direction.boundaries[:-1], direction.boundaries[1:], strict=True)):
+    for low, high in pairwise(direction.boundaries):
         u, half = low + (high - low) * (t + 1) / 2, (high - low) / 2
         if direction.family == "N":
             first = int(np.searchsorted(direction.knots, low, side="right")) - 1 - p

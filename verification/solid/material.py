@@ -61,7 +61,7 @@ def random_gradients(volume_ratio: float) -> FloatArray:
     claim="The stress is the slope of the stored energy, P = dW/dF.",
     tier="gate",
     grid={"volume_ratio": list(VOLUME_RATIOS)},
-    bounds={"error": Bound(at_most=200 * EPSILON, reason="round-off: some dozens of operations, times the condition of F, at most 4, twice")},
+    bounds={"error": Bound(at_most=200 * EPSILON, reason="round-off: dozens of operations, times the condition of F, at most 4, twice")},
 )
 def stress_of_energy(volume_ratio: float) -> dict[str, float]:
     """Largest error over random deformations, as a share of the moduli times the inverse of F, or of P if that is larger."""
