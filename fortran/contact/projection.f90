@@ -92,7 +92,7 @@ contains
       there = here
       there%place = here%place + step
       call search_element(surface, positions, x, there)
-      moved = there%settled .and. there%distance < here%distance
+      moved = there%distance < here%distance ! where the search there does not settle, the point is lost and not on a line
       if (moved) exit
     end do
     if (moved) here = there
