@@ -156,9 +156,9 @@ def equidistant(shape: str, order: int) -> dict[str, float]:
     claim="Near the centres of curvature of a torus a target is projected at the right distance, or the error says that it is lost.",
     tier="gate",
     grid={"order": [2, 3], "off": [0.0, 1e-8, 1e-4]},
-    bounds=lambda order, off: {
+    bounds=lambda **settings: {
         "distance": Bound(
-            at_most=1e-14 + 4 * off, reason="definition: the section is at one distance, but for twice the way off its centre"
+            at_most=1e-14 + 4 * settings["off"], reason="definition: the section is at one distance, but for twice the way off its centre"
         ),
         "lost": Shown(reason="theory: the distance is flat, and 100 steps of its slope over the metric need not reach its least"),
     },
