@@ -1,0 +1,52 @@
+"""What holds at every interface with friction after every load step: the cone, and the balance of momentum."""
+
+from __future__ import annotations
+
+import numpy as np
+from small_scenes import bowl
+
+from isomortar.harness import Bound, case
+from isomortar.solve.simulation import Simulation
+
+FRICTION = 0.3
+
+
+@case(
+    claim="No control traction is outside the cone, whatever the master and the slip sum; no control pressure pulls.",
+    tier="gate",
+    grid={"master": ("block", "plane"), "slip_sum": ("local", "paper")},
+    bounds={
+        "outside": Bound(at_most=1e-10, reason="round-off: contact conditions are solved to 1e-11 of the largest pressure"),
+        "pull": Bound(at_most=1e-10, reason="round-off: contact conditions are solved to 1e-11 of the largest pressure"),
+        "slipping": Bound(at_least=1.0, reason="definition: the cone is tested only where points slip"),
+    },
+)
+def cone(master: str, slip_sum: str) -> dict[str, float]:
+    """Largest traction norm above mu p, largest negative pressure, over the largest pressure; slipping points at the end."""
+    outside = pull = 0.0
+    for result in Simulation(bowl(master, FRICTION, slip_sum=slip_sum)).run():
+        pressure = result.state.contacts[0].pressure
+        size = float(pressure.max())
+        outside = max(outside, float((result.contacts[0].traction_norm - FRICTION * pressure).max()) / size)
+        pull = max(pull, -float(pressure.min()) / size)
+    return {"outside": outside, "pull": pull, "slipping": float(result.contacts[0].slip)}
+
+
+@case(
+    claim="Forces and moments of the two sides of an interface balance after every load step, however coarse the meshes.",
+    tier="gate",
+    grid={"friction": (0.0, 0.3)},
+    bounds={
+        "force": Bound(at_most=1e-12, reason="theory: exact in the discrete equations; sums in double precision"),
+        "moment": Bound(at_most=1e-12, reason="theory: exact with the full variation of the projection; sums in double precision"),
+    },
+)
+def momentum_balance(friction: float) -> dict[str, float]:
+    """Imbalance over the contact force, and over the contact force times the width of the block."""
+    force = moment = 0.0
+    for result in Simulation(bowl("block", friction)).run():
+        found = result.contacts[0]
+        size = float(np.linalg.norm(found.force_slave))
+        force = max(force, float(np.linalg.norm(found.force_slave + found.force_master)) / size)
+        moment = max(moment, float(np.linalg.norm(found.moment_slave + found.moment_master)) / size)
+    return {"force": force, "moment": moment}
