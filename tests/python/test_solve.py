@@ -127,7 +127,7 @@ def test_resuming_gives_the_same_numbers() -> None:
 
 @pytest.mark.parametrize("exponent", [-6, 6])
 def test_units_do_not_make_the_system_singular(exponent: int) -> None:
-    problem = Scene.load("press", ["bodies.slave.mesh.elements=[3,3,1]"]).problem()
+    problem = Scene.load("press", ["bodies.block.mesh.elements=[3,3,2]"]).problem()
     length, stress = 10.0**exponent, 10.0**-exponent
     first = run(problem)[-1]
     (body,), (contact,) = problem.bodies, problem.contacts

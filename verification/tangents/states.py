@@ -29,12 +29,12 @@ def bounds(parts: tuple[str, ...], master: str, states: tuple[str, ...]) -> dict
     return limits | {state: Bound(at_least=1.0, reason="definition: a part is tested only where it acts") for state in states}
 
 
-def frictional_bounds(master: str, slip_sum: str) -> dict[str, Bound]:
+def frictional_bounds(master: str, **_: str) -> dict[str, Bound]:
     """Bounds of a scene with friction."""
     return bounds((*FRICTIONLESS, *TANGENTIAL), master, ("open", "sticking", "slipping"))
 
 
-def frictionless_bounds(master: str, order: int) -> dict[str, Bound]:
+def frictionless_bounds(master: str, **_: int) -> dict[str, Bound]:
     """Bounds of a scene without friction."""
     return bounds(FRICTIONLESS, master, ("open", "closed"))
 
