@@ -42,7 +42,7 @@ def cone(master: str, slip_sum: str) -> dict[str, float]:
     },
 )
 def momentum_balance(friction: float) -> dict[str, float]:
-    """Imbalance over the contact force, and over the contact force times the width of the block."""
+    """Imbalance over the contact force, and over the contact force times one unit of length, about the width of the block."""
     force = moment = 0.0
     for result in Simulation(bowl("block", friction)).run():
         found = result.contacts[0]
