@@ -10,6 +10,8 @@ import pytest
 
 from isomortar import _twin
 from isomortar.errors import InputError, KernelError
+from isomortar.harness import tangents
+from isomortar.harness.blocks import PartBlocks
 from isomortar.harness.tangents import PairTangent, TangentReport, check_tangent, measure
 from isomortar.harness.visits import Visit, visited_states
 from isomortar.model.entities import Problem
@@ -211,3 +213,17 @@ def test_state_between_stick_and_slip_has_no_tangent(problem: Problem, visits: l
     tangent.response = replace(tangent.response, state=flipped)
     with pytest.raises(KernelError, match="branches switch"):
         tangent.twin(np.zeros_like(visits[-1].positions))
+
+
+NAN = np.full((1, 3), np.nan)
+ONE = np.ones((1, 3))
+
+
+@pytest.mark.parametrize(("ours", "twin"), [(NAN, ONE), (ONE, NAN), (NAN, 0 * ONE), (ONE, 0 * ONE), (0 * ONE, ONE)])
+def test_check_sees_what_is_no_number(ours: np.ndarray, twin: np.ndarray) -> None:
+    for samples in ([(ONE, ONE), (ours, twin)], [(ours, twin), (ONE, ONE)]):
+        row = tangents._part_error("solid", [("solid", *sample) for sample in samples])
+        assert row is not None
+        assert not row.passes
+    blocks = PartBlocks("solid", np.stack([ONE, ours]), np.stack([ONE, twin]), 0.0)
+    assert not blocks.errors.max() <= 1e-11

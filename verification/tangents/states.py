@@ -54,7 +54,7 @@ def with_friction(master: str, slip_sum: str) -> dict[str, float]:
     """Largest relative error of each part during pressing, where sticking and slipping points are mixed."""
     problem = bowl(master, slip_sum=slip_sum)
     points = problem.bodies[0].patch.shape[0] * problem.bodies[0].patch.shape[1]
-    report = check_tangent(problem, 2)
+    report = check_tangent(problem, 2, directions=1)
     counts = {"open": points - min(report.active), "sticking": max(report.stick), "slipping": max(report.slip)}
     return errors(report) | {name: float(count) for name, count in counts.items()}
 
@@ -69,5 +69,5 @@ def without_friction(master: str, order: int) -> dict[str, float]:
     """Largest relative error of each part, and asymmetry."""
     problem = bowl(master, friction=0.0, order=order)
     points = problem.bodies[0].patch.shape[0] * problem.bodies[0].patch.shape[1]
-    report = check_tangent(problem, 3)
+    report = check_tangent(problem, 3, directions=1)
     return errors(report) | {"open": float(points - min(report.active)), "closed": float(max(report.active))}

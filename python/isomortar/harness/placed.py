@@ -1,0 +1,46 @@
+"""States of the active set made to order: multipliers that put the trial of every control point where it is wanted."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from isomortar.geometry.patch import FloatArray
+from isomortar.harness.visits import PairVisit
+from isomortar.solve.contact import Kinematics, PairMechanics
+
+#: A friction coefficient under which everything that is active sticks: the traction is then the trial.
+_STICKS = 1e30
+
+
+def placed(pair: PairMechanics, positions: FloatArray, visit: PairVisit, pressure: FloatArray, length: FloatArray) -> PairVisit:
+    """The visit with other multipliers: trial pressures and lengths of trial tractions are those asked for.
+
+    A control point is open where `pressure` is zero or less, sticks where `length` is at most 1, and slips above; close to these
+    values it is on an edge of the active set, off by the round-off of the control quantities.
+
+    Parameters
+    ----------
+    pair : PairMechanics
+    positions : ndarray, shape (control points, 3)
+    visit : PairVisit
+    pressure : ndarray, shape (slave control points,)
+        Trial control pressures (formulation.md Section 4), force per area.
+    length : ndarray, shape (slave control points,)
+        Metric norms of the trial tractions as a share of friction times pressure; directions stay as they are.
+    """
+    kinematics = pair.kinematics(positions, visit.start)
+    weight = np.where(kinematics.control.weight > 0, kinematics.control.weight, 1.0)
+    law = replace(visit.law, pressure=pressure - visit.law.penalties[0] * kinematics.control.gap / weight)
+    if pair.friction > 0:
+        trial = pair.respond(kinematics, replace(law, friction=_STICKS)).traction
+        law = replace(law, traction=law.traction + _scaled(pair, kinematics, trial, pair.friction * pressure * length) - trial)
+    return PairVisit(visit.start, law)
+
+
+def _scaled(pair: PairMechanics, kinematics: Kinematics, traction: FloatArray, length: FloatArray) -> FloatArray:
+    """Tractions of given metric norms; along the first coordinate where there is no direction; zero where the pressure is."""
+    unit = np.where(pair.traction_norms(kinematics.control, traction)[:, None] > 0, traction, [1.0, 0.0])
+    norm = pair.traction_norms(kinematics.control, unit)
+    return np.ascontiguousarray(unit * (np.where(length > 0, length, 0.0) / np.where(norm > 0, norm, 1.0))[:, None])
