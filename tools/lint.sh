@@ -26,6 +26,7 @@ layers() {
 check "Python format (ruff format)" ruff format --quiet --check .
 check "Python (ruff)" ruff check --quiet --output-format=concise .
 check "types (mypy)" mypy
+check "types of the cases (mypy)" mypy verification
 check "layers of the package (import-linter)" layers
 check "Fortran format (findent)" bash tools/format_fortran.sh --check
 check "Fortran (fortitude)" fortitude check --quiet --output-format=concise

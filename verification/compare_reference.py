@@ -98,7 +98,7 @@ def compare(source: Path, settings: Iterable[str], folder: Path) -> Comparison:
     records = reference["records"]
     if completed and len(records) != simulation.problem.total_steps:
         comparison.faults.append(f"the reference has {len(records)} load steps, the scene {simulation.problem.total_steps}")
-    results = []
+    results: list[StepResult] = []
     try:
         results.extend(islice(simulation.run(), len(records)))
     except IsomortarError as error:

@@ -106,6 +106,6 @@ def refinement_keeps_shape(shape: str, order: int) -> dict[str, float]:
     coarse, face = SHAPES[shape][:2]
     fine = refined(shape, order)
     ends = [direction.boundaries[[0, -1]] for direction in coarse.face_directions(face)]
-    xi = np.column_stack([np.random.default_rng(3).uniform(*end, 40) for end in ends])
+    xi = np.column_stack([np.random.default_rng(3).uniform(low, high, 40) for low, high in ends])
     gap = np.linalg.norm(surface(fine, face, xi) - surface(coarse, face, xi), axis=1).max()
     return {"distance": float(gap / np.linalg.norm(np.ptp(coarse.control_points, axis=0)))}

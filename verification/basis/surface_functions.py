@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from isomortar import _bindings
-from isomortar.geometry.patch import FloatArray, Patch
+from isomortar.geometry.patch import Family, FloatArray, Patch
 from isomortar.geometry.primitives import box
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import LAGRANGE, NURBS, Bound, case
@@ -16,7 +16,8 @@ EPSILON = float(np.finfo(float).eps)
 
 def functions(kind: str) -> FloatArray:
     """Functions at the quadrature points of a face of 4 x 3 elements, shape (points, functions of an element)."""
-    family, order = kind[0], int(kind[1:])
+    family: Family = "N" if kind[0] == "N" else "L"
+    order = int(kind[1:])
     meshed = mesh(box((0, 0, 0), (1, 1, 1)), (family,) * 3, (order,) * 3, (4, 3, 1))
     weights = 10.0 ** np.random.default_rng(order).uniform(-3, 3, len(meshed.weights))
     patch = Patch(meshed.directions, meshed.control_points, weights if family == "N" else meshed.weights)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from isomortar.geometry.patch import Direction, FloatArray, Patch
+from isomortar.geometry.patch import Direction, Family, FloatArray, Patch
 from isomortar.geometry.quadrature import contact_points, volume_points
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, Curve, Shown, case
@@ -40,7 +40,7 @@ def wedge(slope: float, part: str, families: str, order: int, elements: int) -> 
     heights = (np.zeros(4), cut) if part == "below" else (cut, np.ones(4))
     points = np.vstack([np.column_stack([x, y, z]) for z in heights])
     straight = Direction("N", 1, np.array([0.0, 0.0, 1.0, 1.0]))
-    family = "L" if families == "L" else "N"
+    family: Family = "L" if families == "L" else "N"
     return mesh(Patch((straight,) * 3, points, np.ones(8)), (family,) * 3, (order, order, 1), (elements, elements, 2))
 
 

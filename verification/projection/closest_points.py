@@ -61,7 +61,7 @@ class Surface:
 
     def sampled_distance(self, targets: FloatArray, count: int = 81) -> FloatArray:
         """Least distance of each target to a grid of points, shape (n,)."""
-        u, v = (np.linspace(*end, count) for end in self.ends.T)
+        u, v = (np.linspace(low, high, count) for low, high in self.ends.T)
         grid = self.points(np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2))
         return np.array([np.linalg.norm(grid - target, axis=1).min() for target in targets])
 
