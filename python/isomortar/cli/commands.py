@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 import isomortar
+from isomortar.cli.mutants import mutants
 from isomortar.cli.verification import bless, verify
 from isomortar.errors import ConvergenceError, InputError, IsomortarError
 
@@ -186,6 +187,7 @@ def schema() -> None:
 
 app.command()(verify)
 app.command()(bless)
+app.command()(mutants)
 
 
 def _beside(results: Path, kind: str) -> Path:

@@ -56,10 +56,12 @@ def write_whole(path: Path, text: str) -> None:
     Path(part.name).replace(path)
 
 
-def cell_key(cell: Cell) -> str:
-    """Hash of all that a cell's numbers depend on: the program, its case's files, its settings."""
+def cell_key(cell: Cell, program: str | None = None) -> str:
+    """Hash of all that a cell's numbers depend on: the program (None: this one), its case's files, its settings."""
     settings = json.dumps(cell.settings, sort_keys=True)
-    return _hash([program_hash().encode(), _case_hash(cell.case.path, cell.case.files).encode(), cell.name.encode(), settings.encode()])
+    return _hash(
+        [(program or program_hash()).encode(), _case_hash(cell.case.path, cell.case.files).encode(), cell.name.encode(), settings.encode()]
+    )
 
 
 @functools.cache
@@ -71,8 +73,14 @@ def kernel_hash() -> str:
 @functools.cache
 def program_hash() -> str:
     """Hash of the kernel and of the package's own sources, bundled scenes included, without the harness."""
+    return _hash([kernel_hash().encode(), package_hash().encode()])
+
+
+@functools.cache
+def package_hash() -> str:
+    """Hash of the package's own sources, bundled scenes included, without the harness."""
     sources = sorted(p for p in _PACKAGE.rglob("*") if p.suffix in (".py", ".toml") and not any(p.is_relative_to(a) for a in _ASIDE))
-    return _hash([kernel_hash().encode(), *(path.read_bytes() for path in sources)])
+    return _hash(path.read_bytes() for path in sources)
 
 
 @functools.cache

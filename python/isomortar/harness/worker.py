@@ -16,6 +16,7 @@ import sys
 import tempfile
 import threading
 import time
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from types import TracebackType
@@ -24,6 +25,8 @@ from typing import Any
 from isomortar.harness.cases import TIMEOUTS, Cell
 from isomortar.harness.measurement import Measurement
 
+#: What starts a measuring process.
+COMMAND = (sys.executable, "-m", "isomortar.harness.worker")
 #: Lines of the standard error that a crash is reported with.
 _LAST_WORDS = 30
 
@@ -34,9 +37,10 @@ def task_of(cell: Cell) -> dict[str, Any]:
 
 
 class Worker:
-    """A measuring process, started when it is first needed and again after it died. A context manager."""
+    """A measuring process, started by `command` when it is first needed and again after it died. A context manager."""
 
-    def __init__(self) -> None:
+    def __init__(self, command: Sequence[str] = COMMAND) -> None:
+        self._command = command
         self._process: subprocess.Popen[bytes] | None = None
         self._errors = tempfile.TemporaryFile()  # noqa: SIM115 (closed in __exit__)
 
@@ -66,9 +70,8 @@ class Worker:
     def _started(self) -> subprocess.Popen[bytes]:
         if self._process is None:
             self._errors.truncate(0)
-            command = [sys.executable, "-m", "isomortar.harness.worker"]
             pipe = subprocess.PIPE
-            self._process = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=self._errors)
+            self._process = subprocess.Popen(self._command, stdin=pipe, stdout=pipe, stderr=self._errors)
         return self._process
 
     def _end(self) -> None:

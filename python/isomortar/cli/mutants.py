@@ -1,0 +1,95 @@
+"""``isomortar mutants``."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from isomortar.cli.verification import CASES, CORES, FAILED, REFERENCES, CasesOption, JobsOption, ReferencesOption
+
+if TYPE_CHECKING:
+    from isomortar.harness.mutants.score import Score
+
+MUTANTS = Path("results/mutants")
+
+
+def mutants(
+    sample: Annotated[int, typer.Option(min=0, help="Random faults, beside all that are planted by hand.")] = 300,
+    seed: Annotated[int, typer.Option(help="Of the random draw.")] = 1,
+    patience: Annotated[
+        float, typer.Option(min=0.0, help="A random fault survives when cells of so many seconds are green; 0: when all are.")
+    ] = 100.0,
+    jobs: JobsOption = CORES,
+    cases: CasesOption = CASES,
+    references: ReferencesOption = REFERENCES,
+    results: Annotated[Path, typer.Option("--results", file_okay=False, help="Folder of what is known, and of the report.")] = MUTANTS,
+) -> None:
+    """Plant faults in the kernel, one at a time, and see whether the gate catches them.
+
+    The faults are those of planted_faults.toml beside the cases, and random ones by the Fortran rules of universalmutator
+    (`pip install 'isomortar[mutants]'`). Run it in a checkout, from its folder. What is known is not done again: a run that was killed
+    goes on where it was, and after a change of the cases the survivors meet those that are new.
+    Exit code 0 only if all planted faults and 90 % of the random ones are caught.
+
+    For example:
+
+    - `isomortar mutants --sample 0` attacks the planted faults alone
+    - `isomortar mutants --sample 300 -j 2`
+    """
+    from isomortar.harness.collection import collect
+    from isomortar.harness.mutants import report
+    from isomortar.harness.mutants.campaign import Campaign
+    from isomortar.harness.mutants.faults import read_planted, read_sources
+    from isomortar.harness.mutants.generate import draw
+    from isomortar.harness.mutants.score import Score, read_classified
+    from isomortar.harness.references import finder
+    from isomortar.harness.runner import select
+
+    clock = time.perf_counter()
+    sources = read_sources(Path("fortran"))
+    planted = read_planted(cases / "planted_faults.toml", sources)
+    classified = read_classified(cases / "surviving_mutants.toml")
+    drawn = draw(sources, seed) if sample else []
+    cells = select(collect(cases), "gate")
+    console = Console(stderr=True, highlight=False)
+    columns = (BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TextColumn("{task.description}", markup=False))
+    with Progress(*columns, console=console, transient=True) as progress:
+        bar = progress.add_task("")
+
+        def tell(what: str, done: int, total: int) -> None:
+            progress.update(bar, description=what, completed=done, total=total or None)
+
+        with Campaign(Path(), cases, cells, finder(references), results, jobs, tell) as campaign:
+            outcome = campaign.run(planted, drawn, sample, patience or float("inf"))
+    score = Score(outcome, classified)
+    settings = {"sample": sample, "seed": seed, "patience": patience, "jobs": jobs, "minutes": round((time.perf_counter() - clock) / 60, 1)}
+    report.write(results / "report.html", score, settings)
+    _print(score)
+    print(results / "report.html")
+    if not score.passes:
+        raise typer.Exit(FAILED)
+
+
+def _print(score: Score) -> None:
+    """The outcome on the terminal."""
+    console = Console(highlight=False)
+    table = Table("caught first by", *score.folders, "all")
+    for family, counts in score.catches.items():
+        table.add_row(family, *(str(counts[folder] or "") for folder in score.folders), str(counts.total()))
+    console.print(table)
+    for attacked in score.survivors:
+        fault = attacked.fault
+        lines = [f"survived: {fault.place} {fault.name} ({score.kind(attacked)})", f"- {fault.old.strip()}", f"+ {fault.new.strip()}"]
+        console.print("\n".join(lines), markup=False, style="red", soft_wrap=True)
+    for cell in score.outcome.unused:
+        console.print(f"red without a fault, not used: {cell}", markup=False, soft_wrap=True)
+    print(f"planted by hand: {score.caught_planted.part} of {score.caught_planted.whole} caught")
+    if score.sample:
+        print(f"random: {score.caught} caught; without those classified as equivalent: {score.caught_of_real}")
+    print(", ".join(f"{count} {reason}" for reason, count in score.outcome.dropped.items()))

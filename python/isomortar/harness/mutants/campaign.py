@@ -1,0 +1,206 @@
+"""A campaign: faults are built, drawn until enough are distinct, and attacked by the gate; what is known is not done again."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+
+from isomortar.errors import InputError
+from isomortar.harness.cases import TIMEOUTS, Cell
+from isomortar.harness.compare import Lookup, judge
+from isomortar.harness.mutants.bench import Bench, freeze
+from isomortar.harness.mutants.build import Workshop, hash_of
+from isomortar.harness.mutants.faults import Fault
+from isomortar.harness.mutants.gate import Gate, Verdict
+from isomortar.harness.mutants.journal import Journal
+from isomortar.harness.mutants.pool import Pool
+from isomortar.harness.report import sentence
+from isomortar.harness.store import cell_key, package_hash
+
+#: Tells what is being done, how much of it is done, and how much there is (0: not known).
+Progress = Callable[[str, int, int], None]
+#: What a faulty kernel is that does not count.
+_REJECTED, _SOUND, _TWICE = "rejected by the compiler", "same as the sound kernel", "same as another fault"
+
+
+@dataclass(frozen=True)
+class Attacked:
+    """A fault and the gate's verdict on it; `whole`: a cell was red, or every cell met it."""
+
+    fault: Fault
+    verdict: Verdict
+    whole: bool
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """All of a campaign.
+
+    Parameters
+    ----------
+    attacked : tuple of Attacked
+        Faults that compile and are distinct; those planted by hand first.
+    dropped : Counter
+        How many faults were drawn and do not count, by reason.
+    unused : tuple of str
+        Cells that are red on the sound kernel, in words; they can tell nothing.
+    seconds : dict of cell name to seconds
+        The gate on the sound kernel.
+    """
+
+    attacked: tuple[Attacked, ...]
+    dropped: Counter[str]
+    unused: tuple[str, ...]
+    seconds: dict[str, float]
+
+
+class Campaign:
+    """A workshop, benches, and what is known. A context manager.
+
+    Parameters
+    ----------
+    project : Path
+        The checkout.
+    cases : Path
+        Folder of families of cases.
+    cells : sequence of Cell
+        The gate, of these cases.
+    lookup : Lookup
+        Finds references.
+    folder : Path
+        Where to work and to keep what is known.
+    jobs : int
+        Faults at the same time.
+    progress : Progress
+    """
+
+    def __init__(
+        self, project: Path, cases: Path, cells: Sequence[Cell], lookup: Lookup, folder: Path, jobs: int, progress: Progress
+    ) -> None:
+        self._cells, self._lookup, self._progress = cells, lookup, progress
+        self._builds, self._verdicts, self._sound = (Journal(folder / f"{name}.jsonl") for name in ("builds", "verdicts", "sound"))
+        progress("building the sound kernel", 0, 0)
+        self._workshop = Workshop(project, folder)
+        package, frozen = freeze(cases, folder / "frozen")
+        program = hashlib.sha256((package_hash() + hash_of(next(package.glob("_extended.*.so")))).encode()).hexdigest()
+        self._keys = {cell.name: cell_key(cell, program)[:20] for cell in cells}
+        self._pool = Pool(package, frozen, folder, jobs)
+
+    def __enter__(self) -> Campaign:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None) -> None:
+        self._pool.__exit__(kind, value, trace)
+
+    def run(self, planted: Sequence[Fault], drawn: Iterable[Fault], sample: int, most: float) -> Outcome:
+        """Attack the planted faults with the whole gate, and the first `sample` of those drawn that are distinct.
+
+        The latter are given up when cells that take `most` seconds on the sound kernel are green.
+
+        Raises
+        ------
+        InputError
+            A planted fault does not compile, or changes nothing; no cell is green on the sound kernel.
+        """
+        seconds, unused = self._sound_seconds()
+        gate = Gate(seconds, self._cells, self._lookup)
+        dropped: Counter[str] = Counter()
+        known = {hash_of(self._workshop.sound): _SOUND}
+        hand = list(self._distinct(planted, len(planted), known, dropped))
+        if dropped:
+            names = {fault.name for fault in planted} - {fault.name for fault, _ in hand}
+            raise InputError(f"{', '.join(sorted(names))}: {', '.join(dropped)}", "planted faults")
+        random = list(self._distinct(drawn, sample, known, dropped))
+        attacked = tuple(self._attacked(gate, [*hand, *random], most))
+        return Outcome(attacked, dropped, unused, seconds)
+
+    def _sound_seconds(self) -> tuple[dict[str, float], tuple[str, ...]]:
+        """Seconds of the cells that are green on the sound kernel, and the others in words."""
+        kernel = self._workshop.sound
+        sound = hash_of(kernel)[:20]
+
+        def measured(bench: Bench, cell: Cell) -> tuple[float, str]:
+            key = f"{self._keys[cell.name]}-{sound}"
+            known = self._sound.get(key)
+            if known is None:
+                measurement = bench.measure(kernel, cell, TIMEOUTS[cell.tier])
+                red = [sentence(check) for check in judge(cell, measurement, self._lookup) if check.state != "passed"]
+                known = {"cell": cell.name, "seconds": measurement.seconds, "red": next(iter(red), "")}
+                self._sound.put(key, known)
+            return known["seconds"], known["red"]
+
+        seconds, unused = {}, []
+        for i, (cell, (taken, red)) in enumerate(self._pool.work(measured, self._cells)):
+            self._progress("the gate on the sound kernel", i + 1, len(self._cells))
+            if red:
+                unused.append(f"{cell.name}: {red}")
+            else:
+                seconds[cell.name] = taken
+        if not seconds:
+            raise InputError(f"no cell is green on the sound kernel: {unused[0]}", "gate")
+        return seconds, tuple(unused)
+
+    def _distinct(self, faults: Iterable[Fault], count: int, known: dict[str, str], dropped: Counter[str]) -> Iterator[tuple[Fault, str]]:
+        """The first `count` faults that compile to a kernel that is not `known`, each with its kernel's hash."""
+        found = 0
+        if not count:
+            return
+        for fault, kernel in self._pool.work(self._kernel_of, faults):
+            reason = _REJECTED if kernel is None else known.get(kernel)
+            if kernel is None or reason:
+                dropped[str(reason)] += 1
+                continue
+            known[kernel] = _TWICE
+            found += 1
+            self._progress("building faulty kernels", found, count)
+            yield fault, kernel
+            if found == count:
+                return
+
+    def _kernel_of(self, _: Bench, fault: Fault) -> str | None:
+        content = self._workshop.content(fault)
+        known = self._builds.get(content)
+        if known is None:
+            built = self._workshop.build(fault)
+            known = {"place": fault.place, "kernel": hash_of(built) if built else None}
+            self._builds.put(content, known)
+        return known["kernel"]
+
+    def _attacked(self, gate: Gate, kernels: Sequence[tuple[Fault, str]], most: float) -> Iterator[Attacked]:
+        """Attack kernels one by one."""
+
+        def attack(bench: Bench, item: tuple[Fault, str]) -> Verdict:
+            fault, kernel = item
+            limit = math.inf if fault.name else most
+            verdict = self._remembered(kernel)
+            if verdict.killer is None and not gate.is_whole(verdict) and gate.cost(verdict.passed) < limit:
+                built = self._workshop.build(fault)
+                assert built is not None
+                verdict = gate.attack(bench, built, fault.folder, verdict.passed, limit)
+                self._remember(kernel, verdict)
+                built.unlink()
+            gate.learn(fault.folder, verdict)
+            return verdict
+
+        survivors = 0
+        for i, ((fault, _), verdict) in enumerate(self._pool.work(attack, kernels)):
+            survivors += verdict.killer is None
+            self._progress(f"attacking faulty kernels, {survivors} survived", i + 1, len(kernels))
+            yield Attacked(fault, verdict, gate.is_whole(verdict))
+
+    def _remember(self, kernel: str, verdict: Verdict) -> None:
+        entry = {"killer": verdict.killer, "found": verdict.found, "passed": {name: self._keys[name] for name in verdict.passed}}
+        self._verdicts.put(kernel, entry | {"killer key": self._keys[verdict.killer] if verdict.killer else None})
+
+    def _remembered(self, kernel: str) -> Verdict:
+        """What earlier runs found with cells that are still the same."""
+        entry = self._verdicts.get(kernel) or {"killer": None, "passed": {}}
+        passed = tuple(name for name, key in entry["passed"].items() if self._keys.get(name) == key)
+        if entry["killer"] and self._keys.get(entry["killer"]) == entry["killer key"]:
+            return Verdict(entry["killer"], entry["found"], passed)
+        return Verdict(None, "", passed)

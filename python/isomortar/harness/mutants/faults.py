@@ -1,0 +1,101 @@
+"""A fault: one change of one source file of the kernel; and the faults that are planted by hand."""
+
+from __future__ import annotations
+
+import hashlib
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from isomortar.errors import InputError
+
+#: Sources that no fault is put into, by the path below the sources' folder, and why.
+LEFT_OUT = {
+    "base/kinds.f90": "names of kinds",
+    "base/kinds_extended.f90": "of the extended-precision twin, which measures the kernel's errors and stays as it is",
+    "base/status.f90": "names of status codes: any numbers do",
+    "sparse/umfpack.f90": "declarations of a C library",
+    "api/difference.f90": "of the twin",
+    "api/extended_api.f90": "of the twin",
+    "api/precision_api.f90": "what a kernel says about itself",
+}
+
+
+@dataclass(frozen=True)
+class Fault:
+    """`old` at character `position` of `file` becomes `new`; `name` and `why` are those of a fault planted by hand."""
+
+    file: str
+    position: int
+    old: str
+    new: str
+    line: int
+    key: str
+    name: str = ""
+    why: str = ""
+
+    @property
+    def folder(self) -> str:
+        """The layer of the kernel that it is in."""
+        return self.file.partition("/")[0]
+
+    @property
+    def place(self) -> str:
+        """File and line."""
+        return f"{self.file}:{self.line}"
+
+    def applied(self, text: str) -> str:
+        """The text of its file with the fault in it."""
+        return text[: self.position] + self.new + text[self.position + len(self.old) :]
+
+
+def fault_at(file: str, text: str, position: int, old: str, new: str, name: str = "", why: str = "") -> Fault:
+    """A fault with its key: file, change, and which of several like places; lines above may move."""
+    like = text[:position].count(old)
+    key = hashlib.sha256("\0".join((file, old.strip(), new.strip(), str(like))).encode()).hexdigest()[:10]
+    return Fault(file, position, old, new, text[:position].count("\n") + 1, key, name, why)
+
+
+def read_sources(folder: Path) -> dict[str, str]:
+    """Text of every source that faults are put into, by its path below the folder.
+
+    Raises
+    ------
+    InputError
+        There is no such folder, or no Fortran in it.
+    """
+    found = {path.relative_to(folder).as_posix(): path.read_text() for path in sorted(folder.rglob("*.f90"))}
+    if not found:
+        raise InputError(f"there are no Fortran sources in {folder}: faults are planted in a checkout, from its folder", "sources")
+    return {file: text for file, text in found.items() if file not in LEFT_OUT}
+
+
+def read_planted(path: Path, sources: Mapping[str, str]) -> list[Fault]:
+    """The faults planted by hand: a TOML file of ``[[fault]]`` with name, file, old, new, why.
+
+    Raises
+    ------
+    InputError
+        An entry is missing, or its text does not stand exactly once in its file.
+    """
+    try:
+        entries = tomllib.loads(path.read_text())["fault"]
+    except (OSError, tomllib.TOMLDecodeError, KeyError) as error:
+        raise InputError(f"is no list of [[fault]]: {error}", str(path)) from None
+    planted = [_planted(entry, sources, f"{path}: {entry.get('name', f'fault {i + 1}')}") for i, entry in enumerate(entries)]
+    names = [fault.name for fault in planted]
+    if len(set(names)) < len(names):
+        raise InputError(f"two faults have one name: {', '.join(sorted({n for n in names if names.count(n) > 1}))}", str(path))
+    return planted
+
+
+def _planted(entry: Mapping[str, str], sources: Mapping[str, str], where: str) -> Fault:
+    if set(entry) != {"name", "file", "old", "new", "why"}:
+        raise InputError(f"has {', '.join(sorted(entry))}; needs name, file, old, new, why", where)
+    if entry["file"] not in sources:
+        raise InputError(f"there is no source {entry['file']} that faults are put into", where)
+    text, old = sources[entry["file"]], entry["old"].strip("\n")
+    if text.count(old) != 1:
+        raise InputError(f"stands {text.count(old)} times in {entry['file']}, must stand exactly once:\n{old}", where)
+    return fault_at(entry["file"], text, text.index(old), old, entry["new"].strip("\n"), entry["name"], entry["why"])

@@ -1,0 +1,102 @@
+"""The gate as an attack on faulty kernels: the cells that promise most for their cost come first, the first red one ends it."""
+
+from __future__ import annotations
+
+import threading
+from collections import Counter
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from isomortar.harness.cases import Cell
+from isomortar.harness.compare import Lookup, judge
+from isomortar.harness.mutants.bench import Bench
+from isomortar.harness.report import sentence
+
+#: A cell has failed after this many times the seconds that it takes on the sound kernel, and never before so many seconds.
+_PATIENCE, _LEAST_SECONDS = 10, 10.0
+#: Seconds of a cell besides its own: sending and judging.
+_OVERHEAD = 0.02
+#: A cell of a case that has just passed with other settings promises this much less.
+_ALIKE = 0.5
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What the gate found in a kernel.
+
+    Parameters
+    ----------
+    killer : str or None
+        The first red cell; None: the kernel survived.
+    found : str
+        What was red about it.
+    passed : tuple of str
+        Cells that it passed.
+    """
+
+    killer: str | None
+    found: str
+    passed: tuple[str, ...]
+
+
+class Gate:
+    """The cells that judge kernels. What they found so far decides which come first.
+
+    Parameters
+    ----------
+    seconds : mapping of Cell to seconds
+        Cells that are green on the sound kernel, and what they take there.
+    lookup : Lookup
+        Finds references.
+    """
+
+    def __init__(self, seconds: Mapping[str, float], cells: Sequence[Cell], lookup: Lookup) -> None:
+        self._cells = {cell.name: cell for cell in cells if cell.name in seconds}
+        self._seconds = seconds
+        self._lookup = lookup
+        self._tries: Counter[tuple[str, str]] = Counter()
+        self._kills: Counter[tuple[str, str]] = Counter()
+        self._lock = threading.Lock()
+
+    def learn(self, folder: str, verdict: Verdict) -> None:
+        """Note which cells a fault in a folder of the sources passed, and which was red."""
+        with self._lock:
+            self._tries.update((folder, name) for name in verdict.passed)
+            if verdict.killer:
+                self._tries[folder, verdict.killer] += 1
+                self._kills[folder, verdict.killer] += 1
+
+    def attack(self, bench: Bench, kernel: Path, folder: str, passed: Collection[str], most: float) -> Verdict:
+        """Measure and judge cells until one is red, none is left, or those that passed take `most` seconds on the sound kernel.
+
+        `passed` are cells that the kernel passed before. `folder` is where in the sources the fault is.
+        """
+        done = [name for name in passed if name in self._cells]
+        while self.cost(done) < most and (left := self._cells.keys() - done):
+            name = self._most_promising(left, done, folder)
+            cell = self._cells[name]
+            measurement = bench.measure(kernel, cell, max(_PATIENCE * self._seconds[name], _LEAST_SECONDS))
+            red = [check for check in judge(cell, measurement, self._lookup) if check.state != "passed"]
+            if red:
+                return Verdict(name, sentence(red[0]), tuple(done))
+            done.append(name)
+        return Verdict(None, "", tuple(done))
+
+    def is_whole(self, verdict: Verdict) -> bool:
+        """Whether no cell is left that could tell more."""
+        return verdict.killer is not None or self._cells.keys() <= set(verdict.passed)
+
+    def cost(self, names: Collection[str]) -> float:
+        """Seconds of some cells on the sound kernel."""
+        return sum(self._seconds.get(name, 0.0) for name in names)
+
+    def _most_promising(self, left: Collection[str], done: Sequence[str], folder: str) -> str:
+        alike = Counter(self._cells[name].case.name for name in done)
+
+        def promise(name: str) -> tuple[float, str]:
+            share = (self._kills[folder, name] + 1) / (self._tries[folder, name] + 2)
+            return share * _ALIKE ** alike[self._cells[name].case.name] / (self._seconds[name] + _OVERHEAD), name
+
+        with self._lock:
+            return max(left, key=promise)

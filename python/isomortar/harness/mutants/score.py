@@ -1,0 +1,144 @@
+"""What a campaign says about the gate: shares with their intervals, who caught what, and what people said of the survivors."""
+
+from __future__ import annotations
+
+import tomllib
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from isomortar.errors import InputError
+from isomortar.harness.mutants.campaign import Attacked, Outcome
+
+#: What a survivor can be. An ``equivalent`` one computes the same; ``not caught`` is a gap of the gate.
+CLASSES = ("equivalent", "performance only", "precision only", "not caught")
+#: Share of the random faults that the gate must catch.
+LEAST_SHARE = 0.9
+
+
+@dataclass(frozen=True)
+class Classification:
+    """What somebody found out about a survivor, and why it is so."""
+
+    kind: str
+    reason: str
+
+
+@dataclass(frozen=True)
+class Share:
+    """`part` of `whole`, with Wilson's 95 % interval of the share that a random sample stands for."""
+
+    part: int
+    whole: int
+
+    @property
+    def value(self) -> float:
+        """The share; NaN of nothing."""
+        return self.part / self.whole if self.whole else np.nan
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """Wilson's interval at 95 %."""
+        if not self.whole:
+            return 0.0, 1.0
+        z, n, p = 1.959964, self.whole, self.value
+        middle = (p + z * z / (2 * n)) / (1 + z * z / n)
+        half = z / (1 + z * z / n) * np.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
+        return float(middle - half), float(middle + half)
+
+    def __str__(self) -> str:
+        low, high = self.interval
+        return f"{self.part} of {self.whole} ({100 * self.value:.1f} %, interval {100 * low:.1f} to {100 * high:.1f} %)"
+
+
+class Score:
+    """The outcome of a campaign, counted.
+
+    Parameters
+    ----------
+    outcome : Outcome
+    classified : dict of key to Classification
+        What is known about survivors.
+    """
+
+    def __init__(self, outcome: Outcome, classified: dict[str, Classification]) -> None:
+        self.outcome, self.classified = outcome, classified
+        self.planted = [a for a in outcome.attacked if a.fault.name]
+        self.sample = [a for a in outcome.attacked if not a.fault.name]
+
+    @property
+    def caught_planted(self) -> Share:
+        """Of the faults planted by hand."""
+        return _caught(self.planted)
+
+    @property
+    def caught(self) -> Share:
+        """Of the random faults."""
+        return _caught(self.sample)
+
+    @property
+    def caught_of_real(self) -> Share:
+        """Of the random faults that are not classified as equivalent."""
+        return _caught([a for a in self.sample if self.kind(a) != "equivalent"])
+
+    @property
+    def survivors(self) -> list[Attacked]:
+        """Faults that no cell was red on; planted ones first."""
+        return [a for a in self.outcome.attacked if a.verdict.killer is None]
+
+    def kind(self, attacked: Attacked) -> str:
+        """Class of a survivor, or that it has none yet."""
+        known = self.classified.get(attacked.fault.key)
+        return known.kind if known else "not classified"
+
+    @property
+    def passes(self) -> bool:
+        """Every planted fault is caught, and of a sample the share that must be."""
+        sampled = not self.sample or self.caught.value >= LEAST_SHARE
+        return bool(self.outcome.attacked) and self.caught_planted.part == self.caught_planted.whole and sampled
+
+    @property
+    def catches(self) -> dict[str, Counter[str]]:
+        """By family of the first red cell: how many faults, by folder of the sources."""
+        found: dict[str, Counter[str]] = {}
+        for attacked in self.outcome.attacked:
+            if attacked.verdict.killer:
+                found.setdefault(attacked.verdict.killer.partition("/")[0], Counter())[attacked.fault.folder] += 1
+        return dict(sorted(found.items(), key=lambda item: -item[1].total()))
+
+    @property
+    def folders(self) -> list[str]:
+        """Folders of the sources with faults."""
+        return sorted({a.fault.folder for a in self.outcome.attacked})
+
+
+def _caught(attacked: Sequence[Attacked]) -> Share:
+    return Share(sum(a.verdict.killer is not None for a in attacked), len(attacked))
+
+
+def read_classified(path: Path) -> dict[str, Classification]:
+    """A TOML file of ``[[survivor]]`` with key, class and reason (and what helps people, such as place and change).
+
+    Raises
+    ------
+    InputError
+        A class that is none, no reason.
+    """
+    if not path.exists():
+        return {}
+    try:
+        entries = tomllib.loads(path.read_text()).get("survivor", [])
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(str(error), str(path)) from None
+    found = {}
+    for entry in entries:
+        where = f"{path}: {entry.get('key', 'an entry without key')}"
+        if not {"key", "class", "reason"} <= entry.keys() or not entry["reason"].strip():
+            raise InputError("needs key, class and reason", where)
+        if entry["class"] not in CLASSES:
+            raise InputError(f"class is {entry['class']!r}; allowed: {', '.join(CLASSES)}", where)
+        found[entry["key"]] = Classification(entry["class"], entry["reason"])
+    return found
