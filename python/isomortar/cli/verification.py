@@ -74,7 +74,7 @@ def verify(
     page = report or results / "report.html"
     cells = select(collect(cases), next(t for t in TIERS if t == tier), family, case)
     started, clock = datetime.now().astimezone(), time.perf_counter()
-    measured = _measured(cells, results, finder(references), _submitter(jobs, dask), fresh)
+    measured = measure_all(cells, results, finder(references), _submitter(jobs, dask), fresh)
     history.append(results / "history.jsonl", measured)
     context = reports.Context(tier, time.perf_counter() - clock, started, history.read(results / "history.jsonl"))
     reports.write(page, measured, context)
@@ -108,7 +108,7 @@ def bless(
     if kind not in ("self", "over-refined"):
         raise InputError(f"is {kind!r}; a run of this program is self or over-refined", "class")
     chosen, lookup = find(cases, case), finder(references)
-    measured = _measured(chosen.cells, results, lookup, _submitter(jobs, None), False)
+    measured = measure_all(chosen.cells, results, lookup, _submitter(jobs, None), False)
     found = blessing.changes(measured, lookup)
     Console().print(_table(found))
     if not yes:
@@ -123,7 +123,9 @@ def _submitter(jobs: int, dask: str | None) -> AbstractContextManager[Submit]:
     return dask_cluster(dask) if dask else local_processes(jobs)
 
 
-def _measured(cells: Sequence[Cell], folder: Path, lookup: Lookup, submitter: AbstractContextManager[Submit], fresh: bool) -> list[Result]:
+def measure_all(
+    cells: Sequence[Cell], folder: Path, lookup: Lookup, submitter: AbstractContextManager[Submit], fresh: bool
+) -> list[Result]:
     """Measure with a progress bar on stderr, under which whatever does not pass is told of at once."""
     from isomortar.harness.report import sentence
     from isomortar.harness.runner import run, start
@@ -137,7 +139,9 @@ def _measured(cells: Sequence[Cell], folder: Path, lookup: Lookup, submitter: Ab
         def finished(result: Result) -> None:
             progress.update(bar, advance=1, description=result.cell.name)
             if result.state != "passed":
-                lines = [result.cell.name, *(f"  {sentence(check)}" for check in result.checks if check.state != "passed")]
+                bad = [check for check in result.checks if check.state != "passed"]
+                said = [bad[0].found] if result.measurement.message else [sentence(check) for check in bad]
+                lines = [result.cell.name, *(f"  {line}" for line in said)]
                 console.print("\n".join(lines), markup=False, style="red", soft_wrap=True)
 
         store = Store(folder / "cells")

@@ -40,11 +40,13 @@ def collect(root: Path) -> list[Case]:
 
 
 def cases_of(path: Path) -> list[Case]:
-    """The cases that a file defines, in its order."""
-    root = str(path.resolve().parent.parent)
-    if root not in sys.path:
-        sys.path.insert(0, root)
-    module = importlib.import_module(f"{path.parent.name}.{path.stem}")
+    """The cases that a file defines, in its order. It is known as family and file, in a package by its full name."""
+    root = path.resolve().parent.parent
+    while (root / "__init__.py").is_file():
+        root = root.parent
+    if str(root) not in sys.path:
+        sys.path.insert(0, str(root))
+    module = importlib.import_module(".".join(path.resolve().relative_to(root).with_suffix("").parts))
     if Path(module.__file__ or "").resolve() != path.resolve():
         raise InputError(f"is taken from {module.__file__}, not from {path}: give the folder or the file another name", path.stem)
     return [value for value in vars(module).values() if isinstance(value, Case) and value.path == path.resolve()]

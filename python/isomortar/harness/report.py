@@ -38,7 +38,7 @@ def write(path: Path, results: Sequence[Result], context: Context) -> None:
     """Write the page, and beside it the same as ``.xml`` (JUnit) and ``.json``."""
     write_whole(path, page(results, context))
     write_whole(path.with_suffix(".xml"), junit(results, context))
-    write_whole(path.with_suffix(".json"), json.dumps(_plain(as_data(results, context)), indent=1))
+    write_whole(path.with_suffix(".json"), json.dumps(plain(as_data(results, context)), indent=1))
 
 
 def as_data(results: Sequence[Result], context: Context) -> dict[str, Any]:
@@ -92,14 +92,19 @@ def number(value: float) -> str:
     return f"{value:.4g}" if math.isfinite(value) else "-"
 
 
-def page(results: Sequence[Result], context: Context) -> str:
-    """The HTML page."""
+def template(name: str) -> jinja2.Template:
+    """A page of this package, with what all pages say numbers and times by."""
     loader = jinja2.FileSystemLoader(Path(__file__).parent)
     environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined)
     environment.filters["number"] = number
-    environment.filters["duration"] = _duration
+    environment.filters["duration"] = duration
+    return environment.get_template(name)
+
+
+def page(results: Sequence[Result], context: Context) -> str:
+    """The HTML page."""
     counts = Counter(result.state for result in results)
-    return environment.get_template("report.html").render(
+    return template("report.html").render(
         context=context,
         counts=[(state, counts[state]) for state in STATES if counts[state]],
         total=len(results),
@@ -221,16 +226,17 @@ def anchor(name: str) -> str:
     return name.replace("/", "-")
 
 
-def _duration(seconds: float) -> str:
+def duration(seconds: float) -> str:
+    """Seconds as people read them."""
     if seconds < 1:
         return f"{1000 * seconds:.0f} ms"
     return f"{seconds:.1f} s" if seconds < 90 else f"{seconds / 60:.0f} min"
 
 
-def _plain(value: Any) -> Any:
-    """The same with null for numbers that are not finite, which JSON has no word for."""
+def plain(value: Any) -> Any:
+    """Plain data with null for numbers that are not finite, which JSON has no word for."""
     if isinstance(value, dict):
-        return {name: _plain(entry) for name, entry in value.items()}
+        return {name: plain(entry) for name, entry in value.items()}
     if isinstance(value, list | tuple):
-        return [_plain(entry) for entry in value]
+        return [plain(entry) for entry in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -1,0 +1,62 @@
+"""``isomortar report``."""
+
+from __future__ import annotations
+
+import time
+from datetime import datetime
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from isomortar.cli.verification import FAILED, measure_all
+
+report = typer.Typer(no_args_is_help=True, rich_markup_mode="markdown", help="Reports that take many runs of a scene.")
+
+
+@report.callback()
+def report_command() -> None:
+    """Reports that take many runs of a scene."""
+
+
+@report.command()
+def orders(
+    scene: Annotated[str, typer.Argument(metavar="SCENE", help="A scene file (.toml), or a bundled scene by its name.")],
+    quick: Annotated[bool, typer.Option("--quick", help="Half the elements, and N1, N2, N3, L1, L2 only.")] = False,
+    kinds: Annotated[
+        str, typer.Option("--orders", metavar="N1,N2,..", help="Kinds of discretisation.", show_default="N1 to N5 and L1 to L4")
+    ] = "",
+    body: Annotated[str | None, typer.Option(help="The body to vary.", show_default="slave of the first contact")] = None,
+    jobs: Annotated[int, typer.Option("-j", "--jobs", min=1, help="Runs at the same time; several disturb each other's cost.")] = 1,
+    out: Annotated[
+        Path | None, typer.Option(file_okay=False, help="Folder of the report and its runs.", show_default="results/orders-NAME")
+    ] = None,
+) -> None:
+    """What orders and meshes make of a scene: error of curves and fields, smoothness, against unknowns and cost.
+
+    Runs the scene with NURBS and Lagrange elements of several orders on several meshes, and a finer one as the reference, whose own
+    error is estimated too. What was run already is not run again. Exit code 1 if a run failed; the others are in the report all the same.
+
+    For example:
+
+    - `isomortar report orders press --quick`
+    - `isomortar report orders twist --orders N2,N3,N4 -j 2`
+    - `isomortar report orders my_scene.toml --body lower`
+    """
+    from isomortar.harness.elevation import page
+    from isomortar.harness.elevation.analysis import analyse
+    from isomortar.harness.elevation.study import Study
+    from isomortar.harness.runner import local_processes
+    from isomortar.scene import Scene
+
+    loaded = Scene.load(scene)
+    study = Study.of(loaded, [kind.strip() for kind in kinds.split(",") if kind.strip()], body, quick)
+    folder = out or Path("results") / f"orders-{loaded.name}"
+    started, clock = datetime.now().astimezone(), time.perf_counter()
+    results = measure_all(study.cells(folder / "scenes"), folder, lambda *_: None, local_processes(jobs), False)
+    analysis = analyse(study, {d: r.measurement for d, r in zip(study.plan, results, strict=True)})
+    path = page.write(folder, analysis, started)
+    print(f"{len(results)} runs, {len(analysis.failed)} failed, {time.perf_counter() - clock:.0f} s")
+    print(path)
+    if analysis.failed:
+        raise typer.Exit(FAILED)

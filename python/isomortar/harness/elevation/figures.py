@@ -1,0 +1,195 @@
+"""Figures of the report, as SVG text: colour tells the order, filling and line the family, so that either is told without colour."""
+
+from __future__ import annotations
+
+import io
+import math
+import re
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from itertools import groupby
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter
+
+from isomortar.harness.discretisations import Discretisation, parse_kind
+from isomortar.harness.elevation.analysis import Analysis, Point, curve
+from isomortar.results import style
+
+_COLOURS = ("#E69F00", style.BLUE, style.GREEN, style.VERMILION, "#CC79A7")
+_MARKS = ("o", "s", "^", "D", "v")
+_COSTS: tuple[tuple[str, Callable[[Point], float]], ...] = (
+    ("unknowns", lambda p: p.unknowns),
+    ("CPU seconds", lambda p: p.numbers["cpu_seconds"]),
+    ("linear solves", lambda p: p.numbers["solves"]),
+)
+
+
+def against_cost(analysis: Analysis, measure: str) -> str:
+    """Error against unknowns, CPU seconds and solves: a line a kind (h-refinement), grey lines for orders on one mesh (k-refinement)."""
+    with _style():
+        figure = Figure(figsize=(10.6, 3.5), layout="constrained")
+        panels = figure.subplots(1, 3, sharey=True)
+        for axes, (label, cost) in zip(panels, _COSTS, strict=True):
+            axes.set(xscale="log", yscale="log", xlabel=label)
+            for mesh in _k_lines(analysis):
+                axes.plot([cost(p) for p in mesh], [p.errors[measure] for p in mesh], color="#B9BEC5", linewidth=0.9, zorder=1)
+            for kind in analysis.study.kinds:
+                points = [p for p in analysis.sequence(kind) if p.errors]
+                axes.plot([cost(p) for p in points], [p.errors[measure] for p in points], label=kind, **_look(kind))
+            _ticks(axes)
+        panels[0].set_ylabel(f"error of the {measure}")
+        _floor(panels, analysis.uncertainty[measure])
+        _legend(figure, panels[0])
+        return _svg(figure, f"cost-{measure}")
+
+
+def roughness_against_unknowns(analysis: Analysis) -> str:
+    """Second-difference energy of the curves over that of the reference."""
+    with _style():
+        figure = Figure(figsize=(5.4 * len(analysis.curves), 3.5), layout="constrained")
+        panels = figure.subplots(1, len(analysis.curves), squeeze=False)[0]
+        for axes, measure in zip(panels, analysis.curves, strict=True):
+            for kind in analysis.study.kinds:
+                points = [p for p in analysis.sequence(kind) if p.roughness]
+                axes.plot([p.unknowns for p in points], [p.roughness[measure] for p in points], label=kind, **_look(kind))
+            axes.axhline(1.0, color=style.GREY, linewidth=0.8, zorder=1)
+            axes.set(xscale="log", yscale="log", xlabel="unknowns", ylabel=f"roughness of the {measure}")
+            _ticks(axes)
+        _legend(figure, panels[0])
+        return _svg(figure, "roughness")
+
+
+def curves_overlaid(analysis: Analysis) -> Iterator[tuple[str, str]]:
+    """Name and figure of each component that is not round-off: the curves on the scene's own mesh, and how far off the reference."""
+    supports = [s.name for s in analysis.study.scene.problem().supports if any(any(m.translate) or m.rotate for m in s.motions)]
+    for measure in analysis.curves:
+        reference = curve(analysis.reference.numbers, measure)
+        for column in np.flatnonzero(np.abs(reference).max(axis=0) > 1e-3 * np.abs(reference).max()):
+            name = f"{measure} {'xyz'[column % 3]}" + (f" at {supports[column // 3]}" if len(supports) > 1 else "")
+            yield name, _overlay(analysis, measure, int(column), name)
+
+
+def pressures(analysis: Analysis) -> str:
+    """The pressure at the end on the scene's own mesh by kind, and that of the reference, laid flat."""
+    shown = [(d.label, p) for d, p in _own_mesh(analysis)] + [("reference", analysis.reference)]
+    cells = analysis.study.grids()[0].shape
+    turned = cells[0] < cells[1]
+    peak = float(np.max(analysis.reference.numbers["pressure"]))
+    with _style():
+        columns = min(5, len(shown))
+        rows = math.ceil(len(shown) / columns)
+        figure = Figure(figsize=(10.6, (2.35 if max(cells) < 3 * min(cells) else 1.3) * rows), layout="constrained")
+        panels = figure.subplots(rows, columns, squeeze=False).ravel()
+        for axes in panels:
+            axes.set_axis_off()
+        for axes, (label, point) in zip(panels, shown, strict=False):
+            field = np.asarray(point.numbers["pressure"]).reshape(cells[1], cells[0])
+            field = np.where(np.abs(field) < 1e-9 * peak, 0.0, field)
+            image = axes.imshow(field.T if turned else field, origin="lower", cmap=style.pressure_colours(), vmin=0.0, vmax=peak)
+            axes.set_title(f"{label}\n{field.min():.3g} to {field.max():.3g}", fontsize=8.5)
+        figure.colorbar(image, ax=panels, shrink=0.8, extend="both", label="contact pressure")
+        return _svg(figure, "pressures")
+
+
+def _overlay(analysis: Analysis, measure: str, column: int, name: str) -> str:
+    reference = curve(analysis.reference.numbers, measure)[:, column]
+    times = analysis.reference.numbers["time"]
+    scale = float(np.abs(reference).max())
+    with _style():
+        figure = Figure(figsize=(10.6, 3.8), layout="constrained")
+        left, right = figure.subplots(1, 2)
+        left.plot(times, reference, color=style.BLACK, linewidth=2.4, label="reference", zorder=1)
+        for chosen, point in _own_mesh(analysis):
+            values = curve(point.numbers, measure)[:, column]
+            look = _look(chosen.kind) | {"markersize": 3.2 if len(times) <= 25 else 0.0, "linewidth": 1.1}
+            left.plot(point.numbers["time"], values, label=chosen.kind, **look)
+            right.plot(times, 100 * (values - reference) / scale, **look)
+        right.axhline(0.0, color=style.BLACK, linewidth=0.8, zorder=1)
+        left.set(xlabel="load time (steps)", ylabel=name)
+        right.set(xlabel="load time (steps)", ylabel=f"difference from the reference, % of {scale:.3g}")
+        _stage_lines((left, right), analysis.reference)
+        _legend(figure, left)
+        return _svg(figure, f"curve-{measure}-{column}")
+
+
+def _own_mesh(analysis: Analysis) -> list[tuple[Discretisation, Point]]:
+    """Of each kind the run on the scene's own mesh, where it came to its end."""
+    chosen = [analysis.study.own_mesh(kind) for kind in analysis.study.kinds]
+    return [(d, analysis.points[d]) for d in chosen if not analysis.points[d].failure]
+
+
+def _k_lines(analysis: Analysis) -> list[list[Point]]:
+    """NURBS runs on the same elements, by order."""
+    nurbs = sorted((order, kind) for kind in analysis.study.kinds for family, order in (parse_kind(kind),) if family == "N")
+    points = [p for _, kind in nurbs for p in analysis.sequence(kind) if p.errors]
+    points.sort(key=lambda p: p.discretisation.elements)
+    return [list(group) for _, group in groupby(points, key=lambda p: p.discretisation.elements)]
+
+
+def _floor(panels: Any, uncertainty: float) -> None:
+    """Grey below the reference's uncertainty, as far as the points reach."""
+    low = panels[0].get_ylim()[0]
+    if not math.isfinite(uncertainty) or uncertainty <= 0:
+        return
+    for axes in panels:
+        axes.axhspan(min(low, uncertainty / 2), uncertainty, color="#E9EBEE", linewidth=0, zorder=0)
+    panels[0].set_ylim(bottom=min(low, uncertainty / 2))
+    panels[-1].text(
+        0.99, uncertainty, "uncertainty of the reference", transform=panels[-1].get_yaxis_transform(), ha="right", va="top", fontsize=7.5
+    )
+
+
+def _stage_lines(panels: tuple[Axes, ...], point: Point) -> None:
+    times, stages = np.asarray(point.numbers["time"]), np.asarray(point.numbers["stage"])
+    for axes in panels:
+        for end in times[np.flatnonzero(np.diff(stages))]:
+            axes.axvline(end, color="#C9CDD3", linewidth=0.8, zorder=0)
+        axes.grid(axis="y", color="#E3E6EA", linewidth=0.6)
+        axes.set_axisbelow(True)
+
+
+def _look(kind: str) -> dict[str, Any]:
+    family, order = parse_kind(kind)
+    colour = _COLOURS[(order - 1) % len(_COLOURS)]
+    filling = colour if family == "N" else "white"
+    line = "-" if family == "N" else (0, (4, 2))
+    mark = _MARKS[(order - 1) % len(_MARKS)]
+    return {"color": colour, "linestyle": line, "marker": mark, "markerfacecolor": filling, "markersize": 5.0, "zorder": 3}
+
+
+def _ticks(axes: Axes) -> None:
+    """Plain numbers, also within a decade."""
+    for axis in (axes.xaxis, axes.yaxis):
+        low, high = axis.get_view_interval()
+        axis.set_major_formatter("{x:g}")
+        few = high / low < 30
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if few else (1.0,), numticks=8))
+        axis.set_minor_formatter(NullFormatter())
+    axes.grid(color="#E9EBEE", linewidth=0.6)
+    axes.set_axisbelow(True)
+
+
+def _legend(figure: Figure, axes: Axes) -> None:
+    handles, labels = axes.get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper left", ncols=len(labels), handlelength=2.6, columnspacing=1.4)
+
+
+@contextmanager
+def _style() -> Iterator[None]:
+    """The style of all figures, with text that stays text."""
+    with style.style(), mpl.rc_context({"svg.fonttype": "none", "font.family": "sans-serif"}):
+        yield
+
+
+def _svg(figure: Figure, name: str) -> str:
+    """As SVG that stands in a page: no header, names of its own, the same for the same figure."""
+    text = io.StringIO()
+    with mpl.rc_context({"svg.hashsalt": name}):
+        figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
+    drawn = text.getvalue()
+    return re.sub(r'(width|height)="[\d.]+pt" ', "", drawn[drawn.index("<svg") :], count=2)

@@ -1,0 +1,126 @@
+"""What a study runs: kinds on meshes, and a reference with the two coarser meshes that tell its own error."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+
+from isomortar.errors import InputError
+from isomortar.harness.cases import LAGRANGE, NURBS, Cell
+from isomortar.harness.discretisations import Discretisation, Sweep, discretisation, finer, overrides, parse_kind, sweep_of
+from isomortar.harness.elevation import run
+from isomortar.harness.elevation.sampling import Grid
+from isomortar.harness.orders import WINDOW
+from isomortar.harness.store import write_whole
+from isomortar.model.entities import Problem
+from isomortar.scene.scene import Scene
+
+#: Elements of the meshes of a kind, as shares of the scene's own.
+FACTORS = (1 / 3, 1 / 2, 2 / 3, 1.0)
+#: Ratio of a mesh that is added where these fall together.
+NEXT = 4 / 3
+#: Kinds of a study, and of a quick one on half the elements.
+ALL, QUICK = (*NURBS, *LAGRANGE), ("N1", "N2", "N3", "L1", "L2")
+
+
+@dataclass(frozen=True)
+class Study:
+    """Kinds of discretisation of a scene over meshes.
+
+    Parameters
+    ----------
+    scene : Scene
+    sweep : Sweep
+    kinds : tuple of str
+    share : float
+        Elements of the finest mesh over the scene's own.
+    """
+
+    scene: Scene
+    sweep: Sweep
+    kinds: tuple[str, ...]
+    share: float
+
+    @classmethod
+    def of(cls, scene: Scene, kinds: Sequence[str] = (), body: str | None = None, quick: bool = False) -> Study:
+        """The study of a scene; all is checked before anything runs.
+
+        Raises
+        ------
+        InputError
+            Unknown kinds, a body without contact, no support that moves, or a discretisation that the scene cannot have.
+        """
+        chosen = tuple(dict.fromkeys(kinds)) or (QUICK if quick else ALL)
+        for kind in chosen:
+            parse_kind(kind)
+        study = cls(scene, sweep_of(scene, body), chosen, 0.5 if quick else 1.0)
+        if not any(run.moves(support) for support in scene.problem().supports):
+            raise InputError("no support of the scene moves: there are no curves to compare", "supports")
+        for each in study.plan:
+            study.problem(each)
+        return study
+
+    def meshes(self, kind: str) -> tuple[Discretisation, ...]:
+        """Discretisations of a kind, coarsest first, at least as many as an order needs."""
+        found = list(dict.fromkeys(discretisation(self.scene, self.sweep, kind, self.share * factor) for factor in FACTORS))
+        while len(found) < WINDOW:
+            found.append(finer(self.scene, self.sweep, found[-1], NEXT))
+            if found[-1] == found[-2]:
+                found[-1] = finer(self.scene, self.sweep, found[-2], 2.0)
+        return tuple(found)
+
+    def own_mesh(self, kind: str) -> Discretisation:
+        """The finest of the meshes that are shares of the scene's own: that itself, or in a quick study half of it."""
+        return discretisation(self.scene, self.sweep, kind, self.share)
+
+    @cached_property
+    def reference(self) -> tuple[Discretisation, Discretisation, Discretisation]:
+        """The reference's kind on half the elements, on as many and on twice as many: the last is the reference."""
+        coarse = discretisation(self.scene, self.sweep, self.sweep.reference, self.share / 2)
+        medium = finer(self.scene, self.sweep, coarse, 2.0)
+        return coarse, medium, finer(self.scene, self.sweep, medium, 2.0)
+
+    @cached_property
+    def plan(self) -> tuple[Discretisation, ...]:
+        """All that is run, each once, the reference last."""
+        return tuple(dict.fromkeys([*(mesh for kind in self.kinds for mesh in self.meshes(kind)), *self.reference]))
+
+    @property
+    def slave_refined(self) -> bool:
+        """Whether the swept body is the slave of the contact pair."""
+        contact = next(c for c in self.scene.problem().contacts if c.name == self.sweep.contact)
+        return contact.slave.body == self.sweep.body
+
+    def size(self, chosen: Discretisation) -> float:
+        """Element size: mean over the swept directions, as a share of the body's length."""
+        counts = [n for axis, n in zip("uvw", chosen.elements, strict=True) if axis in self.sweep.directions]
+        product = 1.0
+        for count in counts:
+            product *= count
+        return float(product ** (-1 / len(counts)))
+
+    def problem(self, chosen: Discretisation) -> Problem:
+        """The problem of a discretisation."""
+        return self.discretised(chosen).problem()
+
+    def discretised(self, chosen: Discretisation) -> Scene:
+        """The scene in a discretisation."""
+        return Scene.from_toml(self.scene.to_toml(), overrides=overrides(self.scene, self.sweep, chosen))
+
+    def cells(self, folder: Path) -> list[Cell]:
+        """A cell a discretisation, in the order of the plan; their scene files go to the folder, to be run by anyone."""
+        cells = []
+        for chosen in self.plan:
+            path = folder / f"{self.scene.name}-{chosen.label.replace(' ', '-')}.toml"
+            write_whole(path, self.discretised(chosen).to_toml())
+            settings = {"scene": str(path), "body": self.sweep.body, "contact": self.sweep.contact}
+            cells.append(Cell(replace(run.discretised, files=(path.absolute(),)), settings))
+        return cells
+
+    def grids(self) -> tuple[Grid, Grid]:
+        """Where pressure and displacement of all runs are sampled."""
+        problem = self.scene.problem()
+        number = [c.name for c in problem.contacts].index(self.sweep.contact)
+        return run.slave_grid(self.scene, problem, number), run.swept_grid(self.scene, self.sweep.body)
