@@ -26,6 +26,10 @@ from typing import Any
 TIMES = ("started", "seconds", "cpu_seconds", "peak_memory", "host", "fresh")
 
 
+#: Two processes on this machine, without a web page.
+CLUSTER: dict[str, Any] = {"n_workers": 2, "threads_per_worker": 1, "processes": True, "dashboard_address": None}
+
+
 def start(family: str, results: Path, *options: str) -> subprocess.Popen[bytes]:
     """Start or resume a sweep in a process group of its own."""
     command = [sys.executable, "-m", "isomortar", "verify", "--family", family, "--results", str(results), *(options or ("-j", "2"))]
@@ -77,7 +81,7 @@ def on_dask(family: str, results: Path) -> Any:
     from distributed import LocalCluster
 
     with ExitStack() as stack:
-        cluster = stack.enter_context(LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None))
+        cluster = stack.enter_context(LocalCluster(**CLUSTER))  # type: ignore[no-untyped-call]
         return finish(family, results, "--dask", cluster.scheduler_address)[0]
 
 

@@ -40,7 +40,10 @@ def test_equal_values_agree():
         (NAN, 1.0, 1.0), (1.0, NAN, 1.0), (NAN, NAN, 1.0), (INF, INF, 1.0), (INF, 1.0, INF), (1.0, 1.0, NAN), (1.0, 1.0, INF),
         (1.0, 1.0, -1.0), ([], [], 1.0), ([1.0], 1.0, 1.0), ([1.0, 1.0], [1.0], 1.0), ([[1.0]], [1.0], 1.0), ([1.0], [1.0], [1.0, 1.0]),
         (None, 1.0, 1.0), ("one", 1.0, 1.0), ([1.0, [2.0]], [1.0, 2.0], 1.0), ([1.0, NAN], [1.0, 1.0], 1.0), (1.1, 1.0, 0.05),
-        (1j, 1.0, 2.0),
+        (1j, 1.0, 2.0), (True, 1.0, 1.0), ("1.0", 1.0, 1.0), (np.ma.masked, 0.0, 1.0),
+        (np.ma.array([1.0, 2.0], mask=[0, 1]), [1.0, 2.0], 1.0),
+        (np.array([1.0], object), [1.0], 1.0), (10**400, 1.0, 1.0), (2**53 + 1, 2.0**53, 0.0), (1.7e308, -1.7e308, 1.0), (5e-324, 0.0, 0.0),
+        (np.zeros(1, [("a", float)]), [0.0], 1.0), ([NAN], [1.0], [INF]), (np.datetime64(1, "s"), 1.0, 1.0), (1.0, 1.0, True),
     ],
 )  # fmt: skip
 def test_bad_values_do_not_agree(measured, expected, tolerance):
@@ -118,7 +121,8 @@ def test_a_number_without_a_bound_fails():
 
 
 @pytest.mark.parametrize(
-    ("ending", "expected"), [("skipped", "skipped"), ("raised", "failed"), ("crashed", "crashed"), ("timed out", "timed out")]
+    ("ending", "expected"),
+    [("raised", "failed"), *((ending, ending) for ending in ("skipped", "crashed", "timed out", "not measured"))],
 )
 def test_what_did_not_end_well_does_not_pass(ending, expected):
     (check,) = judge(cell_of(Shown("to see")), Measurement(ending, message="why"), lambda *_: None)
@@ -132,28 +136,80 @@ def test_worst_state():
     assert worst(["passed"]) == "passed"
 
 
-@pytest.mark.parametrize("value", ["text", 1j, [[1.0], [1.0, 2.0]], {"a": 1.0}, object()])
+ANY = {"value": Bound(at_least=-1e9, at_most=1e9, reason="theory: so")}
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        "text", "1.0", 1j, [[1.0], [1.0, 2.0]], {"a": 1.0}, object(), True, [True, False], np.bool_(False), np.ma.masked, [1.0, None],
+        np.ma.array([1.0], mask=[True]), np.array([1.0], object), 10**400, 2**53 + 1, np.array([2**60]), np.zeros(1, [("a", float)]),
+        np.datetime64(1, "s"), b"1", (x for x in [1.0]), Convergence(H, [None] * 4), Convergence([True] * 4, H), Curve(H, ["a"], "x", "y"),
+    ],
+)  # fmt: skip
 def test_a_case_that_returns_something_else_has_failed(value):
-    made = case(claim="It holds.", bounds={"value": Shown("to see")})(lambda: {"value": value})
+    made = case(claim="It holds.", bounds=ANY)(lambda: {"value": value})
     assert measure(made.cells[0]).ending == "raised"
 
 
-@pytest.mark.parametrize("value", [None, 3, [1.0]])
-def test_a_case_that_returns_no_names_has_failed(value):
-    made = case(claim="It holds.", bounds={"value": Shown("to see")})(lambda: value)
+def yields():
+    yield {"value": 0.5}
+
+
+async def later():
+    return {"value": 0.5}
+
+
+@pytest.mark.parametrize(
+    "function", [lambda: None, lambda: 3, lambda: [1.0], lambda: {1: 1.0}, lambda: {"value"}, lambda: [("value", 0.5)], yields]
+)
+def test_a_case_that_returns_no_names_has_failed(function):
+    made = case(claim="It holds.", bounds=ANY)(function)
     assert measure(made.cells[0]).ending == "raised"
+
+
+@pytest.mark.filterwarnings("ignore:coroutine")
+def test_a_case_that_returns_later_has_failed():
+    assert measure(case(claim="It holds.", bounds=ANY)(later).cells[0]).ending == "raised"
+
+
+def test_what_is_measured_says_what_it_cost():
+    def large():
+        return {"value": np.ones(30_000_000).sum()}
+
+    def small():
+        return {"value": 0.5}
+
+    costs = [measure(case(claim="It holds.", bounds=ANY)(function).cells[0]).peak_memory for function in (small, large, small)]
+    assert costs[1] - costs[0] > 2e8
+    assert costs[1] - costs[2] > 2e8
+
+
+@pytest.mark.parametrize(
+    "curve",
+    [
+        Curve([], [1e-4], "x", "y"), Curve([1, 2], [1e-4], "x", "y"), Curve([NAN], [1e-4], "x", "y"), Curve([[1]], [[1e-4]], "x", "y"),
+        Curve([], [], "x", "y"), Curve(1.0, 1e-4, "x", "y"), Curve([1, INF], [1e-4, 1e-4], "x", "y"), Curve([1], [NAN], "x", "y"),
+    ],
+)  # fmt: skip
+def test_bad_curves_break_a_bound(curve):
+    assert state(Bound(at_most=1e-3, reason="theory: so"), curve) == "failed"
+    assert state(Shown("to see"), curve) == "failed"
 
 
 def test_definitions_that_could_not_fail_are_refused():
     good = {"claim": "It holds.", "bounds": {"value": Bound(at_most=1.0, reason="theory: so")}}
     assert case(**good)(nothing).cells[0].tier == "gate"
     for wrong in (
-        {"bounds": {}}, {"claim": " "}, {"tier": "sometimes"}, {"grid": {"order": [1]}}, {"bounds": {"value": 1.0}},
+        {"bounds": {}}, {"claim": " "}, {"tier": "sometimes"}, {"grid": {"order": [1]}}, {"bounds": {"value": 1.0}}, {"bounds": None},
+        {"bounds": lambda: None}, {"bounds": dict}, {"bounds": ["value"]}, {"bounds": {"value": Shown("to see")}}, {"tier": lambda: None},
     ):  # fmt: skip
         with pytest.raises(InputError):
             case(**{**good, **wrong})(nothing)
     with pytest.raises(InputError, match="grid"):
         case(**good, grid={"order": []})(lambda order: {"value": order})
+    with pytest.raises(InputError, match="twice"):
+        case(**good, grid={"order": [1, 2, 1]})(lambda order: {"value": order})
     for limits in ({}, {"at_most": NAN}, {"at_most": INF}, {"at_most": -1.0}, {"at_least": 2.0, "at_most": 1.0}):
         with pytest.raises(InputError):
             Bound(**limits, reason="theory: so")

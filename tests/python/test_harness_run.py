@@ -48,6 +48,10 @@ B = {"error": Bound(at_most=1.0, reason="theory: so")}
 def crash():
     os.abort()
 
+@case(claim="Leaves as if all were well.", bounds=B)
+def leaving():
+    raise SystemExit(0)
+
 @case(claim="Raises.", bounds=B)
 def raising():
     raise ValueError("no such thing")
@@ -121,11 +125,44 @@ def test_the_key_holds_what_the_numbers_depend_on(root):
     assert keys.isdisjoint({cell_key(cell) for cell in cells})
 
 
-def test_a_damaged_file_is_measured_again(root):
+@pytest.mark.parametrize(
+    "damage",
+    [lambda text: text[:40], lambda text: "", lambda text: "[]", lambda text: "null", lambda text: text.replace("1", "0"),
+     lambda text: text.replace("measured", "skipped"), lambda text: text.replace("[order=", "[order=0")],
+)  # fmt: skip
+def test_a_damaged_file_is_measured_again(root, damage):
     measured(root)
     for path in (root.parent / "store").rglob("*.json"):
-        path.write_text(path.read_text()[:40])
+        path.write_text(damage(path.read_text()))
     assert all(r.fresh for r in measured(root).values())
+
+
+def test_a_file_of_another_cell_is_not_taken(root):
+    measured(root)
+    one, other = sorted((root.parent / "store").rglob("sine*.json"))[:2]
+    one.write_text(other.read_text())
+    assert sum(r.fresh for r in measured(root).values()) == 1
+
+
+@pytest.mark.parametrize(
+    "how", ["from .near import SCALE", "from . import near", "from package import SCALE", "from package.part import SCALE"]
+)
+def test_all_ways_to_import_count(root, how):
+    from isomortar.harness import store
+
+    family = next(root.glob("family_*"))
+    (root / "package").mkdir()
+    for path in (family / "near.py", root / "package" / "__init__.py", root / "package" / "part.py"):
+        path.write_text("SCALE = 1\n")
+    (family / "good.py").write_text(f"{how}\n{GOOD}")
+    cell = select(collect(root), "gate")[0]
+    key = cell_key(cell)
+    for path in (family / "near.py", root / "package" / "__init__.py", root / "package" / "part.py"):
+        path.write_text("SCALE = 2\n")
+    store._case_hash.cache_clear()
+    assert cell_key(cell) != key
+    for name in [n for n in sys.modules if n == "package" or n.startswith("package.")]:
+        del sys.modules[name]
 
 
 def test_bad_cells_fail_and_the_run_goes_on(root, monkeypatch):
@@ -134,7 +171,7 @@ def test_bad_cells_fail_and_the_run_goes_on(root, monkeypatch):
     results = measured(root)
     states = {name: result.state for name, result in results.items() if "[" not in name}
     assert states == {
-        "crash": "crashed", "raising": "failed", "skipping": "skipped", "nan": "failed", "late": "timed out", "printing": "passed",
+        "crash": "crashed", "leaving": "crashed", "raising": "failed", "skipping": "skipped", "nan": "failed", "late": "timed out", "printing": "passed",
     }  # fmt: skip
     assert "SIGABRT" in results["crash"].measurement.message
     assert "no such thing" in results["raising"].measurement.message

@@ -188,10 +188,12 @@ class Case:
 
     def bounds_of(self, settings: Settings) -> dict[str, Claim]:
         """Claims on the numbers of one cell."""
-        bounds = dict(self.bounds(**settings) if callable(self.bounds) else self.bounds)
+        bounds = self.bounds(**settings) if callable(self.bounds) else self.bounds
+        if not isinstance(bounds, Mapping):
+            raise InputError(f"must be a dict of claims by name, or a function that returns one; got {bounds!r:.60}", f"{self.name}.bounds")
         if not bounds:
             raise InputError("a case without bounds can not fail", f"{self.name}.bounds")
-        return bounds
+        return dict(bounds)
 
     def tier_of(self, settings: Settings) -> Tier:
         """Tier of one cell."""
@@ -261,9 +263,14 @@ def _check(made: Case) -> None:
     for name, values in made.grid.items():
         if not values or not all(isinstance(value, str | int | float | bool) for value in values):
             raise InputError("must be a list of numbers or strings, not empty", f"{made.name}.grid.{name}")
+        if len({str(value) for value in values}) < len(values):
+            raise InputError(f"holds a value twice: {list(values)}", f"{made.name}.grid.{name}")
     for cell in made.cells:
         if cell.tier not in TIERS:
             raise InputError(f"is {cell.tier!r}; allowed: {', '.join(TIERS)}", f"{cell.name}.tier")
-        for name, claimed in made.bounds_of(cell.settings).items():
+        claims = made.bounds_of(cell.settings)
+        if all(isinstance(claimed, Shown) for claimed in claims.values()):
+            raise InputError("a case of which everything is only Shown can not fail", f"{cell.name}.bounds")
+        for name, claimed in claims.items():
             if not isinstance(claimed, Claim):
                 raise InputError(f"is {claimed!r}; allowed: Bound, Order, Matches, Shown", f"{cell.name}.bounds.{name}")

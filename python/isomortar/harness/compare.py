@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from isomortar.geometry.patch import FloatArray
-from isomortar.harness.cases import Bound, Cell, Claim, Matches, Order, Shown
-from isomortar.harness.measurement import Measurement, Stored, convergence_of, curve_of
+from isomortar.harness.cases import Bound, Cell, Claim, Curve, Matches, Order, Shown
+from isomortar.harness.measurement import Measurement, Stored, convergence_of, curve_of, real_numbers
 from isomortar.harness.orders import OrderEstimate, estimate_order
 
 #: Best first. Only ``passed`` passes.
@@ -62,7 +62,7 @@ def worst(states: Iterable[State]) -> State:
 def agree(measured: ArrayLike, expected: ArrayLike, tolerance: ArrayLike) -> Agreement:
     """Compare entry by entry, absolutely: shapes equal, not empty, finite on both sides, error <= tolerance."""
     try:
-        a, b, t = np.asarray(measured, float), np.asarray(expected, float), np.asarray(tolerance, float)
+        a, b, t = real_numbers(measured), real_numbers(expected), real_numbers(tolerance)
     except (TypeError, ValueError):
         return Agreement(False, "not numbers")
     if a.shape != b.shape:
@@ -111,7 +111,7 @@ def judge(cell: Cell, measurement: Measurement, lookup: Lookup) -> list[Check]:
             checks.append(Check(name, "not measured", np.nan, _limit(claim), "the case returned no such number", claim.reason))
         else:
             checks.append(_check(cell, name, claim, value, lookup))
-    for name in measurement.numbers.keys() - claims.keys():
+    for name in sorted(measurement.numbers.keys() - claims.keys()):
         checks.append(Check(name, "failed", np.nan, "none", "a number without a bound: bound it, or declare it Shown", ""))
     return checks
 
@@ -122,6 +122,9 @@ def _check(cell: Cell, name: str, claim: Claim, value: Stored, lookup: Lookup) -
     curve = curve_of(value)
     if curve is None and isinstance(value, dict):
         return Check(name, "failed", np.nan, _limit(claim), "a convergence sequence: its claim must be an Order", claim.reason)
+    fault = curve_fault(curve) if curve else ""
+    if fault:
+        return Check(name, "failed", np.nan, _limit(claim), fault, claim.reason)
     entries = np.asarray(value if curve is None else curve.y, float)
     if isinstance(claim, Matches):
         return _check_match(name, claim, entries, lookup(claim.reference, cell, name))
@@ -134,6 +137,14 @@ def _check(cell: Cell, name: str, claim: Claim, value: Stored, lookup: Lookup) -
     within = bool(np.all((entries >= low) & (entries <= high)))
     found = "" if entries.ndim == 0 else f"{entries.size} values, {entries.min():.4g} to {entries.max():.4g}"
     return Check(name, "passed" if within else "failed", extreme, _limit(claim), found, claim.reason)
+
+
+def curve_fault(curve: Curve) -> str:
+    """What makes a curve none, or nothing. Its values are for the claim to judge."""
+    x, y = np.asarray(curve.x, float), np.asarray(curve.y, float)
+    if x.ndim != 1 or x.shape != y.shape:
+        return f"a curve whose x and y have shapes {x.shape} and {y.shape}: they must be lists of one length"
+    return "" if np.isfinite(x).all() else "a curve whose x is not finite"
 
 
 def _check_order(name: str, claim: Order, value: Stored) -> Check:

@@ -2,47 +2,81 @@
 
 from __future__ import annotations
 
+import contextlib
 import platform
+import resource
 import time
 import traceback
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
+from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 
+from isomortar.geometry.patch import FloatArray
 from isomortar.harness.cases import Cell, Curve, SkippedError
 from isomortar.harness.orders import Convergence
 
-Ending = Literal["measured", "skipped", "raised", "crashed", "timed out"]
+Ending = Literal["measured", "skipped", "raised", "crashed", "timed out", "not measured"]
+#: Up to here double precision holds every whole number.
+LARGEST_WHOLE = 2**53
 #: A measured value as it is stored: number, nested list, Convergence or Curve as a dict, None where there is none.
 Stored = float | list[Any] | dict[str, Any] | None
 
 
 @dataclass(frozen=True)
 class Measurement:
-    """How a cell ended, its numbers (by name), what was said (skip reason or traceback), and what it cost."""
+    """How a cell ended, its numbers (by name), what was said (skip reason or traceback), and what it cost.
+
+    `peak_memory`: the most that the measuring process held meanwhile, in bytes, what it had loaded before included; 0: not known.
+    """
 
     ending: Ending
     numbers: dict[str, Stored] = field(default_factory=dict)
     message: str = ""
     seconds: float = 0.0
     cpu_seconds: float = 0.0
+    peak_memory: float = 0.0
     host: str = ""
 
 
 def measure(cell: Cell) -> Measurement:
     """Run a cell here and now."""
+    forget_peak_memory()
     start, cpu_start = time.perf_counter(), time.process_time()
     numbers: dict[str, Stored] = {}
     ending: Ending = "measured"
     message = ""
     try:
-        numbers = {name: stored(value) for name, value in cell.case.function(**cell.settings).items()}
+        numbers = _named(cell.case.function(**cell.settings))
     except SkippedError as skipped:
         ending, message = "skipped", str(skipped)
     except Exception:  # whatever a case raises is a failure of that cell, not of the run
         ending, message = "raised", traceback.format_exc()
-    return Measurement(ending, numbers, message, time.perf_counter() - start, time.process_time() - cpu_start, platform.node())
+    seconds, cpu_seconds = time.perf_counter() - start, time.process_time() - cpu_start
+    return Measurement(ending, numbers, message, seconds, cpu_seconds, peak_memory(), platform.node())
+
+
+def forget_peak_memory() -> None:
+    """Let the peak begin anew, where the system can (Linux); elsewhere it is that of the process so far."""
+    with contextlib.suppress(OSError):
+        Path("/proc/self/clear_refs").write_text("5")
+
+
+def peak_memory() -> float:
+    """The most memory that this process has held, in bytes."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1.0 if platform.system() == "Darwin" else 1024.0)
+
+
+def _named(returned: Any) -> dict[str, Stored]:
+    """What a case returned as plain data."""
+    if not isinstance(returned, Mapping):
+        raise TypeError(f"a case returns its numbers by name, in a dict; got {type(returned).__name__}")
+    unnamed = [name for name in returned if not isinstance(name, str)]
+    if unnamed:
+        raise TypeError(f"names must be strings; got {unnamed}")
+    return {name: stored(value) for name, value in returned.items()}
 
 
 def stored(value: Any) -> Stored:
@@ -58,11 +92,26 @@ def stored(value: Any) -> Stored:
 
 
 def _numbers(value: Any) -> float | list[Any]:
-    array = np.asarray(value)
-    if array.dtype.kind not in "biuf":
-        raise TypeError(f"a measured value must be made of real numbers; got {array.dtype} ({value!r:.60})")
-    plain: float | list[Any] = array.astype(np.float64).tolist()
+    plain: float | list[Any] = real_numbers(value).tolist()
     return plain
+
+
+def real_numbers(value: Any) -> FloatArray:
+    """A value as an array of real numbers, without loss.
+
+    Raises
+    ------
+    TypeError
+        Anything else, also what could be taken for numbers: truth values, strings of digits, masked arrays (which hide what they
+        mask), whole numbers too large for double precision.
+    """
+    array = np.asarray(value)
+    if isinstance(value, np.ma.MaskedArray) or array.dtype.kind not in "iuf":
+        kind = "a masked array" if isinstance(value, np.ma.MaskedArray) else array.dtype
+        raise TypeError(f"a measured value must be made of real numbers; got {kind} ({value!r:.60})")
+    if array.dtype.kind in "iu" and np.any((array > LARGEST_WHOLE) | (array < -LARGEST_WHOLE)):
+        raise TypeError(f"double precision does not hold all whole numbers above 2^53; got {value!r:.60}")
+    return array.astype(np.float64)
 
 
 def convergence_of(value: Stored) -> Convergence | None:

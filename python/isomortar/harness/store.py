@@ -13,11 +13,14 @@ import tempfile
 from collections.abc import Iterable, Iterator
 from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 from isomortar.harness.cases import Cell
 from isomortar.harness.measurement import Measurement
 
 _PACKAGE = Path(__file__).parent.parent
+#: Names what cases declare themselves with.
+_ENTRANCE = _PACKAGE / "harness" / "__init__.py"
 #: What of the package does not touch a case's numbers.
 _ASIDE = (_PACKAGE / "harness", _PACKAGE / "cli", _PACKAGE / "__main__.py")  # of the harness what a case imports is added
 
@@ -29,9 +32,11 @@ class Store:
         self.folder = folder
 
     def get(self, cell: Cell) -> Measurement | None:
-        """The measurement of a cell as it is now; None when there is none, or when it did not end by itself."""
+        """The measurement of a cell as it is now; None when there is none, or the file is not what was written."""
         try:
             content = json.loads(self._path(cell).read_text())
+            if content["cell"] != cell.name or content["hash"] != _content_hash(content["measurement"]):
+                return None
             return Measurement(**content["measurement"])
         except (OSError, ValueError, KeyError, TypeError):
             return None
@@ -39,7 +44,8 @@ class Store:
     def put(self, cell: Cell, measurement: Measurement) -> None:
         """Keep a measurement. Crashes and timeouts are not kept: the next run tries again."""
         if measurement.ending in ("measured", "skipped", "raised"):
-            content = {"cell": cell.name, "settings": cell.settings, "program": program_hash(), "measurement": asdict(measurement)}
+            plain = asdict(measurement)
+            content = {"cell": cell.name, "program": program_hash(), "hash": _content_hash(plain), "measurement": plain}
             write_whole(self._path(cell), json.dumps(content, indent=1))
 
     def _path(self, cell: Cell) -> Path:
@@ -108,14 +114,21 @@ def _with_imports(path: Path, roots: tuple[Path, ...], seen: set[Path]) -> set[P
     seen.add(path)
     for node in ast.walk(ast.parse(path.read_text())):
         names: list[str] = []
+        within = roots
         if isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]
-        elif isinstance(node, ast.ImportFrom) and node.module:
-            names = [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)]
-        for imported in (root.joinpath(*name.split(".")).with_suffix(".py") for name in names for root in roots):
-            if imported.is_file() and imported not in seen:
-                _with_imports(imported, roots, seen)
+        elif isinstance(node, ast.ImportFrom):
+            names = [".".join(filter(None, (node.module, name))) for name in ("", *(alias.name for alias in node.names))]
+            within = (path.parents[node.level - 1],) if node.level else roots
+        for base in (root.joinpath(*name.split(".")) for name in names for root in within):
+            for imported in (base.with_suffix(".py"), base / "__init__.py"):
+                if imported.is_file() and imported not in seen and imported != _ENTRANCE:
+                    _with_imports(imported, roots, seen)
     return seen
+
+
+def _content_hash(measurement: dict[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(measurement, sort_keys=True).encode()).hexdigest()
 
 
 def _hash(parts: Iterable[bytes]) -> str:
