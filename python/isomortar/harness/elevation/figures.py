@@ -14,7 +14,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, NullFormatter
+from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
 from isomortar.harness.discretisations import Discretisation, parse_kind
 from isomortar.harness.elevation.analysis import Analysis, Point, curve
@@ -29,39 +29,38 @@ _COSTS: tuple[tuple[str, Callable[[Point], float]], ...] = (
 )
 
 
-def against_cost(analysis: Analysis, measure: str) -> str:
-    """Error against unknowns, CPU seconds and solves: a line a kind (h-refinement), grey lines for orders on one mesh (k-refinement)."""
+def error_against_cost(analysis: Analysis, measure: str) -> str:
+    """Error in per cent, and below which it says nothing, against unknowns, CPU seconds and solves."""
     with _style():
-        figure = Figure(figsize=(10.6, 3.5), layout="constrained")
-        panels = figure.subplots(1, 3, sharey=True)
-        for axes, (label, cost) in zip(panels, _COSTS, strict=True):
-            axes.set(xscale="log", yscale="log", xlabel=label)
-            for mesh in _k_lines(analysis):
-                axes.plot([cost(p) for p in mesh], [p.errors[measure] for p in mesh], color="#B9BEC5", linewidth=0.9, zorder=1)
-            for kind in analysis.study.kinds:
-                points = [p for p in analysis.sequence(kind) if p.errors]
-                axes.plot([cost(p) for p in points], [p.errors[measure] for p in points], label=kind, **_look(kind))
-            _ticks(axes)
-        panels[0].set_ylabel(f"error of the {measure}")
-        _floor(panels, analysis.uncertainty[measure])
-        _legend(figure, panels[0])
+        figure, panels = _against_cost(analysis, lambda point: 100 * point.errors[measure], f"error of the {measure}, %")
+        _floor(panels, 100 * analysis.uncertainty[measure])
         return _svg(figure, f"cost-{measure}")
 
 
-def roughness_against_unknowns(analysis: Analysis) -> str:
-    """Second-difference energy of the curves over that of the reference."""
+def roughness_against_cost(analysis: Analysis, measure: str) -> str:
+    """Second-difference energy of a curve over that of the reference, against unknowns, CPU seconds and solves."""
     with _style():
-        figure = Figure(figsize=(5.4 * len(analysis.curves), 3.5), layout="constrained")
-        panels = figure.subplots(1, len(analysis.curves), squeeze=False)[0]
-        for axes, measure in zip(panels, analysis.curves, strict=True):
-            for kind in analysis.study.kinds:
-                points = [p for p in analysis.sequence(kind) if p.roughness]
-                axes.plot([p.unknowns for p in points], [p.roughness[measure] for p in points], label=kind, **_look(kind))
+        figure, panels = _against_cost(analysis, lambda point: point.roughness[measure], f"roughness of the {measure}")
+        for axes in panels:
             axes.axhline(1.0, color=style.GREY, linewidth=0.8, zorder=1)
-            axes.set(xscale="log", yscale="log", xlabel="unknowns", ylabel=f"roughness of the {measure}")
-            _ticks(axes)
-        _legend(figure, panels[0])
-        return _svg(figure, "roughness")
+        return _svg(figure, f"roughness-{measure}")
+
+
+def _against_cost(analysis: Analysis, value: Callable[[Point], float], label: str) -> tuple[Figure, list[Axes]]:
+    """A line a kind (h-refinement), grey lines for orders on one mesh (k-refinement)."""
+    figure = Figure(figsize=(10.6, 3.5), layout="constrained")
+    panels = list(figure.subplots(1, 3, sharey=True))
+    for axes, (name, cost) in zip(panels, _COSTS, strict=True):
+        axes.set(xscale="log", yscale="log", xlabel=name)
+        for mesh in _k_lines(analysis):
+            axes.plot([cost(p) for p in mesh], [value(p) for p in mesh], color="#B9BEC5", linewidth=0.9, zorder=1)
+        for kind in analysis.study.kinds:
+            points = [p for p in analysis.sequence(kind) if p.errors]
+            axes.plot([cost(p) for p in points], [value(p) for p in points], label=kind, **_look(kind))
+        _ticks(axes)
+    panels[0].set_ylabel(label)
+    _legend(figure, panels[0])
+    return figure, panels
 
 
 def curves_overlaid(analysis: Analysis) -> Iterator[tuple[str, str]]:
@@ -131,7 +130,7 @@ def _k_lines(analysis: Analysis) -> list[list[Point]]:
     return [list(group) for _, group in groupby(points, key=lambda p: p.discretisation.elements)]
 
 
-def _floor(panels: Any, uncertainty: float) -> None:
+def _floor(panels: list[Axes], uncertainty: float) -> None:
     """Grey below the reference's uncertainty, as far as the points reach."""
     low = panels[0].get_ylim()[0]
     if not math.isfinite(uncertainty) or uncertainty <= 0:
@@ -149,6 +148,7 @@ def _stage_lines(panels: tuple[Axes, ...], point: Point) -> None:
     for axes in panels:
         for end in times[np.flatnonzero(np.diff(stages))]:
             axes.axvline(end, color="#C9CDD3", linewidth=0.8, zorder=0)
+        axes.xaxis.set_major_locator(MaxNLocator(integer=True))
         axes.grid(axis="y", color="#E3E6EA", linewidth=0.6)
         axes.set_axisbelow(True)
 
@@ -167,8 +167,7 @@ def _ticks(axes: Axes) -> None:
     for axis in (axes.xaxis, axes.yaxis):
         low, high = axis.get_view_interval()
         axis.set_major_formatter("{x:g}")
-        few = high / low < 30
-        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if few else (1.0,), numticks=8))
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high / low < 300 else (1.0,), numticks=10))
         axis.set_minor_formatter(NullFormatter())
     axes.grid(color="#E9EBEE", linewidth=0.6)
     axes.set_axisbelow(True)

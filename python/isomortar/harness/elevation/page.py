@@ -50,8 +50,8 @@ def page(analysis: Analysis, started: datetime) -> str:
         started=started,
         done=done,
         groups=_groups(analysis),
-        costs=[(m, figures.against_cost(analysis, m)) for m in analysis.measures] if done else [],
-        roughness=figures.roughness_against_unknowns(analysis) if done and analysis.curves else "",
+        costs=[(m, figures.error_against_cost(analysis, m)) for m in analysis.measures] if done else [],
+        roughness=[(m, figures.roughness_against_cost(analysis, m)) for m in analysis.curves] if done else [],
         curves=list(figures.curves_overlaid(analysis)) if done else [],
         pressures=figures.pressures(analysis) if done and "pressure" in analysis.measures else "",
         seconds=sum(p.numbers["cpu_seconds"] for p in analysis.points.values() if not p.failure),
@@ -60,7 +60,6 @@ def page(analysis: Analysis, started: datetime) -> str:
         program=program_hash()[:12],
         kernel=kernel_hash()[:12],
         compiler=compiler(),
-        curve_names=[m for m in analysis.measures if m in CURVES],
     )
 
 
