@@ -15,6 +15,10 @@ from isomortar.solve.reach import ContactPatterns, Reach
 from isomortar.solve.record import ContactResult, ContactState
 from isomortar.solve.timing import Ledger
 
+#: Tangential over normal complementarity parameter of the monolithic method. It changes no solution; at one, stick and slip take longer
+#: to settle on presses of high order (14 solves per load step at order 4 on 12 x 12 elements, 11 at ten).
+TANGENTIAL_FACTOR = 10.0
+
 
 @dataclass(frozen=True)
 class Kinematics:
@@ -71,9 +75,10 @@ class PairMechanics:
         return Kinematics(projections, control)
 
     def parameters(self, control: Control, stiffness: float) -> FloatArray:
-        """Complementarity parameters of the monolithic method: K_max / median of w^I, normal and tangential."""
+        """Complementarity parameters of the monolithic method, normal and tangential: K_max / median of w^I and a multiple of it."""
         present = control.weight[control.weight > 0]
-        return np.full(2, stiffness / (np.median(present) if present.size else self.pair.area))
+        normal = stiffness / (np.median(present) if present.size else self.pair.area)
+        return np.array([normal, TANGENTIAL_FACTOR * normal])
 
     def law(self, penalties: FloatArray, pressure: FloatArray, traction: FloatArray) -> Law:
         """The augmented law with given penalties (normal, tangential) and multipliers."""
