@@ -18,9 +18,15 @@ compile_without_warnings() {
   ninja --quiet -C build/debug
 }
 
-# Without the import hook of the editable install, behind which import-linter finds no files.
+# Without the import hook of the editable install, behind which import-linter finds no files. The standard library comes before
+# site-packages, where a dependency of universalmutator leaves an old `typing`.
 layers() {
-  PYTHONPATH=python:$(python -c 'import sysconfig; print(sysconfig.get_path("purelib"))') python -S .venv/bin/lint-imports --no-logo
+  python -S -c '
+import sys
+sys.path = ["python", *sys.path, sys.argv[1]]
+sys.argv[1:] = ["--no-logo"]
+from importlinter.cli import lint_imports_command
+lint_imports_command()' "$(python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')"
 }
 
 check "Python format (ruff format)" ruff format --quiet --check .

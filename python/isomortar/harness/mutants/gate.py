@@ -45,27 +45,32 @@ class Gate:
 
     Parameters
     ----------
-    seconds : mapping of Cell to seconds
+    seconds : mapping of cell name to seconds
         Cells that are green on the sound kernel, and what they take there.
+    cells : sequence of Cell
+        Those and others, which are not used.
     lookup : Lookup
         Finds references.
     """
 
     def __init__(self, seconds: Mapping[str, float], cells: Sequence[Cell], lookup: Lookup) -> None:
         self._cells = {cell.name: cell for cell in cells if cell.name in seconds}
+        self._case = {name: f"{cell.case.name}, any settings" for name, cell in self._cells.items()}
         self._seconds = seconds
         self._lookup = lookup
+        # By folder of the sources and cell, and by folder and case: its cells are alike.
         self._tries: Counter[tuple[str, str]] = Counter()
         self._kills: Counter[tuple[str, str]] = Counter()
         self._lock = threading.Lock()
 
     def learn(self, folder: str, verdict: Verdict) -> None:
         """Note which cells a fault in a folder of the sources passed, and which was red."""
+        killers = [name for name in self._cells if name == verdict.killer]
+        tried = [name for name in verdict.passed if name in self._cells] + killers
         with self._lock:
-            self._tries.update((folder, name) for name in verdict.passed)
-            if verdict.killer:
-                self._tries[folder, verdict.killer] += 1
-                self._kills[folder, verdict.killer] += 1
+            for counts, names in ((self._tries, tried), (self._kills, killers)):
+                counts.update((folder, name) for name in names)
+                counts.update((folder, self._case[name]) for name in names)
 
     def attack(self, bench: Bench, kernel: Path, folder: str, passed: Collection[str], most: float) -> Verdict:
         """Measure and judge cells until one is red, none is left, or those that passed take `most` seconds on the sound kernel.
@@ -92,11 +97,13 @@ class Gate:
         return sum(self._seconds.get(name, 0.0) for name in names)
 
     def _most_promising(self, left: Collection[str], done: Sequence[str], folder: str) -> str:
-        alike = Counter(self._cells[name].case.name for name in done)
+        alike = Counter(self._case[name] for name in done)
 
         def promise(name: str) -> tuple[float, str]:
-            share = (self._kills[folder, name] + 1) / (self._tries[folder, name] + 2)
-            return share * _ALIKE ** alike[self._cells[name].case.name] / (self._seconds[name] + _OVERHEAD), name
+            case = self._case[name]
+            of_case = (self._kills[folder, case] + 1) / (self._tries[folder, case] + 2)
+            share = (self._kills[folder, name] + of_case) / (self._tries[folder, name] + 1)
+            return share * _ALIKE ** alike[case] / (self._seconds[name] + _OVERHEAD), name
 
         with self._lock:
             return max(left, key=promise)

@@ -1,0 +1,270 @@
+"""Planted faults: how they are read, drawn, attacked, remembered and counted; and a campaign with a real kernel."""
+
+import json
+import math
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from isomortar.cli.commands import app
+from isomortar.errors import InputError
+from isomortar.harness.collection import collect
+from isomortar.harness.measurement import Measurement
+from isomortar.harness.mutants import report
+from isomortar.harness.mutants.campaign import Attacked, Outcome
+from isomortar.harness.mutants.faults import LEFT_OUT, fault_at, read_planted, read_sources
+from isomortar.harness.mutants.gate import Gate, Verdict
+from isomortar.harness.mutants.generate import draw
+from isomortar.harness.mutants.journal import Journal
+from isomortar.harness.mutants.score import Classification, Score, Share, read_classified
+
+ROOT = Path(__file__).parents[2]
+TEXT = "!> Doubles - it.\nfunction twice(x)\n  real :: x, twice\n  twice = 2 * x - 1\n  twice = 2 * x - 1\nend function\n"
+SOURCES = {"solid/twice.f90": TEXT}
+CASES = """
+import numpy as np
+from isomortar.geometry.primitives import box
+from isomortar.harness import Bound, case
+
+@case(claim="Cheap.", bounds={"zero": Bound(at_most=1.0, reason="definition: so")}, grid={"k": [1, 2]})
+def cheap(k: int):
+    return {"zero": 0.0}
+
+@case(claim="Dear.", bounds={"zero": Bound(at_most=1.0, reason="definition: so")})
+def dear():
+    return {"zero": 0.0}
+"""
+
+
+def planted(folder: Path, **changes: str) -> Path:
+    entry = {"name": "n", "file": "solid/twice.f90", "old": "real :: x, twice", "new": "integer :: x, twice", "why": "w"} | changes
+    path = folder / "planted.toml"
+    path.write_text("[[fault]]\n" + "".join(f"{k} = {json.dumps(v)}\n" for k, v in entry.items()))
+    return path
+
+
+def attacked(number: int, killer: str | None = None, name: str = "") -> Attacked:
+    return Attacked(fault_at("solid/a.f90", TEXT, number, TEXT[number], "?", name), Verdict(killer, "red", ()), True)
+
+
+def score(*faults: Attacked, classified: dict[str, Classification] | None = None) -> Score:
+    return Score(Outcome(faults, {}, (), {"solid/a": 1.0}), classified or {})
+
+
+class Bench:
+    """Measures in no time, red where it is told to; notes what it was asked."""
+
+    def __init__(self, red: str = "", ending: str = "measured") -> None:
+        self.red, self.ending, self.asked = red, ending, []
+
+    def measure(self, kernel, cell, seconds):
+        self.asked.append((cell.name, seconds))
+        if cell.name != self.red:
+            return Measurement("measured", {"zero": 0.0})
+        return Measurement(self.ending, {"zero": math.nan} if self.ending == "measured" else {}, "gone")
+
+
+@pytest.fixture(scope="module")
+def cells(tmp_path_factory):
+    family = tmp_path_factory.mktemp("cases") / "mutants_family"
+    family.mkdir()
+    (family / "mutants_cases.py").write_text(CASES)
+    return [cell for case in collect(family.parent) for cell in case.cells]
+
+
+def gate(cells) -> Gate:
+    return Gate({cell.name: 5.0 if "dear" in cell.name else 0.1 for cell in cells}, cells, lambda *_: None)
+
+
+def test_the_faults_planted_by_hand_fit_the_sources():
+    found = read_planted(ROOT / "verification/planted_faults.toml", read_sources(ROOT / "fortran"))
+    assert len(found) >= 25
+    assert len({fault.key for fault in found}) == len(found)
+
+
+def test_files_without_faults_exist():
+    assert all((ROOT / "fortran" / file).is_file() for file in LEFT_OUT)
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"old": "twice = 2 * x - 1"}, "stands 2 times"),
+        ({"old": "nothing"}, "stands 0 times"),
+        ({"file": "base/kinds.f90"}, "no source"),
+        ({"extra": "x"}, "needs name"),
+    ],
+)
+def test_a_planted_fault_that_does_not_fit_is_an_error(tmp_path, changes, words):
+    with pytest.raises(InputError, match=words):
+        read_planted(planted(tmp_path, **changes), SOURCES)
+
+
+def test_a_planted_fault_is_applied_where_it_stands(tmp_path):
+    (fault,) = read_planted(planted(tmp_path), SOURCES)
+    assert fault.applied(TEXT) == TEXT.replace("real :: x", "integer :: x")
+    assert fault.place == "solid/twice.f90:3"
+
+
+def test_like_lines_have_keys_of_their_own_that_lines_above_do_not_change():
+    line = "  twice = 2 * x - 1"
+    first, second = TEXT.index(line), TEXT.rindex(line)
+    keys = [fault_at("a", TEXT, at, line, "new").key for at in (first, second)]
+    assert len(set(keys)) == 2
+    assert fault_at("a", "! above\n" + TEXT, first + 8, line, "new").key == keys[0]
+
+
+def test_drawn_faults_are_changes_of_statements_in_the_order_of_the_seed():
+    drawn = draw(SOURCES, 1)
+    assert [f.key for f in drawn] == [f.key for f in draw(SOURCES, 1)]
+    assert [f.key for f in drawn] != [f.key for f in draw(SOURCES, 2)]
+    assert {f.line for f in drawn} <= {2, 4, 5}
+    assert any(f.new == "  twice = 2 * x + 1" and f.applied(TEXT).splitlines()[3] == f.new for f in drawn)
+    assert all(f.applied(TEXT) != TEXT for f in drawn)
+
+
+def test_a_folder_without_sources_is_an_error(tmp_path):
+    with pytest.raises(InputError, match="checkout"):
+        read_sources(tmp_path)
+
+
+def test_the_gate_stops_at_the_first_red_cell_and_asks_it_first_next_time(cells):
+    red, tried = "mutants_family/cheap[k=2]", gate(cells)
+    first = tried.attack(Bench(red), Path(), "solid", (), math.inf)
+    assert first.killer == red
+    assert "not finite" in first.found
+    tried.learn("solid", first)
+    tried.learn("solid", first)
+    bench = Bench(red)
+    assert tried.attack(bench, Path(), "solid", (), math.inf).passed == ()
+    assert [name for name, _ in bench.asked] == [red]
+
+
+@pytest.mark.parametrize("ending", ["crashed", "timed out", "raised", "skipped"])
+def test_whatever_does_not_pass_kills(cells, ending):
+    assert gate(cells).attack(Bench("mutants_family/dear", ending), Path(), "solid", (), math.inf).killer == "mutants_family/dear"
+
+
+def test_a_survivor_met_the_whole_gate_or_as_much_as_asked_for(cells):
+    bench, tried = Bench(), gate(cells)
+    verdict = tried.attack(bench, Path(), "solid", (), math.inf)
+    assert verdict.killer is None
+    assert tried.is_whole(verdict)
+    assert [name for name, _ in bench.asked] == ["mutants_family/cheap[k=2]", "mutants_family/cheap[k=1]", "mutants_family/dear"]
+    assert [seconds for _, seconds in bench.asked] == [10.0, 10.0, 50.0]
+    assert not tried.is_whole(tried.attack(Bench(), Path(), "solid", (), 0.15))
+
+
+def test_cells_passed_before_are_not_asked_again(cells):
+    bench = Bench()
+    gate(cells).attack(bench, Path(), "solid", ("mutants_family/dear",), math.inf)
+    assert "mutants_family/dear" not in dict(bench.asked)
+
+
+def test_a_journal_that_was_cut_short_goes_on(tmp_path):
+    path = tmp_path / "journal.jsonl"
+    Journal(path).put("a", {"value": 1})
+    with path.open("a") as file:
+        file.write('{"key": "b", "val')
+    journal = Journal(path)
+    assert journal.get("a") == {"value": 1}
+    assert journal.get("b") is None
+    journal.put("c", {"value": 3})
+    assert Journal(path).get("c") == {"value": 3}
+
+
+def test_wilson_interval():
+    low, high = Share(270, 300).interval
+    assert low == pytest.approx(0.8608, abs=1e-4)
+    assert high == pytest.approx(0.9291, abs=1e-4)
+    assert Share(0, 0).interval == (0.0, 1.0)
+
+
+def test_the_score_fails_closed():
+    nine = [attacked(i, "solid/a") for i in range(9)]
+    hand = attacked(20, "solid/a", "hand")
+    assert score(hand, *nine, attacked(9)).passes
+    assert not score(hand, *nine[:8], attacked(9)).passes
+    assert not score(attacked(20, None, "hand"), *nine).passes
+    assert not score().passes
+
+
+def test_equivalent_survivors_are_counted_apart_and_not_for_the_verdict():
+    one = attacked(1)
+    counted = score(attacked(0, "solid/a"), one, classified={one.fault.key: Classification("equivalent", "why")})
+    assert (counted.caught.part, counted.caught.whole) == (1, 2)
+    assert (counted.caught_of_real.part, counted.caught_of_real.whole) == (1, 1)
+    assert not counted.passes
+
+
+@pytest.mark.parametrize(
+    ("entry", "words"), [('key="k"\nclass="fine"\nreason="r"', "allowed"), ('key="k"\nclass="equivalent"\nreason=" "', "needs")]
+)
+def test_a_classification_needs_a_class_and_a_reason(tmp_path, entry, words):
+    path = tmp_path / "survivors.toml"
+    path.write_text(f"[[survivor]]\n{entry}\n")
+    with pytest.raises(InputError, match=words):
+        read_classified(path)
+
+
+def test_the_report_shows_survivors_and_asks_for_their_class(tmp_path):
+    known, open_one = attacked(1), attacked(2)
+    counted = score(
+        attacked(0, "solid/a"), known, open_one, classified={known.fault.key: Classification("not caught", "no cell looks there")}
+    )
+    report.write(tmp_path / "report.html", counted, {"sample": 3})
+    page, data = (tmp_path / "report.html").read_text(), json.loads((tmp_path / "report.json").read_text())
+    assert "no cell looks there" in page
+    assert f'key = "{open_one.fault.key}"' in report.unclassified(counted)
+    assert f'key = "{known.fault.key}"' not in report.unclassified(counted)
+    assert [fault["class"] for fault in data["faults"]] == [None, "not caught", "not classified"]
+    assert not data["passes"]
+
+
+KERNEL_CASE = """
+import numpy as np
+from isomortar._compiled import kernel
+from isomortar.harness import Bound, case
+
+@case(claim="A line of order one.", bounds={"error": Bound(at_most=1e-15, reason="round-off: a sum")})
+def precision():
+    digits, spacing = kernel.working_precision()
+    return {"error": abs(spacing - np.finfo(float).eps)}
+
+@case(claim="A stale handle is refused.", bounds={"status": Bound(at_least=6, at_most=6, reason="definition: stale")})
+def stale():
+    return {"status": kernel.sparse_release(12345)}
+"""
+STALE = """
+[[fault]]
+name = "stale handles are released"
+file = "sparse/factorisation.f90"
+old = "    slot = slot_of(handle)\\n    status = status_stale_handle\\n    if (slot == slots) return\\n    call umfpack_dl_free_numeric"
+new = "    slot = slot_of(handle)\\n    status = status_ok\\n    if (slot == slots) return\\n    call umfpack_dl_free_numeric"
+why = "a handle that is none"
+
+[[fault]]
+name = "another dense limit"
+file = "sparse/factorisation.f90"
+old = "dense_limit = 1.0e3_c_double"
+new = "dense_limit = 1.0e2_c_double"
+why = "no case of this folder sees it"
+"""
+
+
+def test_a_campaign_with_a_real_kernel(tmp_path, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    family = tmp_path / "cases" / "mutants_real"
+    family.mkdir(parents=True)
+    (family / "mutants_real_cases.py").write_text(KERNEL_CASE)
+    (tmp_path / "cases" / "planted_faults.toml").write_text(STALE)
+    command = ["mutants", "--sample", "0", "-j", "2", "--cases", str(tmp_path / "cases"), "--results", str(tmp_path / "results")]
+    run = CliRunner().invoke(app, command)
+    assert run.exit_code == 1, run.output
+    data = json.loads((tmp_path / "results/report.json").read_text())
+    fates = {fault["name"]: fault["killer"] for fault in data["faults"]}
+    assert fates == {"stale handles are released": "mutants_real/stale", "another dense limit": None}
+    before = (tmp_path / "results/verdicts.jsonl").read_text()
+    CliRunner().invoke(app, command)
+    assert (tmp_path / "results/verdicts.jsonl").read_text() == before, "what is known was measured again"
