@@ -152,7 +152,7 @@ def test_a_survivor_met_the_whole_gate_or_as_much_as_asked_for(cells):
     assert verdict.killer is None
     assert tried.is_whole(verdict)
     assert [name for name, _ in bench.asked] == ["mutants_family/cheap[k=2]", "mutants_family/cheap[k=1]", "mutants_family/dear"]
-    assert [seconds for _, seconds in bench.asked] == [10.0, 10.0, 50.0]
+    assert [seconds for _, seconds in bench.asked] == [20.0, 20.0, 100.0]
     assert not tried.is_whole(tried.attack(Bench(), Path(), "solid", (), 0.15))
 
 

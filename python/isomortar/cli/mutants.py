@@ -23,7 +23,7 @@ def mutants(
     sample: Annotated[int, typer.Option(min=0, help="Random faults, beside all that are planted by hand.")] = 300,
     seed: Annotated[int, typer.Option(help="Of the random draw.")] = 1,
     patience: Annotated[
-        float, typer.Option(min=0.0, help="A random fault survives when cells of so many seconds are green; 0: when all are.")
+        float, typer.Option(min=0.0, help="A random fault survives when cells of so many CPU seconds are green; 0: when all are.")
     ] = 100.0,
     jobs: JobsOption = CORES,
     cases: CasesOption = CASES,

@@ -50,7 +50,7 @@ class Outcome:
     unused : tuple of str
         Cells that are red on the sound kernel, in words; they can tell nothing.
     seconds : dict of cell name to seconds
-        The gate on the sound kernel.
+        The gate on the sound kernel, CPU seconds.
     """
 
     attacked: tuple[Attacked, ...]
@@ -100,7 +100,7 @@ class Campaign:
     def run(self, planted: Sequence[Fault], drawn: Iterable[Fault], sample: int, most: float) -> Outcome:
         """Attack the planted faults with the whole gate, and the first `sample` of those drawn that are distinct.
 
-        The latter are given up when cells that take `most` seconds on the sound kernel are green.
+        The latter are given up when cells that take `most` CPU seconds on the sound kernel are green.
 
         Raises
         ------
@@ -120,7 +120,7 @@ class Campaign:
         return Outcome(attacked, dropped, unused, seconds)
 
     def _sound_seconds(self) -> tuple[dict[str, float], tuple[str, ...]]:
-        """Seconds of the cells that are green on the sound kernel, and the others in words."""
+        """CPU seconds of the cells that are green on the sound kernel, and the others in words."""
         kernel = self._workshop.sound
         sound = hash_of(kernel)[:20]
 
@@ -130,7 +130,7 @@ class Campaign:
             if known is None:
                 measurement = bench.measure(kernel, cell, TIMEOUTS[cell.tier])
                 red = [sentence(check) for check in judge(cell, measurement, self._lookup) if check.state != "passed"]
-                known = {"cell": cell.name, "seconds": measurement.seconds, "red": next(iter(red), "")}
+                known = {"cell": cell.name, "seconds": measurement.cpu_seconds, "red": next(iter(red), "")}
                 self._sound.put(key, known)
             return known["seconds"], known["red"]
 

@@ -13,9 +13,9 @@ from isomortar.harness.compare import Lookup, judge
 from isomortar.harness.mutants.bench import Bench
 from isomortar.harness.report import sentence
 
-#: A cell has failed after this many times the seconds that it takes on the sound kernel, and never before so many seconds.
-_PATIENCE, _LEAST_SECONDS = 10, 10.0
-#: Seconds of a cell besides its own: sending and judging.
+#: A cell has failed after this many times the CPU seconds that it takes on the sound kernel, and never before so many seconds.
+_PATIENCE, _LEAST_SECONDS = 20, 20.0
+#: CPU seconds of a cell besides its own: sending and judging.
 _OVERHEAD = 0.02
 #: A cell of a case that has just passed with other settings promises this much less.
 _ALIKE = 0.5
@@ -46,7 +46,7 @@ class Gate:
     Parameters
     ----------
     seconds : mapping of cell name to seconds
-        Cells that are green on the sound kernel, and what they take there.
+        CPU seconds on the sound kernel of the cells that are green there.
     cells : sequence of Cell
         Those and others, which are not used.
     lookup : Lookup
@@ -73,7 +73,7 @@ class Gate:
                 counts.update((folder, self._case[name]) for name in names)
 
     def attack(self, bench: Bench, kernel: Path, folder: str, passed: Collection[str], most: float) -> Verdict:
-        """Measure and judge cells until one is red, none is left, or those that passed take `most` seconds on the sound kernel.
+        """Measure and judge cells until one is red, none is left, or those that passed cost `most`.
 
         `passed` are cells that the kernel passed before. `folder` is where in the sources the fault is.
         """
@@ -93,7 +93,7 @@ class Gate:
         return verdict.killer is not None or self._cells.keys() <= set(verdict.passed)
 
     def cost(self, names: Collection[str]) -> float:
-        """Seconds of some cells on the sound kernel."""
+        """CPU seconds of some cells on the sound kernel."""
         return sum(self._seconds.get(name, 0.0) for name in names)
 
     def _most_promising(self, left: Collection[str], done: Sequence[str], folder: str) -> str:
