@@ -79,9 +79,10 @@ def pressures(analysis: Analysis) -> str:
     cells = analysis.study.grids()[0].shape
     turned = cells[0] < cells[1]
     peak = float(np.max(analysis.reference.numbers["pressure"]))
+    digits = f"z.{max(0, 2 - math.floor(math.log10(peak)))}f"
     with _style():
-        columns = min(5, len(shown))
-        rows = math.ceil(len(shown) / columns)
+        rows = math.ceil(len(shown) / 6)
+        columns = math.ceil(len(shown) / rows)
         figure = Figure(figsize=(10.6, (2.35 if max(cells) < 3 * min(cells) else 1.3) * rows), layout="constrained")
         panels = figure.subplots(rows, columns, squeeze=False).ravel()
         for axes in panels:
@@ -90,7 +91,7 @@ def pressures(analysis: Analysis) -> str:
             field = np.asarray(point.numbers["pressure"]).reshape(cells[1], cells[0])
             field = np.where(np.abs(field) < 1e-9 * peak, 0.0, field)
             image = axes.imshow(field.T if turned else field, origin="lower", cmap=style.pressure_colours(), vmin=0.0, vmax=peak)
-            axes.set_title(f"{label}\n{field.min():.3g} to {field.max():.3g}", fontsize=8.5)
+            axes.set_title(f"{label}\n{field.min():{digits}} to {field.max():{digits}}", fontsize=8.5)
         figure.colorbar(image, ax=panels, shrink=0.8, extend="both", label="contact pressure")
         return _svg(figure, "pressures")
 
@@ -138,9 +139,7 @@ def _floor(panels: list[Axes], uncertainty: float) -> None:
     for axes in panels:
         axes.axhspan(min(low, uncertainty / 2), uncertainty, color="#E9EBEE", linewidth=0, zorder=0)
     panels[0].set_ylim(bottom=min(low, uncertainty / 2))
-    panels[-1].text(
-        0.99, uncertainty, "uncertainty of the reference", transform=panels[-1].get_yaxis_transform(), ha="right", va="top", fontsize=7.5
-    )
+    panels[0].text(0.02, 0.02, "grey: within the reference's uncertainty", transform=panels[0].transAxes, fontsize=7.5, color="#5C6670")
 
 
 def _stage_lines(panels: tuple[Axes, ...], point: Point) -> None:
@@ -167,7 +166,8 @@ def _ticks(axes: Axes) -> None:
     for axis in (axes.xaxis, axes.yaxis):
         low, high = axis.get_view_interval()
         axis.set_major_formatter("{x:g}")
-        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high / low < 300 else (1.0,), numticks=10))
+        within = (1.0, 1.2, 1.5, 2.0, 3.0, 5.0, 7.0) if high / low < 8 else (1.0, 2.0, 5.0) if high / low < 300 else (1.0,)
+        axis.set_major_locator(LogLocator(subs=within, numticks=10))
         axis.set_minor_formatter(NullFormatter())
     axes.grid(color="#E9EBEE", linewidth=0.6)
     axes.set_axisbelow(True)
