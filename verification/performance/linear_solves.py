@@ -14,36 +14,18 @@ import time
 import numpy as np
 
 from isomortar.errors import IsomortarError
+from isomortar.harness.discretisations import mesh_overrides
 from isomortar.scene import Scene
 from isomortar.solve.simulation import Simulation
 
-#: Elements of the slave of a scene by family and order: Lagrange elements are fewer by their order.
-PRESS_ELEMENTS, TIRE_ELEMENTS = 12, 32
-
-
-def mesh_overrides(scene: str, discretisation: str) -> list[str]:
-    """Overrides that give a bundled scene its ``N^p`` or ``L^p`` discretisation (scenes.md)."""
-    family, order = discretisation[0], int(discretisation[1:])
-    share = order if family == "L" else 1
-    if scene == "press":
-        n = PRESS_ELEMENTS // share
-        height = '["N","N","N"]' if family == "N" else '["L","L","L"]'
-        depth = 2 if family == "N" else 1
-        return [f"bodies.block.mesh={{family={height},order=[{order},{order},{depth}],elements=[{n},{n},6]}}"]
-    if scene == "tire":
-        return [
-            f'bodies.tire.mesh={{family=["{family}","{family}","{family}"],order=[{order},1,1],elements=[{TIRE_ELEMENTS // share},4,4]}}'
-        ]
-    if family == "L":
-        raise SystemExit(f"{scene}: the paper leaves Lagrange masters out; choose N orders for it")
-    orders = f"[{order},{order},2]" if scene.startswith("twist") or scene == "reversal" else f"[{order},2,2]"
-    return [f"bodies.master.mesh.order={orders}"]
+#: The paper leaves Lagrange masters out.
+DEFORMABLE = ("twist", "twist-sharp", "iron", "reversal")
 
 
 def measure(scene: str, discretisation: str, method: str) -> str:
     """Run one scene and return its row of the table."""
     name, _, tolerance = method.partition(":")
-    overrides = [*mesh_overrides(scene, discretisation), f"solver.method={name}"]
+    overrides = [*mesh_overrides(Scene.load(scene), discretisation), f"solver.method={name}"]
     overrides += [f"solver.augmentation_tolerance={tolerance}", "solver.max_augmentations=600"] if tolerance else []
     problem = Scene.load(scene, overrides).problem()
     simulation = Simulation(problem)
@@ -71,7 +53,7 @@ def main() -> None:
     print(f"{'scene':9s} {'':3s} {'method':16s} {'median':>6s} {'most':>5s} {'cuts':>4s} {'CPU s':>8s}  end: force x, z, moment z")
     for scene in options.scenes.split(","):
         for discretisation in options.orders.split(","):
-            if discretisation[0] == "L" and scene in ("twist", "iron", "reversal"):
+            if discretisation[0] == "L" and scene in DEFORMABLE:
                 continue
             for method in options.methods.split(","):
                 print(measure(scene, discretisation, method), flush=True)
