@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import count
 from pathlib import Path
 
 from isomortar.errors import InputError
@@ -12,14 +14,14 @@ from isomortar.harness.cases import LAGRANGE, NURBS, Cell
 from isomortar.harness.discretisations import Discretisation, Sweep, discretisation, finer, overrides, parse_kind, sweep_of
 from isomortar.harness.elevation import run
 from isomortar.harness.elevation.sampling import Grid
-from isomortar.harness.orders import WINDOW
+from isomortar.harness.orders import SMALLEST_RATIO, WINDOW
 from isomortar.harness.store import write_whole
 from isomortar.model.entities import Problem
 from isomortar.scene.scene import Scene
 
-#: Elements of the meshes of a kind, as shares of the scene's own.
-FACTORS = (1 / 3, 1 / 2, 2 / 3, 1.0)
-#: Ratio of a mesh that is added where these fall together.
+#: Elements of the meshes of a kind coarser than the scene's own, as shares of its.
+FACTORS = (2 / 3, 1 / 2, 1 / 3)
+#: Least ratio of a finer mesh that is added where these are too near to each other.
 NEXT = 4 / 3
 #: Kinds of a study, and of a quick one on half the elements.
 ALL, QUICK = (*NURBS, *LAGRANGE), ("N1", "N2", "N3", "L1", "L2")
@@ -63,16 +65,23 @@ class Study:
         return study
 
     def meshes(self, kind: str) -> tuple[Discretisation, ...]:
-        """Discretisations of a kind, coarsest first, at least as many as an order needs."""
-        found = list(dict.fromkeys(discretisation(self.scene, self.sweep, kind, self.share * factor) for factor in FACTORS))
+        """Discretisations of a kind, coarsest first: as many as an order needs, and as far apart."""
+        found = [self.own_mesh(kind)]
+        for factor in FACTORS:
+            coarser = discretisation(self.scene, self.sweep, kind, self.share * factor)
+            if self._apart(coarser, found[0]):
+                found.insert(0, coarser)
         while len(found) < WINDOW:
-            found.append(finer(self.scene, self.sweep, found[-1], NEXT))
-            if found[-1] == found[-2]:
-                found[-1] = finer(self.scene, self.sweep, found[-2], 2.0)
+            growing = (finer(self.scene, self.sweep, found[-1], factor) for factor in count(NEXT, 1 / 3))
+            found.append(next(mesh for mesh in growing if self._apart(found[-1], mesh)))
         return tuple(found)
 
+    def _apart(self, coarse: Discretisation, fine: Discretisation) -> bool:
+        """Whether the sizes of two meshes differ by more than an order estimate asks for."""
+        return self.size(coarse) > SMALLEST_RATIO * self.size(fine) * (1 + 1e-9)
+
     def own_mesh(self, kind: str) -> Discretisation:
-        """The finest of the meshes that are shares of the scene's own: that itself, or in a quick study half of it."""
+        """The scene's own mesh, in a quick study with half of its elements."""
         return discretisation(self.scene, self.sweep, kind, self.share)
 
     @cached_property
@@ -96,10 +105,7 @@ class Study:
     def size(self, chosen: Discretisation) -> float:
         """Element size: mean over the swept directions, as a share of the body's length."""
         counts = [n for axis, n in zip("uvw", chosen.elements, strict=True) if axis in self.sweep.directions]
-        product = 1.0
-        for count in counts:
-            product *= count
-        return float(product ** (-1 / len(counts)))
+        return float(math.prod(counts) ** (-1 / len(counts)))
 
     def problem(self, chosen: Discretisation) -> Problem:
         """The problem of a discretisation."""
