@@ -135,14 +135,14 @@ def uniform_pressure_nested(slave_order: int, master_order: int, tilt: float) ->
     return {"pressure": errors(given).field}
 
 
-def default_rule(slave_order: int) -> tuple[int, int]:
+def default_rule(slave_order: int, master_order: int) -> tuple[int, int]:
     """Default quadrature points of the slave, and elements of the master.
 
-    Four of them on three slave elements; five where the rule is odd: the point in the middle of the middle slave element would lie on a
-    knot line of the master.
+    Four of them on three slave elements. Under an odd rule the point in the middle of the middle slave element would lie on a knot line of
+    the master: five, where its normals or curvatures jump there.
     """
     points = contact_points(Direction("N", slave_order, np.repeat([0.0, 1.0], slave_order + 1)))
-    return points, SLAVE_ELEMENTS + 1 + points % 2
+    return points, SLAVE_ELEMENTS + (2 if points % 2 and master_order <= 2 else 1)
 
 
 def default_bounds(slave_order: int, master_order: int, tilt: float) -> dict[str, Bound | Shown]:  # noqa: ARG001
@@ -153,7 +153,7 @@ def default_bounds(slave_order: int, master_order: int, tilt: float) -> dict[str
     open knot vectors and the condition of the basis make up to 2^p, p the higher of both orders, and both directions add. Up to order
     three it is known better.
     """
-    points, elements = default_rule(slave_order)
+    points, elements = default_rule(slave_order, master_order)
     p, share = master_order, elements / SLAVE_ELEMENTS / (4 * points)
     kink = ("slope", "curvature", "third derivative", "fourth derivative", "fifth derivative")[p - 1]
     low, high = {1: 3e-2, 2: 4e-3, 3: 5e-4}, max(slave_order, master_order)
@@ -172,7 +172,7 @@ def default_bounds(slave_order: int, master_order: int, tilt: float) -> dict[str
 )
 def uniform_pressure(slave_order: int, master_order: int, tilt: float) -> dict[str, float]:
     """Error of the pressure field, other master elements than slave elements, default contact quadrature."""
-    points, elements = default_rule(slave_order)
+    points, elements = default_rule(slave_order, master_order)
     found = errors(problem(slave_order, master_order, tilt, points, elements))
     return {"pressure": found.field, "position": found.position}
 
