@@ -13,7 +13,7 @@ from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.solve.bordered import Border, Correction, solve_bordered
 from isomortar.solve.equilibrium import Balance
 from isomortar.solve.method import Increment, Method
-from isomortar.solve.newton import observed_order, relative_residual
+from isomortar.solve.newton import observed_order, relative_residual, residual_round_off
 from isomortar.solve.record import AugmentationRecord, IterationRecord, State
 
 #: Share of the cone within which a trial counts as slip at the start of an increment (Section 6, step 6).
@@ -73,7 +73,7 @@ class Monolithic(Method):
             log.append(record)
             self._observer.iteration(step, time, 1, record)
             if self._converged(iterate) and not (moves and iteration == 0):
-                return self._increment(iterate, log)
+                return self._increment(iterate, log, stiffness)
             if iteration == self._settings.max_iterations or not np.isfinite(iterate.merit):
                 break
             if iteration == 0:
@@ -205,10 +205,11 @@ class Monolithic(Method):
         active, slip = iterate.balance.active, iterate.balance.slipping
         return IterationRecord(iteration, iterate.merit, active, active - slip, slip, notes)
 
-    def _increment(self, iterate: Iterate, log: list[IterationRecord]) -> Increment:
+    def _increment(self, iterate: Iterate, log: list[IterationRecord], stiffness: float) -> Increment:
         parameters = iterate.laws[0].penalties if iterate.laws else np.zeros(2)
         record = AugmentationRecord(1, float(parameters[0]), float(parameters[1]), iterate.gap_pressure, iterate.gap_traction, tuple(log))
-        return Increment(iterate.balance, (record,), (observed_order(log),))
+        round_off = residual_round_off(self._equilibrium, iterate.balance, stiffness)
+        return Increment(iterate.balance, (record,), (observed_order(log, round_off),))
 
 
 def _toggling(seen: Sequence[bytes], visited: Sequence[IntArray], summed: bool) -> str:

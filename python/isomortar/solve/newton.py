@@ -16,15 +16,21 @@ from isomortar.solve.record import IterationRecord, State
 #: rigidly, internal forces are round-off and no relative test would pass (formulation.md Section 5).
 FORCE_FLOOR = 1e-4
 
-#: Round-off of a relative residual at most: that of a force is the unit round-off times stiffness times size.
-ROUND_OFF = float(np.finfo(np.float64).eps) / FORCE_FLOOR
-
 
 def relative_residual(equilibrium: Equilibrium, balance: Balance, stiffness: float) -> float:
     """Residual at the free unknowns relative to the internal forces or their floor."""
     residual = float(np.linalg.norm(balance.total.ravel()[equilibrium.supports.free]))
-    scale = max(float(np.linalg.norm(balance.internal)), FORCE_FLOOR * stiffness * equilibrium.numbering.size)
-    return residual / scale
+    return residual / _scale(equilibrium, balance, stiffness)
+
+
+def residual_round_off(equilibrium: Equilibrium, balance: Balance, stiffness: float) -> float:
+    """Round-off of the relative residual: that of a force is the unit round-off times stiffness times size."""
+    force = float(np.finfo(np.float64).eps) * stiffness * equilibrium.numbering.size
+    return force / _scale(equilibrium, balance, stiffness)
+
+
+def _scale(equilibrium: Equilibrium, balance: Balance, stiffness: float) -> float:
+    return max(float(np.linalg.norm(balance.internal)), FORCE_FLOOR * stiffness * equilibrium.numbering.size)
 
 
 def solve_positions(
@@ -71,17 +77,17 @@ def solve_positions(
     raise ConvergenceError(f"Newton's method stopped at a relative residual of {residual:.2e} after {iteration} iterations")
 
 
-def observed_order(log: Sequence[IterationRecord]) -> float:
+def observed_order(log: Sequence[IterationRecord], round_off: float) -> float:
     """Observed order of convergence of one Newton loop; NaN where it can not be told.
 
     The order q solves r_(k+1) = C r_k^q over three successive residuals. Taken are the last three that fall, with unchanged numbers of
     active and slipping control points and nothing else acting, and that are not at round-off: at order two the third would be
-    r_1^3 / r_0^2, and must then still be above ROUND_OFF. (A slower convergence is above it as well, so that none is left out for it.)
+    r_1^3 / r_0^2, and must then still be above `round_off`. (A slower convergence is above it as well, so that none is left out for it.)
     """
     for first, second, third in zip(log[-3::-1], log[-2:0:-1], log[:1:-1], strict=True):
         a, b, c = first.residual, second.residual, third.residual
         steady = (first.active, first.slip) == (second.active, second.slip) == (third.active, third.slip)
         undisturbed = not (first.notes or second.notes or third.notes)
-        if steady and undisturbed and a > b > c > 0.0 and b**3 / a**2 > ROUND_OFF:
+        if steady and undisturbed and a > b > c > 0.0 and b**3 / a**2 > round_off:
             return float(np.log(c / b) / np.log(b / a))
     return float("nan")

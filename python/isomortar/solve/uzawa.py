@@ -10,7 +10,7 @@ from isomortar._bindings import Law
 from isomortar.errors import ConvergenceError
 from isomortar.solve.equilibrium import Balance
 from isomortar.solve.method import Increment, Method
-from isomortar.solve.newton import observed_order, solve_positions
+from isomortar.solve.newton import observed_order, residual_round_off, solve_positions
 from isomortar.solve.record import AugmentationRecord, IterationRecord, State
 
 
@@ -35,7 +35,7 @@ class Uzawa(Method):
                 self._observer.iteration(step, time, number, record)
 
             balance = solve_positions(equilibrium, positions, prescribed, start, laws, stiffness, report)
-            orders.append(observed_order(log))
+            orders.append(observed_order(log, residual_round_off(equilibrium, balance, stiffness)))
             changes = self._changes(laws, balance)
             normal, tangential = (float(penalty) for penalty in growth * base)
             record = AugmentationRecord(augmentation, normal, tangential, changes[0], changes[1], tuple(log))
