@@ -30,7 +30,10 @@ class Agreement:
 
 @dataclass(frozen=True)
 class Check:
-    """Verdict on one number: its state, the value to show (worst entry), the limit in words, what was found, the order if it was one."""
+    """Verdict on one number: its state, the value to show (worst entry), the limit in words, what was found and why it is the limit.
+
+    `order`: of a convergence sequence. `reference`: the class of the reference that it was compared with.
+    """
 
     name: str
     state: State
@@ -39,6 +42,7 @@ class Check:
     found: str
     reason: str
     order: OrderEstimate | None = None
+    reference: str = ""
 
 
 @dataclass(frozen=True)
@@ -164,7 +168,8 @@ def _check_match(name: str, claim: Matches, entries: FloatArray, expected: Expec
     agreement = agree(entries, expected.values, 2 * expected.uncertainty + allowance)
     note = " (shows change, not correctness)" if expected.kind == "self" else ""
     state: State = "passed" if agreement.agrees else "failed"
-    return Check(name, state, shown, _limit(claim), f"reference of class {expected.kind}{note}: {agreement.why}", claim.reason)
+    found = f"reference of class {expected.kind}{note}: {agreement.why}"
+    return Check(name, state, shown, _limit(claim), found, claim.reason, reference=expected.kind)
 
 
 def _limit(claim: Claim) -> str:
@@ -174,6 +179,8 @@ def _limit(claim: Claim) -> str:
             return f"≥ {claim.low:.4g}"
         case Bound(at_least=None):
             return f"≤ {claim.high:.4g}"
+        case Bound() if claim.low == claim.high:
+            return f"= {claim.low:.6g}"
         case Bound():
             return f"{claim.low:.6g} to {claim.high:.6g}"
         case Order():

@@ -23,6 +23,11 @@ from isomortar.harness.measurement import convergence_of, curve_of
 from isomortar.harness.runner import Result
 from isomortar.harness.store import compiler, kernel_hash, program_hash, write_whole
 
+#: Cases with more numbers than this have them in narrow columns: two digits, a history only where it changed.
+WIDE = 4
+#: What comparison with a reference of a class can not do.
+_WORTH = {"self": ": shows change, never correctness"}
+
 
 @dataclass(frozen=True)
 class Context:
@@ -98,6 +103,8 @@ def template(name: str) -> jinja2.Template:
     environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined)
     environment.filters["number"] = number
     environment.filters["duration"] = duration
+    environment.filters["size"] = size
+    environment.filters["brief"] = lambda value: f"{value:.2g}" if math.isfinite(value) and abs(value) < 100 else number(value)
     return environment.get_template(name)
 
 
@@ -108,7 +115,8 @@ def page(results: Sequence[Result], context: Context) -> str:
         context=context,
         counts=[(state, counts[state]) for state in STATES if counts[state]],
         total=len(results),
-        bad=[(result, _bad(result)) for result in results if result.state != "passed"],
+        bad=[(result, _bad(result)) for result in _worst_first(results) if result.state != "passed"],
+        only_change=sum(any(check.reference == "self" for check in result.checks) for result in results),
         families=[_family(name, group, context) for name, group in _by_family(results)],
         news=_news(results, context),
         program=program_hash()[:12],
@@ -122,7 +130,15 @@ def _family(name: str, results: list[Result], context: Context) -> dict[str, Any
     cases = [list(group) for _, group in groupby(results, key=lambda r: r.cell.case.name)]
     passed = sum(result.state == "passed" for result in results)
     seconds = sum(result.measurement.seconds for result in results)
-    return {"name": name, "results": results, "passed": passed, "seconds": seconds, "cases": [_case(c, context) for c in cases]}
+    memory = max(result.measurement.peak_memory for result in results)
+    return {
+        "name": name,
+        "results": results,
+        "passed": passed,
+        "seconds": seconds,
+        "memory": memory,
+        "cases": [_case(c, context) for c in cases],
+    }
 
 
 def _case(results: list[Result], context: Context) -> dict[str, Any]:
@@ -138,6 +154,9 @@ def _case(results: list[Result], context: Context) -> dict[str, Any]:
         "seconds": sum(r.measurement.seconds for r in results),
         "bounds": _bounds(results, names),
         "names": names,
+        "settings": list(case.grid),
+        "wide": len(names) > WIDE,
+        "memory": max(r.measurement.peak_memory for r in results),
         "rows": [_row(result, names, context) for result in results],
         "plots": [text for text in (_plot(results, name) for name in names) if text],
         "orders": any(check.order for result in results for check in result.checks),
@@ -145,24 +164,29 @@ def _case(results: list[Result], context: Context) -> dict[str, Any]:
     }
 
 
-def _bounds(results: list[Result], names: list[str]) -> list[tuple[str, str, str]]:
-    """Name, limit (a range of limits where cells differ) and reason of every number of a case."""
-    rows = []
+def _bounds(results: list[Result], names: list[str]) -> list[tuple[list[str], str, str]]:
+    """Names, limit (a range of limits where cells differ) and reason of the numbers of a case; numbers with the same ones together."""
+    rows: dict[tuple[str, str], list[str]] = {}
     for name in names:
         checks = [check for result in results for check in result.checks if check.name == name]
         limits = [*dict.fromkeys(check.limit for check in checks)]
         reasons = [*dict.fromkeys(check.reason for check in checks if check.reason)]
-        rows.append((name, limits[0] if len(limits) == 1 else f"{limits[0]} … {limits[-1]}", "; ".join(reasons)))
-    return rows
+        reasons += [
+            f"reference of class {kind}{_WORTH.get(kind, '')}" for kind in dict.fromkeys(c.reference for c in checks if c.reference)
+        ]
+        limit = limits[0] if len(limits) == 1 else f"{limits[0]} … {limits[-1]}"
+        rows.setdefault((limit, "; ".join(reasons)), []).append(name)
+    return [(together, limit, reason) for (limit, reason), together in rows.items()]
 
 
 def _row(result: Result, names: list[str], context: Context) -> dict[str, Any]:
     checks = {check.name: check for check in result.checks}
-    sparks = {}
+    sparks = []
     for name in names:
         values = history.values_of(context.runs, result.cell.name, name)
-        sparks[name] = svg.sparkline(values, _change_points(result, name, values))
-    return {"result": result, "checks": [checks.get(name) for name in names], "sparks": [sparks[name] for name in names]}
+        changes = _change_points(result, name, values)
+        sparks.append(svg.sparkline(values, changes) if changes or len(names) <= WIDE else "")
+    return {"result": result, "checks": [checks.get(name) for name in names], "sparks": sparks}
 
 
 def _plot(results: list[Result], name: str) -> str:
@@ -188,21 +212,23 @@ def _plot(results: list[Result], name: str) -> str:
     return svg.plot(lines, *labels)
 
 
-def _news(results: Sequence[Result], context: Context) -> list[str]:
-    """What is otherwise than when the cell was run before: states, and numbers that went to another level now."""
-    found = []
+def _news(results: Sequence[Result], context: Context) -> list[tuple[str, list[str]]]:
+    """By case what is otherwise than when its cells were run before: states, and numbers that went to another level now."""
+    found: dict[str, list[str]] = {}
     for result in results:
         name = result.cell.name
         earlier = next((run.cells[name] for run in reversed(context.runs[:-1]) if name in run.cells), None)
         if earlier is None:
             continue
-        if earlier["state"] != result.state:
-            found.append(f"{name}: {earlier['state']} → {result.state}")
+        news = [f"{earlier['state']} → {result.state}"] if earlier["state"] != result.state else []
         for check in result.checks:
             values = history.values_of(context.runs, name, check.name)
             if len(values) - 1 in _change_points(result, check.name, values):
-                found.append(f"{name}: {check.name} {number(values[-2])} → {number(values[-1])}")
-    return found
+                news.append(f"{check.name} {number(values[-2])} → {number(values[-1])}")
+        if news:
+            where = f"{result.cell.label}: " if result.cell.settings else ""
+            found.setdefault(result.cell.case.name, []).append(where + "; ".join(news))
+    return list(found.items())
 
 
 def _change_points(result: Result, name: str, values: Sequence[float]) -> list[int]:
@@ -210,6 +236,10 @@ def _change_points(result: Result, name: str, values: Sequence[float]) -> list[i
     claim = result.cell.case.bounds_of(result.cell.settings).get(name)
     limit = claim.at_most if isinstance(claim, Bound) and claim.at_most is not None else 0.0
     return history.change_points(values, 0.02 * abs(limit))
+
+
+def _worst_first(results: Sequence[Result]) -> list[Result]:
+    return sorted(results, key=lambda result: -STATES.index(result.state))
 
 
 def _bad(result: Result) -> list[Check]:
@@ -229,8 +259,13 @@ def anchor(name: str) -> str:
 def duration(seconds: float) -> str:
     """Seconds as people read them."""
     if seconds < 1:
-        return f"{1000 * seconds:.0f} ms"
+        return f"{1000 * seconds:.0f} ms" if seconds >= 1e-3 else "< 1 ms"
     return f"{seconds:.1f} s" if seconds < 90 else f"{seconds / 60:.0f} min"
+
+
+def size(memory: float) -> str:
+    """Bytes as people read them; nothing where they are not known."""
+    return f"{memory / 1e6:.0f} MB" if memory else ""
 
 
 def plain(value: Any) -> Any:
