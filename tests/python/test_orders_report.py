@@ -2,19 +2,24 @@
 
 import json
 import math
+import tomllib
 from dataclasses import replace
 
 import numpy as np
 import pytest
+import tomlkit
 from typer.testing import CliRunner
 
 from isomortar.cli.commands import app
 from isomortar.errors import InputError
+from isomortar.geometry.primitives import bowl
+from isomortar.geometry.refinement import mesh
 from isomortar.harness.discretisations import Discretisation, discretisation, mesh_overrides, overrides, sweep_of
 from isomortar.harness.elevation.analysis import analyse
 from isomortar.harness.elevation.study import Study
 from isomortar.harness.measurement import Measurement
 from isomortar.scene import Scene, bundled_scenes
+from isomortar.scene.geometry_file import patch_table
 
 TINY = """
 format = 1
@@ -66,6 +71,19 @@ def test_a_scene_of_ones_own_is_varied_on_its_slave_or_the_body_named():
         sweep_of(scene, "nobody")
 
 
+def test_a_geometry_of_higher_order_leaves_lower_ones_out():
+    cubic = mesh(bowl((0.0, 0.0), 0.5, 0.0, 0.1, 0.5), ("N", "N", "N"), (3, 3, 1), (1, 1, 1))
+    data = tomllib.loads(TINY)
+    del data["bodies"]["block"]["geometry"]
+    data["bodies"]["block"]["patch"] = patch_table(cubic)
+    data["bodies"]["block"]["mesh"] = {"order": [3, 3, 1], "elements": [4, 4, 1]}
+    study = Study.of(Scene.from_toml(tomlkit.dumps(data)))
+    assert study.kinds == ("N1", "N3", "N4", "N5", "L1", "L2", "L3", "L4")
+    assert study.sweep.reference == "N3"
+    with pytest.raises(InputError, match="is 2 in direction u"):
+        Study.of(study.scene, ["N2"])
+
+
 def test_a_lagrange_scene_counts_its_nodes():
     scene = Scene.from_toml(TINY, overrides=["bodies.block.mesh={family=['L','L','N'],order=[2,2,1],elements=[2,2,1]}"])
     sweep = sweep_of(scene)
@@ -78,7 +96,7 @@ def test_every_kind_gets_four_meshes_that_an_order_can_be_told_from():
         for quick in (False, True):
             study = Study.of(Scene.load(name), quick=quick)
             for kind in study.kinds:
-                sizes = np.array([study.size(mesh) for mesh in study.meshes(kind)])
+                sizes = np.array([study.size(each) for each in study.meshes(kind)])
                 assert len(sizes) >= 4
                 assert (sizes[:-1] >= 1.2 * sizes[1:]).all()
             assert all(np.isclose(study.size(a) / study.size(b), 2) for a, b in zip(study.reference, study.reference[1:], strict=False))

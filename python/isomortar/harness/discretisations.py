@@ -1,7 +1,7 @@
 """How a scene is written in another discretisation: ``N3`` or ``L2`` for one of its bodies, with more or fewer elements.
 
-``N^p`` raises the order of the swept directions of the body to p and leaves the others; below the order of the geometry (N1 of a
-curved body) those directions interpolate it, which gives the same linear functions. ``L^p`` makes all directions Lagrange, the others
+``N^p`` raises the order of the swept directions of the body to p and leaves the others; N1 of a curved body interpolates it there, which
+gives the same linear functions. ``L^p`` makes all directions Lagrange, the others
 linear, with elements fewer by p: as many control points along a swept direction as N1.
 """
 
@@ -90,7 +90,8 @@ def sweep_of(scene: Scene, body: str | None = None) -> Sweep:
     for contact in problem.contacts:
         for face in (contact.slave, contact.master):
             if isinstance(face, Face) and body in (None, face.body):
-                return Sweep(face.body, "uvw".replace(face.face[0], ""), contact.name)
+                directions = "uvw".replace(face.face[0], "")
+                return Sweep(face.body, directions, contact.name, f"N{max(2, lowest_order(scene, face.body, directions))}")
     touching = sorted({f.body for c in problem.contacts for f in (c.slave, c.master) if isinstance(f, Face)})
     raise InputError(f"is {body!r}; bodies in contact here: {', '.join(touching) or 'none'}", "body")
 
@@ -147,6 +148,11 @@ def mesh_overrides(scene: Scene, kind: str, factor: float = 1.0) -> list[str]:
     """The overrides that give a scene a kind of discretisation with `factor` times its elements."""
     sweep = sweep_of(scene)
     return overrides(scene, sweep, discretisation(scene, sweep, kind, factor))
+
+
+def lowest_order(scene: Scene, body: str, directions: str) -> int:
+    """The lowest order above 1 that ``N^p`` can have: that of the exact geometry along the swept directions."""
+    return max(d.order for axis, d in zip("uvw", coarse_geometry(scene, body).directions, strict=True) if axis in directions)
 
 
 def coarse_geometry(scene: Scene, body: str) -> Patch:

@@ -204,6 +204,7 @@ def _steps(analysis: Analysis) -> list[Step]:
 
 def _step(analysis: Analysis, way: str, start: Point, end: Point) -> Step:
     resolved = [m for m in analysis.measures if m not in start.floor]
+    left = {m: max(end.errors[m], analysis.uncertainty[m]) for m in resolved}
     return Step(
         way,
         start.discretisation,
@@ -211,6 +212,6 @@ def _step(analysis: Analysis, way: str, start: Point, end: Point) -> Step:
         end.unknowns / start.unknowns,
         end.numbers["cpu_seconds"] / start.numbers["cpu_seconds"],
         end.numbers["solves"] / start.numbers["solves"],
-        {m: start.errors[m] / max(end.errors[m], analysis.uncertainty[m]) for m in resolved},
+        {m: start.errors[m] / left[m] if left[m] else math.inf for m in resolved},
         tuple(m for m in resolved if m in end.floor),
     )

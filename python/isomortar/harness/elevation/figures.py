@@ -133,12 +133,13 @@ def _k_lines(analysis: Analysis) -> list[list[Point]]:
 
 def _floor(panels: list[Axes], uncertainty: float) -> None:
     """Grey below the reference's uncertainty, as far as the points reach."""
-    low = panels[0].get_ylim()[0]
-    if not math.isfinite(uncertainty) or uncertainty <= 0:
+    low, high = panels[0].get_ylim()
+    bottom = min(low, max(low / 3, uncertainty / 2))
+    if uncertainty <= bottom:
         return
     for axes in panels:
-        axes.axhspan(min(low, uncertainty / 2), uncertainty, color="#E9EBEE", linewidth=0, zorder=0)
-    panels[0].set_ylim(bottom=min(low, uncertainty / 2))
+        axes.axhspan(bottom, min(uncertainty, high), color="#E9EBEE", linewidth=0, zorder=0)
+    panels[0].set_ylim(bottom, high)
     panels[0].text(0.02, 0.02, "grey: within the reference's uncertainty", transform=panels[0].transAxes, fontsize=7.5, color="#5C6670")
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from isomortar.errors import InputError
 from isomortar.harness.cases import LAGRANGE, NURBS, Cell
-from isomortar.harness.discretisations import Discretisation, Sweep, discretisation, finer, overrides, parse_kind, sweep_of
+from isomortar.harness.discretisations import Discretisation, Sweep, discretisation, finer, lowest_order, overrides, parse_kind, sweep_of
 from isomortar.harness.elevation import run
 from isomortar.harness.elevation.sampling import Grid
 from isomortar.harness.orders import SMALLEST_RATIO, WINDOW
@@ -54,10 +54,12 @@ class Study:
         InputError
             Unknown kinds, a body without contact, no support that moves, or a discretisation that the scene cannot have.
         """
-        chosen = tuple(dict.fromkeys(kinds)) or (QUICK if quick else ALL)
-        for kind in chosen:
+        for kind in kinds:
             parse_kind(kind)
-        study = cls(scene, sweep_of(scene, body), chosen, 0.5 if quick else 1.0)
+        sweep = sweep_of(scene, body)
+        lowest = lowest_order(scene, sweep.body, sweep.directions)
+        default = (kind for kind in (QUICK if quick else ALL) if kind in ("N1", *LAGRANGE) or parse_kind(kind)[1] >= lowest)
+        study = cls(scene, sweep, tuple(dict.fromkeys(kinds or default)), 0.5 if quick else 1.0)
         if not any(run.moves(support) for support in scene.problem().supports):
             raise InputError("no support of the scene moves: there are no curves to compare", "supports")
         for each in study.plan:
