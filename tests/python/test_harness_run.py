@@ -16,7 +16,7 @@ from typer.testing import CliRunner
 
 from isomortar.cli.commands import app
 from isomortar.errors import InputError
-from isomortar.harness import history
+from isomortar.harness import history, store
 from isomortar.harness.collection import collect, find
 from isomortar.harness.references import Reference, finder, write_reference
 from isomortar.harness.runner import dask_cluster, local_processes, run, select, start
@@ -115,8 +115,6 @@ def test_measured_once_until_something_changes(root):
 
 
 def test_the_key_holds_what_the_numbers_depend_on(root):
-    from isomortar.harness import store
-
     cells = select(collect(root), "gate")
     keys = {cell_key(cell) for cell in cells}
     assert len(keys) == len(cells)
@@ -148,8 +146,6 @@ def test_a_file_of_another_cell_is_not_taken(root):
     "how", ["from .near import SCALE", "from . import near", "from package import SCALE", "from package.part import SCALE"]
 )
 def test_all_ways_to_import_count(root, how):
-    from isomortar.harness import store
-
     family = next(root.glob("family_*"))
     (root / "package").mkdir()
     for path in (family / "near.py", root / "package" / "__init__.py", root / "package" / "part.py"):
@@ -226,6 +222,13 @@ def test_blessing(root):
     assert reference.record["class"] == "self"
     assert {"who", "when", "reason", "kernel", "compiler"} <= reference.record.keys()
     assert CliRunner().invoke(app, ["verify", *options]).exit_code == 0
+    family.joinpath("match.py").write_text(MATCH.replace("[1.0, 2.0]", "[1.0, 2.5]"))
+    store._case_hash.cache_clear()
+    shown = CliRunner().invoke(app, command, input="n\n")
+    page = Path(f"out/bless-{family.name}-same.html")
+    assert shown.output.index(str(page)) < shown.output.index("Make these the reference?")
+    assert "Largest difference 0.5" in page.read_text()
+    assert page.read_text().count("<svg") == 4
     with h5py.File("references/kept/data.h5", "a") as file:
         file["kind=N1/value"][0] = 1.5
     with pytest.raises(InputError, match="hash"):
@@ -239,6 +242,35 @@ def test_only_a_green_run_is_blessed(root):
         CliRunner().invoke(
             app, ["bless", f"{family.name}/same", "--reason", "x", "--yes", "--cases", str(root), "-j", "1"], catch_exceptions=False
         )
+
+
+@pytest.mark.parametrize("value", ["[float('nan'), 1.0]", "[]"])
+def test_what_can_be_no_reference_is_not_blessed(root, value):
+    family = next(root.glob("family_*"))
+    family.joinpath("match.py").write_text(MATCH.replace("[1.0, 2.0]", value))
+    command = ["bless", f"{family.name}/same", "--reason", "x", "--yes", "--cases", str(root), "--references", "references", "-j", "1"]
+    with pytest.raises(InputError, match="no reference"):
+        CliRunner().invoke(app, command, catch_exceptions=False)
+    assert not Path("references").exists()
+
+
+def test_what_is_worth_more_than_a_run_is_not_replaced(root):
+    family = next(root.glob("family_*"))
+    family.joinpath("match.py").write_text(MATCH)
+    record = {"title": "t", "class": "exact", "origin": "o", "made": "m", "uncertainty": "u"}
+    write_reference(Path("references/kept"), {"value": (np.array([1.0]), 0.1)}, record)
+    command = ["bless", f"{family.name}/same", "--reason", "x", "--yes", "--cases", str(root), "--references", "references", "-j", "1"]
+    with pytest.raises(InputError, match="does not replace"):
+        CliRunner().invoke(app, command, catch_exceptions=False)
+
+
+def test_a_run_that_is_killed_leaves_no_green_page(root, monkeypatch):
+    options = ["verify", "--cases", str(root), "--results", "out", "-j", "1"]
+    assert CliRunner().invoke(app, options).exit_code == 0
+    monkeypatch.setattr("isomortar.cli.verification.measure_all", lambda *_: 1 / 0)
+    assert CliRunner().invoke(app, options).exit_code == 1
+    assert json.loads(Path("out/report.json").read_text())["states"] == {"not measured": 5}
+    assert "5 of 5 cells do not pass" in Path("out/report.html").read_text()
 
 
 @pytest.mark.parametrize(("values", "uncertainty"), [([np.nan], 1.0), ([], 1.0), ([1.0], np.nan), ([1.0], -1.0)])

@@ -67,14 +67,16 @@ def verify(
     from isomortar.harness.cases import TIERS
     from isomortar.harness.collection import collect
     from isomortar.harness.references import finder
-    from isomortar.harness.runner import select
+    from isomortar.harness.runner import not_measured, select
 
     if tier not in TIERS:
         raise InputError(f"is {tier!r}; allowed: {', '.join(TIERS)}", "tier")
     page = report or results / "report.html"
     cells = select(collect(cases), next(t for t in TIERS if t == tier), family, case)
-    started, clock = datetime.now().astimezone(), time.perf_counter()
-    measured = measure_all(cells, results, finder(references), _submitter(jobs, dask), fresh)
+    started, clock, lookup = datetime.now().astimezone(), time.perf_counter(), finder(references)
+    # A run that is killed must not leave the green page of the one before.
+    reports.write(page, not_measured(cells, lookup), reports.Context(tier, 0.0, started, []))
+    measured = measure_all(cells, results, lookup, _submitter(jobs, dask), fresh)
     history.append(results / "history.jsonl", measured)
     context = reports.Context(tier, time.perf_counter() - clock, started, history.read(results / "history.jsonl"))
     reports.write(page, measured, context)
@@ -96,7 +98,7 @@ def bless(
     references: ReferencesOption = REFERENCES,
     results: ResultsOption = RESULTS,
 ) -> None:
-    """Make the numbers of a case the reference that it is compared with, after showing what that changes.
+    """Make the numbers of a case the reference that it is compared with, after showing what that changes, as numbers and pictures.
 
     For example: `isomortar bless paper/ironing --reason "Exact tangent of the slip rows"`
     """
@@ -111,6 +113,7 @@ def bless(
     measured = measure_all(chosen.cells, results, lookup, _submitter(jobs, None), False)
     found = blessing.changes(measured, lookup)
     Console().print(_table(found))
+    print(blessing.picture(results, chosen, found))
     if not yes:
         typer.confirm("Make these the reference?", abort=True)
     for path in blessing.bless(chosen, found, references, reason, "self" if kind == "self" else "over-refined", uncertainty):

@@ -12,17 +12,22 @@ import numpy as np
 
 from isomortar.errors import InputError
 from isomortar.geometry.patch import FloatArray
+from isomortar.harness import svg
 from isomortar.harness.cases import Case, Cell, Matches
 from isomortar.harness.compare import Lookup
 from isomortar.harness.measurement import curve_of
-from isomortar.harness.references import Kind, dataset_name, write_reference
+from isomortar.harness.references import Kind, Reference, dataset_name, write_reference
+from isomortar.harness.report import template
 from isomortar.harness.runner import Result
-from isomortar.harness.store import compiler, kernel_hash, program_hash
+from isomortar.harness.store import compiler, kernel_hash, program_hash, write_whole
 
 
 @dataclass(frozen=True)
 class Change:
-    """What blessing one number changes: new values, the old ones (None: there were none) and their uncertainty."""
+    """What blessing one number changes: new values, the old ones (None: there were none) and their uncertainty.
+
+    `x`: what the values are shown over, shape (entries,): a curve's own, else the number of the entry.
+    """
 
     cell: Cell
     number: str
@@ -30,6 +35,8 @@ class Change:
     new: FloatArray
     old: FloatArray | None
     old_uncertainty: float
+    x: FloatArray
+    x_label: str
 
     @property
     def difference(self) -> float:
@@ -45,7 +52,7 @@ def changes(results: Sequence[Result], lookup: Lookup) -> list[Change]:
     Raises
     ------
     InputError
-        The run is not green but for its references, or the case is compared with none.
+        The run is not green but for its references, a number could be no reference, or the case is compared with none.
     """
     found = []
     for result in results:
@@ -61,12 +68,40 @@ def changes(results: Sequence[Result], lookup: Lookup) -> list[Change]:
             value = result.measurement.numbers[check.name]
             curve = curve_of(value)
             new = np.asarray(value if curve is None else curve.y, float)
+            if not (new.size and np.isfinite(new).all()):
+                raise InputError("is empty or not finite: it can be no reference", f"{result.cell.name}.{check.name}")
             old = lookup(claim.reference, result.cell, check.name)
             worth = float(old.uncertainty.max()) if old else np.nan
-            found.append(Change(result.cell, check.name, claim.reference, new, old.values if old else None, worth))
+            x, label = (np.asarray(curve.x, float), curve.x_label) if curve else (np.arange(float(new.size)), "entry")
+            found.append(Change(result.cell, check.name, claim.reference, new, old.values if old else None, worth, x, label))
     if not found:
         raise InputError("is compared with no reference: none of its bounds is Matches", results[0].cell.case.name)
     return found
+
+
+def picture(folder: Path, case: Case, found: Sequence[Change]) -> Path:
+    """Write a page of pictures to a folder: of each number the new values over the old ones, and below what they differ by."""
+    path = folder / f"bless-{case.family}-{case.function.__name__}.html"
+    figures = [(change, _values(change), _differences(change)) for change in found]
+    write_whole(path, template("blessing.html").render(case=case, figures=figures))
+    return path
+
+
+def _values(change: Change) -> str:
+    lines = [svg.Line("new", change.x, change.new.ravel())]
+    if change.old is not None:
+        x = change.x if change.old.size == change.x.size else np.arange(float(change.old.size))
+        lines.append(svg.Line("old", x, change.old.ravel(), guide=True))
+    return svg.plot(lines, change.x_label, change.number, False, False)
+
+
+def _differences(change: Change) -> str:
+    """New less old, between the old uncertainty; nothing where there is nothing to compare with."""
+    if change.old is None or change.old.shape != change.new.shape:
+        return ""
+    apart = (change.new - change.old).ravel()
+    limits = [svg.Line("", change.x, np.full(change.x.shape, side * change.old_uncertainty), guide=True) for side in (-1, 1)]
+    return svg.plot([svg.Line("new - old", change.x, apart), *limits], change.x_label, "difference", False, False)
 
 
 def bless(case: Case, found: Sequence[Change], folder: Path, reason: str, kind: Kind, uncertainty: float) -> list[Path]:
@@ -76,6 +111,11 @@ def bless(case: Case, found: Sequence[Change], folder: Path, reason: str, kind: 
     -------
     list of Path
         The folders written.
+
+    Raises
+    ------
+    InputError
+        No reason, no uncertainty, or a reference that is worth more than a run of this program.
     """
     if not reason.strip():
         raise InputError("say why the new numbers are right", "reason")
@@ -84,6 +124,8 @@ def bless(case: Case, found: Sequence[Change], folder: Path, reason: str, kind: 
     written = []
     for name in dict.fromkeys(change.reference for change in found):
         mine = [change for change in found if change.reference == name]
+        if (folder / name / "record.toml").exists() and Reference(folder / name).record["class"] in ("exact", "other code"):
+            raise InputError("is exact or of another program; a run of this program does not replace it", str(folder / name))
         datasets = {dataset_name(c.cell, c.number): (c.new, uncertainty * float(np.abs(c.new).max())) for c in mine}
         record = {
             "title": case.claim,

@@ -55,6 +55,12 @@ def select(cases: Sequence[Case], tier: Tier, family: str | None = None, name: s
     return within
 
 
+def not_measured(cells: Sequence[Cell], lookup: Lookup) -> list[Result]:
+    """What a run leaves behind if it never comes to its end."""
+    nothing = Measurement("not measured", message="the run has not come to its end")
+    return [Result(cell, nothing, tuple(judge(cell, nothing, lookup)), False) for cell in cells]
+
+
 @dataclass(frozen=True)
 class Measuring:
     """A cell that is being measured, or was already (then it is not `fresh`)."""
