@@ -173,7 +173,7 @@ def test_a_failed_run_leaves_the_others(study):
     lost = study.meshes("N1")[0]
     runs[lost] = Measurement("raised", message="Traceback\n  ...\nisomortar.errors.ConvergenceError: load step 2 does not converge")
     found = analyse(study, runs)
-    assert [p.failure for p in found.failed] == ["raised: load step 2 does not converge"]
+    assert [p.failure for p in found.failed] == ["load step 2 does not converge"]
     assert found.verdicts["N1"]["force"].why == "3 meshes; an order needs at least 4"
     assert found.points[study.meshes("N1")[1]].errors
 

@@ -152,8 +152,8 @@ class _Comparison:
 def _point(chosen: Discretisation, measurement: Measurement) -> Point:
     if measurement.ending == "measured":
         return Point(chosen, measurement.numbers, "")
-    lines = measurement.message.strip().splitlines()
-    return Point(chosen, {}, f"{measurement.ending}: {_reason(lines[-1])}" if lines else measurement.ending)
+    lines = measurement.message.strip().splitlines() or [measurement.ending]
+    return Point(chosen, {}, _reason(lines[-1]))
 
 
 def _reason(line: str) -> str:

@@ -132,7 +132,7 @@ def _k_lines(analysis: Analysis) -> list[list[Point]]:
 
 
 def _floor(panels: list[Axes], uncertainty: float) -> None:
-    """Grey below the reference's uncertainty, as far as the points reach."""
+    """Grey below the reference's uncertainty, where that is within sight."""
     low, high = panels[0].get_ylim()
     bottom = min(low, max(low / 3, uncertainty / 2))
     if uncertainty <= bottom:
@@ -148,7 +148,7 @@ def _stage_lines(panels: tuple[Axes, ...], point: Point) -> None:
     for axes in panels:
         for end in times[np.flatnonzero(np.diff(stages))]:
             axes.axvline(end, color="#C9CDD3", linewidth=0.8, zorder=0)
-        axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+        axes.xaxis.set_major_locator(MaxNLocator(integer=True, steps=(1, 2, 5, 10)))
         axes.grid(axis="y", color="#E3E6EA", linewidth=0.6)
         axes.set_axisbelow(True)
 
@@ -167,8 +167,8 @@ def _ticks(axes: Axes) -> None:
     for axis in (axes.xaxis, axes.yaxis):
         low, high = axis.get_view_interval()
         axis.set_major_formatter("{x:g}")
-        within = (1.0, 1.2, 1.5, 2.0, 3.0, 5.0, 7.0) if high / low < 8 else (1.0, 2.0, 5.0) if high / low < 300 else (1.0,)
-        axis.set_major_locator(LogLocator(subs=within, numticks=10))
+        within = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0) if high / low < 8 else (1.0, 2.0, 5.0) if high / low < 300 else (1.0,)
+        axis.set_major_locator(LogLocator(subs=within, numticks=10) if high / low > 2.5 else MaxNLocator(4, steps=(1, 2, 5, 10)))
         axis.set_minor_formatter(NullFormatter())
     axes.grid(color="#E9EBEE", linewidth=0.6)
     axes.set_axisbelow(True)
