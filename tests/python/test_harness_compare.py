@@ -13,6 +13,7 @@ from isomortar.harness.orders import Convergence
 
 NAN, INF = np.nan, np.inf
 H = np.array([0.5, 0.25, 0.125, 0.0625])
+ALONE = {"quadrature": 0.0}
 
 
 def nothing():
@@ -77,7 +78,7 @@ def test_bounds():
 
 @pytest.mark.parametrize(
     "value",
-    [1.1e-3, -1.0, NAN, INF, -INF, [], [1e-4, NAN], [1e-4, 2e-3], [[1e-4], [-1e-9]], Curve([1], [1.0], "x", "y"), Convergence(H, H)],
+    [1.1e-3, -1.0, NAN, INF, -INF, [], [1e-4, NAN], [1e-4, 2e-3], [[1e-4], [-1e-9]], Curve([1], [1.0], "x", "y"), Convergence(H, H, ALONE)],
 )
 def test_bad_values_break_a_bound(value):
     assert state(Bound(at_most=1e-3, reason="theory: so"), value) == "failed"
@@ -90,8 +91,16 @@ def test_bad_values_break_lower_bounds_and_what_is_only_shown(value):
 
 
 def test_orders():
-    assert state(Order(2, "theory: so"), Convergence(H, H**2)) == "passed"
-    for value in (2.0, H**2, Convergence(H, H), Convergence(H[:3], H[:3] ** 2), Convergence(H, H * NAN), Curve(H, H**2, "h", "e")):
+    assert state(Order(2, "theory: so"), Convergence(H, H**2, ALONE)) == "passed"
+    for value in (
+        2.0,
+        H**2,
+        Convergence(H, H**2, {}),
+        Convergence(H, H, ALONE),
+        Convergence(H[:3], H[:3] ** 2, ALONE),
+        Convergence(H, H * NAN, ALONE),
+        Curve(H, H**2, "h", "e"),
+    ):
         assert state(Order(2, "theory: so"), value) == "failed"
 
 
@@ -144,7 +153,8 @@ ANY = {"value": Bound(at_least=-1e9, at_most=1e9, reason="theory: so")}
     [
         "text", "1.0", 1j, [[1.0], [1.0, 2.0]], {"a": 1.0}, object(), True, [True, False], np.bool_(False), np.ma.masked, [1.0, None],
         np.ma.array([1.0], mask=[True]), np.array([1.0], object), 10**400, 2**53 + 1, np.array([2**60]), np.zeros(1, [("a", float)]),
-        np.datetime64(1, "s"), b"1", (x for x in [1.0]), Convergence(H, [None] * 4), Convergence([True] * 4, H), Curve(H, ["a"], "x", "y"),
+        np.datetime64(1, "s"), b"1", (x for x in [1.0]), Convergence(H, [None] * 4, ALONE),
+        Convergence([True] * 4, H, ALONE), Curve(H, ["a"], "x", "y"),
     ],
 )  # fmt: skip
 def test_a_case_that_returns_something_else_has_failed(value):
@@ -229,7 +239,7 @@ def test_bounds_and_tier_may_depend_on_the_settings():
         grid={"order": [1, 4]},
         tier=lambda order: "gate" if order < 3 else "nightly",
         bounds=lambda order: {"value": Order(order + 1, "theory: so")},
-    )(lambda order: {"value": Convergence(H, H ** (order + 1))})
+    )(lambda order: {"value": Convergence(H, H ** (order + 1), ALONE)})
     assert [cell.tier for cell in made.cells] == ["gate", "nightly"]
     for cell in made.cells:
         assert [c.state for c in judge(cell, measure(cell), lambda *_: None)] == ["passed"]

@@ -36,7 +36,7 @@ def sine(order: int):
 @case(claim="Errors fall.", bounds=lambda order: {"L2": Order(order + 1, "theory: interpolation")}, grid={"order": [1, 2]})
 def rate(order: int):
     h = 0.5 ** np.arange(1, 6)
-    return {"L2": Convergence(h, h ** (order + 1))}
+    return {"L2": Convergence(h, h ** (order + 1), {"quadrature": 0.0})}
 """
 BAD = """
 import os, time
@@ -190,6 +190,31 @@ def test_selection(root):
         find(root, "none")
     with pytest.raises(InputError):
         collect(root / "nowhere")
+
+
+def test_no_case_is_lost_unseen(root):
+    family = next(root.glob("family_*"))
+    one = "from isomortar import harness\n\n@harness.case(claim='It holds.', bounds={'e': harness.Bound(1.0, reason='theory: so')})\n"
+    (family / "other.py").write_text(one + "def other():\n    return {'e': 2.0}\n")
+    assert f"{family.name}/other" in [case.name for case in collect(root)]
+    (root / "helper.py").write_text("SCALE = 1\n" + one + "def made_elsewhere():\n    return {'e': 2.0}\n")
+    (family / "more.py").write_text("from isomortar.harness import case\nfrom helper import made_elsewhere as made\n")
+    sys.modules.pop("helper")
+    with pytest.raises(InputError, match="made stand in no family"):
+        collect(root)
+    (family / "more.py").write_text(one + "def twin():\n    return {'e': 2.0}\n" + one + "def twin():\n    return {'e': 0.0}\n")
+    with pytest.raises(InputError, match="defines twin twice"):
+        collect(root)
+
+
+def test_a_folder_without_cases_is_no_green_run(root):
+    family = next(root.glob("family_*"))
+    (family / "good.py").write_text("from isomortar.harness import case\n")
+    with pytest.raises(InputError, match="no cases"):
+        collect(root)
+    (root / "empty").mkdir()
+    with pytest.raises(InputError):
+        CliRunner().invoke(app, ["verify", "--family", "empty", "--cases", str(root)], catch_exceptions=False)
 
 
 def test_command_and_its_report(root):

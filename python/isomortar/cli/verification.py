@@ -153,7 +153,9 @@ def measure_all(
 
 def _table(found: Sequence[blessing.Change]) -> Table:
     """What a blessing changes, as numbers."""
-    table = Table("cell", "number", "values", "largest, old", "largest, new", "difference", "old uncertainty")
+    table = Table()
+    for heading in ("cell", "number", "values", "largest, old", "largest, new", "difference", "old uncertainty"):
+        table.add_column(heading, overflow="fold")
     for change in found:
         old = "none" if change.old is None else f"{abs(change.old).max():.6g}"
         new, difference, worth = (f"{v:.6g}" for v in (abs(change.new).max(), change.difference, change.old_uncertainty))

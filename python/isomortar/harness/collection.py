@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import ast
 import importlib
+import re
 import sys
 from pathlib import Path
 
 from isomortar.errors import InputError
 from isomortar.harness.cases import Case
 
-_MARK = "isomortar.harness"
+_MARK = re.compile(r"isomortar\.harness|from isomortar import[^\n]*\bharness\b")
 
 
 def holds_cases(path: Path) -> bool:
     """Whether a file is one to look for cases in."""
-    return path.suffix == ".py" and path.name != "conftest.py" and not path.name.startswith("test_") and _MARK in path.read_text()
+    named = path.suffix == ".py" and path.name != "conftest.py" and not path.name.startswith("test_")
+    return named and _MARK.search(path.read_text()) is not None
 
 
 def collect(root: Path) -> list[Case]:
@@ -40,7 +43,17 @@ def collect(root: Path) -> list[Case]:
 
 
 def cases_of(path: Path) -> list[Case]:
-    """The cases that a file defines, in its order. It is known as family and file, in a package by its full name."""
+    """The cases that a file defines, in its order. It is known as family and file, in a package by its full name.
+
+    Raises
+    ------
+    InputError
+        A case of the file would be lost: its name is given twice, or its function stands in no family.
+    """
+    functions = [node.name for node in ast.parse(path.read_text()).body if isinstance(node, ast.FunctionDef)]
+    twice = sorted({name for name in functions if functions.count(name) > 1})
+    if twice:
+        raise InputError(f"defines {', '.join(twice)} twice: the first is lost", str(path))
     root = path.resolve().parent.parent
     while (root / "__init__.py").is_file():
         root = root.parent
@@ -49,7 +62,11 @@ def cases_of(path: Path) -> list[Case]:
     module = importlib.import_module(".".join(path.resolve().relative_to(root).with_suffix("").parts))
     if Path(module.__file__ or "").resolve() != path.resolve():
         raise InputError(f"is taken from {module.__file__}, not from {path}: give the folder or the file another name", path.stem)
-    return [value for value in vars(module).values() if isinstance(value, Case) and value.path == path.resolve()]
+    cases = {name: value for name, value in vars(module).items() if isinstance(value, Case)}
+    strangers = [name for name, value in cases.items() if value.path.parent.parent != path.resolve().parent.parent]
+    if strangers:
+        raise InputError(f"the functions of {', '.join(strangers)} stand in no family: define them in the file itself", str(path))
+    return [value for value in cases.values() if value.path == path.resolve()]
 
 
 def find(root: Path, name: str) -> Case:

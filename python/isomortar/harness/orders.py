@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -35,15 +35,15 @@ class Convergence:
         Element sizes h, strictly decreasing, at least four.
     errors : array_like, shape (n,)
         Errors, positive, in any norm.
-    others : dict, optional
-        Error budget: for each other source (``"quadrature"``, ``"augmentation"``, ``"load step"``, ``"penalty"``,
+    others : dict
+        Error budget, not empty: for each other source (``"quadrature"``, ``"augmentation"``, ``"load step"``, ``"penalty"``,
         ``"reference"``, ...) its share of the error on each mesh, shape (n,), or one number for all: the change of the
         result when that source alone is tightened.
     """
 
     sizes: ArrayLike
     errors: ArrayLike
-    others: dict[str, ArrayLike] = field(default_factory=dict)
+    others: dict[str, ArrayLike]
 
 
 @dataclass(frozen=True)
@@ -89,6 +89,8 @@ def _fault(convergence: Convergence, expected: float) -> str:
         others = {name: np.asarray(values, float) for name, values in convergence.others.items()}
     except (TypeError, ValueError):
         return "sizes, errors and other errors must be numbers"
+    if not others:
+        return "no other source of error was measured (quadrature, load step, penalty, ...)"
     if sizes.ndim != 1 or sizes.shape != errors.shape:
         return f"sizes and errors must be lists of one length; shapes are {sizes.shape} and {errors.shape}"
     if len(sizes) < WINDOW:
