@@ -8,10 +8,11 @@ import pytest
 from typer.testing import CliRunner
 
 from isomortar.cli.commands import app
-from isomortar.errors import InputError
+from isomortar.errors import InputError, IsomortarError
 from isomortar.harness.collection import collect
 from isomortar.harness.measurement import Measurement
 from isomortar.harness.mutants import report
+from isomortar.harness.mutants.bench import Bench
 from isomortar.harness.mutants.campaign import Attacked, Outcome
 from isomortar.harness.mutants.faults import LEFT_OUT, fault_at, read_planted, read_sources
 from isomortar.harness.mutants.gate import Gate, Verdict
@@ -52,7 +53,7 @@ def score(*faults: Attacked, classified: dict[str, Classification] | None = None
     return Score(Outcome(faults, {}, (), {"solid/a": 1.0}), classified or {})
 
 
-class Bench:
+class Oracle:
     """Measures in no time, red where it is told to; notes what it was asked."""
 
     def __init__(self, red: str = "", ending: str = "measured") -> None:
@@ -131,33 +132,33 @@ def test_a_folder_without_sources_is_an_error(tmp_path):
 
 def test_the_gate_stops_at_the_first_red_cell_and_asks_it_first_next_time(cells):
     red, tried = "mutants_family/cheap[k=2]", gate(cells)
-    first = tried.attack(Bench(red), Path(), "solid", (), math.inf)
+    first = tried.attack(Oracle(red), Path(), "solid", (), math.inf)
     assert first.killer == red
     assert "not finite" in first.found
     tried.learn("solid", first)
     tried.learn("solid", first)
-    bench = Bench(red)
+    bench = Oracle(red)
     assert tried.attack(bench, Path(), "solid", (), math.inf).passed == ()
     assert [name for name, _ in bench.asked] == [red]
 
 
 @pytest.mark.parametrize("ending", ["crashed", "timed out", "raised", "skipped"])
 def test_whatever_does_not_pass_kills(cells, ending):
-    assert gate(cells).attack(Bench("mutants_family/dear", ending), Path(), "solid", (), math.inf).killer == "mutants_family/dear"
+    assert gate(cells).attack(Oracle("mutants_family/dear", ending), Path(), "solid", (), math.inf).killer == "mutants_family/dear"
 
 
 def test_a_survivor_met_the_whole_gate_or_as_much_as_asked_for(cells):
-    bench, tried = Bench(), gate(cells)
+    bench, tried = Oracle(), gate(cells)
     verdict = tried.attack(bench, Path(), "solid", (), math.inf)
     assert verdict.killer is None
     assert tried.is_whole(verdict)
     assert [name for name, _ in bench.asked] == ["mutants_family/cheap[k=2]", "mutants_family/cheap[k=1]", "mutants_family/dear"]
     assert [seconds for _, seconds in bench.asked] == [20.0, 20.0, 100.0]
-    assert not tried.is_whole(tried.attack(Bench(), Path(), "solid", (), 0.15))
+    assert not tried.is_whole(tried.attack(Oracle(), Path(), "solid", (), 0.15))
 
 
 def test_cells_passed_before_are_not_asked_again(cells):
-    bench = Bench()
+    bench = Oracle()
     gate(cells).attack(bench, Path(), "solid", ("mutants_family/dear",), math.inf)
     assert "mutants_family/dear" not in dict(bench.asked)
 
@@ -220,6 +221,15 @@ def test_the_report_shows_survivors_and_asks_for_their_class(tmp_path):
     assert f'key = "{known.fault.key}"' not in report.unclassified(counted)
     assert [fault["class"] for fault in data["faults"]] == [None, "not caught", "not classified"]
     assert not data["passes"]
+
+
+def test_a_process_that_died_because_the_run_ended_is_no_catch(cells, tmp_path):
+    (tmp_path / "package").mkdir()
+    (tmp_path / "kernel.so").write_text("")
+    bench = Bench(tmp_path / "package", tmp_path, tmp_path / "bench")
+    bench.__exit__(None, None, None)
+    with pytest.raises(IsomortarError, match="given up"):
+        gate(cells).attack(bench, tmp_path / "kernel.so", "solid", (), math.inf)
 
 
 KERNEL_CASE = """

@@ -24,7 +24,7 @@ def mutants(
     seed: Annotated[int, typer.Option(help="Of the random draw.")] = 1,
     patience: Annotated[
         float, typer.Option(min=0.0, help="A random fault survives when cells of so many CPU seconds are green; 0: when all are.")
-    ] = 100.0,
+    ] = 60.0,
     jobs: JobsOption = CORES,
     cases: CasesOption = CASES,
     references: ReferencesOption = REFERENCES,

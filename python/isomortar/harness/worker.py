@@ -71,7 +71,8 @@ class Worker:
         if self._process is None:
             self._errors.truncate(0)
             pipe = subprocess.PIPE
-            self._process = subprocess.Popen(self._command, stdin=pipe, stdout=pipe, stderr=self._errors)
+            # In a session of its own: Ctrl-C is for the run, which ends it; a process that dies by itself counts as crashed.
+            self._process = subprocess.Popen(self._command, stdin=pipe, stdout=pipe, stderr=self._errors, start_new_session=True)
         return self._process
 
     def _end(self) -> None:

@@ -62,6 +62,7 @@ class Bench:
         self._cases, self._folder = cases.resolve(), folder.resolve()
         self._kernel: Path | None = None
         self._worker: Worker | None = None
+        self._closed = False
         shutil.rmtree(folder, ignore_errors=True)
         shutil.copytree(package, folder / "isomortar")
 
@@ -69,19 +70,33 @@ class Bench:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None) -> None:
-        if self._worker:
-            self._worker.__exit__(kind, value, trace)
+        self._closed = True
+        self._end()
 
     def measure(self, kernel: Path, cell: Cell, seconds: float) -> Measurement:
-        """Measure a cell on a kernel within a time."""
+        """Measure a cell on a kernel within a time.
+
+        Raises
+        ------
+        IsomortarError
+            The bench was closed meanwhile: that its process died then says nothing about the kernel.
+        """
         if self._worker is None or kernel != self._kernel:
             self._worker, self._kernel = self._started(kernel), kernel
         path = cell.case.path
-        return self._worker.measure(task_of(cell) | {"path": str(self._cases / path.parent.name / path.name), "seconds": seconds})
+        task = task_of(cell) | {"path": str(self._cases / path.parent.name / path.name), "seconds": seconds}
+        measurement = self._worker.measure(task)
+        if self._closed:
+            raise IsomortarError("the measurement was given up")
+        return measurement
+
+    def _end(self) -> None:
+        if self._worker:
+            self._worker.__exit__(None, None, None)
 
     def _started(self, kernel: Path) -> Worker:
         """A worker with a kernel; the one before is ended."""
-        self.__exit__(None, None, None)
+        self._end()
         part = Path(shutil.copy2(kernel, self._folder / "kernel.part"))
         part.replace(self._folder / "isomortar" / f"_kernel{EXTENSION_SUFFIXES[0]}")
         installed = [path for path in sys.path if path]
