@@ -53,9 +53,9 @@ PARTS = (
 _ROUND_OFF = Bound(at_most=BOUND, reason="round-off: a block of double precision against differences of a twin in extended precision")
 
 
-def all_blocks() -> list[PartBlocks]:
+def all_blocks(slip_sum: str) -> list[PartBlocks]:
     """Blocks of the scene, uneven by random moves of all control points, with open, sticking and slipping ones in turn."""
-    problem = Scene.from_toml(_SCENE).problem()
+    problem = Scene.from_toml(_SCENE, overrides=[f"solver.slip_sum={slip_sum}"]).problem()
     equilibrium = Equilibrium(replace(problem, settings=replace(problem.settings, method="uzawa")), Ledger())
     pair, state = equilibrium.pairs[0], equilibrium.initial_state()
     positions = state.positions + 0.01 * np.random.default_rng(1).standard_normal(state.positions.shape)
@@ -79,6 +79,7 @@ def planted(blocks: PartBlocks) -> list[bool]:
 
 @case(
     claim="Every block of the tangent is exact, none is missing, and a scaling of any one of them by 1 + 1e-6 or 1 - 1e-6 is seen.",
+    grid={"slip_sum": ("local", "paper")},
     bounds={
         **dict.fromkeys(PARTS, _ROUND_OFF),
         "outside": Bound(at_most=1e-14, reason="round-off: the twin's derivative is zero where a part has no block"),
@@ -86,12 +87,12 @@ def planted(blocks: PartBlocks) -> list[bool]:
         "planted, seen": Bound(at_least=100.0, reason="definition: every part has dozens of blocks, each scaled up and down"),
     },
 )
-def every_block() -> dict[str, float | list[float]]:
+def every_block(slip_sum: str) -> dict[str, float | list[float]]:
     """Largest error of a block, by its own size, in each part.
 
     Then, part by part: derivatives without a block, and the numbers of planted faults within and beyond the bound.
     """
-    blocks = all_blocks()
+    blocks = all_blocks(slip_sum)
     seen = [planted(part) for part in blocks]
     return {part.part: float(part.errors.max()) for part in blocks} | {
         "outside": [part.outside for part in blocks],
