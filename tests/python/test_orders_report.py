@@ -166,6 +166,10 @@ def test_refinement_against_elevation(study):
     # the reference's own meshes, 6 and 12, are what the reference says; 8 is 100 / 8 off
     assert by_way["h", "N2 8x8x1"].unknowns == pytest.approx(64 / 36)
     assert by_way["k", "N3 6x6x1"].cpu == 1.0
+    # forces 1 + h**3 and 1 + h at h = 1/6, of which the roughness is the square
+    assert by_way["k", "N3 6x6x1"].roughness["force"] == pytest.approx(((1 + 1 / 6) / (1 + 1 / 216)) ** 2, rel=1e-12)
+    step, truth = by_way["h", "N2 8x8x1"], 1 / 24**3
+    assert step.gains["pressure"] == pytest.approx((1 / 6**3 - truth) / (100 / 8 - truth), rel=1e-12)
 
 
 def test_a_failed_run_leaves_the_others(study):

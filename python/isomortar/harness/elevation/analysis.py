@@ -44,7 +44,7 @@ class Point:
 
 @dataclass(frozen=True)
 class Step:
-    """Refinement from one run to another (`way` h: more elements, k: higher order): what it multiplies cost by and divides errors by.
+    """Refinement from one run to another (`way` h: more elements, k: higher order): what multiplies cost and roughness, divides errors.
 
     Where the error after it is at the floor, the quotient is a lower bound and the measure is in `at_least`.
     """
@@ -55,6 +55,7 @@ class Step:
     unknowns: float
     cpu: float
     solves: float
+    roughness: dict[str, float]
     gains: dict[str, float]
     at_least: tuple[str, ...]
 
@@ -212,6 +213,7 @@ def _step(analysis: Analysis, way: str, start: Point, end: Point) -> Step:
         end.unknowns / start.unknowns,
         end.numbers["cpu_seconds"] / start.numbers["cpu_seconds"],
         end.numbers["solves"] / start.numbers["solves"],
+        {m: end.roughness[m] / start.roughness[m] for m in analysis.curves},
         {m: start.errors[m] / left[m] if left[m] else math.inf for m in resolved},
         tuple(m for m in resolved if m in end.floor),
     )
