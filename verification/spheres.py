@@ -1,6 +1,6 @@
-"""Bodies with a spherical underside for the contact of spheres: exact, graded towards the point of contact at the origin.
+"""Bodies with a spherical or cylindrical underside for contact as Hertz's: exact, graded towards the contact at the origin.
 
-Both come from the stereographic image of the plane, which rational functions of order 2 hold exactly. Their columns are vertical up to a
+All come from the stereographic image of the plane, which rational functions of order 2 hold exactly. Their columns are vertical up to a
 flat top. Order 1 can not hold a sphere: its control points lie on it, as those of Lagrange elements do.
 """
 
@@ -14,6 +14,7 @@ from scipy.interpolate import BSpline
 
 from isomortar.geometry.patch import Direction, Family, FloatArray, Patch
 
+_LINE = Direction("N", 1, np.array([0.0, 0.0, 1.0, 1.0]))
 #: A quarter of a circle, as the control points and weights of one element.
 _QUARTER = Direction("N", 2, np.array([0.0, 0.0, 0.0, 1.0, 1.0, 1.0]))
 _QUARTER_POINTS = np.array([[1.0, 0.0, 1.0], [np.sqrt(0.5), np.sqrt(0.5), np.sqrt(0.5)], [0.0, 1.0, 1.0]])
@@ -26,7 +27,7 @@ class Cap:
     Parameters
     ----------
     radius, width, height : float
-        Of the sphere; of the body, in the plane that is projected from; of its top.
+        Of the sphere or cylinder; of the body, in the plane that is projected from; of its top.
     fine : float
         Extent of the uniform elements around the axis, and about half of their depth.
     elements, growing : int
@@ -56,11 +57,22 @@ class Cap:
         return fitted((radial, _QUARTER, upward), np.moveaxis(grid, 2, 1), (0, 2))
 
     def block(self, kind: str, below: bool = False) -> Patch:
-        """Half a block over -width <= x <= width, 0 <= y <= width; u, v, w run along x, y, z. Nowhere singular."""
-        along, upward = self._radial(kind), self._upward(kind, below)
-        across = direction(kind, np.concatenate([-along.boundaries[:0:-1], along.boundaries]))
-        x, y, z, weight = self._column(*np.meshgrid(nodes(across), nodes(along), self._share(upward, below), indexing="ij"))
-        return fitted((across, along, upward), np.stack([x, y, -z if below else z, weight], axis=-1), (0, 1, 2))
+        """The body over the square -width <= x, y <= width; u, v, w run along x, y, z. Nowhere singular."""
+        across, upward = self._across(kind), self._upward(kind, below)
+        x, y, z, weight = self._column(*np.meshgrid(nodes(across), nodes(across), self._share(upward, below), indexing="ij"))
+        return fitted((across, across, upward), np.stack([x, y, -z if below else z, weight], axis=-1), (0, 1, 2))
+
+    def cylinder(self, kind: str, length: float, below: bool = False) -> Patch:
+        """The body over -width <= x <= width with a cylinder about the y-axis in place of the sphere, one element long."""
+        across, upward = self._across(kind), self._upward(kind, below)
+        s, t = np.meshgrid(nodes(across), self._share(upward, below), indexing="ij")
+        x, y, z, weight = self._column(s, 0.0 * s, t)
+        ends = [np.stack([x, y + end * weight, -z if below else z, weight], axis=-1) for end in (0.0, length)]
+        return fitted((across, _LINE, upward), np.stack(ends, axis=1), (0, 2))
+
+    def _across(self, kind: str) -> Direction:
+        along = graded(self.width, self.fine, self.elements, self.growing)
+        return direction(kind, np.concatenate([-along[:0:-1], along]))
 
     def _radial(self, kind: str) -> Direction:
         return direction(kind, graded(self.width, self.fine, self.elements, self.growing))
