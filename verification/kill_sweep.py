@@ -101,7 +101,7 @@ def main() -> None:
         killed, number, rounds = Path(folder) / "killed-0", 0, 0
         different = []
         while number < options.kills:
-            moment = chance.uniform(0.0, 0.5 * seconds)
+            moment = chance.uniform(0.0, seconds)
             if interrupted(family, killed, moment):
                 number += 1
                 print(f"kill {number:2d} after {moment:5.2f} s: {measured(killed)} of {len(whole['cells'])} cells are kept", flush=True)
