@@ -230,6 +230,8 @@ def test_command_and_its_report(root):
     assert "2 of 7 cells do not pass" in page
     assert "missing reference" in page
     assert "<svg" in page
+    Path("out/open").touch()
+    assert Path("out/report.html").stat().st_mode == Path("out/open").stat().st_mode  # whoever may read the folder may read the page
     for outside in ("http://", "https://", "src=", "<script", "@import", "url("):
         assert outside not in page
     assert len(history.read(Path("out/history.jsonl"))) == 2

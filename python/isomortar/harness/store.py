@@ -9,7 +9,7 @@ import importlib.util
 import json
 import os
 import re
-import tempfile
+import threading
 from collections.abc import Iterable, Iterator
 from dataclasses import asdict
 from pathlib import Path
@@ -55,11 +55,12 @@ class Store:
 def write_whole(path: Path, text: str) -> None:
     """Write a file so that a reader finds the old or the new one, never a part."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.NamedTemporaryFile("w", dir=path.parent, prefix=".", suffix=".part", delete=False) as part:
-        part.write(text)
-        part.flush()
-        os.fsync(part.fileno())
-    Path(part.name).replace(path)
+    part = path.with_name(f".{path.name}.{os.getpid()}-{threading.get_ident()}.part")
+    with part.open("w") as file:  # not a temporary file, which only its owner may read
+        file.write(text)
+        file.flush()
+        os.fsync(file.fileno())
+    part.replace(path)
 
 
 def cell_key(cell: Cell, program: str | None = None) -> str:
