@@ -112,14 +112,14 @@ def discretisation(scene: Scene, sweep: Sweep, kind: str, factor: float = 1.0) -
     return Discretisation(kind, (counts[0], counts[1], counts[2]))
 
 
-def finer(scene: Scene, sweep: Sweep, coarse: Discretisation, factor: float) -> Discretisation:
+def refined(scene: Scene, sweep: Sweep, chosen: Discretisation, factor: float) -> Discretisation:
     """A discretisation with `factor` times the elements along the swept directions."""
     spans = coarse_geometry(scene, sweep.body).directions
     counts = [
         _multiple(factor * n, s.elements) if axis in sweep.directions else n
-        for axis, n, s in zip("uvw", coarse.elements, spans, strict=True)
+        for axis, n, s in zip("uvw", chosen.elements, spans, strict=True)
     ]
-    return Discretisation(coarse.kind, (counts[0], counts[1], counts[2]))
+    return Discretisation(chosen.kind, (counts[0], counts[1], counts[2]))
 
 
 def overrides(scene: Scene, sweep: Sweep, chosen: Discretisation) -> list[str]:

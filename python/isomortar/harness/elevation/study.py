@@ -11,7 +11,7 @@ from pathlib import Path
 
 from isomortar.errors import InputError
 from isomortar.harness.cases import LAGRANGE, NURBS, Cell
-from isomortar.harness.discretisations import Discretisation, Sweep, discretisation, finer, lowest_order, overrides, parse_kind, sweep_of
+from isomortar.harness.discretisations import Discretisation, Sweep, discretisation, lowest_order, overrides, parse_kind, refined, sweep_of
 from isomortar.harness.elevation import run
 from isomortar.harness.elevation.sampling import Grid
 from isomortar.harness.orders import SMALLEST_RATIO, WINDOW
@@ -74,7 +74,7 @@ class Study:
             if self._apart(coarser, found[0]):
                 found.insert(0, coarser)
         while len(found) < WINDOW:
-            growing = (finer(self.scene, self.sweep, found[-1], factor) for factor in count(NEXT, 1 / 3))
+            growing = (refined(self.scene, self.sweep, found[-1], factor) for factor in count(NEXT, 1 / 3))
             found.append(next(mesh for mesh in growing if self._apart(found[-1], mesh)))
         return tuple(found)
 
@@ -88,10 +88,10 @@ class Study:
 
     @cached_property
     def reference(self) -> tuple[Discretisation, Discretisation, Discretisation]:
-        """The reference's kind on half the elements, on as many and on twice as many: the last is the reference."""
-        coarse = discretisation(self.scene, self.sweep, self.sweep.reference, self.share / 2)
-        medium = finer(self.scene, self.sweep, coarse, 2.0)
-        return coarse, medium, finer(self.scene, self.sweep, medium, 2.0)
+        """The reference's kind on half the elements of its finest mesh, on as many, and on twice as many: the last is the reference."""
+        coarse = refined(self.scene, self.sweep, self.meshes(self.sweep.reference)[-1], 0.5)
+        medium = refined(self.scene, self.sweep, coarse, 2.0)
+        return coarse, medium, refined(self.scene, self.sweep, medium, 2.0)
 
     @cached_property
     def plan(self) -> tuple[Discretisation, ...]:
