@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from concurrent.futures import Future
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -18,6 +19,7 @@ from isomortar.cli.commands import app
 from isomortar.errors import InputError
 from isomortar.harness import history, store
 from isomortar.harness.collection import collect, find
+from isomortar.harness.measurement import Measurement
 from isomortar.harness.references import Reference, finder, write_reference
 from isomortar.harness.runner import dask_cluster, local_processes, run, select, start
 from isomortar.harness.store import Store, cell_key
@@ -333,6 +335,21 @@ def test_killed_and_resumed(root):
         for time_of in ("seconds", "cpu_seconds", "peak_memory"):
             del cell["measurement"][time_of]
     assert report["cells"] == whole["cells"]
+
+
+def test_numbers_of_another_program_are_not_taken(root):
+    store, futures = Store(root.parent / "store"), []
+
+    def submit(_):
+        futures.append(Future())
+        futures[-1].set_result(Measurement("measured", {"error": 0.0, "seen": [0.0]}, host="node7", program="another"))
+        return futures[-1]
+
+    cells = select(collect(root), "gate")[-1:]
+    (result,) = run(start(cells, store, submit), finder(root.parent / "references"), store)
+    assert result.state == "crashed"
+    assert "node7 has another program" in result.measurement.message
+    assert store.get(cells[0]) is None
 
 
 def test_dask_gives_the_same_bits(root):

@@ -13,7 +13,7 @@ from isomortar.errors import InputError
 from isomortar.harness.cases import TIERS, Case, Cell, Tier
 from isomortar.harness.compare import Check, Lookup, State, judge, worst
 from isomortar.harness.measurement import Measurement
-from isomortar.harness.store import Store
+from isomortar.harness.store import Store, program_hash
 from isomortar.harness.worker import Worker, task_of
 
 #: Starts the measurement of a task.
@@ -73,6 +73,9 @@ class Measuring:
         """Wait for the measurement, keep it and judge it. Whatever goes wrong with it is a failure of this cell."""
         error = self.future.exception()
         measurement = Measurement("crashed", message=f"{type(error).__name__}: {error}") if error else self.future.result()
+        if self.fresh and measurement.program not in ("", program_hash()):
+            words = f"{measurement.host} has another program: not the sources or the kernel of this run"
+            measurement = Measurement("crashed", message=words)
         if self.fresh:
             store.put(self.cell, measurement)
         return Result(self.cell, measurement, tuple(judge(self.cell, measurement, lookup)), self.fresh)

@@ -17,7 +17,7 @@ import tempfile
 import threading
 import time
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -119,7 +119,9 @@ def _serve() -> None:
     """Measure what comes in, until nobody asks any more."""
     from isomortar.harness.collection import cases_of
     from isomortar.harness.measurement import measure
+    from isomortar.harness.store import program_hash
 
+    program = program_hash()
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a case prints must not get among the answers
     tasks: queue.SimpleQueue[str] = queue.SimpleQueue()
@@ -133,7 +135,8 @@ def _serve() -> None:
     while True:
         task = json.loads(tasks.get())
         case = next(c for c in cases_of(Path(task["path"])) if c.name == task["case"])
-        answers.write(json.dumps(asdict(measure(Cell(case, task["settings"])))).encode() + b"\n")
+        measurement = replace(measure(Cell(case, task["settings"])), program=program)
+        answers.write(json.dumps(asdict(measurement)).encode() + b"\n")
         answers.flush()
 
 
