@@ -108,12 +108,16 @@ def real_numbers(value: Any) -> FloatArray:
         mask), whole numbers too large for double precision.
     """
     array = np.asarray(value)
-    if isinstance(value, np.ma.MaskedArray) or array.dtype.kind not in "iuf":
-        kind = "a masked array" if isinstance(value, np.ma.MaskedArray) else array.dtype
+    if _masked(value) or array.dtype.kind not in "iuf":
+        kind = "a masked array" if _masked(value) else array.dtype
         raise TypeError(f"a measured value must be made of real numbers; got {kind} ({value!r:.60})")
     if array.dtype.kind in "iu" and np.any((array > LARGEST_WHOLE) | (array < -LARGEST_WHOLE)):
         raise TypeError(f"double precision does not hold all whole numbers above 2^53; got {value!r:.60}")
     return array.astype(np.float64)
+
+
+def _masked(value: Any) -> bool:
+    return isinstance(value, np.ma.MaskedArray) or (isinstance(value, list | tuple) and any(map(_masked, value)))
 
 
 def convergence_of(value: Stored) -> Convergence | None:
