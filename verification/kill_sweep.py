@@ -17,6 +17,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -67,6 +68,18 @@ def _timeless(value: Any) -> Any:
     return [_timeless(entry) for entry in value] if isinstance(value, list) else value
 
 
+def differences(one: Any, other: Any, place: str = "") -> Iterator[str]:
+    """Where two reports differ."""
+    if isinstance(one, dict) and isinstance(other, dict) and one.keys() == other.keys():
+        for name in one:
+            yield from differences(one[name], other[name], f"{place}/{name}")
+    elif isinstance(one, list) and isinstance(other, list) and len(one) == len(other):
+        for k, entries in enumerate(zip(one, other, strict=True)):
+            yield from differences(*entries, f"{place}/{k}")
+    elif one != other:
+        yield f"{place}: {one!r:.60} and {other!r:.60}"
+
+
 def finish(family: str, results: Path, *options: str) -> tuple[Any, float]:
     """Run to the end: the report without times, and the seconds that it took."""
     began = time.monotonic()
@@ -99,23 +112,25 @@ def main() -> None:
         whole, seconds = finish(family, Path(folder) / "whole")
         print(f"undisturbed: {len(whole['cells'])} cells in {seconds:.1f} s, {whole['states']}", flush=True)
         killed, number, rounds = Path(folder) / "killed-0", 0, 0
-        different = []
+        found: list[list[str]] = []
         while number < options.kills:
             moment = chance.uniform(0.0, seconds)
             if interrupted(family, killed, moment):
                 number += 1
                 print(f"kill {number:2d} after {moment:5.2f} s: {measured(killed)} of {len(whole['cells'])} cells are kept", flush=True)
             else:
-                different.append(report(killed) != whole)
+                found.append(list(differences(whole, report(killed))))
                 rounds += 1
                 killed = Path(folder) / f"killed-{rounds}"
                 print("the run has come to its end before the next kill; another one begins", flush=True)
-        different.append(finish(family, killed)[0] != whole)
-        print(f"resumed to their end: {len(different)} runs, {sum(different)} reports differ in more than times")
+        found.append(list(differences(whole, finish(family, killed)[0])))
+        print(f"resumed to their end: {len(found)} runs, {sum(map(bool, found))} reports differ in more than times", flush=True)
         if options.dask:
-            different.append(on_dask(family, Path(folder) / "dask") != whole)
-            print(f"Dask, two processes: the report {'differs' if different[-1] else 'is the same'}")
-    sys.exit(1 if any(different) else 0)
+            found.append(list(differences(whole, on_dask(family, Path(folder) / "dask"))))
+            print(f"Dask, two processes: the report {'differs' if found[-1] else 'is the same'}")
+    for lines in filter(None, found):
+        print("\n".join(lines[:10]))
+    sys.exit(1 if any(found) else 0)
 
 
 if __name__ == "__main__":
