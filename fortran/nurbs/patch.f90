@@ -6,7 +6,7 @@ module isomortar_nurbs_patch
   implicit none
   private
 
-  public :: element_count, element_nodes, element_of, line_rule, volume_gradients
+  public :: element_count, element_nodes, element_of, line_rule
 
   !> A volume patch.
   type, public :: patch_t
@@ -86,33 +86,5 @@ contains
       end do
     end do
   end subroutine line_rule
-
-  !> Rational functions of an element at one point, differentiated by the parameters: gradients(a, d).
-  !> u, v, w hold the values (column 0) and first derivatives (column 1) of each direction.
-  pure subroutine volume_gradients(u, v, w, weight, gradients)
-    real(wp), intent(in) :: u(0:, 0:), v(0:, 0:), w(0:, 0:)
-    real(wp), intent(in) :: weight(:)
-    real(wp), intent(out) :: gradients(:, :)
-    real(wp) :: total, slope(3), values(size(weight))
-    integer :: a, d, i, j, k
-
-    a = 0
-    do k = 0, ubound(w, 1)
-      do j = 0, ubound(v, 1)
-        do i = 0, ubound(u, 1)
-          a = a + 1
-          values(a) = weight(a) * u(i, 0) * v(j, 0) * w(k, 0)
-          gradients(a, 1) = weight(a) * u(i, 1) * v(j, 0) * w(k, 0)
-          gradients(a, 2) = weight(a) * u(i, 0) * v(j, 1) * w(k, 0)
-          gradients(a, 3) = weight(a) * u(i, 0) * v(j, 0) * w(k, 1)
-        end do
-      end do
-    end do
-    total = sum(values)
-    slope = sum(gradients, dim=1)
-    do d = 1, 3
-      gradients(:, d) = (gradients(:, d) - values * (slope(d) / total)) / total
-    end do
-  end subroutine volume_gradients
 
 end module isomortar_nurbs_patch

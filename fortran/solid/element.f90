@@ -1,18 +1,23 @@
-!> Residual and tangent of one solid element.
+!> Residual and tangent of one solid element, by sum factorisation.
 module isomortar_solid_element
   use isomortar_base_algebra, only: determinant, identity, inverse
   use isomortar_base_kinds, only: wp
   use isomortar_base_status, only: status_folded, status_folded_initially, status_ok
-  use isomortar_nurbs_patch, only: line_rule_t, volume_gradients
+  use isomortar_nurbs_patch, only: line_rule_t
+  use isomortar_nurbs_tensor_product, only: integrate, integrate_pairs, interpolate, line_pairs_t
   use isomortar_solid_material, only: kirchhoff_stress, stretch, stretch_t, tangent_coefficients
   implicit none
   private
 
-  public :: element_residual, element_tangent, sample_element
+  public :: component_pairs, element_residual, element_tangent, sample_element
+
+  !> Components i, k of the six tangents K_ik that are integrated; K_ki of control points a, b is K_ik of b, a.
+  integer, parameter :: component_pairs(2, 6) = reshape([1, 1, 2, 2, 3, 3, 1, 2, 1, 3, 2, 3], [2, 6])
 
   !> Everything at the quadrature points of an element that residual and tangent are made of.
   type, public :: samples_t
-    !> Gradients of the functions in the current configuration: (control point, point, component).
+    !> The gradient of function a in the current configuration is w_a gradient(point, i, D) B_aD; B_aD are the value (D = 1) and the
+    !> derivatives by the parameters (D = 2, 3, 4) of the product of functions without its weight w_a.
     real(wp), allocatable :: gradient(:, :, :)
     !> Quadrature weight times reference volume.
     real(wp), allocatable :: volume(:)
@@ -32,111 +37,122 @@ contains
     real(wp), intent(in) :: weight(:), positions(:, :), references(:, :)
     type(samples_t), intent(inout) :: samples
     integer, intent(out) :: status
-    real(wp) :: parametric(size(weight), 3), map(3, 3), det, h(3, 3), f(3, 3), displacements(3, size(weight))
-    integer :: i, j, k, q
+    real(wp) :: coefficients(size(weight), 7), values(7, size(u%weight) * size(v%weight) * size(w%weight), 4)
+    real(wp) :: f(3, 3), grown(3, 3), map(3, 3), reference_map(3, 3), det
+    integer :: d, i, j, k, q
 
     status = status_ok
-    call reserve(samples, size(weight), size(u%weight) * size(v%weight) * size(w%weight))
-    displacements = positions - references
+    call reserve(samples, size(values, 2))
+    coefficients(:, 1) = weight
+    do d = 1, 3 ! from the first control point, so that a rigid translation costs no digits
+      coefficients(:, 1 + d) = weight * (references(d, :) - references(d, 1))
+      coefficients(:, 4 + d) = weight * ((positions(d, :) - references(d, :)) - (positions(d, 1) - references(d, 1)))
+    end do
+    call interpolate(u, v, w, 7, coefficients, values)
     samples%smallest_jacobian = huge(1.0_wp)
     q = 0
     do k = 1, size(w%weight)
       do j = 1, size(v%weight)
         do i = 1, size(u%weight)
           q = q + 1
-          call volume_gradients(u%values(:, :, i), v%values(:, :, j), w%values(:, :, k), weight, parametric)
-          map = matmul(references, parametric)
-          det = determinant(map)
+          reference_map = quotient(values(1, q, :), values(2:4, q, :))
+          det = determinant(reference_map)
           if (.not. det > 0.0_wp) then
             status = status_folded_initially
             samples%smallest_jacobian = det
             return
           end if
-          h = matmul(matmul(displacements, parametric), inverse(map, det))
-          samples%state(q) = stretch(h)
+          grown = quotient(values(1, q, :), values(5:7, q, :))
+          samples%state(q) = stretch(matmul(grown, inverse(reference_map, det)))
           samples%volume(q) = u%weight(i) * v%weight(j) * w%weight(k) * det
           samples%smallest_jacobian = min(samples%smallest_jacobian, samples%state(q)%jacobian)
           if (.not. samples%state(q)%jacobian > 0.0_wp) then
             status = status_folded
             return
           end if
-          f = matmul(identity + h, map)
-          samples%gradient(:, q, :) = matmul(parametric, inverse(f, determinant(f)))
+          map = reference_map + grown
+          f = transpose(inverse(map, determinant(map))) / values(1, q, 1)
+          samples%gradient(q, :, 1) = -matmul(f, values(1, q, 2:4)) / values(1, q, 1)
+          samples%gradient(q, :, 2:4) = f
         end do
       end do
     end do
     samples%total_volume = sum(samples%volume)
   end subroutine sample_element
 
-  !> Make room for n control points and m quadrature points.
-  pure subroutine reserve(samples, n, m)
-    type(samples_t), intent(inout) :: samples
-    integer, intent(in) :: n, m
+  !> Derivatives by the parameters of a rational field, from those of its denominator and numerators: (component, parameter).
+  pure function quotient(denominator, numerator) result(slope)
+    real(wp), intent(in) :: denominator(4), numerator(3, 4)
+    real(wp) :: slope(3, 3)
+    integer :: d
 
-    if (allocated(samples%gradient)) then
-      if (size(samples%gradient, 1) == n .and. size(samples%volume) == m) return
+    do d = 1, 3
+      slope(:, d) = (numerator(:, 1 + d) - numerator(:, 1) * (denominator(1 + d) / denominator(1))) / denominator(1)
+    end do
+  end function quotient
+
+  !> Make room for m quadrature points.
+  pure subroutine reserve(samples, m)
+    type(samples_t), intent(inout) :: samples
+    integer, intent(in) :: m
+
+    if (allocated(samples%volume)) then
+      if (size(samples%volume) == m) return
       deallocate (samples%gradient, samples%volume, samples%state)
     end if
-    allocate (samples%gradient(n, m, 3), samples%volume(m), samples%state(m))
+    allocate (samples%gradient(m, 3, 4), samples%volume(m), samples%state(m))
   end subroutine reserve
 
   !> Internal forces, shape (3, control points).
-  pure subroutine element_residual(samples, bulk, shear, residual)
+  pure subroutine element_residual(u, v, w, weight, samples, bulk, shear, residual)
+    type(line_rule_t), intent(in) :: u, v, w
+    real(wp), intent(in) :: weight(:)
     type(samples_t), intent(in) :: samples
     real(wp), intent(in) :: bulk, shear
     real(wp), intent(out) :: residual(:, :)
-    real(wp) :: stress(3, 3)
-    integer :: q
+    real(wp) :: densities(size(samples%volume), 3, 4), sums(3, size(weight))
+    integer :: a, q
 
-    residual = 0.0_wp
     do q = 1, size(samples%volume)
-      stress = samples%volume(q) * kirchhoff_stress(samples%state(q), bulk, shear)
-      residual = residual + matmul(stress, transpose(samples%gradient(:, q, :)))
+      densities(q, :, :) = matmul(samples%volume(q) * kirchhoff_stress(samples%state(q), bulk, shear), samples%gradient(q, :, :))
+    end do
+    call integrate(u, v, w, 3, densities, sums)
+    do a = 1, size(weight)
+      residual(:, a) = weight(a) * sums(:, a)
     end do
   end subroutine element_residual
 
-  !> Tangent, shape (control points, 3, control points, 3), as products of matrices over all quadrature points.
-  pure subroutine element_tangent(samples, bulk, shear, tangent)
+  !> The tangents K_ik of `component_pairs` without the weights of the control points: (pair, u, v, w), where each of u, v, w
+  !> runs over pairs of functions.
+  pure subroutine element_tangent(u, v, w, samples, bulk, shear, tangent)
+    type(line_pairs_t), intent(in) :: u, v, w
     type(samples_t), intent(in) :: samples
     real(wp), intent(in) :: bulk, shear
-    real(wp), intent(out) :: tangent(:, :, :, :)
-    real(wp), allocatable :: left(:, :), right(:, :), stretched(:, :, :), c(:, :), shear_part(:, :)
-    integer :: i, k, m, n, q
+    real(wp), intent(out) :: tangent(:)
+    real(wp), allocatable :: c(:, :), densities(:, :, :, :), h(:, :, :)
+    integer :: d, e, i, k, m, pair, q
 
-    n = size(samples%gradient, 1)
     m = size(samples%volume)
-    allocate (left(n, 3 * m), right(n, 3 * m), stretched(n, m, 3), c(4, m), shear_part(n, n))
+    allocate (c(m, 4), h(m, 3, 4), densities(m, 6, 4, 4))
     do q = 1, m
-      c(:, q) = samples%volume(q) * tangent_coefficients(samples%state(q), bulk, shear)
-      stretched(:, q, :) = matmul(samples%gradient(:, q, :), samples%state(q)%left_cauchy_green)
+      c(q, :) = samples%volume(q) * tangent_coefficients(samples%state(q), bulk, shear)
+      h(q, :, :) = matmul(samples%state(q)%left_cauchy_green, samples%gradient(q, :, :))
     end do
-
-    do i = 1, 3
-      do q = 1, m
-        left(:, (i - 1) * m + q) = c(3, q) * samples%gradient(:, q, i)
-        right(:, (i - 1) * m + q) = stretched(:, q, i)
-      end do
-    end do
-    shear_part = matmul(left, transpose(right))
-
-    do k = 1, 3
-      do i = 1, k
-        do q = 1, m
-          left(:, q) = c(1, q) * samples%gradient(:, q, i) - c(4, q) * stretched(:, q, i)
-          left(:, m + q) = -c(4, q) * samples%gradient(:, q, i)
-          left(:, 2 * m + q) = c(2, q) * samples%gradient(:, q, k)
-          right(:, q) = samples%gradient(:, q, k)
-          right(:, m + q) = stretched(:, q, k)
-          right(:, 2 * m + q) = samples%gradient(:, q, i)
+    associate (g => samples%gradient)
+      do e = 1, 4
+        do d = 1, 4
+          do pair = 1, 6
+            i = component_pairs(1, pair)
+            k = component_pairs(2, pair)
+            densities(:, pair, d, e) = g(:, i, d) * (c(:, 1) * g(:, k, e) - c(:, 4) * h(:, k, e)) &
+              + c(:, 2) * g(:, k, d) * g(:, i, e) - c(:, 4) * h(:, i, d) * g(:, k, e)
+            if (i == k) densities(:, pair, d, e) = densities(:, pair, d, e) &
+              + c(:, 3) * (g(:, 1, d) * h(:, 1, e) + g(:, 2, d) * h(:, 2, e) + g(:, 3, d) * h(:, 3, e))
+          end do
         end do
-        tangent(:, i, :, k) = matmul(left, transpose(right))
-        if (i == k) then
-          tangent(:, i, :, i) = tangent(:, i, :, i) + shear_part
-        else
-          tangent(:, k, :, i) = transpose(tangent(:, i, :, k))
-        end if
       end do
-    end do
+    end associate
+    call integrate_pairs(u, v, w, 6, densities, tangent)
   end subroutine element_tangent
 
 end module isomortar_solid_element

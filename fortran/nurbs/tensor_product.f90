@@ -1,0 +1,168 @@
+!> Sums over the control points or the quadrature points of an element, one direction after the other (sum factorisation).
+!>
+!> A function of an element is B_a = u_a1 v_a2 w_a3. Kind D = 1 is its value, D = 2, 3, 4 its derivatives by the three
+!> parameters. Every contraction takes the first index of an array away and appends the new one as the last, so that after
+!> three of them the indices have gone round. Of the kinds that are left on the way, the first is the value, the second the
+!> derivative along the direction that is next.
+module isomortar_nurbs_tensor_product
+  use isomortar_base_kinds, only: wp
+  use isomortar_nurbs_patch, only: line_rule_t
+  implicit none
+  private
+
+  public :: integrate, integrate_pairs, interpolate, line_pairs
+
+  !> Products of two functions of one direction at its points, for integrals of pairs; point and derivatives run fastest.
+  type, public :: line_pairs_t
+    !> With value or derivative of either function, shape (points * 2 * 2, functions**2); that of the first runs faster.
+    real(wp), allocatable :: either(:, :)
+    !> With value or derivative of the first, of the second function, shape (points * 2, functions**2).
+    real(wp), allocatable :: first(:, :), second(:, :)
+    !> With the values, shape (points, functions**2).
+    real(wp), allocatable :: values(:, :)
+  end type line_pairs_t
+
+contains
+
+  !> Fields and their derivatives at all points: from (u, v, w, field) of the control points to (field, points, kind).
+  pure subroutine interpolate(u, v, w, fields, coefficients, values)
+    type(line_rule_t), intent(in) :: u, v, w
+    integer, intent(in) :: fields
+    real(wp), intent(in) :: coefficients(size(u%values, 1) * size(v%values, 1) * size(w%values, 1) * fields)
+    real(wp), intent(out) :: values(fields * size(u%weight) * size(v%weight) * size(w%weight), 4)
+    real(wp) :: one(size(v%values, 1) * size(w%values, 1) * fields * size(u%weight), 2)
+    real(wp) :: two(size(w%values, 1) * fields * size(u%weight) * size(v%weight), 3)
+
+    call spread_line(u, 1, size(one, 1) / size(u%weight), coefficients, one)
+    call spread_line(v, 2, size(two, 1) / size(v%weight), one, two)
+    call spread_line(w, 3, size(values, 1) / size(w%weight), two, values)
+  end subroutine interpolate
+
+  !> One direction of `interpolate`: every kind with the line's values, the value also with its derivatives, which come last.
+  pure subroutine spread_line(line, kinds, rest, source, target)
+    type(line_rule_t), intent(in) :: line
+    integer, intent(in) :: kinds, rest
+    real(wp), intent(in) :: source(size(line%values, 1), rest, kinds)
+    real(wp), intent(out) :: target(rest, size(line%weight), kinds + 1)
+    integer :: d
+
+    do d = 1, kinds
+      target(:, :, d) = matmul(transpose(source(:, :, d)), line%values(:, 0, :))
+    end do
+    target(:, :, kinds + 1) = matmul(transpose(source(:, :, 1)), line%values(:, 1, :))
+  end subroutine spread_line
+
+  !> Sum over points and kinds of densities times functions: from (points, field, kind) to (field, u, v, w) of the control points.
+  pure subroutine integrate(u, v, w, fields, densities, sums)
+    type(line_rule_t), intent(in) :: u, v, w
+    integer, intent(in) :: fields
+    real(wp), intent(in) :: densities(size(u%weight) * size(v%weight) * size(w%weight) * fields, 4)
+    real(wp), intent(out) :: sums(fields * size(u%values, 1) * size(v%values, 1) * size(w%values, 1))
+    real(wp) :: one(size(v%weight) * size(w%weight) * fields * size(u%values, 1), 3)
+    real(wp) :: two(size(w%weight) * fields * size(u%values, 1) * size(v%values, 1), 2)
+
+    call gather_line(u, 4, size(one, 1) / size(u%values, 1), densities, one)
+    call gather_line(v, 3, size(two, 1) / size(v%values, 1), one, two)
+    call gather_line(w, 2, size(sums) / size(w%values, 1), two, sums)
+  end subroutine integrate
+
+  !> One direction of `integrate`.
+  pure subroutine gather_line(line, kinds, rest, source, target)
+    type(line_rule_t), intent(in) :: line
+    integer, intent(in) :: kinds, rest
+    real(wp), intent(in) :: source(size(line%weight), rest, kinds)
+    real(wp), intent(out) :: target(rest, size(line%values, 1), kinds - 1)
+    real(wp) :: slopes(size(line%weight), size(line%values, 1)), values(size(line%weight), size(line%values, 1))
+    integer :: d
+
+    values = transpose(line%values(:, 0, :))
+    slopes = transpose(line%values(:, 1, :))
+    target(:, :, 1) = matmul(transpose(source(:, :, 1)), values) + matmul(transpose(source(:, :, 2)), slopes)
+    do d = 2, kinds - 1
+      target(:, :, d) = matmul(transpose(source(:, :, d + 1)), values)
+    end do
+  end subroutine gather_line
+
+  !> Tables of the elements of a direction for `integrate_pairs`.
+  pure subroutine line_pairs(lines, tables)
+    type(line_rule_t), intent(in) :: lines(:)
+    type(line_pairs_t), allocatable, intent(out) :: tables(:)
+    integer :: e
+
+    allocate (tables(size(lines)))
+    do e = 1, size(lines)
+      call tabulate(lines(e), tables(e))
+    end do
+  end subroutine line_pairs
+
+  !> Tables of one element.
+  pure subroutine tabulate(line, self)
+    type(line_rule_t), intent(in) :: line
+    type(line_pairs_t), intent(out) :: self
+    integer :: a, ab, b, first, m, n, second
+
+    n = size(line%values, 1)
+    m = size(line%weight)
+    allocate (self%either(4 * m, n**2), self%first(2 * m, n**2), self%second(2 * m, n**2), self%values(m, n**2))
+    do b = 1, n
+      do a = 1, n
+        ab = a + n * (b - 1)
+        do second = 0, 1
+          do first = 0, 1
+            associate (place => (first + 2 * second) * m)
+              self%either(place + 1:place + m, ab) = line%values(a - 1, first, :) * line%values(b - 1, second, :)
+            end associate
+          end do
+        end do
+        self%values(:, ab) = self%either(:m, ab)
+        self%first(:, ab) = self%either(:2 * m, ab)
+        self%second(:m, ab) = self%either(:m, ab)
+        self%second(m + 1:, ab) = self%either(2 * m + 1:3 * m, ab)
+      end do
+    end do
+  end subroutine tabulate
+
+  !> Sum over points and kinds of densities times pairs of functions: from (points, field, kind, kind) to (field, u, v, w),
+  !> where each of u, v, w runs over pairs of functions, the first faster.
+  pure subroutine integrate_pairs(u, v, w, fields, densities, sums)
+    type(line_pairs_t), intent(in) :: u, v, w
+    integer, intent(in) :: fields
+    real(wp), intent(in) :: densities(size(u%values, 1) * size(v%values, 1) * size(w%values, 1) * fields, 4, 4)
+    real(wp), intent(out) :: sums(fields * size(u%values, 2) * size(v%values, 2) * size(w%values, 2))
+    real(wp) :: one(size(v%values, 1) * size(w%values, 1) * fields * size(u%values, 2), 3, 3)
+    real(wp) :: two(size(w%values, 1) * fields * size(u%values, 2) * size(v%values, 2), 2, 2)
+
+    call gather_pairs(u, 4, size(one, 1) / size(u%values, 2), densities, one)
+    call gather_pairs(v, 3, size(two, 1) / size(v%values, 2), one, two)
+    call gather_pairs(w, 2, size(sums) / size(w%values, 2), two, sums)
+  end subroutine integrate_pairs
+
+  !> One direction of `integrate_pairs`.
+  pure subroutine gather_pairs(line, kinds, rest, source, target)
+    type(line_pairs_t), intent(in) :: line
+    integer, intent(in) :: kinds, rest
+    real(wp), intent(in) :: source(size(line%values, 1), rest, kinds, kinds)
+    real(wp), intent(out) :: target(rest, size(line%values, 2), kinds - 1, kinds - 1)
+    real(wp) :: beside(2 * size(line%values, 1), rest), all(4 * size(line%values, 1), rest)
+    integer :: d, e, m
+
+    m = size(line%values, 1)
+    all(:m, :) = source(:, :, 1, 1)
+    all(m + 1:2 * m, :) = source(:, :, 2, 1)
+    all(2 * m + 1:3 * m, :) = source(:, :, 1, 2)
+    all(3 * m + 1:, :) = source(:, :, 2, 2)
+    target(:, :, 1, 1) = matmul(transpose(all), line%either)
+    do d = 2, kinds - 1
+      beside(:m, :) = source(:, :, 1, d + 1)
+      beside(m + 1:, :) = source(:, :, 2, d + 1)
+      target(:, :, 1, d) = matmul(transpose(beside), line%first)
+      beside(:m, :) = source(:, :, d + 1, 1)
+      beside(m + 1:, :) = source(:, :, d + 1, 2)
+      target(:, :, d, 1) = matmul(transpose(beside), line%second)
+      do e = 2, kinds - 1
+        target(:, :, e, d) = matmul(transpose(source(:, :, e + 1, d + 1)), line%values)
+      end do
+    end do
+  end subroutine gather_pairs
+
+end module isomortar_nurbs_tensor_product

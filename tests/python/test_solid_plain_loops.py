@@ -1,0 +1,92 @@
+"""The solid by plain loops over elements and points, as formulation.md Section 1 writes it: what sum factorisation must give.
+
+Forces are summed point by point with SciPy's B-splines; the tangent's product with a direction is their complex-step derivative.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+import pytest
+from scipy.interpolate import BSpline
+
+from isomortar import _bindings
+from isomortar._bindings import Pattern
+from isomortar.geometry.patch import Direction, Patch
+from isomortar.geometry.primitives import box
+from isomortar.geometry.refinement import mesh
+from isomortar.model.entities import Material
+from isomortar.model.numbering import patch_arrays
+
+MATERIAL = Material(10.0, 0.3)
+
+
+def rational_body(order: tuple[int, int, int], elements: tuple[int, int, int]) -> Patch:
+    """A distorted box with weights between 0.4 and 2.5."""
+    rng = np.random.default_rng(5)
+    patch = mesh(box((0.0, 0.0, 0.0), (1.0, 0.7, 1.2)), ("N", "N", "N"), order, elements)
+    shaken = patch.control_points + 0.03 * rng.standard_normal(patch.control_points.shape)
+    return replace(patch, control_points=shaken, weights=np.exp(rng.uniform(-0.9, 0.9, patch.weights.shape)))
+
+
+def line(direction: Direction, element: int, points: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Gauss weights, values and slopes of all functions of a direction at the points of one element: (point, function)."""
+    low, high = direction.boundaries[element : element + 2]
+    x, weights = np.polynomial.legendre.leggauss(points)
+    x = low + (high - low) * (x + 1.0) / 2.0
+    splines = BSpline(direction.knots, np.eye(direction.count), direction.order)
+    return weights * (high - low) / 2.0, splines(x), splines.derivative()(x)
+
+
+def gradients(patch: Patch, points: tuple[int, int, int]) -> list[tuple[float, np.ndarray]]:
+    """Volume and gradients of all functions in the reference configuration, shape (control points, 3), of every point."""
+    found = []
+    w = patch.weights.ravel()
+    for element in product(*(range(d.elements) for d in patch.directions)):
+        lines = [line(d, e, n) for d, e, n in zip(patch.directions, element, points, strict=True)]
+        for q in product(*(range(n) for n in points)):
+            one, two, three = ((values[i], slopes[i]) for (_, values, slopes), i in zip(lines, q, strict=True))
+            kinds = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+            b = [w * np.einsum("i,j,k->kji", one[d], two[e], three[f]).ravel() for d, e, f in kinds]
+            total = b[0].sum()
+            parametric = np.column_stack([(b[d] - b[0] * b[d].sum() / total) / total for d in (1, 2, 3)])
+            map_ = patch.control_points.T @ parametric
+            volume = float(np.prod([weights[i] for (weights, _, _), i in zip(lines, q, strict=True)]) * np.linalg.det(map_))
+            found.append((volume, parametric @ np.linalg.inv(map_)))
+    return found
+
+
+def plain_forces(samples: list[tuple[float, np.ndarray]], positions: np.ndarray) -> np.ndarray:
+    """Internal forces at real or complex positions."""
+    forces = np.zeros_like(positions)
+    for volume, gradient in samples:
+        f = positions.T @ gradient
+        jacobian, b = np.linalg.det(f), f @ f.T
+        spherical = MATERIAL.bulk * np.log(jacobian) * np.eye(3)
+        stress = spherical + MATERIAL.shear * jacobian ** (-2.0 / 3.0) * (b - np.trace(b) / 3.0 * np.eye(3))
+        forces += volume * gradient @ (stress @ np.linalg.inv(f).T).T
+    return forces
+
+
+@pytest.mark.parametrize(("order", "elements"), [((3, 1, 2), (2, 2, 1)), ((1, 4, 1), (1, 2, 2)), ((2, 2, 5), (1, 1, 2))])
+def test_forces_and_tangent(order: tuple[int, int, int], elements: tuple[int, int, int]) -> None:
+    patch = rational_body(order, elements)
+    n = len(patch.control_points)
+    points = (order[0] + 2, order[1] + 1, order[2] + 1)
+    arrays = patch_arrays(patch, np.arange(n, dtype=np.int32))
+    rng = np.random.default_rng(6)
+    positions = patch.control_points + 0.03 * rng.standard_normal((n, 3))
+    pattern = Pattern(np.arange(0, n * n + 1, n, dtype=np.int32), np.tile(np.arange(n, dtype=np.int32), n))
+    forces, blocks = np.zeros((n, 3)), np.zeros((n * n, 3, 3))
+    _bindings.add_body(arrays, points, MATERIAL.bulk, MATERIAL.shear, positions, patch.control_points, forces, pattern, blocks)
+    tangent = blocks.reshape(n, n, 3, 3).transpose(0, 2, 1, 3).reshape(3 * n, 3 * n)
+
+    samples = gradients(patch, points)
+    plain = plain_forces(samples, positions)
+    assert np.linalg.norm(forces - plain) < 1e-13 * np.linalg.norm(plain)
+    along = rng.standard_normal((n, 3))
+    step = 1e-30
+    slope = plain_forces(samples, positions + 1j * step * along).imag / step
+    assert np.linalg.norm(tangent @ along.ravel() - slope.ravel()) < 1e-13 * np.linalg.norm(slope)
