@@ -15,7 +15,7 @@ subroutine sparse_analyse(n, nnz, indptr, indices, by_metis, handle, place, stat
   call analyse(indptr, indices, by_metis == 1, handle, place, status)
 end subroutine sparse_analyse
 
-!> Factorise a matrix of the pattern analysed; when singular, `place` is the unknown of the smallest pivot.
+!> Factorise a matrix of the pattern analysed; when singular, `place` is the unknown that is determined least.
 recursive subroutine sparse_factorise(handle, n, nnz, indptr, indices, values, rcond_min, rcond, flops, peak_bytes, &
   factor_entries, place, status)
   use iso_c_binding, only: c_double, c_int, c_int64_t

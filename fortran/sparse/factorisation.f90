@@ -93,7 +93,7 @@ contains
     real(c_double), intent(out) :: rcond
     !> Floating-point operations, peak memory (analysis included), entries of L and U.
     real(c_double), intent(out) :: flops, peak_bytes, factor_entries
-    !> Unknown of the smallest pivot (0-based) when singular, UMFPACK's return code when that is the failure; else -1.
+    !> The unknown (0-based) that is determined least when singular, UMFPACK's return code when that is the failure; else -1.
     integer(c_int64_t), intent(out) :: place
     integer, intent(out) :: status
 
@@ -124,7 +124,7 @@ contains
       ! Written so that a condition that is not a number counts as singular too.
       if (rcond >= rcond_min .and. status == status_ok) return
       status = status_singular
-      place = unknown_of_smallest_pivot(entry%numeric, size(indptr) - 1)
+      place = undetermined_unknown(entry, indptr, indices, values)
       call umfpack_dl_free_numeric(entry%numeric)
     end associate
   end subroutine factorise
@@ -215,6 +215,27 @@ contains
     control(control_sym_pivot_tolerance) = pivot_tolerance
     control(control_irstep) = refine
   end function settings
+
+  !> Unknown (0-based) that a singular matrix determines least: the largest entry of its null vector, which is what a solve
+  !> gives, for any right-hand side; where a pivot is zero, that of the pivot.
+  recursive function undetermined_unknown(entry, indptr, indices, values) result(unknown)
+    type(factorisation), intent(in) :: entry
+    integer(c_int64_t), contiguous, intent(in) :: indptr(:), indices(:)
+    real(c_double), contiguous, intent(in) :: values(:)
+    integer(c_int64_t) :: unknown
+
+    real(c_double) :: b(size(indptr) - 1), info(0:info_last), x(size(indptr) - 1)
+    integer(c_int64_t) :: code
+    integer :: i
+
+    b = [(1.0_c_double + modulo(i * 0.618_c_double, 1.0_c_double), i=1, size(b))]
+    code = umfpack_dl_solve(umfpack_at, indptr, indices, values, x, b, entry%numeric, settings(entry%ordering, 0), info)
+    if (code == umfpack_ok .and. all(abs(x) <= huge(x))) then
+      unknown = maxloc(abs(x), dim=1) - 1
+    else
+      unknown = unknown_of_smallest_pivot(entry%numeric, size(x))
+    end if
+  end function undetermined_unknown
 
   !> Unknown (0-based) with the smallest pivot: the rows UMFPACK pivots are the columns of A.
   recursive function unknown_of_smallest_pivot(numeric, n) result(unknown)

@@ -114,7 +114,7 @@ class SparseLU:
         Raises
         ------
         SingularSystemError
-            The matrix is singular or `rcond` below `rcond_min`; `place` is the unknown of the smallest pivot, which is one of those that
+            The matrix is singular or `rcond` below `rcond_min`; `place` is the unknown that is determined least, one of those that
             nothing holds.
         KernelError
             An entry is not finite (`place`: its row), memory ran out, or UMFPACK failed.
@@ -130,7 +130,7 @@ class SparseLU:
             )
             if status == _SINGULAR:
                 raise SingularSystemError(
-                    f"the linear system is singular: reciprocal condition {self.rcond:.1e}, smallest pivot at unknown {place}. "
+                    f"the linear system is singular: reciprocal condition {self.rcond:.1e}, least determined is unknown {place}. "
                     "Something is not held by supports or contact, or constraints repeat each other",
                     place,
                 )
