@@ -223,8 +223,8 @@ def _toggling(seen: Sequence[bytes], visited: Sequence[IntArray], summed: bool) 
     crossing = np.flatnonzero(np.any(elements != elements[0], axis=(0, 2)))
     if crossing.size:
         return (
-            f"; slave quadrature points {_first_few(crossing)} cross a knot line of the master from iteration to iteration, where the "
-            "curvature of a master of order 2 jumps (order 3 and more has no such jump)"
+            f"; slave quadrature points {_first_few(crossing)} cross a knot line of the master from iteration to iteration, where a master "
+            "of order 1 or of Lagrange elements has a kink, and the curvature of one of order 2 jumps (NURBS of order 3 and more have neither)"
         )
     return ""
 
