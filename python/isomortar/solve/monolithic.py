@@ -224,7 +224,7 @@ def _toggling(seen: Sequence[bytes], visited: Sequence[IntArray], summed: bool) 
     if crossing.size:
         return (
             f"; slave quadrature points {_first_few(crossing)} cross a knot line of the master from iteration to iteration, where a master "
-            "of order 1 or of Lagrange elements has a kink, and the curvature of one of order 2 jumps (NURBS of order 3 and more have neither)"
+            "of order 1 or of Lagrange elements has a kink, and the curvature of one of order 2 jumps (not so NURBS of order 3 and more)"
         )
     return ""
 
