@@ -45,6 +45,13 @@ def test_the_published_slope_of_2_73_is_no_order_3():
     assert estimate_order(Convergence(H, H**2.73, ALONE), 3).judgement == "pre-asymptotic"
 
 
+def test_an_order_that_is_being_lost_is_not_confirmed_by_its_mean():
+    estimate = estimate_order(Convergence(H[:4], 2.0 ** -np.array([0, 2.9, 5.5, 7.8]), ALONE), 3)
+    assert estimate.low < 3 < estimate.high
+    assert estimate.judgement == "pre-asymptotic"
+    assert "order 2.30 at last" in estimate.why
+
+
 @pytest.mark.parametrize(("share", "judgement"), [(0.09, "confirmed"), (0.1, "at the floor"), (0.5, "at the floor")])
 def test_other_errors_must_stay_below_a_tenth(share, judgement):
     others = {"augmentation": share * H[-1] ** 2, "quadrature": 0.01 * H**2}

@@ -102,6 +102,12 @@ def test_a_planted_fault_that_does_not_fit_is_an_error(tmp_path, changes, words)
         read_planted(planted(tmp_path, **changes), SOURCES)
 
 
+def test_a_list_without_faults_is_an_error(tmp_path):
+    (tmp_path / "planted.toml").write_text("fault = []\n")
+    with pytest.raises(InputError, match="holds no"):
+        read_planted(tmp_path / "planted.toml", SOURCES)
+
+
 def test_a_planted_fault_is_applied_where_it_stands(tmp_path):
     (fault,) = read_planted(planted(tmp_path), SOURCES)
     assert fault.applied(TEXT) == TEXT.replace("real :: x", "integer :: x")

@@ -185,6 +185,13 @@ def test_a_failed_run_leaves_the_others(study):
     assert found.points[study.meshes("N1")[1]].errors
 
 
+def test_a_run_with_numbers_that_are_not_finite_has_failed(study):
+    runs = synthetic(study, {})
+    lost = study.meshes("N1")[0]
+    runs[lost].numbers["force"][0][1][2] = math.nan
+    assert [p.failure for p in analyse(study, runs).failed] == ["not finite: force"]
+
+
 def test_without_its_coarser_meshes_the_reference_is_worth_nothing(study):
     runs = synthetic(study, {"N1": (400.0, 2.0)})
     runs[study.reference[0]] = replace(runs[study.reference[0]], ending="crashed")

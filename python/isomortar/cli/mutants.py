@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from isomortar.cli.verification import CASES, CORES, FAILED, REFERENCES, CasesOption, JobsOption, ReferencesOption
+from isomortar.cli.verification import CASES, CORES, FAILED, REFERENCES, CasesOption, ReferencesOption
 
 if TYPE_CHECKING:
     from isomortar.harness.mutants.score import Score
@@ -25,7 +25,9 @@ def mutants(
     patience: Annotated[
         float, typer.Option(min=0.0, help="A random fault survives when cells of so many CPU seconds are green; 0: when all are.")
     ] = 60.0,
-    jobs: JobsOption = CORES,
+    jobs: Annotated[
+        int, typer.Option("-j", "--jobs", min=1, help="Faults built and attacked at the same time.", show_default="one a core")
+    ] = CORES,
     cases: CasesOption = CASES,
     references: ReferencesOption = REFERENCES,
     results: Annotated[Path, typer.Option("--results", file_okay=False, help="Folder of what is known, and of the report.")] = MUTANTS,

@@ -152,7 +152,8 @@ class _Comparison:
 
 def _point(chosen: Discretisation, measurement: Measurement) -> Point:
     if measurement.ending == "measured":
-        return Point(chosen, measurement.numbers, "")
+        broken = [name for name, value in measurement.numbers.items() if not np.isfinite(np.asarray(value, float)).all()]
+        return Point(chosen, {}, f"not finite: {', '.join(broken)}") if broken else Point(chosen, measurement.numbers, "")
     lines = measurement.message.strip().splitlines() or [measurement.ending]
     return Point(chosen, {}, _reason(lines[-1]))
 

@@ -105,7 +105,7 @@ class Campaign:
         Raises
         ------
         InputError
-            A planted fault does not compile, or changes nothing; no cell is green on the sound kernel.
+            A planted fault does not compile, or changes nothing; fewer faults than asked for; no cell is green on the sound kernel.
         """
         seconds, unused = self._sound_seconds()
         gate = Gate(seconds, self._cells, self._lookup)
@@ -116,6 +116,8 @@ class Campaign:
             names = {fault.name for fault in planted} - {fault.name for fault, _ in hand}
             raise InputError(f"{', '.join(sorted(names))}: {', '.join(dropped)}", "planted faults")
         random = list(self._distinct(drawn, sample, known, dropped))
+        if len(random) < sample:
+            raise InputError(f"is {sample}; only {len(random)} of the random faults compile and are distinct", "sample")
         attacked = tuple(self._attacked(gate, [*hand, *random], most))
         return Outcome(attacked, dropped, unused, seconds)
 

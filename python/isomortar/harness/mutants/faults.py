@@ -77,12 +77,14 @@ def read_planted(path: Path, sources: Mapping[str, str]) -> list[Fault]:
     Raises
     ------
     InputError
-        An entry is missing, or its text does not stand exactly once in its file.
+        There is none, an entry is missing, or its text does not stand exactly once in its file.
     """
     try:
         entries = tomllib.loads(path.read_text())["fault"]
     except (OSError, tomllib.TOMLDecodeError, KeyError) as error:
         raise InputError(f"is no list of [[fault]]: {error}", str(path)) from None
+    if not entries:
+        raise InputError("holds no [[fault]]: a gate that meets no fault catches all of them", str(path))
     planted = [_planted(entry, sources, f"{path}: {entry.get('name', f'fault {i + 1}')}") for i, entry in enumerate(entries)]
     names = [fault.name for fault in planted]
     if len(set(names)) < len(names):

@@ -8,21 +8,18 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-import jinja2
-
 from isomortar.harness.mutants.campaign import Attacked
 from isomortar.harness.mutants.score import CLASSES, LEAST_SHARE, Score
+from isomortar.harness.report import template
 from isomortar.harness.store import write_whole
 
 
 def write(path: Path, score: Score, settings: dict[str, Any]) -> None:
     """Write the page, and beside it the same as ``.json``. `settings` are those of the campaign, shown as they are."""
     when = datetime.now().astimezone().isoformat(timespec="minutes")
-    loader = jinja2.FileSystemLoader(Path(__file__).parent)
-    environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined)
-    template = environment.get_template("report.html")
-    page = template.render(score=score, settings=settings, when=when, least=LEAST_SHARE, classes=CLASSES, entries=unclassified(score))
-    write_whole(path, page)
+    page = template("mutants/report.html")
+    entries = unclassified(score)
+    write_whole(path, page.render(score=score, settings=settings, when=when, least=LEAST_SHARE, classes=CLASSES, entries=entries))
     write_whole(path.with_suffix(".json"), json.dumps(_as_data(score, settings, when), indent=1))
 
 
