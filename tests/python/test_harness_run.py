@@ -239,6 +239,18 @@ def test_command_and_its_report(root):
     assert len(history.read(Path("out/history.jsonl"))) == 2
 
 
+def test_the_page_of_a_part_says_so(root):
+    name = next(root.glob("family_*")).name
+    options = ["verify", "--cases", str(root), "--results", "out", "-j", "1"]
+    assert CliRunner().invoke(app, [*options, "--family", name]).exit_code == 0
+    assert f"<h1>All 5 cells pass: only family {name}</h1>" in Path("out/report.html").read_text()
+    assert json.loads(Path("out/report.json").read_text())["only"] == f"family {name}"
+    assert CliRunner().invoke(app, options).exit_code == 0
+    assert "<h1>All 5 cells pass</h1>" in Path("out/report.html").read_text()
+    with pytest.raises(InputError, match="the page is an"):
+        CliRunner().invoke(app, [*options, "--report", "out/report.json"], catch_exceptions=False)
+
+
 def test_blessing(root):
     family = next(root.glob("family_*"))
     family.joinpath("match.py").write_text(MATCH)

@@ -72,13 +72,16 @@ def verify(
     if tier not in TIERS:
         raise InputError(f"is {tier!r}; allowed: {', '.join(TIERS)}", "tier")
     page = report or results / "report.html"
+    if page.suffix != ".html":
+        raise InputError(f"is {page}; the page is an .html file, with .xml and .json beside it", "report")
     cells = select(collect(cases), next(t for t in TIERS if t == tier), family, case)
+    only = ", ".join(f"{what} {name}" for what, name in (("family", family), ("case", case)) if name)
     started, clock, lookup = datetime.now().astimezone(), time.perf_counter(), finder(references)
     # A run that is killed must not leave the green page of the one before.
-    reports.write(page, not_measured(cells, lookup), reports.Context(tier, 0.0, started, []))
+    reports.write(page, not_measured(cells, lookup), reports.Context(tier, only, 0.0, started, []))
     measured = measure_all(cells, results, lookup, _submitter(jobs, dask), fresh)
     history.append(results / "history.jsonl", measured)
-    context = reports.Context(tier, time.perf_counter() - clock, started, history.read(results / "history.jsonl"))
+    context = reports.Context(tier, only, time.perf_counter() - clock, started, history.read(results / "history.jsonl"))
     reports.write(page, measured, context)
     counts = Counter(result.state for result in measured)
     print(", ".join(f"{count} {state}" for state, count in counts.items()))

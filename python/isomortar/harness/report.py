@@ -31,9 +31,13 @@ _WORTH = {"self": ": shows change, never correctness"}
 
 @dataclass(frozen=True)
 class Context:
-    """What was run: tier, seconds of the whole, time of its start, and the runs before (the present one the last)."""
+    """What was run: tier, what alone of it ("family solid"; empty: all), seconds of the whole, time of its start, and the runs before.
+
+    Of `runs` the present one is the last.
+    """
 
     tier: str
+    only: str
     seconds: float
     started: datetime
     runs: Sequence[history.Run]
@@ -51,6 +55,7 @@ def as_data(results: Sequence[Result], context: Context) -> dict[str, Any]:
     return {
         "started": context.started.isoformat(timespec="seconds"),
         "tier": context.tier,
+        "only": context.only,
         "seconds": context.seconds,
         "program": program_hash(),
         "kernel": kernel_hash(),
@@ -73,7 +78,7 @@ def as_data(results: Sequence[Result], context: Context) -> dict[str, Any]:
 
 def junit(results: Sequence[Result], context: Context) -> str:
     """JUnit XML: a suite a family, a test case a cell; only `passed` is a success."""
-    root = ElementTree.Element("testsuites", name="isomortar verify", time=f"{context.seconds:.3f}")
+    root = ElementTree.Element("testsuites", name=" ".join(filter(None, ("isomortar verify", context.only))), time=f"{context.seconds:.3f}")
     for family, group in _by_family(results):
         bad = [r for r in group if r.state != "passed"]
         suite = ElementTree.SubElement(root, "testsuite", name=family, tests=str(len(group)), failures=str(len(bad)))
