@@ -251,6 +251,27 @@ def test_the_page_of_a_part_says_so(root):
         CliRunner().invoke(app, [*options, "--report", "out/report.json"], catch_exceptions=False)
 
 
+WIDELY = """
+from isomortar.harness import Bound, case
+
+LIMITS = {1: 3e-2, 2: 0.9, 3: 1e-5}
+
+@case(claim="Limits differ.", bounds=lambda order: {"error": Bound(at_most=LIMITS[order], reason="theory: so")}, grid={"order": [1, 2, 3]})
+def widely(order):
+    return {"error": 0.0}
+"""
+
+
+def test_the_widest_limit_is_on_the_page(root):
+    family = next(root.glob("family_*"))
+    family.joinpath("widely.py").write_text(WIDELY)
+    command = ["verify", "--cases", str(root), "--results", "out", "-j", "1", "--case", f"{family.name}/widely"]
+    assert CliRunner().invoke(app, command).exit_code == 0
+    page = Path("out/report.html").read_text()
+    assert "≤ 1e-05 … ≤ 0.9" in page
+    assert page.count('title="limit ≤ 0.03"') == 1
+
+
 def test_blessing(root):
     family = next(root.glob("family_*"))
     family.joinpath("match.py").write_text(MATCH)

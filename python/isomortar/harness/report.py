@@ -170,11 +170,11 @@ def _case(results: list[Result], context: Context) -> dict[str, Any]:
 
 
 def _bounds(results: list[Result], names: list[str]) -> list[tuple[list[str], str, str]]:
-    """Names, limit (a range of limits where cells differ) and reason of the numbers of a case; numbers with the same ones together."""
+    """Names, limit (the smallest and the largest where cells differ) and reason of the numbers of a case; like numbers together."""
     rows: dict[tuple[str, str], list[str]] = {}
     for name in names:
         checks = [check for result in results for check in result.checks if check.name == name]
-        limits = [*dict.fromkeys(check.limit for check in checks)]
+        limits = sorted({check.limit for check in checks}, key=_size_of_limit)
         reasons = [*dict.fromkeys(check.reason for check in checks if check.reason)]
         reasons += [
             f"reference of class {kind}{_WORTH.get(kind, '')}" for kind in dict.fromkeys(c.reference for c in checks if c.reference)
@@ -182,6 +182,14 @@ def _bounds(results: list[Result], names: list[str]) -> list[tuple[list[str], st
         limit = limits[0] if len(limits) == 1 else f"{limits[0]} … {limits[-1]}"
         rows.setdefault((limit, "; ".join(reasons)), []).append(name)
     return [(together, limit, reason) for (limit, reason), together in rows.items()]
+
+
+def _size_of_limit(limit: str) -> tuple[float, str]:
+    """The number that a limit in words ends with; those without one come last."""
+    try:
+        return float(limit.rpartition(" ")[2]), limit
+    except ValueError:
+        return math.inf, limit
 
 
 def _row(result: Result, names: list[str], context: Context) -> dict[str, Any]:
