@@ -239,39 +239,6 @@ def test_command_and_its_report(root):
     assert len(history.read(Path("out/history.jsonl"))) == 2
 
 
-def test_the_page_of_a_part_says_so(root):
-    name = next(root.glob("family_*")).name
-    options = ["verify", "--cases", str(root), "--results", "out", "-j", "1"]
-    assert CliRunner().invoke(app, [*options, "--family", name]).exit_code == 0
-    assert f"<h1>All 5 cells pass: only family {name}</h1>" in Path("out/report.html").read_text()
-    assert json.loads(Path("out/report.json").read_text())["only"] == f"family {name}"
-    assert CliRunner().invoke(app, options).exit_code == 0
-    assert "<h1>All 5 cells pass</h1>" in Path("out/report.html").read_text()
-    with pytest.raises(InputError, match="the page is an"):
-        CliRunner().invoke(app, [*options, "--report", "out/report.json"], catch_exceptions=False)
-
-
-WIDELY = """
-from isomortar.harness import Bound, case
-
-LIMITS = {1: 3e-2, 2: 0.9, 3: 1e-5}
-
-@case(claim="Limits differ.", bounds=lambda order: {"error": Bound(at_most=LIMITS[order], reason="theory: so")}, grid={"order": [1, 2, 3]})
-def widely(order):
-    return {"error": 0.0}
-"""
-
-
-def test_the_widest_limit_is_on_the_page(root):
-    family = next(root.glob("family_*"))
-    family.joinpath("widely.py").write_text(WIDELY)
-    command = ["verify", "--cases", str(root), "--results", "out", "-j", "1", "--case", f"{family.name}/widely"]
-    assert CliRunner().invoke(app, command).exit_code == 0
-    page = Path("out/report.html").read_text()
-    assert "≤ 1e-05 … ≤ 0.9" in page
-    assert page.count('title="limit ≤ 0.03"') == 1
-
-
 def test_blessing(root):
     family = next(root.glob("family_*"))
     family.joinpath("match.py").write_text(MATCH)
@@ -370,12 +337,13 @@ def test_killed_and_resumed(root):
     assert report["cells"] == whole["cells"]
 
 
-def test_numbers_of_another_program_are_not_taken(root):
+@pytest.mark.parametrize("program", ["another", ""])
+def test_numbers_of_another_program_are_not_taken(root, program):
     store, futures = Store(root.parent / "store"), []
 
     def submit(_):
         futures.append(Future())
-        futures[-1].set_result(Measurement("measured", {"error": 0.0, "seen": [0.0]}, host="node7", program="another"))
+        futures[-1].set_result(Measurement("measured", {"error": 0.0, "seen": [0.0]}, host="node7", program=program))
         return futures[-1]
 
     cells = select(collect(root), "gate")[-1:]

@@ -73,7 +73,8 @@ class Measuring:
         """Wait for the measurement, keep it and judge it. Whatever goes wrong with it is a failure of this cell."""
         error = self.future.exception()
         measurement = Measurement("crashed", message=f"{type(error).__name__}: {error}") if error else self.future.result()
-        if self.fresh and measurement.program not in ("", program_hash()):
+        answered = measurement.ending not in ("crashed", "timed out")
+        if self.fresh and answered and measurement.program != program_hash():
             words = f"{measurement.host} has another program: not the sources or the kernel of this run"
             measurement = Measurement("crashed", message=words)
         if self.fresh:

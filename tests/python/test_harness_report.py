@@ -1,0 +1,57 @@
+"""The page of a run: what it must not leave out."""
+
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from isomortar.cli.commands import app
+from isomortar.errors import InputError
+
+CASE = """
+from isomortar.harness import Bound, case
+
+LIMITS = {1: 3e-2, 2: 0.9, 3: 1e-5}
+
+@case(claim="Limits differ.", bounds=lambda order: {"error": Bound(at_most=LIMITS[order], reason="theory: so")}, grid={"order": [1, 2, 3]})
+def widely(order):
+    return {"error": 0.0}
+"""
+
+
+@pytest.fixture
+def family(tmp_path, monkeypatch):
+    """A family of one case, in the folder ``cases`` of the working directory."""
+    monkeypatch.chdir(tmp_path)
+    folder = tmp_path / "cases" / f"family_{tmp_path.name}"  # a name of its own: modules stay imported
+    folder.mkdir(parents=True)
+    (folder / "widely.py").write_text(CASE)
+    return folder.name
+
+
+def verify(*options):
+    command = ["verify", "--cases", "cases", "--results", "out", "-j", "1", *options]
+    return CliRunner().invoke(app, command, catch_exceptions=False)
+
+
+def test_a_page_of_a_part_says_so(family):
+    assert verify("--family", family).exit_code == 0
+    assert f"<h1>All 3 cells pass: only family {family}</h1>" in Path("out/report.html").read_text()
+    assert json.loads(Path("out/report.json").read_text())["only"] == f"family {family}"
+    assert verify().exit_code == 0
+    assert "<h1>All 3 cells pass</h1>" in Path("out/report.html").read_text()
+
+
+@pytest.mark.usefixtures("family")
+def test_the_widest_limit_is_on_the_page():
+    assert verify().exit_code == 0
+    page = Path("out/report.html").read_text()
+    assert "≤ 1e-05 … ≤ 0.9" in page
+    assert page.count('title="limit ≤ 0.03"') == 1
+
+
+@pytest.mark.usefixtures("family")
+def test_the_page_is_none_of_the_files_beside_it():
+    with pytest.raises(InputError, match="the page is an"):
+        verify("--report", "out/report.json")
