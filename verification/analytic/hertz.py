@@ -208,7 +208,7 @@ def hemispheres() -> dict[str, object]:
     strain = peaks / modulus
     found = np.array([run.peak for run in runs])
     by_force = np.array([run.peak / run.hertz(radius, modulus)[1] for run in runs])
-    formula = max(abs(peaks[0] / PEAK - 1.0), abs(contacts[0] / PUBLISHED_RADIUS - 1.0))
+    formula = float(np.maximum(abs(peaks[0] / PEAK - 1.0), abs(contacts[0] / PUBLISHED_RADIUS - 1.0)))
     return {
         "formula": float(formula),
         "force": Curve(approaches, np.abs(by_force - 1.0) / strain, "approach", "deviation over p0 / E*", log_x=True),

@@ -95,7 +95,7 @@ def theory(shape: str, normal: float, shear: float) -> Theory:
     else:
         contact = float(np.sqrt(4 * normal / CONTACT * radius / (np.pi * modulus)))
         peak = 2 * normal / CONTACT / (np.pi * contact)
-    stick = contact * max(0.0, 1 - shear / (FRICTION * normal)) ** (1 / SETTINGS[shape].root)
+    stick = contact * float(np.maximum(0.0, 1 - shear / (FRICTION * normal))) ** (1 / SETTINGS[shape].root)
     return Theory(contact, stick, FRICTION * peak)
 
 

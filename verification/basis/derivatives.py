@@ -92,6 +92,6 @@ def digits(order: int) -> dict[str, float]:
             values, scale = exact(patch, point)
             ours = np.zeros_like(values)
             ours[:, local] = functions
-            worst = max(worst, float((np.abs(ours - values).max(axis=1) / scale.max(axis=1)).max()) / EPSILON)
-            largest = max(largest, float(np.abs(values).max()))
+            worst = float(np.maximum(worst, float((np.abs(ours - values).max(axis=1) / scale.max(axis=1)).max()) / EPSILON))
+            largest = float(np.maximum(largest, np.abs(values).max()))
     return {"error": worst, "largest": largest}

@@ -61,6 +61,6 @@ def lagrange_digits(order: int) -> dict[str, float]:
             # The kernel divides by the sum of the functions, as for NURBS; its derivatives are round-off here.
             shares = (math.comb(k, i) * math.comb(m, j) * terms[i, j] for i, j in terms if i <= k and j <= m)
             terms[k, m] = sum(shares, start=size)
-            worst = max(worst, float(np.abs(ours - exact).max() / terms[k, m].max()) / EPSILON)
-            largest = max(largest, float(np.abs(exact).max()))
+            worst = float(np.maximum(worst, float(np.abs(ours - exact).max() / terms[k, m].max()) / EPSILON))
+            largest = float(np.maximum(largest, np.abs(exact).max()))
     return {"error": worst, "largest": largest}

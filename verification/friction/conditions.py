@@ -27,8 +27,8 @@ def cone(master: str, slip_sum: str) -> dict[str, float]:
     for result in Simulation(bowl(master, FRICTION, slip_sum=slip_sum)).run():
         pressure = result.state.contacts[0].pressure
         size = float(pressure.max())
-        outside = max(outside, float((result.contacts[0].traction_norm - FRICTION * pressure).max()) / size)
-        pull = max(pull, -float(pressure.min()) / size)
+        outside = float(np.maximum(outside, float((result.contacts[0].traction_norm - FRICTION * pressure).max()) / size))
+        pull = float(np.maximum(pull, -float(pressure.min()) / size))
     return {"outside": outside, "pull": pull, "slipping": float(result.contacts[0].slip)}
 
 
@@ -47,6 +47,6 @@ def momentum_balance(friction: float) -> dict[str, float]:
     for result in Simulation(bowl("block", friction)).run():
         found = result.contacts[0]
         size = float(np.linalg.norm(found.force_slave))
-        force = max(force, float(np.linalg.norm(found.force_slave + found.force_master)) / size)
-        moment = max(moment, float(np.linalg.norm(found.moment_slave + found.moment_master)) / size)
+        force = float(np.maximum(force, float(np.linalg.norm(found.force_slave + found.force_master)) / size))
+        moment = float(np.maximum(moment, float(np.linalg.norm(found.moment_slave + found.moment_master)) / size))
     return {"force": force, "moment": moment}

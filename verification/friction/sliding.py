@@ -124,7 +124,7 @@ def stick_before_slip() -> dict[str, float]:
     drag = np.array([ratio(result, np.array([0.0, 0.0, 1.0])) for result in results])
     first = results[1].contacts[0]
     return {
-        "excess": max(0.0, float(drag.max() / FRICTION - 1.0)),
+        "excess": float(np.maximum(0.0, drag.max() / FRICTION - 1.0)),
         "sticking": float(first.active - first.slip),
         "rises": float(np.diff(drag).min()),
     }
@@ -155,7 +155,7 @@ def reversal() -> dict[str, float]:
     force = np.array([result.reactions[0].force for result in results])
     second, third = force[PRESS_STEPS + steps : PRESS_STEPS + 3 * steps], force[PRESS_STEPS + 3 * steps :]
     return {
-        "gained": float(max(0.0, -work.min()) / work.sum()),
+        "gained": float(np.maximum(0.0, -work.min()) / work.sum()),
         "taken": float(work.sum()),
         "open": float(np.abs(third - second).max() / np.abs(second).max()),
     }

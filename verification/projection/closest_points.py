@@ -102,7 +102,7 @@ def exact_foot(shape: str, order: int) -> dict[str, float]:
     worst, found = 0.0, []
     for starts in (None, *(low + random.uniform(0, 1, (len(feet), 2)) * (high - low) for _ in range(5))):
         projections = face.project(targets, starts)
-        worst = max(worst, float(np.linalg.norm(face.points(projections.xi) - feet, axis=1).max()))
+        worst = float(np.maximum(worst, np.linalg.norm(face.points(projections.xi) - feet, axis=1).max()))
         found.append(projections.found)
     return {"foot": worst, "found": float(np.mean(found))}
 
@@ -129,7 +129,7 @@ def edges_and_corners(shape: str, kind: str) -> dict[str, float]:
     xi = np.concatenate([beyond.xi, above.xi])
     return {
         "found": float(np.sum(beyond.found)),
-        "outside": float(max(np.max(low - xi), np.max(xi - high), 0.0)),
+        "outside": float(np.max([np.max(low - xi), np.max(xi - high), 0.0])),
         "corner": float(np.linalg.norm(face.points(above.xi) - places, axis=1).max()),
     }
 
@@ -148,7 +148,7 @@ def equidistant(shape: str, order: int) -> dict[str, float]:
     worst = 0.0
     for origin in (None, starts):
         xi = face.project(centres, origin).xi
-        worst = max(worst, float(np.abs(np.linalg.norm(face.points(xi) - centres, axis=1) - RADIUS).max()))
+        worst = float(np.maximum(worst, np.abs(np.linalg.norm(face.points(xi) - centres, axis=1) - RADIUS).max()))
     return {"distance": worst}
 
 
@@ -202,7 +202,7 @@ def continuous_lines(shape: str, kind: str) -> dict[str, float]:
     lines = [d.boundaries[1:-1] for d in face.patch.face_directions(face.face)]
     on = [np.isclose(projections.xi[:, a, None], lines[a], rtol=0, atol=1e-13).any(axis=1) for a in (0, 1)]
     return {
-        "excess": float(max(0.0, np.max(reached - face.sampled_distance(targets)))),
+        "excess": float(np.maximum(0.0, np.max(reached - face.sampled_distance(targets)))),
         "found": float(np.mean(projections.found)),
         "on_line": float(np.mean(on[0] | on[1])),
     }

@@ -147,7 +147,7 @@ def edges(edge: str) -> dict[str, float]:
     parts = ("normal", "tangential", "condensed")
     products = [[block_product(pair.pattern, getattr(pair, part), along) for part in parts] for pair in pairs]
     values = [np.column_stack([pair.response.pressure, pair.response.traction]) for pair in pairs]
-    return {"apart": _difference(*values), "jump": max(_difference(*both) for both in zip(*products, strict=True))}
+    return {"apart": _difference(*values), "jump": float(np.max([_difference(*both) for both in zip(*products, strict=True)]))}
 
 
 _FLAT = """

@@ -75,8 +75,8 @@ class TangentReport:
 
     @property
     def passes(self) -> bool:
-        """Whether every part is within its bound."""
-        return all(row.passes for row in self.rows)
+        """Whether there are parts, and every one is within its bound."""
+        return bool(self.rows) and all(row.passes for row in self.rows)
 
     def __rich__(self) -> Table:
         counts = ", ".join(f"{a} ({t} stick, {s} slip)" for a, t, s in zip(self.active, self.stick, self.slip, strict=True))
@@ -137,7 +137,7 @@ def measure(problem: Problem, step: int, visits: Iterable[Visit], directions: in
     samples: list[Sample] = []
     states = []
     for visit in visits:
-        pairs = [PairState(pair, visit.positions, at) for pair, at in zip(equilibrium.pairs, visit.pairs, strict=False)]
+        pairs = [PairState(pair, visit.positions, at) for pair, at in zip(equilibrium.pairs, visit.pairs, strict=True)]
         states.append(np.concatenate([np.zeros(0, np.int32)] + [pair.response.state for pair in pairs]))
         samples += _sample(equilibrium, visit, pairs, directions, random, length)
     active, stick, slip = (tuple(int(np.count_nonzero(kind(s))) for s in states) for kind in (_active, _sticks, _slips))
