@@ -126,6 +126,8 @@ contains
       if (allocated(law%held)) then
         if (law%held(i)) then
           traction = trial
+          response%state(i) = state_stick
+          slope = 0.0_wp
           slope(1, 2) = 1.0_wp
           slope(2, 3) = 1.0_wp
           return

@@ -13,7 +13,7 @@ module isomortar_contact_blocks
   implicit none
   private
 
-  public :: integrate_blocks, integrate_forces, row_count
+  public :: integrate_blocks, integrate_forces
 
   !> Kinds of constraint rows: <R^I dg>, <R^I dxi^a>, <R^I dxi^a> over points with a history, <R^I R^I da_ab>,
   !> <R^I da_ab zeta^b>.
@@ -50,13 +50,6 @@ module isomortar_contact_blocks
   end type sample_t
 
 contains
-
-  !> Number of row kinds: the gap's alone without friction, the slip sum's only for the paper's form.
-  pure integer function row_count(with_friction, with_slip_sum)
-    logical, intent(in) :: with_friction, with_slip_sum
-
-    row_count = merge(merge(all_rows, row_slip_sum - 1, with_slip_sum), 1, with_friction)
-  end function row_count
 
   !> Add the contact forces r(d) = sum p^I <R^I dg> + sum t_a^I <R^I dxi^a>.
   subroutine integrate_forces(slave, master, positions, projections, with_friction, multipliers, forces)
@@ -115,7 +108,7 @@ contains
     type(element_t) :: element
     type(sample_t) :: sample
     integer, allocatable :: mark(:), columns(:)
-    integer :: e, per_element, q
+    integer :: e, met, per_element, q
 
     allocate (mark(size(positions, 2)), columns(size(positions, 2)))
     mark = 0
@@ -123,11 +116,11 @@ contains
     call reserve(slave, master, per_element, element, sample)
     allocate (element%rows(3 * size(element%points), size(rows, 2), size(slave%nodes, 1)))
     allocate (element%tangent(3 * size(element%points), 3 * size(element%points)))
+    element%rows = 0.0_wp
+    element%tangent = 0.0_wp
     do e = 1, size(slave%nodes, 2)
       if (.not. any(multipliers%active(slave%nodes(:, e)))) cycle
       call begin_element(slave, e, element)
-      element%rows = 0.0_wp
-      element%tangent = 0.0_wp
       do q = (e - 1) * per_element + 1, e * per_element
         if (.not. projections%found(q)) cycle
         call take_sample(slave, master, positions, projections, e, q, master_order(master, with_friction), with_friction, element, &
@@ -138,6 +131,9 @@ contains
       call scatter_rows(slave%nodes(:, e), multipliers%active, element, row_pattern, columns, rows)
       if (.not. master%is_plane) call scatter_tangent(element, pattern, columns, tangent)
       mark(element%points(1:element%count)) = 0
+      met = 3 * element%count ! clear what was used alone: the room is for the largest element there could be
+      element%rows(:met, :, :) = 0.0_wp
+      element%tangent(:met, :met) = 0.0_wp
     end do
   end subroutine integrate_blocks
 
@@ -274,7 +270,9 @@ contains
     vectors = size(sample%coefficients, 2)
     form = 0.0_wp
     if (abs(field(1)) > 0.0_wp) call gap_variation(sample%point, sample%variations, area * field(1), form)
-    if (any(abs(field(2:3)) > 0.0_wp)) call traction_variation(sample%point, sample%variations, area * field(2:3), form)
+    if (vectors == 6 .and. any(abs(field(2:3)) > 0.0_wp)) then
+      call traction_variation(sample%point, sample%variations, area * field(2:3), form)
+    end if
     do b = 1, size(sample%local)
       do j = 1, 3
         column = 0.0_wp

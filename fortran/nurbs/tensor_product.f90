@@ -2,8 +2,8 @@
 !>
 !> A function of an element is B_a = u_a1 v_a2 w_a3. Kind D = 1 is its value, D = 2, 3, 4 its derivatives by the three
 !> parameters. Every contraction takes the first index of an array away and appends the new one as the last, so that after
-!> three of them the indices have gone round. Of the kinds that are left on the way, the first is the value, the second the
-!> derivative along the direction that is next.
+!> three of them the indices have gone round. In integrals, of the kinds that are left on the way the first is the value and the
+!> second the derivative along the direction that is next; in interpolation the kinds are those met so far.
 module isomortar_nurbs_tensor_product
   use isomortar_base_kinds, only: wp
   use isomortar_nurbs_patch, only: line_rule_t
@@ -143,15 +143,15 @@ contains
     integer, intent(in) :: kinds, rest
     real(wp), intent(in) :: source(size(line%values, 1), rest, kinds, kinds)
     real(wp), intent(out) :: target(rest, size(line%values, 2), kinds - 1, kinds - 1)
-    real(wp) :: beside(2 * size(line%values, 1), rest), all(4 * size(line%values, 1), rest)
+    real(wp) :: beside(2 * size(line%values, 1), rest), both(4 * size(line%values, 1), rest)
     integer :: d, e, m
 
     m = size(line%values, 1)
-    all(:m, :) = source(:, :, 1, 1)
-    all(m + 1:2 * m, :) = source(:, :, 2, 1)
-    all(2 * m + 1:3 * m, :) = source(:, :, 1, 2)
-    all(3 * m + 1:, :) = source(:, :, 2, 2)
-    target(:, :, 1, 1) = matmul(transpose(all), line%either)
+    both(:m, :) = source(:, :, 1, 1)
+    both(m + 1:2 * m, :) = source(:, :, 2, 1)
+    both(2 * m + 1:3 * m, :) = source(:, :, 1, 2)
+    both(3 * m + 1:, :) = source(:, :, 2, 2)
+    target(:, :, 1, 1) = matmul(transpose(both), line%either)
     do d = 2, kinds - 1
       beside(:m, :) = source(:, :, 1, d + 1)
       beside(m + 1:, :) = source(:, :, 2, d + 1)

@@ -16,7 +16,8 @@ contains
   !> Add internal forces and, where a pattern is given, the tangent of a body.
   !>
   !> Blocks of the tangent are stored as (column component, row component, block). On failure `place` is the element
-  !> (from 1). `smallest_jacobian` is the least J met.
+  !> (from 1). `smallest_jacobian` is the least J met, of an
+  !> element folded initially the determinant of its map.
   subroutine add_body(patch, points, bulk, shear, positions, references, residual, smallest_jacobian, status, place, &
       pattern, tangent)
     type(patch_t), intent(in) :: patch

@@ -1,6 +1,6 @@
 !> Residual and tangent of one solid element, by sum factorisation.
 module isomortar_solid_element
-  use isomortar_base_algebra, only: determinant, identity, inverse
+  use isomortar_base_algebra, only: determinant, inverse
   use isomortar_base_kinds, only: wp
   use isomortar_base_status, only: status_folded, status_folded_initially, status_ok
   use isomortar_nurbs_patch, only: line_rule_t
@@ -24,8 +24,6 @@ module isomortar_solid_element
     type(stretch_t), allocatable :: state(:)
     !> Smallest J of the current configuration over the points.
     real(wp) :: smallest_jacobian
-    !> Sum of the volumes.
-    real(wp) :: total_volume
   end type samples_t
 
 contains
@@ -77,7 +75,6 @@ contains
         end do
       end do
     end do
-    samples%total_volume = sum(samples%volume)
   end subroutine sample_element
 
   !> Derivatives by the parameters of a rational field, from those of its denominator and numerators: (component, parameter).

@@ -43,7 +43,7 @@ contains
             associate (target => column_of(3 * column(block) + j - 1))
               if (target < 0) cycle
               places(j, r, block) = mark(target)
-              missing = missing .or. mark(target) <= system_start(row)
+              missing = missing .or. mark(target) <= system_start(row) .or. mark(target) > system_start(row + 1)
             end associate
           end do
         end do
@@ -70,6 +70,10 @@ contains
             if (wanted < 0) cycle
             low = system_start(row) + 1
             high = system_start(row + 1)
+            if (low > high) then
+              missing = .true.
+              cycle
+            end if
             do while (low < high)
               middle = (low + high) / 2
               if (system_column(middle) < wanted) then
