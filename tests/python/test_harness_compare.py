@@ -114,6 +114,7 @@ def test_references():
     assert state(claim, [101.6, 50.0], exact) == "failed"
     assert state(claim, [100.0, NAN], exact) == "failed"
     assert state(claim, [100.0], exact) == "failed"
+    assert state(claim, Curve([1, 2], [100.0, 50.0], "x", "y"), exact) == "failed"  # at which x the reference is, it does not say
     assert state(claim, [100.0, 50.0], None) == "missing reference"
     (check,) = judge(
         cell_of(claim), Measurement("measured", {"value": [100.0, 50.0]}), lambda *_: Expected(exact.values, exact.uncertainty, "self")

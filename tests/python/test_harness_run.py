@@ -337,19 +337,19 @@ def test_killed_and_resumed(root):
     assert report["cells"] == whole["cells"]
 
 
-@pytest.mark.parametrize("program", ["another", ""])
-def test_numbers_of_another_program_are_not_taken(root, program):
+@pytest.mark.parametrize("sources", ["another", ""])
+def test_numbers_from_other_sources_are_not_taken(root, sources):
     store, futures = Store(root.parent / "store"), []
 
     def submit(_):
         futures.append(Future())
-        futures[-1].set_result(Measurement("measured", {"error": 0.0, "seen": [0.0]}, host="node7", program=program))
+        futures[-1].set_result(Measurement("measured", {"error": 0.0, "seen": [0.0]}, host="node7", sources=sources))
         return futures[-1]
 
     cells = select(collect(root), "gate")[-1:]
     (result,) = run(start(cells, store, submit), finder(root.parent / "references"), store)
     assert result.state == "crashed"
-    assert "node7 has another program" in result.measurement.message
+    assert "node7 has other sources" in result.measurement.message
     assert store.get(cells[0]) is None
 
 

@@ -131,6 +131,9 @@ def _check(cell: Cell, name: str, claim: Claim, value: Stored, lookup: Lookup) -
         return Check(name, "failed", np.nan, _limit(claim), fault, claim.reason)
     entries = np.asarray(value if curve is None else curve.y, float)
     if isinstance(claim, Matches):
+        if curve:
+            words = "a curve, whose x a reference does not hold: return its values as an array"
+            return Check(name, "failed", np.nan, _limit(claim), words, claim.reason)
         return _check_match(name, claim, entries, lookup(claim.reference, cell, name))
     low, high = (claim.low, claim.high) if isinstance(claim, Bound) else (-np.inf, np.inf)
     if entries.size == 0:

@@ -30,7 +30,7 @@ class Measurement:
     """How a cell ended, its numbers (by name), what was said (skip reason or traceback), and what it cost.
 
     `peak_memory`: the most that the measuring process held meanwhile, in bytes, what it had loaded before included; 0: not known.
-    `program`: hash of the program that the process found, on whatever machine.
+    `sources`: hash of the program and of the case's files that the process found, on whatever machine.
     """
 
     ending: Ending
@@ -40,7 +40,7 @@ class Measurement:
     cpu_seconds: float = 0.0
     peak_memory: float = 0.0
     host: str = ""
-    program: str = ""
+    sources: str = ""
 
 
 def measure(cell: Cell) -> Measurement:

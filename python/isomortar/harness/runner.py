@@ -13,7 +13,7 @@ from isomortar.errors import InputError
 from isomortar.harness.cases import TIERS, Case, Cell, Tier
 from isomortar.harness.compare import Check, Lookup, State, judge, worst
 from isomortar.harness.measurement import Measurement
-from isomortar.harness.store import Store, program_hash
+from isomortar.harness.store import Store, sources_hash
 from isomortar.harness.worker import Worker, task_of
 
 #: Starts the measurement of a task.
@@ -74,8 +74,8 @@ class Measuring:
         error = self.future.exception()
         measurement = Measurement("crashed", message=f"{type(error).__name__}: {error}") if error else self.future.result()
         answered = measurement.ending not in ("crashed", "timed out")
-        if self.fresh and answered and measurement.program != program_hash():
-            words = f"{measurement.host} has another program: not the sources or the kernel of this run"
+        if self.fresh and answered and measurement.sources != sources_hash(self.cell.case):
+            words = f"{measurement.host} has other sources: not the kernel, the package or the case of this run"
             measurement = Measurement("crashed", message=words)
         if self.fresh:
             store.put(self.cell, measurement)

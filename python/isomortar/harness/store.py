@@ -15,7 +15,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from isomortar.harness.cases import Cell
+from isomortar.harness.cases import Case, Cell
 from isomortar.harness.measurement import Measurement
 
 _PACKAGE = Path(__file__).parent.parent
@@ -69,6 +69,11 @@ def cell_key(cell: Cell, program: str | None = None) -> str:
     return _hash(
         [(program or program_hash()).encode(), _case_hash(cell.case.path, cell.case.files).encode(), cell.name.encode(), settings.encode()]
     )
+
+
+def sources_hash(case: Case) -> str:
+    """Hash of what a process measures a case with: the program, and the case's file with what it imports."""
+    return _hash([program_hash().encode(), _case_hash(case.path, ()).encode()])
 
 
 @functools.cache

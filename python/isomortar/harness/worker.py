@@ -119,9 +119,8 @@ def _serve() -> None:
     """Measure what comes in, until nobody asks any more."""
     from isomortar.harness.collection import cases_of
     from isomortar.harness.measurement import measure
-    from isomortar.harness.store import program_hash
+    from isomortar.harness.store import sources_hash
 
-    program = program_hash()
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a case prints must not get among the answers
     tasks: queue.SimpleQueue[str] = queue.SimpleQueue()
@@ -135,7 +134,8 @@ def _serve() -> None:
     while True:
         task = json.loads(tasks.get())
         case = next(c for c in cases_of(Path(task["path"])) if c.name == task["case"])
-        measurement = replace(measure(Cell(case, task["settings"])), program=program)
+        sources = sources_hash(case)  # before: a long case may outlive an edit
+        measurement = replace(measure(Cell(case, task["settings"])), sources=sources)
         answers.write(json.dumps(asdict(measurement)).encode() + b"\n")
         answers.flush()
 
