@@ -53,15 +53,19 @@ def score(*faults: Attacked, classified: dict[str, Classification] | None = None
     return Score(Outcome(faults, {}, (), {"solid/a": 1.0}), classified or {})
 
 
-class Oracle:
-    """Measures in no time, red where it is told to; notes what it was asked."""
+#: Kernels of an oracle.
+SOUND, FAULTY = Path("sound"), Path("faulty")
 
-    def __init__(self, red: str = "", ending: str = "measured") -> None:
-        self.red, self.ending, self.asked = red, ending, []
+
+class Oracle:
+    """Measures in no time, red where it is told to, on faulty kernels or on all; notes what it was asked."""
+
+    def __init__(self, red: str = "", ending: str = "measured", on: tuple[Path, ...] = (FAULTY,)) -> None:
+        self.red, self.ending, self.on, self.asked = red, ending, on, []
 
     def measure(self, kernel, cell, seconds):
         self.asked.append((cell.name, seconds))
-        if cell.name != self.red:
+        if cell.name != self.red or kernel not in self.on:
             return Measurement("measured", {"zero": 0.0})
         return Measurement(self.ending, {"zero": math.nan} if self.ending == "measured" else {}, "gone")
 
@@ -75,7 +79,7 @@ def cells(tmp_path_factory):
 
 
 def gate(cells) -> Gate:
-    return Gate({cell.name: 5.0 if "dear" in cell.name else 0.1 for cell in cells}, cells, lambda *_: None)
+    return Gate({cell.name: 5.0 if "dear" in cell.name else 0.1 for cell in cells}, cells, lambda *_: None, SOUND)
 
 
 def test_the_faults_planted_by_hand_fit_the_sources():
@@ -138,34 +142,39 @@ def test_a_folder_without_sources_is_an_error(tmp_path):
 
 def test_the_gate_stops_at_the_first_red_cell_and_asks_it_first_next_time(cells):
     red, tried = "mutants_family/cheap[k=2]", gate(cells)
-    first = tried.attack(Oracle(red), Path(), "solid", (), math.inf)
+    first = tried.attack(Oracle(red), FAULTY, "solid", (), math.inf)
     assert first.killer == red
     assert "not finite" in first.found
     tried.learn("solid", first)
     tried.learn("solid", first)
     bench = Oracle(red)
-    assert tried.attack(bench, Path(), "solid", (), math.inf).passed == ()
+    assert tried.attack(bench, FAULTY, "solid", (), math.inf).passed == ()
     assert [name for name, _ in bench.asked] == [red]
 
 
 @pytest.mark.parametrize("ending", ["crashed", "timed out", "raised", "skipped"])
 def test_whatever_does_not_pass_kills(cells, ending):
-    assert gate(cells).attack(Oracle("mutants_family/dear", ending), Path(), "solid", (), math.inf).killer == "mutants_family/dear"
+    assert gate(cells).attack(Oracle("mutants_family/dear", ending), FAULTY, "solid", (), math.inf).killer == "mutants_family/dear"
+
+
+def test_a_cell_that_crashes_without_a_fault_too_is_no_catch(cells):
+    with pytest.raises(IsomortarError, match="dear is red on the sound kernel too"):
+        gate(cells).attack(Oracle("mutants_family/dear", "crashed", (FAULTY, SOUND)), FAULTY, "solid", (), math.inf)
 
 
 def test_a_survivor_met_the_whole_gate_or_as_much_as_asked_for(cells):
     bench, tried = Oracle(), gate(cells)
-    verdict = tried.attack(bench, Path(), "solid", (), math.inf)
+    verdict = tried.attack(bench, FAULTY, "solid", (), math.inf)
     assert verdict.killer is None
     assert tried.is_whole(verdict)
     assert [name for name, _ in bench.asked] == ["mutants_family/cheap[k=2]", "mutants_family/cheap[k=1]", "mutants_family/dear"]
     assert [seconds for _, seconds in bench.asked] == [20.0, 20.0, 100.0]
-    assert not tried.is_whole(tried.attack(Oracle(), Path(), "solid", (), 0.15))
+    assert not tried.is_whole(tried.attack(Oracle(), FAULTY, "solid", (), 0.15))
 
 
 def test_cells_passed_before_are_not_asked_again(cells):
     bench = Oracle()
-    gate(cells).attack(bench, Path(), "solid", ("mutants_family/dear",), math.inf)
+    gate(cells).attack(bench, FAULTY, "solid", ("mutants_family/dear",), math.inf)
     assert "mutants_family/dear" not in dict(bench.asked)
 
 

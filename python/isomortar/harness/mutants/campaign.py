@@ -108,7 +108,7 @@ class Campaign:
             A planted fault does not compile, or changes nothing; fewer faults than asked for; no cell is green on the sound kernel.
         """
         seconds, unused = self._sound_seconds()
-        gate = Gate(seconds, self._cells, self._lookup)
+        gate = Gate(seconds, self._cells, self._lookup, self._workshop.sound)
         dropped: Counter[str] = Counter()
         known = {hash_of(self._workshop.sound): _SOUND}
         hand = list(self._distinct(planted, len(planted), known, dropped))

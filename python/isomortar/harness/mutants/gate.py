@@ -8,8 +8,10 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from isomortar.errors import IsomortarError
 from isomortar.harness.cases import Cell
 from isomortar.harness.compare import Lookup, judge
+from isomortar.harness.measurement import Measurement
 from isomortar.harness.mutants.bench import Bench
 from isomortar.harness.report import sentence
 
@@ -51,13 +53,16 @@ class Gate:
         Those and others, which are not used.
     lookup : Lookup
         Finds references.
+    sound : Path
+        The kernel without a fault.
     """
 
-    def __init__(self, seconds: Mapping[str, float], cells: Sequence[Cell], lookup: Lookup) -> None:
+    def __init__(self, seconds: Mapping[str, float], cells: Sequence[Cell], lookup: Lookup, sound: Path) -> None:
         self._cells = {cell.name: cell for cell in cells if cell.name in seconds}
         self._case = {name: f"{cell.case.name}, any settings" for name, cell in self._cells.items()}
         self._seconds = seconds
         self._lookup = lookup
+        self._sound = sound
         # By folder of the sources and cell, and by folder and case: its cells are alike.
         self._tries: Counter[tuple[str, str]] = Counter()
         self._kills: Counter[tuple[str, str]] = Counter()
@@ -76,17 +81,29 @@ class Gate:
         """Measure and judge cells until one is red, none is left, or those that passed cost `most`.
 
         `passed` are cells that the kernel passed before. `folder` is where in the sources the fault is.
+
+        Raises
+        ------
+        IsomortarError
+            A cell ended without numbers, and does so on the sound kernel too: that is the machine's fault.
         """
         done = [name for name in passed if name in self._cells]
         while self.cost(done) < most and (left := self._cells.keys() - done):
             name = self._most_promising(left, done, folder)
-            cell = self._cells[name]
-            measurement = bench.measure(kernel, cell, max(_PATIENCE * self._seconds[name], _LEAST_SECONDS))
-            red = [check for check in judge(cell, measurement, self._lookup) if check.state != "passed"]
+            measurement, red = self._red(bench, kernel, name)
             if red:
-                return Verdict(name, sentence(red[0]), tuple(done))
+                if measurement.ending != "measured" and self._red(bench, self._sound, name)[1]:
+                    raise IsomortarError(f"{name} is red on the sound kernel too, which it was not before: this machine is in trouble")
+                return Verdict(name, red, tuple(done))
             done.append(name)
         return Verdict(None, "", tuple(done))
+
+    def _red(self, bench: Bench, kernel: Path, name: str) -> tuple[Measurement, str]:
+        """Measure a cell, and what is red about it."""
+        cell = self._cells[name]
+        measurement = bench.measure(kernel, cell, max(_PATIENCE * self._seconds[name], _LEAST_SECONDS))
+        red = [check for check in judge(cell, measurement, self._lookup) if check.state != "passed"]
+        return measurement, sentence(red[0]) if red else ""
 
     def is_whole(self, verdict: Verdict) -> bool:
         """Whether no cell is left that could tell more."""
