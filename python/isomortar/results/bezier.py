@@ -56,6 +56,21 @@ def sampling_matrix(direction: Direction, per_element: int) -> FloatArray:
     return np.concatenate([*inner, bezier[-1:]])
 
 
+def functions_at(direction: Direction, parameters: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Functions of a direction and their derivatives at any of its parameters, each of shape (parameters, count).
+
+    At an inner element boundary the derivatives are those of the element that begins there.
+    """
+    p, ends = direction.order, direction.boundaries
+    element = np.clip(np.searchsorted(ends, parameters, side="right") - 1, 0, direction.elements - 1)
+    size = np.diff(ends)[element]
+    places = (parameters - ends[element]) / size
+    lower = np.pad(bernstein(p - 1, places), ((0, 0), (1, 1)))
+    rows = bezier_matrix(direction)[p * element[:, None] + np.arange(p + 1)]
+    values = np.einsum("mk,mkc->mc", bernstein(p, places), rows)
+    return values, np.einsum("mk,mkc->mc", p * (lower[:, :-1] - lower[:, 1:]) / size[:, None], rows)
+
+
 def rational(matrices: Sequence[FloatArray], weights: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Apply one matrix a direction to values at the control points of a rational tensor product.
 
@@ -73,9 +88,34 @@ def rational(matrices: Sequence[FloatArray], weights: FloatArray, values: FloatA
         m = m_1 m_2 ..., first direction fastest.
     weights : ndarray, shape (m,)
     """
+    flat = _tensor_product(matrices, np.column_stack([weights[:, None] * values, weights]))
+    return flat[:, :-1] / flat[:, -1:], flat[:, -1]
+
+
+def rational_gradient(
+    functions: Sequence[tuple[FloatArray, FloatArray]], weights: FloatArray, values: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """A field of rational functions and its derivatives by parameter, by `functions_at` of each direction.
+
+    Returns
+    -------
+    values : ndarray, shape (m, k)
+    gradient : ndarray, shape (m, k, directions)
+    """
     homogeneous = np.column_stack([weights[:, None] * values, weights])
-    grid = homogeneous.reshape(*(m.shape[1] for m in reversed(matrices)), -1)
+    flat = _tensor_product([value for value, _ in functions], homogeneous)
+    field, weight = flat[:, :-1] / flat[:, -1:], flat[:, -1:]
+    columns = []
+    for axis in range(len(functions)):
+        matrices = [pair[1 if number == axis else 0] for number, pair in enumerate(functions)]
+        slope = _tensor_product(matrices, homogeneous)
+        columns.append((slope[:, :-1] - field * slope[:, -1:]) / weight)
+    return field, np.stack(columns, axis=-1)
+
+
+def _tensor_product(matrices: Sequence[FloatArray], values: FloatArray) -> FloatArray:
+    """One matrix a direction applied to values of shape (n, k), first direction fastest."""
+    grid = values.reshape(*(m.shape[1] for m in reversed(matrices)), -1)
     for axis, matrix in enumerate(reversed(matrices)):
         grid = np.moveaxis(np.tensordot(matrix, grid, axes=(1, axis)), 0, axis)
-    flat = grid.reshape(-1, values.shape[1] + 1)
-    return flat[:, :-1] / flat[:, -1:], flat[:, -1]
+    return grid.reshape(-1, values.shape[1])

@@ -17,7 +17,8 @@ from isomortar.solve.record import StepResult
 class ContactSurface:
     """A slave face with its contact quantities, everything by control point of the face (shape (n,), points (n, 3)).
 
-    The fields are p = sum R^I p^I and, for the magnitude of the traction, sum R^I |tau^I|.
+    The fields are p = sum R^I p^I, for the magnitude of the traction sum R^I |tau^I|, and by `field` any other. `covariant`: control
+    tractions tau_alpha^I in the master's coordinates, shape (n, 2).
     """
 
     contact: Contact
@@ -27,12 +28,17 @@ class ContactSurface:
     points: FloatArray
     pressure: FloatArray
     traction: FloatArray
+    covariant: FloatArray
     status: IntArray
 
     def fields(self, matrices: tuple[FloatArray, FloatArray]) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Points, shape (m, 3), pressure and traction magnitude, shape (m,), by matrices of `isomortar.results.bezier`."""
-        values, _ = rational(matrices, self.weights, np.column_stack([self.points, self.pressure, self.traction]))
+        values = self.field(matrices, np.column_stack([self.points, self.pressure, self.traction]))
         return values[:, :3], values[:, 3], values[:, 4]
+
+    def field(self, matrices: tuple[FloatArray, FloatArray], control_values: FloatArray) -> FloatArray:
+        """The field of control values of shape (n, k), shape (m, k)."""
+        return rational(matrices, self.weights, control_values)[0]
 
 
 def body_points(problem: Problem, positions: FloatArray) -> dict[str, FloatArray]:
@@ -59,6 +65,7 @@ def contact_surfaces(problem: Problem, result: StepResult) -> list[ContactSurfac
                 points=result.state.positions[points],
                 pressure=state.pressure[slave],
                 traction=measured.traction_norm[slave],
+                covariant=state.traction[slave],
                 status=measured.status[slave],
             )
         )

@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 from isomortar.geometry.patch import FloatArray
 
 _EDGE = np.array([0.16, 0.18, 0.22])
+#: A sphere is drawn as discs, each within the one before, towards the light and brighter.
+_DISCS, _CORNERS = 6, 28
 
 
 @dataclass(frozen=True)
@@ -51,30 +53,54 @@ class Canvas:
         outward: int,
         lines: tuple[NDArray[np.int64], NDArray[np.int64]],
         shading: float = 1.0,
+        opacity: float = 1.0,
     ) -> None:
-        """Add a surface that is seen from its outer side only.
+        """Add a surface with its element boundaries.
 
         Parameters
         ----------
         points : ndarray, shape (m2, m1, 3)
         colours : ndarray, shape (m2 - 1, m1 - 1, 3)
             Of each small quadrilateral, before shading.
-        outward : {-1, 1}
-            Sign of a1 x a2 along the outward normal.
+        outward : {-1, 0, 1}
+            Sign of a1 x a2 along the outward normal: seen from that side only. 0: seen from both sides.
         lines : tuple of ndarray
             Columns and rows of points along which an element boundary is drawn.
         shading : float
             1: as light falls; 0: the colours as they are.
+        opacity : float
+            Below 1 what lies behind shows through.
         """
         seen = points @ self._axes.T
-        normals = outward * np.cross(seen[1:, 1:] - seen[:-1, :-1], seen[1:, :-1] - seen[:-1, 1:])
+        normals = np.cross(seen[1:, 1:] - seen[:-1, :-1], seen[1:, :-1] - seen[:-1, 1:])
+        normals *= outward if outward else np.sign(normals[..., 2:])
         normals /= np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), 1e-300)
         front = normals[..., 2] > 0
         corners = np.stack([seen[:-1, :-1], seen[:-1, 1:], seen[1:, 1:], seen[1:, :-1]], axis=2)[front]
         brightness = 1.0 - shading * (1.0 - _brightness(normals))
-        self._add(corners, 0.0, (colours * brightness[..., None])[front], 0.3)
+        self._add(corners, 0.0, (colours * brightness[..., None])[front], 0.3 if opacity == 1.0 else 0.0, opacity)
         self._add_lines(seen, front, lines[1])
         self._add_lines(seen.swapaxes(0, 1), front.T, lines[0])
+
+    def add_spheres(self, centres: FloatArray, radius: float, colour: FloatArray) -> None:
+        """Add spheres, centres of shape (n, 3)."""
+        seen = centres @ self._axes.T
+        angles = 2 * np.pi * np.arange(_CORNERS) / _CORNERS
+        circle = radius * np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
+        for disc in range(_DISCS):
+            share = disc / _DISCS
+            middle = seen + radius * share * np.array([-0.32, 0.38, 0.0])
+            shapes = middle[:, None] + (1 - share) * circle
+            brighter = 0.62 * colour + 0.38 * share * np.ones(3) + 0.38 * (1 - share) * colour * 0.6
+            self._add(shapes, radius * (1 + 1e-3 * disc), np.broadcast_to(brighter, (len(shapes), 3)), 0.0)
+
+    def add_segments(self, segments: FloatArray, colour: FloatArray, width: float) -> None:
+        """Add straight lines, ends of shape (n, 2, 3)."""
+        self._add(segments @ self._axes.T, 0.0, np.broadcast_to(colour, (len(segments), 3)), width)
+
+    def places(self, points: FloatArray) -> FloatArray:
+        """Where points appear in the picture, shape (n, 2)."""
+        return (points @ self._axes.T)[..., :2]
 
     def _add_lines(self, seen: FloatArray, front: NDArray[np.bool_], rows: NDArray[np.int64]) -> None:
         """Lines along rows of points, where the surface on one of their sides is seen; nearer to the eye than that surface."""
@@ -83,8 +109,15 @@ class Canvas:
         across = np.linalg.norm(np.diff(seen, axis=0), axis=-1)
         self._add(segments, 1.5 * float(np.median(across)), np.broadcast_to(_EDGE, (len(segments), 3)), 0.55)
 
-    def paint(self, axes: Axes) -> None:
-        """Paint all that was added, and fit the axes to it."""
+    def limits(self) -> FloatArray:
+        """Lower left and upper right corner of all that was added, with a small margin."""
+        everything = np.concatenate([group.reshape(-1, 3) for group in self._shapes])
+        low, high = everything[:, :2].min(axis=0), everything[:, :2].max(axis=0)
+        margin = 0.01 * (high - low).max()
+        return np.array([low - margin, high + margin])
+
+    def paint(self, axes: Axes, limits: FloatArray | None = None) -> None:
+        """Paint all that was added, and show the part of it between `limits`, or all of it."""
         depth = np.concatenate(self._depths)
         order = np.argsort(depth)
         shapes = [shape for group in self._shapes for shape in group[..., :2]]
@@ -94,16 +127,14 @@ class Canvas:
         collection.set_capstyle("round")
         collection.set_joinstyle("round")
         axes.add_collection(collection)
-        everything = np.concatenate([group.reshape(-1, 3) for group in self._shapes])
-        low, high = everything[:, :2].min(axis=0), everything[:, :2].max(axis=0)
-        margin = 0.01 * (high - low).max()
-        axes.set(xlim=(low[0] - margin, high[0] + margin), ylim=(low[1] - margin, high[1] + margin), aspect="equal")
+        low, high = self.limits() if limits is None else limits
+        axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
         axes.axis("off")
 
-    def _add(self, shapes: FloatArray, nearer: float, colours: FloatArray, width: float) -> None:
+    def _add(self, shapes: FloatArray, nearer: float, colours: FloatArray, width: float, opacity: float = 1.0) -> None:
         self._shapes.append(shapes)
         self._depths.append(shapes[..., 2].mean(axis=1) + nearer)
-        self._colours.append(np.clip(colours, 0, 1))
+        self._colours.append(np.column_stack([np.clip(colours, 0, 1), np.full(len(colours), opacity)]))
         self._widths.append(np.full(len(shapes), width))
 
 

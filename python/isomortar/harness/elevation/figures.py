@@ -1,16 +1,11 @@
-"""Figures of the report, as SVG text: colour tells the order, filling and line the family, so that either is told without colour."""
+"""Figures of the report, as SVG text."""
 
 from __future__ import annotations
 
-import io
 import math
-import re
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from itertools import groupby
-from typing import Any
 
-import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -18,10 +13,9 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
 from isomortar.harness.discretisations import Discretisation, parse_kind
 from isomortar.harness.elevation.analysis import Analysis, Point, curve
+from isomortar.harness.figures import look, page_style, svg_text
 from isomortar.results import style
 
-_COLOURS = ("#E69F00", style.BLUE, style.GREEN, style.VERMILION, "#CC79A7")
-_MARKS = ("o", "s", "^", "D", "v")
 _COSTS: tuple[tuple[str, Callable[[Point], float]], ...] = (
     ("unknowns", lambda p: p.unknowns),
     ("CPU seconds", lambda p: p.numbers["cpu_seconds"]),
@@ -31,19 +25,19 @@ _COSTS: tuple[tuple[str, Callable[[Point], float]], ...] = (
 
 def error_against_cost(analysis: Analysis, measure: str) -> str:
     """Error in per cent, and below which it says nothing, against unknowns, CPU seconds and solves."""
-    with _style():
+    with page_style():
         figure, panels = _against_cost(analysis, lambda point: 100 * point.errors[measure], f"error of the {measure}, %")
         _floor(panels, 100 * analysis.uncertainty[measure])
-        return _svg(figure, f"cost-{measure}")
+        return svg_text(figure, f"cost-{measure}")
 
 
 def roughness_against_cost(analysis: Analysis, measure: str) -> str:
     """Second-difference energy of a curve over that of the reference, against unknowns, CPU seconds and solves."""
-    with _style():
+    with page_style():
         figure, panels = _against_cost(analysis, lambda point: point.roughness[measure], f"roughness of the {measure}")
         for axes in panels:
             axes.axhline(1.0, color=style.GREY, linewidth=0.8, zorder=1)
-        return _svg(figure, f"roughness-{measure}")
+        return svg_text(figure, f"roughness-{measure}")
 
 
 def _against_cost(analysis: Analysis, value: Callable[[Point], float], label: str) -> tuple[Figure, list[Axes]]:
@@ -56,7 +50,7 @@ def _against_cost(analysis: Analysis, value: Callable[[Point], float], label: st
             axes.plot([cost(p) for p in mesh], [value(p) for p in mesh], color="#B9BEC5", linewidth=0.9, zorder=1)
         for kind in analysis.study.kinds:
             points = [p for p in analysis.sequence(kind) if p.errors]
-            axes.plot([cost(p) for p in points], [value(p) for p in points], label=kind, **_look(kind))
+            axes.plot([cost(p) for p in points], [value(p) for p in points], label=kind, **look(kind))
         _ticks(axes)
     panels[0].set_ylabel(label)
     _legend(figure, panels[0])
@@ -80,7 +74,7 @@ def pressures(analysis: Analysis) -> str:
     turned = cells[0] < cells[1]
     peak = float(np.max(analysis.reference.numbers["pressure"]))
     digits = f"z.{max(0, 2 - math.floor(math.log10(peak)))}f"
-    with _style():
+    with page_style():
         rows = math.ceil(len(shown) / 6)
         columns = math.ceil(len(shown) / rows)
         figure = Figure(figsize=(10.6, (2.35 if max(cells) < 3 * min(cells) else 1.3) * rows), layout="constrained")
@@ -93,28 +87,28 @@ def pressures(analysis: Analysis) -> str:
             image = axes.imshow(field.T if turned else field, origin="lower", cmap=style.pressure_colours(), vmin=0.0, vmax=peak)
             axes.set_title(f"{label}\n{field.min():{digits}} to {field.max():{digits}}", fontsize=8.5)
         figure.colorbar(image, ax=panels, shrink=0.8, extend="both", label="contact pressure")
-        return _svg(figure, "pressures")
+        return svg_text(figure, "pressures")
 
 
 def _overlay(analysis: Analysis, measure: str, column: int, name: str) -> str:
     reference = curve(analysis.reference.numbers, measure)[:, column]
     times = analysis.reference.numbers["time"]
     scale = float(np.abs(reference).max())
-    with _style():
+    with page_style():
         figure = Figure(figsize=(10.6, 3.8), layout="constrained")
         left, right = figure.subplots(1, 2)
         left.plot(times, reference, color=style.BLACK, linewidth=2.4, label="reference", zorder=1)
         for chosen, point in _own_mesh(analysis):
             values = curve(point.numbers, measure)[:, column]
-            look = _look(chosen.kind) | {"markersize": 3.2 if len(times) <= 25 else 0.0, "linewidth": 1.1}
-            left.plot(point.numbers["time"], values, label=chosen.kind, **look)
-            right.plot(times, 100 * (values - reference) / scale, **look)
+            drawn = look(chosen.kind) | {"markersize": 3.2 if len(times) <= 25 else 0.0, "linewidth": 1.1}
+            left.plot(point.numbers["time"], values, label=chosen.kind, **drawn)
+            right.plot(times, 100 * (values - reference) / scale, **drawn)
         right.axhline(0.0, color=style.BLACK, linewidth=0.8, zorder=1)
         left.set(xlabel="load time (steps)", ylabel=name)
         right.set(xlabel="load time (steps)", ylabel=f"difference from the reference, % of {scale:.3g}")
         _stage_lines((left, right), analysis.reference)
         _legend(figure, left)
-        return _svg(figure, f"curve-{measure}-{column}")
+        return svg_text(figure, f"curve-{measure}-{column}")
 
 
 def _own_mesh(analysis: Analysis) -> list[tuple[Discretisation, Point]]:
@@ -153,15 +147,6 @@ def _stage_lines(panels: tuple[Axes, ...], point: Point) -> None:
         axes.set_axisbelow(True)
 
 
-def _look(kind: str) -> dict[str, Any]:
-    family, order = parse_kind(kind)
-    colour = _COLOURS[(order - 1) % len(_COLOURS)]
-    filling = colour if family == "N" else "white"
-    line = "-" if family == "N" else (0, (4, 2))
-    mark = _MARKS[(order - 1) % len(_MARKS)]
-    return {"color": colour, "linestyle": line, "marker": mark, "markerfacecolor": filling, "markersize": 5.0, "zorder": 3}
-
-
 def _ticks(axes: Axes) -> None:
     """Plain numbers, also within a decade."""
     for axis in (axes.xaxis, axes.yaxis):
@@ -177,19 +162,3 @@ def _ticks(axes: Axes) -> None:
 def _legend(figure: Figure, axes: Axes) -> None:
     handles, labels = axes.get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper left", ncols=len(labels), handlelength=2.6, columnspacing=1.4)
-
-
-@contextmanager
-def _style() -> Iterator[None]:
-    """The style of all figures, with text that stays text."""
-    with style.style(), mpl.rc_context({"svg.fonttype": "none", "font.family": "sans-serif"}):
-        yield
-
-
-def _svg(figure: Figure, name: str) -> str:
-    """As SVG that stands in a page: no header, names of its own, the same for the same figure."""
-    text = io.StringIO()
-    with mpl.rc_context({"svg.hashsalt": name}):
-        figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
-    drawn = text.getvalue()
-    return re.sub(r'(width|height)="[\d.]+pt" ', "", drawn[drawn.index("<svg") :], count=2)

@@ -1,0 +1,53 @@
+"""Deformation gradient and stress at points of a body, from its patch and the positions of its control points."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from isomortar.geometry.patch import FloatArray
+from isomortar.model.entities import Body, Material
+from isomortar.results.bezier import functions_at, rational_gradient
+
+
+def deformation_gradient(body: Body, points: FloatArray, parameters: Sequence[FloatArray]) -> FloatArray:
+    """F = dx/dX on a grid of parameters.
+
+    Parameters
+    ----------
+    body : Body
+    points : ndarray, shape (n, 3)
+        Positions of the patch's control points.
+    parameters : sequence of three ndarray
+        Along u, v, w; at an inner element boundary of them the element that begins there counts.
+
+    Returns
+    -------
+    ndarray, shape (m, 3, 3)
+        First direction fastest.
+    """
+    functions = [functions_at(d, x) for d, x in zip(body.patch.directions, parameters, strict=True)]
+    both = np.column_stack([points, body.patch.control_points])
+    _, gradient = rational_gradient(functions, body.patch.weights, both)
+    return gradient[:, :3] @ np.linalg.inv(gradient[:, 3:])
+
+
+def first_piola_stress(material: Material, deformation: FloatArray) -> FloatArray:
+    """P = A1 ln J F^-T + A2 J^(-2/3) (F - tr C/3 F^-T) (formulation.md Section 1), force per reference area.
+
+    Parameters
+    ----------
+    material : Material
+    deformation : ndarray, shape (..., 3, 3)
+        F with det F > 0.
+
+    Returns
+    -------
+    ndarray, shape (..., 3, 3)
+    """
+    f = deformation
+    inverse = np.linalg.inv(f).swapaxes(-1, -2)
+    j = np.linalg.det(f)[..., None, None]
+    trace = (f * f).sum(axis=(-1, -2))[..., None, None]
+    return material.bulk * np.log(j) * inverse + material.shear * j ** (-2 / 3) * (f - trace / 3 * inverse)
