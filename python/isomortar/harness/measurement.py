@@ -42,6 +42,13 @@ class Measurement:
     host: str = ""
     sources: str = ""
 
+    @property
+    def reason(self) -> str:
+        """Why it was not measured, in one line: the last one of a traceback, without the path of the error's class."""
+        last = (self.message.strip().splitlines() or [self.ending])[-1]
+        name, colon, text = last.partition(": ")
+        return text if colon and name.startswith("isomortar.") else last
+
 
 def measure(cell: Cell) -> Measurement:
     """Run a cell here and now."""

@@ -11,9 +11,9 @@ import numpy as np
 
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness.discretisations import Discretisation, parse_kind
-from isomortar.harness.elevation.measures import curve_error, expected_order, reference_uncertainty, relative_error, roughness
 from isomortar.harness.elevation.study import Study
 from isomortar.harness.measurement import Measurement
+from isomortar.harness.measures import curve_error, expected_order, reference_uncertainty, relative_error, roughness
 from isomortar.harness.orders import Convergence, OrderEstimate, estimate_order
 
 CURVES, FIELDS = ("force", "moment"), ("pressure", "displacement")
@@ -154,14 +154,7 @@ def _point(chosen: Discretisation, measurement: Measurement) -> Point:
     if measurement.ending == "measured":
         broken = [name for name, value in measurement.numbers.items() if not np.isfinite(np.asarray(value, float)).all()]
         return Point(chosen, {}, f"not finite: {', '.join(broken)}") if broken else Point(chosen, measurement.numbers, "")
-    lines = measurement.message.strip().splitlines() or [measurement.ending]
-    return Point(chosen, {}, _reason(lines[-1]))
-
-
-def _reason(line: str) -> str:
-    """The last line of a traceback without the path of the error's class."""
-    name, colon, text = line.partition(": ")
-    return text if colon and name.startswith("isomortar.") else line
+    return Point(chosen, {}, measurement.reason)
 
 
 def _means_something(reference: Mapping[str, Any], measure: str, size: float) -> bool:
