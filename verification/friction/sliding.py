@@ -27,7 +27,7 @@ _COULOMB = "theory: |T| = mu N where all points slip one way; deviations of dire
 _SOLVER = "round-off: contact conditions are solved to 1e-11"
 #: With e the length that the base lags behind the top in sliding, a step of length s turns the drag towards the motion as the lag: what
 #: is across goes from a to a e / (e + s), as (e + s) d' = e d + s m for the directions d, d' before and after, and m of the motion.
-_SETTLED = "theory: backward Euler leaves e / (e + s) = 1 / 3 of a wrong direction a step, e = 0.075 the elastic slip"
+_SETTLED = "theory: backward Euler leaves e / (e + s), a third, of a wrong direction a step; e, the elastic slip, is 0.07 here"
 
 
 def block(pushes: Sequence[tuple[float, int]], direction: float = 0.0, size: float = 0.06) -> Problem:
