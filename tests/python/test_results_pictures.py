@@ -14,9 +14,10 @@ from isomortar.errors import ResultsError
 from isomortar.geometry.patch import Direction
 from isomortar.model.numbering import Numbering
 from isomortar.results import Results, ResultsWriter
+from isomortar.results.bezier import greville
 from isomortar.results.bodies import draw_bodies
 from isomortar.results.curves import draw_curve, draw_reactions
-from isomortar.results.maps import _greville, draw_map
+from isomortar.results.maps import draw_map
 from isomortar.results.pictures import plot
 from isomortar.results.rendering import Camera, Canvas
 from isomortar.solve.record import StepResult
@@ -86,8 +87,8 @@ def test_the_map_shows_each_state_at_its_control_points() -> None:
 
 
 def test_places_of_control_points() -> None:
-    assert _greville(Direction("N", 2, [0, 0, 0, 1, 3, 3, 3])) == pytest.approx([0, 0.5, 2, 3])
-    assert _greville(Direction("L", 2, [0, 1, 3])) == pytest.approx([0, 0.5, 1, 2, 3])
+    assert greville(Direction("N", 2, [0, 0, 0, 1, 3, 3, 3])) == pytest.approx([0, 0.5, 2, 3])
+    assert greville(Direction("L", 2, [0, 1, 3])) == pytest.approx([0, 0.5, 1, 2, 3])
 
 
 def test_bodies_are_drawn_with_the_pressure_in_colour() -> None:

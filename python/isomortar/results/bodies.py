@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,8 +18,11 @@ from isomortar.results.fields import ContactSurface, body_points, contact_surfac
 from isomortar.results.rendering import Camera, Canvas
 from isomortar.solve.record import StepResult
 
+#: Colours of a face's small quadrilaterals (or one for all) and how strongly light falls on them, by name and parts of elements.
+Paint = Callable[[str, tuple[int, int]], tuple[FloatArray, float]]
+
 #: Small quadrilaterals along a face, and at least along one of its elements.
-_FINENESS = (72, 4)
+FINENESS = (72, 4)
 _FINENESS_OF_CONTACT = (144, 8)
 _VIEW = Camera(azimuth=-62.0, elevation=24.0)
 #: Light falls weakly on the contact face, so that its colours are those of the colour bar.
@@ -44,12 +48,14 @@ def draw_bodies(problem: Problem, step: StepResult, number: int) -> Figure:
     whole, contact = figure.subplots(1, 2, width_ratios=(1.35, 1.0))
     canvas = Canvas(_VIEW)
     for body in problem.bodies:
-        _add_body(canvas, body, points[body.name], surface, colours)
+        fine = surface.contact.slave.face if body is slave else None
+        add_body(canvas, body, points[body.name], _by_pressure(body, surface, colours), fine)
     if isinstance(surface.contact.master, RigidPlane):
-        canvas.add_floor(_plane_corners(surface.contact.master, points[slave.name]), np.array(to_rgb(style.PLANE)))
+        margin = 0.2 * float(np.ptp(points[slave.name], axis=0).max())
+        canvas.add_floor(plane_corners(surface.contact.master, points[slave.name], margin), np.array(to_rgb(style.PLANE)))
     canvas.paint(whole)
     canvas = Canvas(_camera_towards(face.normal))
-    _add_body(canvas, slave, points[slave.name], surface, colours)
+    add_body(canvas, slave, points[slave.name], _by_pressure(slave, surface, colours), surface.contact.slave.face)
     canvas.paint(contact)
     whole.set_title(f"{problem.name}, load step {step.step} ({step.stage})", loc="left")
     contact.set_title(f"{slave.name} from the master's side", loc="left")
@@ -68,7 +74,7 @@ class _Face:
 
 
 def _face(surface: ContactSurface) -> _Face:
-    matrices = _samplings(surface.directions, _FINENESS_OF_CONTACT)
+    matrices = _samplings(surface.directions, face_parts(surface.directions, _FINENESS_OF_CONTACT))
     points, pressure, _ = surface.fields(matrices)
     shape = (len(matrices[1]), len(matrices[0]))
     grid, corner = points.reshape(*shape, 3), pressure.reshape(shape)[:-1, :-1]
@@ -87,45 +93,70 @@ def _camera_towards(normal: FloatArray) -> Camera:
     return Camera(azimuth, 15.0 + 0.6 * elevation)
 
 
-def _plane_corners(plane: RigidPlane, points: FloatArray) -> FloatArray:
-    """Corners of the part of a rigid plane that lies under a body, and somewhat around it."""
+def plane_corners(plane: RigidPlane, points: FloatArray, margin: float) -> FloatArray:
+    """Corners of the part of a rigid plane that lies under a body, and `margin` around it."""
     normal, first = unit(plane.normal), unit(plane.tangent)
     along = np.stack([first, np.cross(normal, first)])
     places = (points - plane.point) @ along.T
     low, high = places.min(axis=0), places.max(axis=0)
-    low, high = low - 0.2 * (high - low).max(), high + 0.2 * (high - low).max()
+    low, high = low - margin, high + margin
     corners = np.array([[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]])
     return np.asarray(plane.point) + corners @ along
 
 
-def _parts(direction: Direction, fineness: tuple[int, int]) -> int:
-    return max(round(fineness[0] / direction.elements), fineness[1])
-
-
-def _samplings(directions: tuple[Direction, Direction], fineness: tuple[int, int]) -> tuple[FloatArray, FloatArray]:
-    first, second = (sampling_matrix(direction, _parts(direction, fineness)) for direction in directions)
+def face_parts(directions: tuple[Direction, Direction], fineness: tuple[int, int]) -> tuple[int, int]:
+    """Equal parts of each element along both directions: about `fineness[0]` along a face, at least `fineness[1]` an element."""
+    first, second = (max(round(fineness[0] / direction.elements), fineness[1]) for direction in directions)
     return first, second
 
 
-def _add_body(canvas: Canvas, body: Body, points: FloatArray, surface: ContactSurface, colours: ScalarMappable) -> None:
-    is_slave = body.name == surface.contact.slave.body
-    plain = np.array(to_rgb(style.SLAVE if is_slave else style.MASTER))
+def _samplings(directions: tuple[Direction, Direction], parts: tuple[int, int]) -> tuple[FloatArray, FloatArray]:
+    first, second = (sampling_matrix(direction, count) for direction, count in zip(directions, parts, strict=True))
+    return first, second
+
+
+def add_body(canvas: Canvas, body: Body, points: FloatArray, paint: Paint, fine: str | None = None, opacity: float = 1.0) -> None:
+    """Add the faces of a deformed body with its knot lines.
+
+    Parameters
+    ----------
+    canvas : Canvas
+    body : Body
+    points : ndarray, shape (n, 3)
+        Positions of the patch's control points.
+    paint : callable
+        Colours and shading of a face, from its name and the equal parts that elements are cut into along its two directions.
+    fine : str, optional
+        Face that is cut twice as finely.
+    opacity : float
+    """
     for name in FACES:
         if name[0] == body.closed:
             continue  # the two ends of a ring are inside it
         numbers = body.patch.face_points(name)
-        first, second = body.patch.face_directions(name)
-        touching = is_slave and name == surface.contact.slave.face
-        fineness = _FINENESS_OF_CONTACT if touching else _FINENESS
-        matrices = _samplings((first, second), fineness)
+        directions = body.patch.face_directions(name)
+        parts = face_parts(directions, _FINENESS_OF_CONTACT if name == fine else FINENESS)
+        matrices = _samplings(directions, parts)
         shape = (len(matrices[1]), len(matrices[0]))
         grid = rational(matrices, body.patch.weights[numbers], points[numbers])[0].reshape(*shape, 3)
-        if touching:
-            pressure = surface.fields(matrices)[1].reshape(shape)
-            middle = 0.25 * (pressure[1:, 1:] + pressure[1:, :-1] + pressure[:-1, 1:] + pressure[:-1, :-1])
-            cells = colours.to_rgba(np.where(np.abs(middle) < 1e-9 * np.abs(middle).max(), 0.0, middle))[..., :3]
-            shading = _SHADING_OF_PRESSURE
-        else:
-            cells, shading = np.broadcast_to(plain, (shape[0] - 1, shape[1] - 1, 3)), 1.0
-        lines = (np.arange(0, shape[1], _parts(first, fineness)), np.arange(0, shape[0], _parts(second, fineness)))
-        canvas.add_surface(grid, cells, 1 if name[1] == "1" else -1, lines, shading)
+        lines = (np.arange(0, shape[1], parts[0]), np.arange(0, shape[0], parts[1]))
+        colours, shading = paint(name, parts)
+        cells = np.broadcast_to(colours, (shape[0] - 1, shape[1] - 1, 3))
+        canvas.add_surface(grid, cells, 1 if name[1] == "1" else -1, lines, shading, opacity)
+
+
+def _by_pressure(body: Body, surface: ContactSurface, colours: ScalarMappable) -> Paint:
+    """The contact face by its pressure, the rest in the colour of the body."""
+    is_slave = body.name == surface.contact.slave.body
+    plain = np.array(to_rgb(style.SLAVE if is_slave else style.MASTER))
+
+    def paint(name: str, parts: tuple[int, int]) -> tuple[FloatArray, float]:
+        if not (is_slave and name == surface.contact.slave.face):
+            return plain, 1.0
+        matrices = _samplings(surface.directions, parts)
+        pressure = surface.fields(matrices)[1].reshape(len(matrices[1]), len(matrices[0]))
+        middle = 0.25 * (pressure[1:, 1:] + pressure[1:, :-1] + pressure[:-1, 1:] + pressure[:-1, :-1])
+        cells = colours.to_rgba(np.where(np.abs(middle) < 1e-9 * np.abs(middle).max(), 0.0, middle))
+        return cells[..., :3], _SHADING_OF_PRESSURE
+
+    return paint

@@ -31,6 +31,20 @@ class ContactSurface:
     covariant: FloatArray
     status: IntArray
 
+    @property
+    def letters(self) -> tuple[str, str]:
+        """Names of the surface coordinates among u, v, w."""
+        axis = "uvw".index(self.contact.slave.face[0])
+        return "uvw"[(axis + 1) % 3], "uvw"[(axis + 2) % 3]
+
+    @property
+    def lengths(self) -> tuple[float, float]:
+        """Mean lengths of the control net along both surface coordinates, in the reference configuration."""
+        first, second = self.directions
+        net = self.reference_points.reshape(second.count, first.count, 3)
+        along = [np.linalg.norm(np.diff(net, axis=axis), axis=-1).sum(axis=axis).mean() for axis in (1, 0)]
+        return float(along[0]), float(along[1])
+
     def fields(self, matrices: tuple[FloatArray, FloatArray]) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Points, shape (m, 3), pressure and traction magnitude, shape (m,), by matrices of `isomortar.results.bezier`."""
         values = self.field(matrices, np.column_stack([self.points, self.pressure, self.traction]))

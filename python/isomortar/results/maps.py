@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 from isomortar.geometry.patch import Direction, FloatArray
 from isomortar.model.entities import Problem
 from isomortar.results import style
-from isomortar.results.bezier import sampling_matrix
-from isomortar.results.fields import ContactSurface, contact_surfaces
+from isomortar.results.bezier import greville, sampling_matrix, sampling_places
+from isomortar.results.fields import contact_surfaces
 from isomortar.solve.record import StepResult
 
 #: By status of a control point: marker, filling, label.
@@ -24,14 +24,14 @@ def draw_map(problem: Problem, step: StepResult, number: int) -> Figure:
     Control points stand where the face's functions have their Greville abscissae (Lagrange: their nodes).
     """
     surface = contact_surfaces(problem, step)[number]
-    letters = _letters(surface.contact.slave.face)
+    letters = surface.letters
     directions = surface.directions
-    lengths = _lengths(surface)
+    lengths = surface.lengths
     parts = [max(4, _SAMPLES // d.elements) for d in directions]
-    samples = [_places(d, n) for d, n in zip(directions, parts, strict=True)]
+    samples = [sampling_places(d, n) for d, n in zip(directions, parts, strict=True)]
     _, field, _ = surface.fields((sampling_matrix(directions[0], parts[0]), sampling_matrix(directions[1], parts[1])))
     grid = field.reshape(len(samples[1]), len(samples[0]))
-    points = np.stack(np.meshgrid(_greville(directions[0]), _greville(directions[1])), axis=-1).reshape(-1, 2)
+    points = np.stack(np.meshgrid(greville(directions[0]), greville(directions[1])), axis=-1).reshape(-1, 2)
     if lengths[0] < lengths[1]:  # the longer coordinate runs to the right
         samples, grid, points = samples[::-1], grid.T, points[:, ::-1]
         directions, letters, lengths = directions[::-1], letters[::-1], lengths[::-1]
@@ -54,33 +54,6 @@ def draw_map(problem: Problem, step: StepResult, number: int) -> Figure:
     axes.set_aspect((lengths[1] / ranges[1]) / (lengths[0] / ranges[0]))
     _look_at_contact(axes, directions, points[surface.status > 0])
     return figure
-
-
-def _letters(face: str) -> tuple[str, str]:
-    axis = "uvw".index(face[0])
-    return "uvw"[(axis + 1) % 3], "uvw"[(axis + 2) % 3]
-
-
-def _lengths(surface: ContactSurface) -> tuple[float, float]:
-    """Mean lengths of the control net along both surface directions, in the reference configuration."""
-    first, second = surface.directions
-    net = surface.reference_points.reshape(second.count, first.count, 3)
-    along = [np.linalg.norm(np.diff(net, axis=axis), axis=-1).sum(axis=axis).mean() for axis in (1, 0)]
-    return float(along[0]), float(along[1])
-
-
-def _places(direction: Direction, parts: int) -> FloatArray:
-    """Parameters of the rows of `sampling_matrix`."""
-    ends = direction.boundaries
-    return np.interp(np.arange(parts * direction.elements + 1) / parts, np.arange(len(ends)), ends)
-
-
-def _greville(direction: Direction) -> FloatArray:
-    """Where each function of a direction belongs: means of its inner knots, or its node."""
-    p = direction.order
-    if direction.family == "L":
-        return _places(direction, p)
-    return np.array([direction.knots[i + 1 : i + p + 1].mean() for i in range(direction.count)])
 
 
 def _draw_elements(axes: Axes, directions: tuple[Direction, Direction]) -> None:

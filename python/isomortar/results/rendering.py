@@ -31,6 +31,10 @@ class Camera:
         right = np.array([-np.sin(a), np.cos(a), 0.0])
         return np.array([right, np.cross(eye, right), eye])
 
+    def places(self, points: FloatArray) -> FloatArray:
+        """Where points of shape (..., 3) appear in the picture, shape (..., 2)."""
+        return points @ self.axes[:2].T
+
 
 class Canvas:
     """Collects surfaces and paints them."""
@@ -97,10 +101,6 @@ class Canvas:
     def add_segments(self, segments: FloatArray, colour: FloatArray, width: float) -> None:
         """Add straight lines, ends of shape (n, 2, 3)."""
         self._add(segments @ self._axes.T, 0.0, np.broadcast_to(colour, (len(segments), 3)), width)
-
-    def places(self, points: FloatArray) -> FloatArray:
-        """Where points appear in the picture, shape (n, 2)."""
-        return (points @ self._axes.T)[..., :2]
 
     def _add_lines(self, seen: FloatArray, front: NDArray[np.bool_], rows: NDArray[np.int64]) -> None:
         """Lines along rows of points, where the surface on one of their sides is seen; nearer to the eye than that surface."""

@@ -42,3 +42,13 @@ def style() -> Iterator[None]:
 def pressure_colours() -> Colormap:
     """From pale (no pressure) to dark red; grey below zero, where the contact would pull."""
     return mpl.colormaps["YlOrRd"].with_extremes(under="#6F7680")
+
+
+def signed_colours() -> Colormap:
+    """From blue (negative) over white to red."""
+    return mpl.colormaps["RdBu_r"]
+
+
+def field_colours() -> Colormap:
+    """From pale (low) to dark blue (high), for fields of bodies."""
+    return mpl.colormaps["YlGnBu"]

@@ -1,0 +1,109 @@
+"""A slave face laid flat, with a contact field over it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from isomortar.errors import InputError
+from isomortar.geometry.patch import Direction, FloatArray
+from isomortar.harness.paper.figures.picture import Panel
+from isomortar.results.bezier import greville, sampling_matrix, sampling_places
+from isomortar.results.fields import ContactSurface, contact_surfaces
+
+Quantity = Literal["pressure", "traction", "traction_2"]
+#: Samples along a face.
+_SAMPLES = 200
+
+
+@dataclass(frozen=True)
+class FlatPatch:
+    """Lengths along both surface coordinates from the middle of the face; the second coordinate is the first axis of a field.
+
+    `samples`, `boundaries`: of the field and of elements, by coordinate. `points`, shape (n, 2), `active`, `control_values`,
+    shape (n,): the control points. `values`, `pressure`: fields, shape (m2, m1). `letters`: names of the coordinates.
+    """
+
+    samples: tuple[FloatArray, FloatArray]
+    boundaries: tuple[FloatArray, FloatArray]
+    points: FloatArray
+    active: NDArray[np.bool_]
+    control_values: FloatArray
+    values: FloatArray
+    pressure: FloatArray
+    letters: tuple[str, str]
+
+    def within(self, region: FloatArray) -> FlatPatch:
+        """The part of the fields between the lower and upper corner of `region`, shape (2, 2)."""
+        samples, boundaries = (
+            [(at >= low - 1e-9) & (at <= high + 1e-9) for at, low, high in zip(places, *region, strict=True)]
+            for places in (self.samples, self.boundaries)
+        )
+        window = np.ix_(samples[1], samples[0])
+        return replace(
+            self,
+            samples=(self.samples[0][samples[0]], self.samples[1][samples[1]]),
+            boundaries=(self.boundaries[0][boundaries[0]], self.boundaries[1][boundaries[1]]),
+            values=self.values[window],
+            pressure=self.pressure[window],
+        )
+
+
+def lay_flat(panel: Panel, quantity: Quantity) -> FlatPatch:
+    """The slave face of the panel's first contact pair. Control points lie at their Greville abscissae (Lagrange: at their nodes).
+
+    Raises
+    ------
+    InputError
+        A traction over the friction coefficient is asked for where there is no friction.
+    """
+    surface = contact_surfaces(panel.results.problem, panel.results.step(panel.step))[0]
+    first, second = surface.directions
+    parts = [max(8, _SAMPLES // d.elements) for d in surface.directions]
+    matrices = sampling_matrix(first, parts[0]), sampling_matrix(second, parts[1])
+    control_values = _control_values(surface, quantity)
+    fields = surface.field(matrices, np.column_stack([control_values, surface.pressure]))
+    shape = (len(matrices[1]), len(matrices[0]))
+    lengths = surface.lengths
+    return FlatPatch(
+        samples=(_flat(first, lengths[0], sampling_places(first, parts[0])), _flat(second, lengths[1], sampling_places(second, parts[1]))),
+        boundaries=(_flat(first, lengths[0], first.boundaries), _flat(second, lengths[1], second.boundaries)),
+        points=np.stack(
+            np.meshgrid(_flat(first, lengths[0], greville(first)), _flat(second, lengths[1], greville(second))), axis=-1
+        ).reshape(-1, 2),
+        active=surface.status > 0,
+        control_values=control_values,
+        values=fields[:, 0].reshape(shape),
+        pressure=fields[:, 1].reshape(shape),
+        letters=surface.letters,
+    )
+
+
+def region_of_contact(patches: Sequence[FlatPatch]) -> FloatArray:
+    """Lower and upper corner of the elements that have active control points in any of the patches, shape (2, 2)."""
+    corners = []
+    for patch in patches:
+        active = patch.points[patch.active] if patch.active.any() else patch.points
+        low, high = active.min(axis=0), active.max(axis=0)
+        first = [ends[max(np.searchsorted(ends, x) - 1, 0)] for ends, x in zip(patch.boundaries, low, strict=True)]
+        last = [ends[min(np.searchsorted(ends, x, side="right"), len(ends) - 1)] for ends, x in zip(patch.boundaries, high, strict=True)]
+        corners.append([first, last])
+    return np.array([np.min(corners, axis=0)[0], np.max(corners, axis=0)[1]])
+
+
+def _flat(direction: Direction, length: float, parameters: FloatArray) -> FloatArray:
+    """Parameters as lengths from the middle."""
+    low, high = direction.boundaries[[0, -1]]
+    return length * ((parameters - low) / (high - low) - 0.5)
+
+
+def _control_values(surface: ContactSurface, quantity: Quantity) -> FloatArray:
+    if quantity == "pressure":
+        return surface.pressure
+    if surface.contact.friction <= 0:
+        raise InputError(f"has no friction: {quantity} over the friction coefficient means nothing", f"contact {surface.contact.name}")
+    return surface.covariant[:, 0 if quantity == "traction" else 1] / surface.contact.friction
