@@ -18,7 +18,7 @@ class ContactSurface:
     """A slave face with its contact quantities, everything by control point of the face (shape (n,), points (n, 3)).
 
     The fields are p = sum R^I p^I, for the magnitude of the traction sum R^I |tau^I|, and by `field` any other. `covariant`: control
-    tractions tau_alpha^I in the master's coordinates, shape (n, 2).
+    tractions tau_alpha^I in the master's coordinates, shape (n, 2); `gap`: control gaps g^I, positive is penetration.
     """
 
     contact: Contact
@@ -29,6 +29,7 @@ class ContactSurface:
     pressure: FloatArray
     traction: FloatArray
     covariant: FloatArray
+    gap: FloatArray
     status: IntArray
 
     @property
@@ -80,6 +81,7 @@ def contact_surfaces(problem: Problem, result: StepResult) -> list[ContactSurfac
                 pressure=state.pressure[slave],
                 traction=measured.traction_norm[slave],
                 covariant=state.traction[slave],
+                gap=measured.gap[slave],
                 status=measured.status[slave],
             )
         )

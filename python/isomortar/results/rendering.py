@@ -64,6 +64,7 @@ class Canvas:
         Parameters
         ----------
         points : ndarray, shape (m2, m1, 3)
+            The surface has a hole where they are NaN.
         colours : ndarray, shape (m2 - 1, m1 - 1, 3)
             Of each small quadrilateral, before shading.
         outward : {-1, 0, 1}
@@ -107,7 +108,7 @@ class Canvas:
         beside = np.clip(np.stack([rows - 1, rows]), 0, len(front) - 1)
         segments = np.stack([seen[rows, :-1], seen[rows, 1:]], axis=2)[front[beside].any(axis=0)]
         across = np.linalg.norm(np.diff(seen, axis=0), axis=-1)
-        self._add(segments, 1.5 * float(np.median(across)), np.broadcast_to(_EDGE, (len(segments), 3)), 0.55)
+        self._add(segments, 1.5 * float(np.nanmedian(across)), np.broadcast_to(_EDGE, (len(segments), 3)), 0.55)
 
     def limits(self) -> FloatArray:
         """Lower left and upper right corner of all that was added, with a small margin."""

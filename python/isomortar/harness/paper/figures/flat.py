@@ -14,8 +14,11 @@ from isomortar.geometry.patch import Direction, FloatArray
 from isomortar.harness.paper.figures.picture import Panel
 from isomortar.results.bezier import greville, sampling_matrix, sampling_places
 from isomortar.results.fields import ContactSurface, contact_surfaces
+from isomortar.results.gaps import gaps
 
-Quantity = Literal["pressure", "traction", "traction_2"]
+Quantity = Literal["pressure", "traction", "traction_2", "gap"]
+#: Where the gap is shown: pressure over its largest value. Beside the contact it grows at once to many times what it is inside.
+CONTACT_ZONE = 0.02
 #: Samples along a face.
 _SAMPLES = 200
 
@@ -56,29 +59,40 @@ class FlatPatch:
 def lay_flat(panel: Panel, quantity: Quantity) -> FlatPatch:
     """The slave face of the panel's first contact pair. Control points lie at their Greville abscissae (Lagrange: at their nodes).
 
+    The gap is that of each place, NaN outside the contact zone.
+
     Raises
     ------
     InputError
         A traction over the friction coefficient is asked for where there is no friction.
     """
-    surface = contact_surfaces(panel.results.problem, panel.results.step(panel.step))[0]
-    first, second = surface.directions
+    step = panel.results.step(panel.step)
+    surface = contact_surfaces(panel.results.problem, step)[0]
     parts = [max(8, _SAMPLES // d.elements) for d in surface.directions]
-    matrices = sampling_matrix(first, parts[0]), sampling_matrix(second, parts[1])
+    first, second = (sampling_matrix(d, n) for d, n in zip(surface.directions, parts, strict=True))
+    points, pressure, _ = surface.fields((first, second))
     control_values = _control_values(surface, quantity)
-    fields = surface.field(matrices, np.column_stack([control_values, surface.pressure]))
-    shape = (len(matrices[1]), len(matrices[0]))
-    lengths = surface.lengths
+    if quantity == "gap":
+        values = gaps(panel.results.problem, surface.contact, step.state.positions, points)
+        values = np.where(pressure > CONTACT_ZONE * pressure.max(), values, np.nan)
+    else:
+        values = surface.field((first, second), control_values[:, None])[:, 0]
+    samples, boundaries, at = (
+        [_flat(d, length, places) for d, length, places in zip(surface.directions, surface.lengths, both, strict=True)]
+        for both in (
+            [sampling_places(d, n) for d, n in zip(surface.directions, parts, strict=True)],
+            [d.boundaries for d in surface.directions],
+            [greville(d) for d in surface.directions],
+        )
+    )
     return FlatPatch(
-        samples=(_flat(first, lengths[0], sampling_places(first, parts[0])), _flat(second, lengths[1], sampling_places(second, parts[1]))),
-        boundaries=(_flat(first, lengths[0], first.boundaries), _flat(second, lengths[1], second.boundaries)),
-        points=np.stack(
-            np.meshgrid(_flat(first, lengths[0], greville(first)), _flat(second, lengths[1], greville(second))), axis=-1
-        ).reshape(-1, 2),
+        samples=(samples[0], samples[1]),
+        boundaries=(boundaries[0], boundaries[1]),
+        points=np.stack(np.meshgrid(*at), axis=-1).reshape(-1, 2),
         active=surface.status > 0,
         control_values=control_values,
-        values=fields[:, 0].reshape(shape),
-        pressure=fields[:, 1].reshape(shape),
+        values=values.reshape(len(second), len(first)),
+        pressure=pressure.reshape(len(second), len(first)),
         letters=surface.letters,
     )
 
@@ -104,6 +118,8 @@ def _flat(direction: Direction, length: float, parameters: FloatArray) -> FloatA
 def _control_values(surface: ContactSurface, quantity: Quantity) -> FloatArray:
     if quantity == "pressure":
         return surface.pressure
+    if quantity == "gap":
+        return surface.gap
     if surface.contact.friction <= 0:
         raise InputError(f"has no friction: {quantity} over the friction coefficient means nothing", f"contact {surface.contact.name}")
     return surface.covariant[:, 0 if quantity == "traction" else 1] / surface.contact.friction

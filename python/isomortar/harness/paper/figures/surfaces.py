@@ -23,6 +23,7 @@ _LABELS: dict[Quantity, str] = {
     "pressure": "contact pressure $p$ (force / area)",
     "traction": r"tangential traction $\tau_1/\mu$ (force / area $\times$ length / parameter)",
     "traction_2": r"tangential traction $\tau_2/\mu$ (force / area $\times$ length / parameter)",
+    "gap": "gap $g$ in the contact zone (length), positive: penetration",
 }
 #: Of a sphere, over the longer side of the patch.
 _RADIUS = 0.011
@@ -42,7 +43,9 @@ def draw(panels: Sequence[Panel], quantity: Quantity) -> Picture:
     ----------
     panels : sequence of Panel
         Of each, the first contact pair is drawn.
-    quantity : {"pressure", "traction", "traction_2"}
+    quantity : {"pressure", "traction", "traction_2", "gap"}
+        The control pressures' field; a covariant component of the traction over the friction coefficient, as in the paper; the gap at
+        each place of the contact zone, spheres the control gaps.
     """
     patches = [lay_flat(panel, quantity) for panel in panels]
     region = region_of_contact(patches)
@@ -67,7 +70,7 @@ def draw(panels: Sequence[Panel], quantity: Quantity) -> Picture:
             _draw_lengths(axes, patch.letters, frame)
             scaled = "" if panel.height_scale == 1.0 else f" (heights times {panel.height_scale:g})"
             axes.set_title(panel.title + scaled, loc="left")
-        extend = beyond(np.concatenate([patch.values.ravel() for patch in patches]), colours)
+        extend = beyond(np.concatenate([patch.values[np.isfinite(patch.values)] for patch in patches]), colours)
         figure.colorbar(colours, ax=list(grid), shrink=0.85, aspect=26, pad=0.01, extend=extend, label=_LABELS[quantity])
     return rendering(figure, f"{quantity}: {', '.join(panel.title for panel in panels)}")
 
@@ -99,22 +102,24 @@ class _Frame:
 def _range(patch: FlatPatch) -> FloatArray:
     """Smallest and largest value of the field and of what the spheres show."""
     shown = [patch.values.ravel(), patch.control_values[patch.active]]
-    return np.array([np.concatenate(shown).min(), np.concatenate(shown).max()])
+    return np.array([np.nanmin(np.concatenate(shown)), np.nanmax(np.concatenate(shown))])
 
 
 def _colours(patches: Sequence[FlatPatch], quantity: Quantity) -> ScalarMappable:
     if quantity == "pressure":
-        return ScalarMappable(Normalize(0.0, max(float(p.values.max()) for p in patches)), style.pressure_colours())
-    reach = max(float(np.abs(p.values).max()) for p in patches)
+        return ScalarMappable(Normalize(0.0, max(float(np.nanmax(p.values)) for p in patches)), style.pressure_colours())
+    reach = max(float(np.nanmax(np.abs(p.values))) for p in patches)
     return ScalarMappable(Normalize(-reach, reach), style.signed_colours())
 
 
 def _canvas(panel: Panel, patch: FlatPatch, colours: ScalarMappable, frame: _Frame) -> Canvas:
     canvas = Canvas(_VIEW)
     base = frame.corners(0.0)
-    canvas.add_segments(np.stack([base, np.roll(base, -1, axis=0)], axis=1), _FRAME, 0.8)
-    places = np.stack(np.meshgrid(*patch.samples), axis=-1)
-    canvas.add_surface(frame.lifted(places, panel.height_scale * patch.values), _cells(patch, colours), 0, _lines(patch), _SHADING)
+    places = np.linspace(0.0, 1.0, 61)[:, None, None]
+    outline = (base + places * (np.roll(base, -1, axis=0) - base)).swapaxes(0, 1)
+    canvas.add_segments(np.stack([outline[:, :-1], outline[:, 1:]], axis=2).reshape(-1, 2, 3), _FRAME, 0.8)
+    grid = np.stack(np.meshgrid(*patch.samples), axis=-1)
+    canvas.add_surface(frame.lifted(grid, panel.height_scale * patch.values), _cells(patch, colours), 0, _lines(patch), _SHADING)
     centres = frame.lifted(patch.points[patch.active], panel.height_scale * patch.control_values[patch.active])
     canvas.add_spheres(centres, _RADIUS * frame.size, _SPHERE)
     return canvas
@@ -123,7 +128,7 @@ def _canvas(panel: Panel, patch: FlatPatch, colours: ScalarMappable, frame: _Fra
 def _cells(patch: FlatPatch, colours: ScalarMappable) -> FloatArray:
     """Colours of the small quadrilaterals, grey where the pressure is negative."""
     values, pressure = (0.25 * (f[1:, 1:] + f[1:, :-1] + f[:-1, 1:] + f[:-1, :-1]) for f in (patch.values, patch.pressure))
-    cells = colours.to_rgba(np.where(np.abs(values) < 1e-9 * colours.norm.vmax, 0.0, values))[..., :3]
+    cells = colours.to_rgba(np.where(np.abs(values) < 1e-9 * float(np.max(colours.get_clim())), 0.0, values))[..., :3]
     cells[pressure < -1e-6 * np.abs(pressure).max()] = _NEGATIVE
     return cells
 
