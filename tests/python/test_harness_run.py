@@ -283,6 +283,25 @@ def test_what_can_be_no_reference_is_not_blessed(root, value):
     assert not Path("references").exists()
 
 
+def test_over_refined_is_what_has_measured_its_uncertainty(root):
+    family = next(root.glob("family_*"))
+    family.joinpath("match.py").write_text(MATCH)
+    command = ["bless", f"{family.name}/same", "--reason", "x", "--yes", "--class", "over-refined", "--cases", str(root), "-j", "1"]
+    command += ["--references", "references"]
+    with pytest.raises(InputError, match="'uncertainty', measured by the case"):
+        CliRunner().invoke(app, command, catch_exceptions=False)
+    assert not Path("references").exists()
+    also = MATCH.replace('{"value": M', '{"uncertainty": Bound(at_most=1.0, reason="theory: so"), "value": M')
+    family.joinpath("match.py").write_text(also.replace('"error": 0.0', '"error": 0.0, "uncertainty": 1e-3 if kind == "N1" else 1e-12'))
+    store._case_hash.cache_clear()
+    for name in [name for name in sys.modules if name.startswith("family_")]:
+        del sys.modules[name]
+    assert CliRunner().invoke(app, command, catch_exceptions=False).exit_code == 0
+    kept = Reference(Path("references/kept"))
+    assert kept.record["class"] == "over-refined"
+    assert [float(kept._expected[f"kind={kind}/value"].uncertainty) for kind in ("N1", "N2")] == [2e-3, 2e-9]  # the stated 1e-9 at least
+
+
 def test_what_is_worth_more_than_a_run_is_not_replaced(root):
     family = next(root.glob("family_*"))
     family.joinpath("match.py").write_text(MATCH)

@@ -93,7 +93,12 @@ def verify(
 def bless(
     case: Annotated[str, typer.Argument(metavar="CASE", help="The case, FAMILY/NAME.")],
     reason: Annotated[str, typer.Option(help="Why the new numbers are right; goes into the record.")],
-    kind: Annotated[str, typer.Option("--class", help="What the reference is worth: self (shows change only) or over-refined.")] = "self",
+    kind: Annotated[
+        str,
+        typer.Option(
+            "--class", help="What the reference is worth: self (shows change only) or over-refined (the case measures its uncertainty)."
+        ),
+    ] = "self",
     uncertainty: Annotated[float, typer.Option(help="Of each number, relative to its largest value.")] = 1e-9,
     yes: Annotated[bool, typer.Option("--yes", help="Do not ask.")] = False,
     jobs: JobsOption = CORES,
@@ -103,7 +108,7 @@ def bless(
 ) -> None:
     """Make the numbers of a case the reference that it is compared with, after showing what that changes, as numbers and pictures.
 
-    For example: `isomortar bless paper/ironing --reason "Exact tangent of the slip rows"`
+    For example: `isomortar bless patch_tests/uniform_pressure --reason "More quadrature points by default"`
     """
     from isomortar.errors import InputError
     from isomortar.harness import blessing

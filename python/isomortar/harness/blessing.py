@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 
@@ -16,17 +17,21 @@ from isomortar.harness import svg
 from isomortar.harness.cases import Case, Cell, Matches
 from isomortar.harness.compare import Lookup
 from isomortar.harness.measurement import curve_of
-from isomortar.harness.references import Kind, Reference, dataset_name, write_reference
+from isomortar.harness.references import Reference, dataset_name, write_reference
 from isomortar.harness.report import template
 from isomortar.harness.runner import Result
 from isomortar.harness.store import compiler, kernel_hash, program_hash, write_whole
+
+#: The number of a cell by which it states how far off its others are, relative to their largest values, measured by two refinements.
+MEASURED = "uncertainty"
 
 
 @dataclass(frozen=True)
 class Change:
     """What blessing one number changes: new values, the old ones (None: there were none) and their uncertainty.
 
-    `x`: what the values are shown over, shape (entries,): a curve's own, else the number of the entry.
+    `x`: what the values are shown over, shape (entries,): a curve's own, else the number of the entry. `measured`: relative uncertainty
+    of the new values by the cell's own number of that name; NaN: it has none.
     """
 
     cell: Cell
@@ -37,6 +42,7 @@ class Change:
     old_uncertainty: float
     x: FloatArray
     x_label: str
+    measured: float
 
     @property
     def difference(self) -> float:
@@ -57,6 +63,8 @@ def changes(results: Sequence[Result], lookup: Lookup) -> list[Change]:
     found = []
     for result in results:
         claims = result.cell.case.bounds_of(result.cell.settings)
+        known = result.measurement.numbers.get(MEASURED)
+        measured = known if isinstance(known, float) else np.nan
         for check in result.checks:
             claim = claims.get(check.name)
             if not isinstance(claim, Matches):
@@ -73,7 +81,7 @@ def changes(results: Sequence[Result], lookup: Lookup) -> list[Change]:
             old = lookup(claim.reference, result.cell, check.name)
             worth = float(old.uncertainty.max()) if old else np.nan
             x, label = (np.asarray(curve.x, float), curve.x_label) if curve else (np.arange(float(new.size)), "entry")
-            found.append(Change(result.cell, check.name, claim.reference, new, old.values if old else None, worth, x, label))
+            found.append(Change(result.cell, check.name, claim.reference, new, old.values if old else None, worth, x, label, measured))
     if not found:
         raise InputError("is compared with no reference: none of its bounds is Matches", results[0].cell.case.name)
     return found
@@ -104,8 +112,13 @@ def _differences(change: Change) -> str:
     return svg.plot([svg.Line("new - old", change.x, apart), *limits], change.x_label, "difference", False, False)
 
 
-def bless(case: Case, found: Sequence[Change], folder: Path, reason: str, kind: Kind, uncertainty: float) -> list[Path]:
+def bless(
+    case: Case, found: Sequence[Change], folder: Path, reason: str, kind: Literal["self", "over-refined"], uncertainty: float
+) -> list[Path]:
     """Write the references that a case is compared with; `uncertainty` is relative to each number's largest value.
+
+    One of class ``over-refined`` speaks of correctness: every cell must itself have measured how far off it is (a number `MEASURED`, from
+    two refinements, say), and what it found counts where it is more than `uncertainty`.
 
     Returns
     -------
@@ -115,24 +128,26 @@ def bless(case: Case, found: Sequence[Change], folder: Path, reason: str, kind: 
     Raises
     ------
     InputError
-        No reason, no uncertainty, or a reference that is worth more than a run of this program.
+        No reason, no uncertainty, one that was not measured, or a reference that is worth more than a run of this program.
     """
     if not reason.strip():
         raise InputError("say why the new numbers are right", "reason")
     if not (np.isfinite(uncertainty) and uncertainty > 0):
         raise InputError(f"is {uncertainty}; must be positive: no run is exact", "uncertainty")
+    shares = {change.cell.name: uncertainty if kind == "self" else max(uncertainty, _measured(change)) for change in found}
     written = []
     for name in dict.fromkeys(change.reference for change in found):
         mine = [change for change in found if change.reference == name]
         if (folder / name / "record.toml").exists() and Reference(folder / name).record["class"] in ("exact", "other code"):
             raise InputError("is exact or of another program; a run of this program does not replace it", str(folder / name))
-        datasets = {dataset_name(c.cell, c.number): (c.new, uncertainty * float(np.abs(c.new).max())) for c in mine}
+        datasets = {dataset_name(c.cell, c.number): (c.new, shares[c.cell.name] * float(np.abs(c.new).max())) for c in mine}
         record = {
             "title": case.claim,
             "class": kind,
             "origin": f"This program: case {case.name}",
             "made": f"isomortar bless {case.name}",
-            "uncertainty": f"{uncertainty:g} of the largest value of each number",
+            "uncertainty": f"{max(shares.values()):g} of the largest value of each number"
+            + ("" if kind == "self" else " or less, as measured"),
             "reason": reason,
             "who": getpass.getuser(),
             "when": datetime.now(UTC).isoformat(timespec="seconds"),
@@ -143,3 +158,19 @@ def bless(case: Case, found: Sequence[Change], folder: Path, reason: str, kind: 
         write_reference(folder / name, datasets, record)
         written.append(folder / name)
     return written
+
+
+def _measured(change: Change) -> float:
+    """The uncertainty that the cell itself measured, relative.
+
+    Raises
+    ------
+    InputError
+        It measured none.
+    """
+    if not (np.isfinite(change.measured) and change.measured > 0):
+        raise InputError(
+            f"has no positive number {MEASURED!r}, measured by the case (as by two refinements): without it a run is of class self",
+            change.cell.name,
+        )
+    return change.measured
