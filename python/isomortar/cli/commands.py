@@ -11,6 +11,7 @@ import typer
 
 import isomortar
 from isomortar.cli.mutants import mutants
+from isomortar.cli.paper import paper
 from isomortar.cli.report import report
 from isomortar.cli.verification import bless, verify
 from isomortar.errors import ConvergenceError, InputError, IsomortarError
@@ -189,6 +190,7 @@ def schema() -> None:
 app.command()(verify)
 app.command()(bless)
 app.add_typer(report, name="report")
+app.command()(paper)
 app.command()(mutants)
 
 

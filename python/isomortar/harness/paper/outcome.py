@@ -14,7 +14,7 @@ import numpy as np
 from isomortar.errors import InputError, ResultsError
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness.cases import Cell
-from isomortar.harness.measurement import Measurement
+from isomortar.harness.measurement import Measurement, Stored, stored
 from isomortar.harness.paper import run as cells
 from isomortar.harness.paper.studies import Method, Run, Study
 from isomortar.harness.store import Store, write_whole
@@ -131,9 +131,10 @@ def outcome(study: Study, run: Run, method: Method, cell: Cell, measurement: Mea
     path = cells.results_file(Path(cell.settings["scene"]))
     if measurement.ending == "measured":
         return Outcome(study, run, method, path, "", measurement.numbers)
+    numbers: dict[str, Stored]
     try:
         with Results(path) as results:
-            numbers = cells.measured(results)
+            numbers = {name: stored(value) for name, value in cells.measured(results).items()}
     except ResultsError:
         numbers = {}
     return Outcome(study, run, method, path, measurement.reason, numbers)

@@ -1,0 +1,122 @@
+"""The page of the paper's studies: one HTML file that needs nothing else, all its numbers as JSON, and its figures as files."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+from isomortar.harness.elevation.page import percent
+from isomortar.harness.paper.outcome import Outcome, Outcomes
+from isomortar.harness.paper.plates import NAMES, Plate, gap_between_methods, plates
+from isomortar.harness.paper.statements import STATES, Judgement
+from isomortar.harness.paper.studies import METHODS, Study
+from isomortar.harness.report import plain, template
+from isomortar.harness.store import compiler, kernel_hash, program_hash, write_whole
+
+
+@dataclass(frozen=True)
+class Report:
+    """All that the page shows; `left_out` counts the statements that these studies have not the runs for."""
+
+    outcomes: Outcomes
+    judgements: tuple[Judgement, ...]
+    left_out: int
+    quick: bool
+    started: datetime
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Statements by verdict."""
+        found = Counter(judgement.state for judgement in self.judgements)
+        return {state: found[state] for state in reversed(STATES)}
+
+    @property
+    def failed(self) -> list[Outcome]:
+        """Runs that did not come to their end."""
+        return [o for o in self.outcomes.entries if o.failure]
+
+    @property
+    def complete(self) -> bool:
+        """Whether every run of NURBS came to its end and every statement was measured."""
+        return all(o.run.lagrange for o in self.failed) and not self.counts["not measured"]
+
+
+def write(folder: Path, report: Report) -> Path:
+    """Write ``paper.html``, ``paper.json`` and ``figures/``; returns the path of the page."""
+    path = folder / "paper.html"
+    drawn = {study.scene: plates(study, report.outcomes) for study in report.outcomes.studies}
+    (folder / "figures").mkdir(parents=True, exist_ok=True)
+    for plate in (plate for group in drawn.values() for plate in group):
+        plate.picture.save(folder / "figures" / plate.name)
+    write_whole(path, page(report, drawn))
+    write_whole(path.with_suffix(".json"), json.dumps(plain(as_data(report)), indent=1))
+    return path
+
+
+def as_data(report: Report) -> dict[str, Any]:
+    """All numbers of the page as plain data."""
+    return {
+        "started": report.started.isoformat(timespec="seconds"),
+        "quick": report.quick,
+        "program": program_hash(),
+        "kernel": kernel_hash(),
+        "compiler": compiler(),
+        "verdicts": report.counts,
+        "statements": [_statement(judgement) for judgement in report.judgements],
+        "runs": [_run(report.outcomes, outcome) for outcome in report.outcomes.entries],
+    }
+
+
+def page(report: Report, drawn: dict[str, list[Plate]]) -> str:
+    """The HTML page."""
+    return template("paper/page.html").render(
+        report=report,
+        studies=[
+            (study, _rows(report.outcomes, study), drawn[study.scene], _seconds(report.outcomes.of(study)))
+            for study in report.outcomes.studies
+        ],
+        names=NAMES,
+        total=_seconds(report.outcomes.entries),
+        percent=percent,
+        program=program_hash()[:12],
+        kernel=kernel_hash()[:12],
+        compiler=compiler(),
+    )
+
+
+def _rows(outcomes: Outcomes, study: Study) -> list[list[tuple[Outcome, float | None]]]:
+    """Runs of a study with their outcomes by method, and how far these are from each other."""
+    found = [[outcomes.named(study, run.name, method) for method in METHODS] for run in study.runs]
+    return [[(o, gap_between_methods(outcomes, o)) for o in row if o] for row in found]
+
+
+def _seconds(outcomes: Sequence[Outcome]) -> float:
+    return float(sum(o.numbers["seconds"] for o in outcomes if o.numbers))
+
+
+def _statement(judgement: Judgement) -> dict[str, Any]:
+    statement = judgement.statement
+    fields = ("section", "text", "unit", "at_most", "at_least", "reason")
+    return {
+        **{name: getattr(statement, name) for name in fields},
+        "verdict": judgement.state,
+        "by_method": {v.method: {"verdict": v.state, "values": dict(v.values), "why": v.why} for v in judgement.verdicts},
+    }
+
+
+def _run(outcomes: Outcomes, outcome: Outcome) -> dict[str, Any]:
+    return {
+        "key": outcome.key,
+        "method": outcome.method,
+        "title": outcome.run.title,
+        "command": outcome.study.command(outcome.run, outcome.method),
+        "failure": outcome.failure or None,
+        "load_steps": [outcome.steps, outcome.total_steps],
+        "from_the_papers_method": gap_between_methods(outcomes, outcome),
+        **outcome.numbers,
+    }
