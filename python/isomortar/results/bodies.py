@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -48,14 +48,14 @@ def draw_bodies(problem: Problem, step: StepResult, number: int) -> Figure:
     whole, contact = figure.subplots(1, 2, width_ratios=(1.35, 1.0))
     canvas = Canvas(_VIEW)
     for body in problem.bodies:
-        fine = surface.contact.slave.face if body is slave else None
+        fine = (surface.contact.slave.face,) if body is slave else ()
         add_body(canvas, body, points[body.name], _by_pressure(body, surface, colours), fine)
     if isinstance(surface.contact.master, RigidPlane):
         margin = 0.2 * float(np.ptp(points[slave.name], axis=0).max())
         canvas.add_floor(plane_corners(surface.contact.master, points[slave.name], margin), np.array(to_rgb(style.PLANE)))
     canvas.paint(whole)
     canvas = Canvas(_camera_towards(face.normal))
-    add_body(canvas, slave, points[slave.name], _by_pressure(slave, surface, colours), surface.contact.slave.face)
+    add_body(canvas, slave, points[slave.name], _by_pressure(slave, surface, colours), (surface.contact.slave.face,))
     canvas.paint(contact)
     whole.set_title(f"{problem.name}, load step {step.step} ({step.stage})", loc="left")
     contact.set_title(f"{slave.name} from the master's side", loc="left")
@@ -115,7 +115,7 @@ def _samplings(directions: tuple[Direction, Direction], parts: tuple[int, int]) 
     return first, second
 
 
-def add_body(canvas: Canvas, body: Body, points: FloatArray, paint: Paint, fine: str | None = None, opacity: float = 1.0) -> None:
+def add_body(canvas: Canvas, body: Body, points: FloatArray, paint: Paint, fine: Collection[str] = (), opacity: float = 1.0) -> None:
     """Add the faces of a deformed body with its knot lines.
 
     Parameters
@@ -126,33 +126,41 @@ def add_body(canvas: Canvas, body: Body, points: FloatArray, paint: Paint, fine:
         Positions of the patch's control points.
     paint : callable
         Colours and shading of a face, from its name and the equal parts that elements are cut into along its two directions.
-    fine : str, optional
-        Face that is cut twice as finely.
+    fine : collection of str
+        Faces that are cut twice as finely.
     opacity : float
+        Below 1 the body is seen through, and faces from their inner sides too.
     """
     for name in FACES:
         if name[0] == body.closed:
             continue  # the two ends of a ring are inside it
         numbers = body.patch.face_points(name)
         directions = body.patch.face_directions(name)
-        parts = face_parts(directions, _FINENESS_OF_CONTACT if name == fine else FINENESS)
+        parts = face_parts(directions, _FINENESS_OF_CONTACT if name in fine else FINENESS)
         matrices = _samplings(directions, parts)
         shape = (len(matrices[1]), len(matrices[0]))
         grid = rational(matrices, body.patch.weights[numbers], points[numbers])[0].reshape(*shape, 3)
         lines = (np.arange(0, shape[1], parts[0]), np.arange(0, shape[0], parts[1]))
         colours, shading = paint(name, parts)
         cells = np.broadcast_to(colours, (shape[0] - 1, shape[1] - 1, 3))
-        canvas.add_surface(grid, cells, 1 if name[1] == "1" else -1, lines, shading, opacity)
+        outward = 0 if opacity < 1 else 1 if name[1] == "1" else -1
+        canvas.add_surface(grid, cells, outward, lines, shading, opacity)
+
+
+def plain(colour: str, shading: float = 1.0) -> Paint:
+    """All faces in one colour."""
+    rgb = np.array(to_rgb(colour))
+    return lambda _name, _parts: (rgb, shading)
 
 
 def _by_pressure(body: Body, surface: ContactSurface, colours: ScalarMappable) -> Paint:
     """The contact face by its pressure, the rest in the colour of the body."""
     is_slave = body.name == surface.contact.slave.body
-    plain = np.array(to_rgb(style.SLAVE if is_slave else style.MASTER))
+    elsewhere = plain(style.SLAVE if is_slave else style.MASTER)
 
     def paint(name: str, parts: tuple[int, int]) -> tuple[FloatArray, float]:
         if not (is_slave and name == surface.contact.slave.face):
-            return plain, 1.0
+            return elsewhere(name, parts)
         matrices = _samplings(surface.directions, parts)
         pressure = surface.fields(matrices)[1].reshape(len(matrices[1]), len(matrices[0]))
         middle = 0.25 * (pressure[1:, 1:] + pressure[1:, :-1] + pressure[:-1, 1:] + pressure[:-1, :-1])

@@ -66,7 +66,7 @@ class Canvas:
         points : ndarray, shape (m2, m1, 3)
             The surface has a hole where they are NaN.
         colours : ndarray, shape (m2 - 1, m1 - 1, 3)
-            Of each small quadrilateral, before shading.
+            Of each small quadrilateral, before shading; NaN: it is left out, the lines along it stay.
         outward : {-1, 0, 1}
             Sign of a1 x a2 along the outward normal: seen from that side only. 0: seen from both sides.
         lines : tuple of ndarray
@@ -77,15 +77,19 @@ class Canvas:
             Below 1 what lies behind shows through.
         """
         seen = points @ self._axes.T
-        normals = np.cross(seen[1:, 1:] - seen[:-1, :-1], seen[1:, :-1] - seen[:-1, 1:])
-        normals *= outward if outward else np.sign(normals[..., 2:])
-        normals /= np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), 1e-300)
+        corners = np.stack([seen[:-1, :-1], seen[:-1, 1:], seen[1:, 1:], seen[1:, :-1]], axis=2)
+        normals = _normals(corners, outward)
         front = normals[..., 2] > 0
-        corners = np.stack([seen[:-1, :-1], seen[:-1, 1:], seen[1:, 1:], seen[1:, :-1]], axis=2)[front]
-        brightness = 1.0 - shading * (1.0 - _brightness(normals))
-        self._add(corners, 0.0, (colours * brightness[..., None])[front], 0.3 if opacity == 1.0 else 0.0, opacity)
+        painted = front & np.isfinite(colours).all(axis=-1)
+        shaded = _shaded(colours, normals, shading)[painted]
+        self._add(corners[painted], 0.0, shaded, 0.3 if opacity == 1.0 else 0.0, opacity)
         self._add_lines(seen, front, lines[1])
         self._add_lines(seen.swapaxes(0, 1), front.T, lines[0])
+
+    def add_polygons(self, corners: FloatArray, colours: FloatArray, shading: float = 1.0) -> None:
+        """Add nearly flat polygons that are seen from both sides: corners of shape (n, k, 3), a colour each, shape (n, 3)."""
+        seen = corners @ self._axes.T
+        self._add(seen, 0.0, _shaded(colours, _normals(seen, 0), shading), 0.3)
 
     def add_spheres(self, centres: FloatArray, radius: float, colour: FloatArray) -> None:
         """Add spheres, centres of shape (n, 3)."""
@@ -137,6 +141,17 @@ class Canvas:
         self._depths.append(shapes[..., 2].mean(axis=1) + nearer)
         self._colours.append(np.column_stack([np.clip(colours, 0, 1), np.full(len(colours), opacity)]))
         self._widths.append(np.full(len(shapes), width))
+
+
+def _normals(corners: FloatArray, outward: int) -> FloatArray:
+    """Unit normals of polygons with corners (..., k, 3): `outward` times that of a counter-clockwise turn, or 0: towards the eye."""
+    normals = np.cross(corners, np.roll(corners, -1, axis=-2)).sum(axis=-2)
+    normals *= outward if outward else np.sign(normals[..., 2:])
+    return normals / np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), 1e-300)
+
+
+def _shaded(colours: FloatArray, normals: FloatArray, shading: float) -> FloatArray:
+    return colours * (1.0 - shading * (1.0 - _brightness(normals)))[..., None]
 
 
 def _brightness(normals: FloatArray) -> FloatArray:

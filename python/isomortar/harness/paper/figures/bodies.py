@@ -17,7 +17,7 @@ from isomortar.harness.paper.figures.picture import Picture, beyond, rendering
 from isomortar.model.entities import Body, Contact, Problem, RigidPlane
 from isomortar.results import style
 from isomortar.results.bezier import sampling_places
-from isomortar.results.bodies import FINENESS, Paint, add_body, face_parts, plane_corners
+from isomortar.results.bodies import FINENESS, Paint, add_body, face_parts, plain, plane_corners
 from isomortar.results.fields import body_points
 from isomortar.results.reader import Results
 from isomortar.results.rendering import Camera, Canvas
@@ -120,8 +120,8 @@ def _canvas(problem: Problem, record: StepResult, values: _Values, colours: Scal
         if isinstance(contact.master, RigidPlane):
             canvas.add_floor(_floor(problem, contact, contact.master, records), np.array(to_rgb(style.PLANE)))
     for body in problem.bodies:
-        plain = np.array(to_rgb(style.SLAVE if body.name in slaves else style.MASTER))
-        add_body(canvas, body, points[body.name], _paint(body.name, plain, values, colours))
+        unpainted = plain(style.SLAVE if body.name in slaves else style.MASTER)
+        add_body(canvas, body, points[body.name], _by_field(body.name, values, colours) if colours else unpainted)
     return canvas
 
 
@@ -131,10 +131,5 @@ def _floor(problem: Problem, contact: Contact, plane: RigidPlane, records: Seque
     return plane_corners(plane, np.concatenate(everywhere), 0.15 * float(np.ptp(everywhere[0], axis=0).max()))
 
 
-def _paint(body: str, plain: FloatArray, values: _Values, colours: ScalarMappable | None) -> Paint:
-    def paint(face: str, _parts: tuple[int, int]) -> tuple[FloatArray, float]:
-        if colours is None:
-            return plain, 1.0
-        return colours.to_rgba(values[body, face])[..., :3], _SHADING
-
-    return paint
+def _by_field(body: str, values: _Values, colours: ScalarMappable) -> Paint:
+    return lambda face, _parts: (colours.to_rgba(values[body, face])[..., :3], _SHADING)

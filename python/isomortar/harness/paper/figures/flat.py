@@ -18,9 +18,11 @@ from isomortar.results.gaps import gaps
 
 Quantity = Literal["pressure", "traction", "traction_2", "gap"]
 #: Where the gap is shown: pressure over its largest value. Beside the contact it grows at once to many times what it is inside.
-CONTACT_ZONE = 0.02
+CONTACT_ZONE = 0.2
+#: Round-off over the largest pressure, which is no negative pressure.
+_NOTHING = 1e-6
 #: Samples along a face.
-_SAMPLES = 200
+_SAMPLES = 130
 
 
 @dataclass(frozen=True)
@@ -28,7 +30,8 @@ class FlatPatch:
     """Lengths along both surface coordinates from the middle of the face; the second coordinate is the first axis of a field.
 
     `samples`, `boundaries`: of the field and of elements, by coordinate. `points`, shape (n, 2), `active`, `control_values`,
-    shape (n,): the control points. `values`, `pressure`: fields, shape (m2, m1). `letters`: names of the coordinates.
+    shape (n,): the control points. `values`, `zone`: fields, shape (m2, m1); the zone is where its field is positive: where the pressure is
+    not negative, for a gap the contact zone. `letters`: names of the coordinates.
     """
 
     samples: tuple[FloatArray, FloatArray]
@@ -37,7 +40,7 @@ class FlatPatch:
     active: NDArray[np.bool_]
     control_values: FloatArray
     values: FloatArray
-    pressure: FloatArray
+    zone: FloatArray
     letters: tuple[str, str]
 
     def within(self, region: FloatArray) -> FlatPatch:
@@ -52,14 +55,14 @@ class FlatPatch:
             samples=(self.samples[0][samples[0]], self.samples[1][samples[1]]),
             boundaries=(self.boundaries[0][boundaries[0]], self.boundaries[1][boundaries[1]]),
             values=self.values[window],
-            pressure=self.pressure[window],
+            zone=self.zone[window],
         )
 
 
 def lay_flat(panel: Panel, quantity: Quantity) -> FlatPatch:
     """The slave face of the panel's first contact pair. Control points lie at their Greville abscissae (Lagrange: at their nodes).
 
-    The gap is that of each place, NaN outside the contact zone.
+    The gap is that of each place, NaN where no cell of the contact zone is near.
 
     Raises
     ------
@@ -72,11 +75,14 @@ def lay_flat(panel: Panel, quantity: Quantity) -> FlatPatch:
     first, second = (sampling_matrix(d, n) for d, n in zip(surface.directions, parts, strict=True))
     points, pressure, _ = surface.fields((first, second))
     control_values = _control_values(surface, quantity)
+    shape = (len(second), len(first))
+    border = (CONTACT_ZONE if quantity == "gap" else -_NOTHING) * float(np.abs(pressure).max())
+    zone = pressure.reshape(shape) - border
     if quantity == "gap":
-        values = gaps(panel.results.problem, surface.contact, step.state.positions, points)
-        values = np.where(pressure > CONTACT_ZONE * pressure.max(), values, np.nan)
+        values = gaps(panel.results.problem, surface.contact, step.state.positions, points).reshape(shape)
+        values = np.where(_near(zone >= 0), values, np.nan)
     else:
-        values = surface.field((first, second), control_values[:, None])[:, 0]
+        values = surface.field((first, second), control_values[:, None]).reshape(shape)
     samples, boundaries, at = (
         [_flat(d, length, places) for d, length, places in zip(surface.directions, surface.lengths, both, strict=True)]
         for both in (
@@ -91,8 +97,8 @@ def lay_flat(panel: Panel, quantity: Quantity) -> FlatPatch:
         points=np.stack(np.meshgrid(*at), axis=-1).reshape(-1, 2),
         active=surface.status > 0,
         control_values=control_values,
-        values=values.reshape(len(second), len(first)),
-        pressure=pressure.reshape(len(second), len(first)),
+        values=values,
+        zone=zone,
         letters=surface.letters,
     )
 
@@ -107,6 +113,13 @@ def region_of_contact(patches: Sequence[FlatPatch]) -> FloatArray:
         last = [ends[min(np.searchsorted(ends, x, side="right"), len(ends) - 1)] for ends, x in zip(patch.boundaries, high, strict=True)]
         corners.append([first, last])
     return np.array([np.min(corners, axis=0)[0], np.max(corners, axis=0)[1]])
+
+
+def _near(inside: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Places of a grid that share a cell with one that is inside."""
+    padded = np.pad(inside, 1)
+    rows = padded[2:] | padded[1:-1] | padded[:-2]
+    return rows[:, 2:] | rows[:, 1:-1] | rows[:, :-2]
 
 
 def _flat(direction: Direction, length: float, parameters: FloatArray) -> FloatArray:

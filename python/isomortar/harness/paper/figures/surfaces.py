@@ -14,8 +14,9 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from isomortar.geometry.patch import FloatArray
-from isomortar.harness.paper.figures.flat import FlatPatch, Quantity, lay_flat, region_of_contact
+from isomortar.harness.paper.figures.flat import CONTACT_ZONE, FlatPatch, Quantity, lay_flat, region_of_contact
 from isomortar.harness.paper.figures.picture import Panel, Picture, beyond, rendering
+from isomortar.harness.paper.figures.zones import zones
 from isomortar.results import style
 from isomortar.results.rendering import Camera, Canvas
 
@@ -23,7 +24,7 @@ _LABELS: dict[Quantity, str] = {
     "pressure": "contact pressure $p$ (force / area)",
     "traction": r"tangential traction $\tau_1/\mu$ (force / area $\times$ length / parameter)",
     "traction_2": r"tangential traction $\tau_2/\mu$ (force / area $\times$ length / parameter)",
-    "gap": "gap $g$ in the contact zone (length), positive: penetration",
+    "gap": f"gap $g$ (length) where $p$ > {100 * CONTACT_ZONE:g} % of its peak; positive: penetration",
 }
 #: Of a sphere, over the longer side of the patch.
 _RADIUS = 0.011
@@ -55,7 +56,7 @@ def draw(panels: Sequence[Panel], quantity: Quantity) -> Picture:
     colours = _colours([p for p, panel in zip(patches, panels, strict=True) if panel.height_scale == 1.0] or patches, quantity)
     rows = math.ceil(len(panels) / 4)
     columns = math.ceil(len(panels) / rows)
-    canvases = [_canvas(panel, patch, colours, frame) for panel, patch in zip(panels, patches, strict=True)]
+    canvases = [_canvas(panel, patch, colours, frame, quantity) for panel, patch in zip(panels, patches, strict=True)]
     drawn = np.array([canvas.limits() for canvas in canvases])
     limits = frame.with_labels(np.array([drawn[:, 0].min(axis=0), drawn[:, 1].max(axis=0)]))
     across, up = np.ptp(limits, axis=0)
@@ -87,7 +88,7 @@ class _Frame:
         """Lower left and upper right corner of a picture, with room for the height axis and the names of the edges."""
         axis = _VIEW.places(np.array([self.corners(self.low)[0], self.corners(self.high)[0]]))
         low, high = np.minimum(limits[0], axis.min(axis=0)), np.maximum(limits[1], axis.max(axis=0))
-        return np.array([low - self.size * np.array([0.17, 0.02]), high])
+        return np.array([low - self.size * np.array([0.17, 0.03]), high])
 
     def lifted(self, places: FloatArray, values: FloatArray) -> FloatArray:
         """Points over the patch, shape (..., 3), from places (..., 2) and heights in values."""
@@ -112,25 +113,37 @@ def _colours(patches: Sequence[FlatPatch], quantity: Quantity) -> ScalarMappable
     return ScalarMappable(Normalize(-reach, reach), style.signed_colours())
 
 
-def _canvas(panel: Panel, patch: FlatPatch, colours: ScalarMappable, frame: _Frame) -> Canvas:
+def _canvas(panel: Panel, patch: FlatPatch, colours: ScalarMappable, frame: _Frame, quantity: Quantity) -> Canvas:
     canvas = Canvas(_VIEW)
-    base = frame.corners(0.0)
-    places = np.linspace(0.0, 1.0, 61)[:, None, None]
-    outline = (base + places * (np.roll(base, -1, axis=0) - base)).swapaxes(0, 1)
-    canvas.add_segments(np.stack([outline[:, :-1], outline[:, 1:]], axis=2).reshape(-1, 2, 3), _FRAME, 0.8)
+    for height in {0.0, frame.low}:
+        canvas.add_segments(_outline(frame.corners(height)), _FRAME, 0.8)
     grid = np.stack(np.meshgrid(*patch.samples), axis=-1)
-    canvas.add_surface(frame.lifted(grid, panel.height_scale * patch.values), _cells(patch, colours), 0, _lines(patch), _SHADING)
+    _add_field(canvas, frame.lifted(grid, panel.height_scale * patch.values), patch, colours, quantity)
     centres = frame.lifted(patch.points[patch.active], panel.height_scale * patch.control_values[patch.active])
     canvas.add_spheres(centres, _RADIUS * frame.size, _SPHERE)
     return canvas
 
 
-def _cells(patch: FlatPatch, colours: ScalarMappable) -> FloatArray:
-    """Colours of the small quadrilaterals, grey where the pressure is negative."""
-    values, pressure = (0.25 * (f[1:, 1:] + f[1:, :-1] + f[:-1, 1:] + f[:-1, :-1]) for f in (patch.values, patch.pressure))
-    cells = colours.to_rgba(np.where(np.abs(values) < 1e-9 * float(np.max(colours.get_clim())), 0.0, values))[..., :3]
-    cells[pressure < -1e-6 * np.abs(pressure).max()] = _NEGATIVE
-    return cells
+def _outline(corners: FloatArray) -> FloatArray:
+    """The edges between corners, in pieces short enough to be hidden where something is before them."""
+    places = np.linspace(0.0, 1.0, 61)[:, None, None]
+    edges = (corners + places * (np.roll(corners, -1, axis=0) - corners)).swapaxes(0, 1)
+    return np.stack([edges[:, :-1], edges[:, 1:]], axis=2).reshape(-1, 2, 3)
+
+
+def _add_field(canvas: Canvas, points: FloatArray, patch: FlatPatch, colours: ScalarMappable, quantity: Quantity) -> None:
+    """The surface: its zone in colour, the rest grey; of a gap there is no rest."""
+    parted = zones(points, patch.zone)
+    values = 0.25 * (patch.values[1:, 1:] + patch.values[1:, :-1] + patch.values[:-1, 1:] + patch.values[:-1, :-1])
+    if quantity == "pressure":
+        values = np.maximum(values, 0.0)
+    painted = colours.to_rgba(values)[..., :3]
+    cells = np.where(parted.positive[..., None], painted, np.nan)
+    canvas.add_polygons(parted.parts[:, 0], painted[parted.cut], _SHADING)
+    if quantity != "gap":
+        cells[parted.negative] = _NEGATIVE
+        canvas.add_polygons(parted.parts[:, 1], np.broadcast_to(_NEGATIVE, (len(parted.parts), 3)), _SHADING)
+    canvas.add_surface(points, cells, 0, _lines(patch), _SHADING)
 
 
 def _lines(patch: FlatPatch) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -153,7 +166,7 @@ def _draw_height_axis(axes: Axes, height_scale: float, frame: _Frame) -> None:
 
 def _draw_lengths(axes: Axes, letters: tuple[str, str], frame: _Frame) -> None:
     """Name and length of the two front edges, beside them."""
-    corners = _VIEW.places(frame.corners(0.0))
+    corners = _VIEW.places(frame.corners(frame.low))
     for number, side in enumerate(("right", "left")):
         x, y = 0.5 * (corners[number] + corners[number + 1])
         size = float(np.ptp(frame.region, axis=0)[number])
