@@ -7,7 +7,7 @@ from shapes import cylinder_sector, cylinder_volume, turned_area, turned_sector,
 
 from isomortar import _bindings
 from isomortar.geometry.patch import FloatArray, Patch
-from isomortar.geometry.primitives import ring
+from isomortar.geometry.primitives import box, ring
 from isomortar.geometry.quadrature import contact_points, volume_points
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, Shown, case
@@ -18,6 +18,16 @@ MATERIAL = Material()
 #: Points per direction that integrate a quarter of a circle to round-off.
 MANY = 12
 SECTION = (-0.4, 1.1)
+#: Edges of a skew block, rows: no two of its directions are at right angles.
+EDGES = np.array([[1.0, 0.2, 0.1], [0.5, 0.9, -0.2], [0.3, -0.1, 0.8]])
+
+
+def skew_block() -> Patch:
+    """A block with these edges."""
+    cube = box((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
+    return Patch(cube.directions, cube.control_points @ EDGES, cube.weights)
+
+
 #: Patch, curved face, volume, area of that face.
 SHAPES = {
     "cylinder": (
@@ -33,6 +43,9 @@ SHAPES = {
     "sphere": (
         turned_sector(0.0, 0.5, 1.0, SECTION, 1.3), "v1", turned_volume(0.0, 0.5, 1.0, SECTION, 1.3),
         turned_area(0.0, 1.0, SECTION, 1.3),
+    ),
+    "skew": (
+        skew_block(), "w1", float(np.linalg.det(EDGES)), float(np.linalg.norm(np.cross(EDGES[0], EDGES[1]))),
     ),
 }  # fmt: skip
 
@@ -72,7 +85,7 @@ _SUM = "round-off: a sum over all quadrature points, whose own number is enough 
 
 
 @case(
-    claim="Sectors of cylinder, ring, torus and sphere have their exact volume and area at any order.",
+    claim="Sectors of cylinder, ring, torus and sphere, and a skew block have their exact volume and area at any order.",
     tier="gate",
     grid={"shape": list(SHAPES), "order": [2, 3, 5]},
     bounds={
