@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -49,10 +49,10 @@ class Report:
 def write(folder: Path, report: Report) -> Path:
     """Write ``paper.html``, ``paper.json`` and ``figures/``; returns the path of the page."""
     path = folder / "paper.html"
-    drawn = {study.scene: plates(study, report.outcomes) for study in report.outcomes.studies}
     (folder / "figures").mkdir(parents=True, exist_ok=True)
-    for plate in (plate for group in drawn.values() for plate in group):
-        plate.picture.save(folder / "figures" / plate.name)
+    drawn = {
+        study.scene: [_saved(folder / "figures", plate) for plate in plates(study, report.outcomes)] for study in report.outcomes.studies
+    }
     write_whole(path, page(report, drawn))
     write_whole(path.with_suffix(".json"), json.dumps(plain(as_data(report)), indent=1))
     return path
@@ -72,8 +72,14 @@ def as_data(report: Report) -> dict[str, Any]:
     }
 
 
-def page(report: Report, drawn: dict[str, list[Plate]]) -> str:
-    """The HTML page."""
+def _saved(folder: Path, plate: Plate) -> dict[str, str]:
+    """What the page shows of a figure, after its file is written; the figure itself is large and not kept."""
+    plate.picture.save(folder / plate.name)
+    return {"title": plate.title, "caption": plate.caption, "html": plate.picture.html}
+
+
+def page(report: Report, drawn: Mapping[str, Sequence[Mapping[str, str]]]) -> str:
+    """The HTML page, with the figures by study."""
     return template("paper/page.html").render(
         report=report,
         studies=[

@@ -32,9 +32,9 @@ class Plate:
     picture: Picture
 
 
-def plates(study: Study, outcomes: Outcomes) -> list[Plate]:
+def plates(study: Study, outcomes: Outcomes) -> Iterator[Plate]:
     """The figures of a study. Runs that failed are drawn up to where they came; what never began is left out."""
-    return list(_PLATES[study.scene](_Studio(study, outcomes)))
+    return _PLATES[study.scene](_Studio(study, outcomes))
 
 
 def gap_between_methods(outcomes: Outcomes, outcome: Outcome) -> float | None:

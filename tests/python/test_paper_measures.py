@@ -1,0 +1,160 @@
+"""What the paper's statements measure, on curves and fields made by hand, and how they are judged."""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from isomortar.harness.paper import measures
+from isomortar.harness.paper.catalogue import chosen
+from isomortar.harness.paper.findings import STATEMENTS
+from isomortar.harness.paper.outcome import Outcome, Outcomes
+from isomortar.harness.paper.page import Report
+from isomortar.harness.paper.statements import Evidence, NotMeasuredError, Statement, ratio, successive
+
+STUDIES = {study.scene: study for study in chosen((), False)}
+IRON = STUDIES["iron"]
+PRESSED, DRAGGED = 10, 40
+
+
+def outcome(name: str, values, method="monolithic", failure="", **numbers) -> Outcome:
+    """A run of the dragging study whose force along x is `values` in the drag and zero before."""
+    n = len(values)
+    force = np.zeros((PRESSED + n, 3))
+    force[PRESSED:, 0] = values
+    plain = {
+        "step": np.arange(1, PRESSED + n + 1).tolist(),
+        "time": np.arange(1.0, PRESSED + n + 1).tolist(),
+        "stage": [0.0] * PRESSED + [1.0] * n,
+        "share": [*(np.arange(1, PRESSED + 1) / PRESSED), *(np.arange(1, n + 1) / DRAGGED)],
+        "force": force.tolist(),
+        "moment": np.zeros_like(force).tolist(),
+        "pressure": [[0.0, 1.0]] * (PRESSED + n),
+        "cuts": 0.0,
+        "augmentations": 1.0,
+        "control_points": 770.0,
+    }
+    return Outcome(IRON, IRON.run(name), method, Path("none.h5"), failure, plain | numbers)
+
+
+STEPS = np.arange(1, DRAGGED + 1)
+
+
+def test_the_window_is_a_share_of_the_last_stage():
+    run = outcome("N2", STEPS.astype(float))
+    assert run.array("step")[run.window].tolist() == list(range(20, 51))
+    assert measures.mean(run) == 25.0
+    assert run.total_steps == 50
+
+
+def test_second_difference_of_a_parabola_and_of_a_zigzag():
+    assert measures.rms_second_difference(outcome("N2", 0.5 * STEPS**2.0)) == pytest.approx(1.0, rel=1e-12)
+    assert measures.rms_second_difference(outcome("N2", 3.0 * STEPS)) == pytest.approx(0.0, abs=1e-12)
+    assert measures.rms_second_difference(outcome("N2", (-1.0) ** STEPS)) == pytest.approx(4.0, rel=1e-12)
+
+
+def test_deviation_of_known_curves_and_over_other_load_steps():
+    one, two = outcome("N2", np.full(DRAGGED, 1.0)), outcome("N3", np.full(DRAGGED, 1.1))
+    assert measures.deviation(two, one) == pytest.approx(0.1, rel=1e-12)
+    line = outcome("N2", STEPS / DRAGGED)
+    coarse = replace(
+        line, numbers={**line.numbers, **{k: line.numbers[k][:11] + line.numbers[k][11::2] for k in ("share", "stage", "force")}}
+    )
+    assert measures.deviation(coarse, line) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_ripple_is_what_a_cubic_does_not_follow():
+    cubic = 1e-4 * (STEPS - 20.0) ** 3 + STEPS
+    assert measures.ripple(outcome("N2", cubic)) == pytest.approx(0.0, abs=1e-10)
+    wave = 0.1 * np.sin(2 * np.pi * 7 * np.arange(DRAGGED) / 31)
+    assert measures.ripple(outcome("N2", cubic + wave)) == pytest.approx(0.1 / math.sqrt(2), rel=0.02)
+    assert measures.cycles(outcome("N2", cubic + wave)) == 7
+
+
+def test_negative_pressure_over_the_peak():
+    assert measures.negative_share(outcome("N2", STEPS, pressure=[[0.0, 4.0], [-1.0, 2.0]])) == 0.25
+    assert measures.negative_share(outcome("N2", STEPS, pressure=[[0.5, 4.0]])) == 0.0
+
+
+def test_variation_of_a_hump_and_of_waves_on_it():
+    x = np.linspace(0.0, 1.0, 65)
+    hump = np.sin(np.pi * x)[:, None] * np.sin(np.pi * x)[None, :]
+    assert measures.excess_variation(hump, hump) == 0.0
+    assert measures.excess_variation(3 * hump, hump) == pytest.approx(2.0, rel=1e-12)
+    assert measures.excess_variation(np.where(hump > 0.5, 0.5, hump), hump) < 0.0
+    assert measures.excess_variation(hump + 0.1 * np.sin(40 * np.pi * x)[None, :], hump) > 0.5
+    assert measures.excess_variation([[0.0, 1.0], [0.0, 1.0]], [[0.0, 2.0], [0.0, 2.0]]) == -0.5
+
+
+def test_field_deviation_weighs_with_areas():
+    assert measures.field_deviation([[1.0, 2.0]], [[1.0, 1.0]], [3.0, 1.0]) == 0.5
+
+
+def evidence(*outcomes: Outcome, method="monolithic") -> Evidence:
+    return Evidence(Outcomes((IRON,), outcomes), method)
+
+
+def smoother() -> Statement:
+    return next(s for s in STATEMENTS if s.text.startswith("The dragging force gets smoother"))
+
+
+def dragged(**amplitudes: float) -> list[Outcome]:
+    return [outcome(name, 1 + a * (-1.0) ** STEPS, method) for name, a in amplitudes.items() for method in ("monolithic", "paper")]
+
+
+def test_a_statement_holds_or_does_not_and_says_by_how_much():
+    judged = smoother().judge(Outcomes((IRON,), tuple(dragged(N2=0.4, N3=0.2, N4=0.1, N5=0.05))))
+    assert judged.state == "holds"
+    assert judged.verdicts[0].values == pytest.approx({"N3 / N2": 0.5, "N4 / N3": 0.5, "N5 / N4": 0.5})
+    judged = smoother().judge(Outcomes((IRON,), tuple(dragged(N2=0.4, N3=0.2, N4=0.3, N5=0.05))))
+    assert judged.state == "does not hold"
+    assert [v.state for v in judged.verdicts] == ["does not hold"] * 2
+
+
+def test_a_statement_without_one_of_its_runs_is_not_measured():
+    runs = dragged(N2=0.4, N3=0.2, N4=0.1, N5=0.05)
+    runs[2] = replace(runs[2], failure="load step 43 does not converge")
+    judged = smoother().judge(Outcomes((IRON,), tuple(runs)))
+    assert [v.state for v in judged.verdicts] == ["not measured", "holds"]
+    assert judged.state == "not measured"
+    assert judged.verdicts[0].why == "iron-N3 failed: load step 43 does not converge"
+
+
+def test_numbers_that_are_not_finite_are_not_measured():
+    runs = dragged(N2=0.4, N3=math.nan, N4=0.1, N5=0.05)
+    judged = smoother().judge(Outcomes((IRON,), tuple(runs)))
+    assert judged.state == "not measured"
+    assert "N3 / N2" in judged.verdicts[0].why
+
+
+def test_of_lagrange_elements_those_that_ended_count_if_there_are_two():
+    runs = [outcome(n, np.full(DRAGGED, 1.0)) for n in ("L1", "L2", "slave-L1", "slave-L2")]
+    runs[0] = replace(runs[0], failure="no")
+    assert [o.run.name for o in evidence(*runs).series("iron-Lagrange")] == ["L2", "slave-L1", "slave-L2"]
+    failed = [replace(run, failure="no") for run in runs[:3]]
+    with pytest.raises(NotMeasuredError, match="iron-L1 failed: no; iron-L2 failed: no"):
+        evidence(*failed, runs[3]).series("iron-Lagrange")
+
+
+def test_quotients():
+    runs = [outcome(name, np.full(DRAGGED, value)) for name, value in (("N2", 1.0), ("N3", 3.0), ("N4", 6.0))]
+    assert successive(runs, measures.mean) == {"N3 / N2": 3.0, "N4 / N3": 2.0}
+    assert ratio(runs[0], runs[2], measures.mean) == {"N2 / N4": pytest.approx(1 / 6)}
+    assert ratio(runs[0], runs[2], measures.ripple).keys() == {"N2 / N4"}
+    zero = outcome("N2", np.zeros(DRAGGED))
+    assert math.isnan(ratio(zero, zero, measures.mean)["N2 / N2"])
+    assert ratio(runs[0], zero, measures.mean)["N2 / N2"] == math.inf
+
+
+def report(*outcomes: Outcome, judgements=()) -> Report:
+    return Report(Outcomes((IRON,), outcomes), tuple(judgements), 0, False, None)
+
+
+def test_complete_is_a_report_without_a_failed_nurbs_run_or_a_gap_in_the_table():
+    lost = replace(outcome("L1", STEPS), failure="no")
+    assert report(outcome("N2", STEPS), lost).complete
+    assert not report(replace(outcome("N2", STEPS), failure="no"), lost).complete
+    runs = [replace(run, failure="no") if run.run.name == "N3" else run for run in dragged(N2=0.4, N3=0.2, N4=0.1, N5=0.05)]
+    assert not report(judgements=[smoother().judge(Outcomes((IRON,), tuple(runs)))]).complete
