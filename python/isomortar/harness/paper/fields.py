@@ -10,12 +10,10 @@ import numpy as np
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness.elevation.run import slave_grid
 from isomortar.harness.elevation.sampling import Grid, values_at
+from isomortar.harness.paper.figures.flat import CONTACT_ZONE
 from isomortar.harness.paper.outcome import Outcome
 from isomortar.results.fields import contact_surfaces
 from isomortar.scene.scene import Scene
-
-#: The contact zone: where the pressure is above this share of its peak (below, it is the edge's control points that say so).
-ZONE = 0.01
 
 
 @dataclass(frozen=True)
@@ -23,7 +21,7 @@ class Fields:
     """Contact fields at the cell centres of a grid.
 
     `pressure`, `traction` (first covariant component), `height` (z of the surface): shape (n_j, n_i). `areas`: of the cells,
-    shape (n_j * n_i,).
+    shape (n_j * n_i,). The contact zone is where the pressure is above `CONTACT_ZONE` of its peak, as in the figure of the gap.
     """
 
     pressure: FloatArray
@@ -34,12 +32,16 @@ class Fields:
     @property
     def zone_height(self) -> float:
         """Largest distance of the surface from the plane z = 0 within the contact zone."""
-        return float(np.abs(self.height[self.pressure > ZONE * self.pressure.max()]).max())
+        return float(np.abs(self._within).max())
 
     @property
     def zone_roughness(self) -> float:
         """Root mean square distance of the surface from the plane z = 0 within the contact zone."""
-        return float(np.sqrt((self.height[self.pressure > ZONE * self.pressure.max()] ** 2).mean()))
+        return float(np.sqrt((self._within**2).mean()))
+
+    @property
+    def _within(self) -> FloatArray:
+        return self.height[self.pressure > CONTACT_ZONE * self.pressure.max()]
 
     @property
     def peak(self) -> tuple[float, float]:

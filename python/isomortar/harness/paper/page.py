@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -89,10 +90,18 @@ def page(report: Report, drawn: Mapping[str, Sequence[Mapping[str, str]]]) -> st
         names=NAMES,
         total=_seconds(report.outcomes.entries),
         percent=percent,
+        shown=shown,
         program=program_hash()[:12],
         kernel=kernel_hash()[:12],
         compiler=compiler(),
     )
+
+
+def shown(value: float, in_percent: bool) -> str:
+    """A number of a statement as people read it."""
+    if not value or not math.isfinite(value):
+        return f"{value:g}"
+    return f"{100 * value:.3g} %" if in_percent and abs(value) >= 1e-6 else f"{value:.3g}"
 
 
 def _rows(outcomes: Outcomes, study: Study) -> list[list[tuple[Outcome, float | None]]]:

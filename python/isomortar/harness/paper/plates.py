@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from isomortar.geometry.patch import FloatArray
-from isomortar.harness.paper.figures import Line, Panel, Picture, bodies, curves, surfaces
+from isomortar.harness.paper.figures import Line, Panel, Picture, bodies, closeups, curves, surfaces
 from isomortar.harness.paper.figures.flat import Quantity
 from isomortar.harness.paper.measures import deviation
 from isomortar.harness.paper.outcome import Outcome, Outcomes
@@ -72,6 +72,15 @@ class _Studio:
 
     def fields(self, title: str, name: str, runs: Sequence[str], quantity: Quantity, share: float = 1.0) -> Iterator[Plate]:
         """A field over the contact patch of several runs, at a share of the last stage."""
+        yield from self._panels(title, name, runs, share, lambda panels: surfaces.draw(panels, quantity))
+
+    def close(self, title: str, name: str, runs: Sequence[str], share: float) -> Iterator[Plate]:
+        """The contact zone of several runs from near by, at a share of the last stage."""
+        yield from self._panels(title, name, runs, share, closeups.draw)
+
+    def _panels(
+        self, title: str, name: str, runs: Sequence[str], share: float, draw: Callable[[Sequence[Panel]], Picture]
+    ) -> Iterator[Plate]:
         with ExitStack() as opened:
             panels = []
             for outcome in self._begun(runs, "monolithic"):
@@ -80,7 +89,7 @@ class _Studio:
                     scale = _HEIGHT_OF_L4 if outcome.run.kind == "L4" else 1.0
                     panels.append(Panel(_label(outcome), opened.enter_context(outcome.results()), step, scale))
             if panels:
-                yield Plate(name, title, f"{NAMES['monolithic']}, load step {panels[0].step}", surfaces.draw(panels, quantity))
+                yield Plate(name, title, f"{NAMES['monolithic']}, load step {panels[0].step}", draw(panels))
 
     def curves(self, title: str, name: str, runs: Sequence[str], methods: Sequence[Method] = METHODS) -> Iterator[Plate]:
         """Curves of several runs; by the paper's method a second time where one of them differs visibly."""
@@ -114,6 +123,7 @@ class _Studio:
 def _press(studio: _Studio) -> Iterator[Plate]:
     shown = ("reference", "N2", "N3", "N4", "L1-fine", "L1", "L2", "L3", "L4")
     yield from studio.bodies("Fig. 1: the pressed block", "fig-1-bodies", studio.first("reference"), "stress")
+    yield from studio.fields("Fig. 1: gap in the contact zone", "fig-1-gap", ("reference",), "gap")
     yield from studio.fields("Fig. 2: contact pressure", "fig-2-pressure", shown, "pressure")
     yield from studio.fields("Fig. 3: tangential traction", "fig-3-traction", shown, "traction")
     yield from studio.curves("Pressing force", "press-force", shown)
@@ -151,7 +161,8 @@ def _iron(studio: _Studio) -> Iterator[Plate]:
 def _tire(studio: _Studio) -> Iterator[Plate]:
     orders, matched = studio.study.series["L"], studio.study.series["matched"]
     yield from studio.bodies("Fig. 10: the rolling tire", "fig-10-bodies", studio.first("N2"), "stress")
-    yield from studio.fields("Fig. 11: contact pressure midway", "fig-11-pressure", ("N2", "N3", *orders), "pressure", 0.5)
+    yield from studio.close("Fig. 11: the contact zone midway", "fig-11-zone", ("N2", *orders), 0.5)
+    yield from studio.fields("Contact pressure midway", "tire-pressure", ("N2", "N3", *orders), "pressure", 0.5)
     yield from studio.curves("Rolling torque of NURBS", "tire-nurbs", studio.study.series["N"])
     yield from studio.curves("Fig. 12: the same number of nodes", "fig-12-nodes", (*orders, "reference"))
     yield from studio.curves("Fig. 12: control points of the next order of NURBS", "fig-12-matched", (*matched, "reference"))

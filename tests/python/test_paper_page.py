@@ -1,0 +1,52 @@
+"""``isomortar paper`` from end to end on its quick studies."""
+
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+from typer.testing import CliRunner
+
+from isomortar.cli.commands import app
+from isomortar.errors import InputError
+from isomortar.harness.paper.page import shown
+
+
+def test_the_quick_studies_from_end_to_end(tmp_path):
+    command = [sys.executable, "-m", "isomortar", "paper", "--quick", "-j", "1", "--out", str(tmp_path / "out")]
+    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
+    first = subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
+    assert first.returncode == 0, first.stdout + first.stderr
+    data = json.loads((tmp_path / "out/paper.json").read_text())
+    runs = {(run["key"], run["method"]): run for run in data["runs"]}
+    assert {key.split("-")[0] for key, _ in runs} == {"press", "twist", "iron", "tire"}
+    assert all(run["failure"] is None or "-L" in key for (key, _), run in runs.items())
+    assert runs["iron-N3", "monolithic"]["load_steps"] == [8, 8]
+    assert runs["press-N2", "paper"]["augmentations"] > runs["press-N2", "monolithic"]["augmentations"]
+    assert 0 < runs["press-N2", "monolithic"]["from_the_papers_method"] < 0.1
+    assert data["verdicts"]["not measured"] == 0
+    by_text = {statement["text"]: statement for statement in data["statements"]}
+    non_negative = by_text["NURBS deliver a pressure distribution that is nowhere negative."]
+    assert non_negative["verdict"] == "holds"  # theory: non-negative functions
+    assert set(non_negative["by_method"]) == {"monolithic", "paper"}
+    page = (tmp_path / "out/paper.html").read_text()
+    assert page.count("<svg") + page.count("<img") == len(list((tmp_path / "out/figures").iterdir())) > 15
+    assert "http://" not in page.replace("http://www.w3.org", "")
+    assert "isomortar run iron --set" in page
+
+
+def test_bad_input_runs_nothing(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    result = CliRunner().invoke(app, ["paper", "--quick", "--study", "press,iorn"])
+    assert isinstance(result.exception, InputError)
+    assert "'iorn'; allowed: press, twist, iron, tire" in str(result.exception)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("value", "in_percent", "text"),
+    [(0.0, True, "0"), (0.01, True, "1 %"), (-0.0213, True, "-2.13 %"), (1e-8, True, "1e-08"), (1.0523, False, "1.05")],
+)
+def test_numbers_as_people_read_them(value, in_percent, text):
+    assert shown(value, in_percent) == text
