@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize, to_rgb
-from matplotlib.figure import Figure
 
 from isomortar.errors import InputError
 from isomortar.geometry.patch import FACES, FloatArray
-from isomortar.harness.paper.figures.picture import Picture, beyond, rendering
+from isomortar.harness.paper.figures.picture import Picture, rendering
+from isomortar.harness.paper.figures.sheet import Sheet
 from isomortar.model.entities import Body, Contact, Problem, RigidPlane
 from isomortar.results import style
 from isomortar.results.bezier import sampling_places
@@ -26,7 +25,7 @@ from isomortar.solve.record import StepResult
 
 Field = Literal["stress", "stretch"]
 
-_LABELS: dict[Field, str] = {"stress": r"stress $\Vert\mathbf{P}\Vert$ (force / reference area)", "stretch": "stretch $F_{33}$"}
+_LABELS: dict[Field, str] = {"stress": "stress $\\Vert\\mathbf{P}\\Vert$\n(force / reference area)", "stretch": "stretch $F_{33}$"}
 _VIEW, _VIEW_OF_A_RING = Camera(azimuth=-62.0, elevation=24.0), Camera(azimuth=-76.0, elevation=14.0)
 #: Light falls weakly on coloured faces, so that their colours are those of the colour bar.
 _SHADING = 0.4
@@ -61,21 +60,15 @@ def draw(results: Results, steps: Sequence[int], field: Field | None) -> Picture
     canvases = [_canvas(problem, record, value, colours, records) for record, value in zip(records, values, strict=True)]
     limits = np.stack([canvas.limits() for canvas in canvases])
     limits = np.array([limits[:, 0].min(axis=0), limits[:, 1].max(axis=0)])
-    across = float(np.ptp(limits, axis=0)[0] / np.ptp(limits, axis=0)[1])
-    columns = len(steps) if len(steps) < 4 and across < 2.0 else math.ceil(len(steps) / math.ceil(len(steps) / (3 if across < 1.4 else 2)))
-    rows = math.ceil(len(steps) / columns)
+    across, up = np.ptp(limits, axis=0)
     with style.style():
-        figure = Figure(figsize=(10.6, rows * (9.6 / columns / across + 0.35)), layout="constrained")
-        panels = figure.subplots(rows, columns, squeeze=False).ravel()
-        for axes in panels:
-            axes.set_axis_off()
-        for axes, canvas, record in zip(panels, canvases, records, strict=False):
+        titles = [f"load step {record.step} ({record.stage})" for record in records]
+        sheet = Sheet(titles, float(across / up), colours is not None)
+        for axes, canvas in zip(sheet.panels, canvases, strict=True):
             canvas.paint(axes, limits)
-            axes.set_title(f"load step {record.step} ({record.stage})", loc="left")
         if colours and field:
-            bar = figure.colorbar(colours, ax=list(panels), shrink=0.8, aspect=24, pad=0.01, extend=beyond(_all(values), colours))
-            bar.set_label(_LABELS[field])
-    return rendering(figure, f"{problem.name}: deformed bodies at load steps {', '.join(map(str, steps))}")
+            sheet.add_bar(colours, _LABELS[field], _all(values))
+    return rendering(sheet.figure, f"{problem.name}: deformed bodies at load steps {', '.join(map(str, steps))}")
 
 
 def _values(problem: Problem, record: StepResult, field: Field | None) -> _Values:

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.colors import to_rgb
-from matplotlib.figure import Figure
 
 from isomortar.errors import InputError
 from isomortar.geometry.patch import FACES, FloatArray
 from isomortar.harness.paper.figures.picture import Panel, Picture, rendering
+from isomortar.harness.paper.figures.sheet import Mark, Sheet
 from isomortar.model.entities import RigidPlane
 from isomortar.results import style
 from isomortar.results.bezier import functions_at, rational
@@ -21,7 +20,7 @@ from isomortar.results.rendering import Camera, Canvas
 
 _VIEW = Camera(azimuth=-84.0, elevation=7.0)
 _OPACITY, _SHADING = 0.3, 0.5
-_CONTROL, _KNOT = np.array(to_rgb(style.VERMILION)), np.array(to_rgb(style.BLACK))
+_CONTROL, _KNOT = style.VERMILION, style.BLACK
 #: Margin of the floor over the width of the contact: beyond the horizon of the picture.
 _FLOOR = 20.0
 #: Of a sphere, over the width of the picture.
@@ -38,18 +37,13 @@ def draw(panels: Sequence[Panel]) -> Picture:
     """
     canvases, limits = zip(*(_canvas(panel) for panel in panels), strict=True)
     size = np.max([np.ptp(limit, axis=0) for limit in limits], axis=0)
-    columns = min(len(panels), 2)
-    rows = math.ceil(len(panels) / columns)
+    marks = (Mark("control points of the slave face", "o", _CONTROL), Mark("its knots", ".", _KNOT))
     with style.style():
-        figure = Figure(figsize=(10.6, rows * (10.4 / columns * size[1] / size[0] + 0.35)), layout="constrained")
-        grid = figure.subplots(rows, columns, squeeze=False).ravel()
-        for axes in grid:
-            axes.set_axis_off()
-        for axes, panel, canvas, limit in zip(grid, panels, canvases, limits, strict=False):
+        sheet = Sheet([panel.title for panel in panels], float(size[0] / size[1]), False, marks)
+        for axes, canvas, limit in zip(sheet.panels, canvases, limits, strict=True):
             middle = limit.mean(axis=0)
             canvas.paint(axes, np.array([middle - 0.5 * size, middle + 0.5 * size]))
-            axes.set_title(panel.title, loc="left")
-    return rendering(figure, f"contact zone: {', '.join(panel.title for panel in panels)}")
+    return rendering(sheet.figure, f"contact zone: {', '.join(panel.title for panel in panels)}")
 
 
 def _canvas(panel: Panel) -> tuple[Canvas, FloatArray]:
@@ -71,8 +65,8 @@ def _canvas(panel: Panel) -> tuple[Canvas, FloatArray]:
     for body in problem.bodies:
         paint = plain(style.MASTER if body.name == slave else style.SLAVE, _SHADING)
         add_body(canvas, body, points[body.name], paint, FACES, _OPACITY)
-    canvas.add_spheres(surface.points, _RADIUS * width, _CONTROL)
-    canvas.add_spheres(_knots(surface), 0.6 * _RADIUS * width, _KNOT)
+    canvas.add_spheres(surface.points, _RADIUS * width, np.array(to_rgb(_CONTROL)))
+    canvas.add_spheres(_knots(surface), 0.6 * _RADIUS * width, np.array(to_rgb(_KNOT)))
     return canvas, limits
 
 

@@ -7,12 +7,9 @@ import io
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
-from typing import Literal
 
-from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
 
-from isomortar.geometry.patch import FloatArray
 from isomortar.harness.figures import page_style, svg_text
 from isomortar.results.reader import Results
 from isomortar.results.style import style
@@ -55,12 +52,6 @@ def plot(figure: Figure, title: str) -> Picture:
         text = svg_text(figure, title)
     label = f'<svg role="img" aria-label="{escape(title, quote=True)}"'
     return Picture(text.replace("<svg", label, 1), figure, vector=True)
-
-
-def beyond(values: FloatArray, colours: ScalarMappable) -> Literal["neither", "min", "max", "both"]:
-    """At which ends values go beyond the range of colours, as Matplotlib calls it."""
-    below, above = bool(values.min() < colours.norm.vmin), bool(values.max() > colours.norm.vmax)
-    return "both" if below and above else "min" if below else "max" if above else "neither"
 
 
 def rendering(figure: Figure, title: str) -> Picture:

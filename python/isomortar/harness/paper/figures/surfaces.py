@@ -2,29 +2,33 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize, to_rgb
-from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
-from numpy.typing import NDArray
 
 from isomortar.geometry.patch import FloatArray
-from isomortar.harness.paper.figures.flat import CONTACT_ZONE, FlatPatch, Quantity, lay_flat, region_of_contact
-from isomortar.harness.paper.figures.picture import Panel, Picture, beyond, rendering
-from isomortar.harness.paper.figures.zones import zones
+from isomortar.harness.paper.figures.flat import CONTACT_ZONE, FlatPatch, Quantity, lay_flat
+from isomortar.harness.paper.figures.picture import Panel, Picture, rendering
+from isomortar.harness.paper.figures.sheet import Mark, Sheet
+from isomortar.harness.paper.figures.zones import corners_of, zones
 from isomortar.results import style
 from isomortar.results.rendering import Camera, Canvas
 
 _LABELS: dict[Quantity, str] = {
-    "pressure": "contact pressure $p$ (force / area)",
-    "traction": r"tangential traction $\tau_1/\mu$ (force / area $\times$ length / parameter)",
-    "traction_2": r"tangential traction $\tau_2/\mu$ (force / area $\times$ length / parameter)",
-    "gap": f"gap $g$ (length) where $p$ > {100 * CONTACT_ZONE:g} % of its peak; positive: penetration",
+    "pressure": "contact pressure $p$\n(force / area)",
+    "traction": "tangential traction $\\tau_1/\\mu$\n(force / area $\\times$ length / parameter)",
+    "traction_2": "tangential traction $\\tau_2/\\mu$\n(force / area $\\times$ length / parameter)",
+    "gap": f"gap $g$ (length), positive: penetration;\nwhere $p$ is above {100 * CONTACT_ZONE:g} % of its peak",
+}
+_SPHERES: dict[Quantity, str] = {
+    "pressure": "control pressures $p^I$",
+    "traction": "control tractions $\\tau_1^I/\\mu$",
+    "traction_2": "control tractions $\\tau_2^I/\\mu$",
+    "gap": "control gaps $g^I$",
 }
 #: Of a sphere, over the longer side of the patch.
 _RADIUS = 0.011
@@ -32,7 +36,7 @@ _VIEW = Camera(azimuth=-60.0, elevation=27.0)
 #: Height of the surfaces over the longer side of the patch.
 _HEIGHT = 0.6
 _SHADING = 0.55
-_NEGATIVE, _SPHERE, _FRAME = (np.array(to_rgb(colour)) for colour in ("#6F7680", style.BLUE, style.GREY))
+_NEGATIVE, _SPHERE = "#6F7680", style.BLUE
 
 
 def draw(panels: Sequence[Panel], quantity: Quantity) -> Picture:
@@ -48,32 +52,25 @@ def draw(panels: Sequence[Panel], quantity: Quantity) -> Picture:
         The control pressures' field; a covariant component of the traction over the friction coefficient, as in the paper; the gap at
         each place of the contact zone, spheres the control gaps.
     """
-    patches = [lay_flat(panel, quantity) for panel in panels]
-    region = region_of_contact(patches)
-    patches = [patch.within(region) for patch in patches]
+    patches, region = lay_flat(panels, quantity)
     heights = np.array([panel.height_scale * _range(patch) for panel, patch in zip(panels, patches, strict=True)])
     frame = _Frame(region, min(0.0, float(heights.min())), float(heights.max()))
     colours = _colours([p for p, panel in zip(patches, panels, strict=True) if panel.height_scale == 1.0] or patches, quantity)
-    rows = math.ceil(len(panels) / 4)
-    columns = math.ceil(len(panels) / rows)
     canvases = [_canvas(panel, patch, colours, frame, quantity) for panel, patch in zip(panels, patches, strict=True)]
     drawn = np.array([canvas.limits() for canvas in canvases])
     limits = frame.with_labels(np.array([drawn[:, 0].min(axis=0), drawn[:, 1].max(axis=0)]))
     across, up = np.ptp(limits, axis=0)
+    marks = [Mark(_SPHERES[quantity], "o", _SPHERE)]
+    if any(patch.whole and patch.zone.min() < 0 for patch in patches):
+        marks.append(Mark("negative contact pressure", "s", _NEGATIVE))
     with style.style():
-        figure = Figure(figsize=(10.6, max(2.6, rows * (9.6 / columns * up / across + 0.35))), layout="constrained")
-        grid = figure.subplots(rows, columns, squeeze=False).ravel()
-        for axes in grid:
-            axes.set_axis_off()
-        for axes, panel, patch, canvas in zip(grid, panels, patches, canvases, strict=False):
+        sheet = Sheet([_title(panel) for panel in panels], float(across / up), True, marks)
+        for axes, panel, patch, canvas in zip(sheet.panels, panels, patches, canvases, strict=True):
             canvas.paint(axes, limits)
             _draw_height_axis(axes, panel.height_scale, frame)
             _draw_lengths(axes, patch.letters, frame)
-            scaled = "" if panel.height_scale == 1.0 else f" (heights times {panel.height_scale:g})"
-            axes.set_title(panel.title + scaled, loc="left")
-        extend = beyond(np.concatenate([patch.values[np.isfinite(patch.values)] for patch in patches]), colours)
-        figure.colorbar(colours, ax=list(grid), shrink=0.85, aspect=26, pad=0.01, extend=extend, label=_LABELS[quantity])
-    return rendering(figure, f"{quantity}: {', '.join(panel.title for panel in panels)}")
+        sheet.add_bar(colours, _LABELS[quantity], np.concatenate([patch.shown for patch in patches]))
+    return rendering(sheet.figure, f"{quantity}: {', '.join(panel.title for panel in panels)}")
 
 
 class _Frame:
@@ -100,27 +97,31 @@ class _Frame:
         return self.lifted(np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]]), np.full(4, height))
 
 
+def _title(panel: Panel) -> str:
+    return panel.title if panel.height_scale == 1.0 else f"{panel.title} (heights times {panel.height_scale:g})"
+
+
 def _range(patch: FlatPatch) -> FloatArray:
     """Smallest and largest value of the field and of what the spheres show."""
-    shown = [patch.values.ravel(), patch.control_values[patch.active]]
-    return np.array([np.nanmin(np.concatenate(shown)), np.nanmax(np.concatenate(shown))])
+    shown = np.concatenate([patch.shown, patch.control_values])
+    return np.array([shown.min(), shown.max()])
 
 
 def _colours(patches: Sequence[FlatPatch], quantity: Quantity) -> ScalarMappable:
     if quantity == "pressure":
-        return ScalarMappable(Normalize(0.0, max(float(np.nanmax(p.values)) for p in patches)), style.pressure_colours())
-    reach = max(float(np.nanmax(np.abs(p.values))) for p in patches)
+        return ScalarMappable(Normalize(0.0, max(float(p.shown.max()) for p in patches)), style.pressure_colours())
+    reach = max(float(np.abs(p.shown).max()) for p in patches)
     return ScalarMappable(Normalize(-reach, reach), style.signed_colours())
 
 
 def _canvas(panel: Panel, patch: FlatPatch, colours: ScalarMappable, frame: _Frame, quantity: Quantity) -> Canvas:
     canvas = Canvas(_VIEW)
     for height in {0.0, frame.low}:
-        canvas.add_segments(_outline(frame.corners(height)), _FRAME, 0.8)
+        canvas.add_segments(_outline(frame.corners(height)), np.array(to_rgb(style.GREY)), 0.8)
     grid = np.stack(np.meshgrid(*patch.samples), axis=-1)
     _add_field(canvas, frame.lifted(grid, panel.height_scale * patch.values), patch, colours, quantity)
-    centres = frame.lifted(patch.points[patch.active], panel.height_scale * patch.control_values[patch.active])
-    canvas.add_spheres(centres, _RADIUS * frame.size, _SPHERE)
+    centres = frame.lifted(patch.points, panel.height_scale * patch.control_values)
+    canvas.add_spheres(centres, _RADIUS * frame.size, np.array(to_rgb(_SPHERE)))
     return canvas
 
 
@@ -132,24 +133,20 @@ def _outline(corners: FloatArray) -> FloatArray:
 
 
 def _add_field(canvas: Canvas, points: FloatArray, patch: FlatPatch, colours: ScalarMappable, quantity: Quantity) -> None:
-    """The surface: its zone in colour, the rest grey; of a gap there is no rest."""
+    """The surface, its zone in colour and the rest grey or left out, knot lines included."""
     parted = zones(points, patch.zone)
     values = 0.25 * (patch.values[1:, 1:] + patch.values[1:, :-1] + patch.values[:-1, 1:] + patch.values[:-1, :-1])
     if quantity == "pressure":
         values = np.maximum(values, 0.0)
-    painted = colours.to_rgba(values)[..., :3]
+    painted, grey = colours.to_rgba(values)[..., :3], np.array(to_rgb(_NEGATIVE))
     cells = np.where(parted.positive[..., None], painted, np.nan)
     canvas.add_polygons(parted.parts[:, 0], painted[parted.cut], _SHADING)
-    if quantity != "gap":
-        cells[parted.negative] = _NEGATIVE
-        canvas.add_polygons(parted.parts[:, 1], np.broadcast_to(_NEGATIVE, (len(parted.parts), 3)), _SHADING)
-    canvas.add_surface(points, cells, 0, _lines(patch), _SHADING)
-
-
-def _lines(patch: FlatPatch) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Columns and rows of samples that lie on element boundaries."""
-    columns, rows = (np.searchsorted(s, b - 1e-9).astype(np.int64) for s, b in zip(patch.samples, patch.boundaries, strict=True))
-    return columns, rows
+    if patch.whole:
+        cells[parted.negative] = grey
+        canvas.add_polygons(parted.parts[:, 1], np.broadcast_to(grey, (len(parted.parts), 3)), _SHADING)
+    else:
+        points = np.where(corners_of(parted.positive)[..., None], points, np.nan)
+    canvas.add_surface(points, cells, 0, patch.lines, _SHADING)
 
 
 def _draw_height_axis(axes: Axes, height_scale: float, frame: _Frame) -> None:
@@ -170,4 +167,4 @@ def _draw_lengths(axes: Axes, letters: tuple[str, str], frame: _Frame) -> None:
     for number, side in enumerate(("right", "left")):
         x, y = 0.5 * (corners[number] + corners[number + 1])
         size = float(np.ptp(frame.region, axis=0)[number])
-        axes.text(x, y - 0.02 * frame.size, f" ${letters[number]}$, length {size:.3g} ", ha=side, va="top", fontsize=8)
+        axes.text(x, y - 0.02 * frame.size, f" ${letters[number]}$, length {size:.2f} ", ha=side, va="top", fontsize=8)

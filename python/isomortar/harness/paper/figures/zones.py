@@ -37,6 +37,12 @@ def zones(points: FloatArray, field: FloatArray) -> Zones:
     return Zones(positive, negative, (cut[0], cut[1]), np.array(parts).reshape(-1, 2, _CORNERS, points.shape[-1]))
 
 
+def corners_of(cells: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Places of the grid that are corners of one of the cells, shape (m2, m1) from (m2 - 1, m1 - 1)."""
+    places = np.pad(cells, 1)
+    return places[1:, 1:] | places[1:, :-1] | places[:-1, 1:] | places[:-1, :-1]
+
+
 def _around(grid: FloatArray) -> FloatArray:
     """Corners of each cell in turn, shape (m2 - 1, m1 - 1, 4, k)."""
     return np.stack([grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]], axis=2)
