@@ -22,7 +22,7 @@ CONTACT_ZONE = 0.2
 #: Round-off over the largest pressure, which is no negative pressure.
 _NOTHING = 1e-6
 #: Samples along the region, and at least along one of its elements.
-_SAMPLES, _SAMPLES_OF_ELEMENT = 130, 6
+_SAMPLES, _SAMPLES_OF_ELEMENT = 150, 6
 
 
 @dataclass(frozen=True)

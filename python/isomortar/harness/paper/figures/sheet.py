@@ -14,8 +14,11 @@ from matplotlib.lines import Line2D
 from isomortar.geometry.patch import FloatArray
 
 #: Inches. `_BAR`: what the colour bar takes with its numbers and its label.
-_WIDTH, _WIDEST, _TITLE, _SPACE, _KEY, _BAR = 10.6, 6.2, 0.3, 0.12, 0.34, 0.95
+_WIDTH, _WIDEST, _TITLE, _SPACE, _KEY, _BAR = 10.6, 6.2, 0.3, 0.12, 0.34, 1.15
 _BAR_WIDTH, _LONGEST_BAR, _SHORTEST_BAR = 0.17, 4.2, 2.6
+
+#: Over the range of a colour bar: round-off does not go beyond it.
+_NOTHING = 1e-6
 
 
 @dataclass(frozen=True)
@@ -54,7 +57,7 @@ class Sheet:
     def add_bar(self, colours: ScalarMappable, label: str, values: FloatArray) -> None:
         """The colour bar; its ends are pointed where `values` go beyond its range."""
         low, high = colours.get_clim()
-        ends = (bool(values.min() < low), bool(values.max() > high))
+        ends = (bool(values.min() < low - _NOTHING * (high - low)), bool(values.max() > high + _NOTHING * (high - low)))
         extend = {(False, False): "neither", (True, False): "min", (False, True): "max", (True, True): "both"}[ends]
         length = min(_LONGEST_BAR, 0.9 * (self._size[1] - self._below))
         middle = self._below + 0.5 * (self._size[1] - self._below)

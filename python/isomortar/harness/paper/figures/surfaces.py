@@ -85,7 +85,7 @@ class _Frame:
         """Lower left and upper right corner of a picture, with room for the height axis and the names of the edges."""
         axis = _VIEW.places(np.array([self.corners(self.low)[0], self.corners(self.high)[0]]))
         low, high = np.minimum(limits[0], axis.min(axis=0)), np.maximum(limits[1], axis.max(axis=0))
-        return np.array([low - self.size * np.array([0.17, 0.03]), high])
+        return np.array([low - self.size * np.array([0.17, 0.05]), high + self.size * np.array([0.08, 0.0])])
 
     def lifted(self, places: FloatArray, values: FloatArray) -> FloatArray:
         """Points over the patch, shape (..., 3), from places (..., 2) and heights in values."""
@@ -167,4 +167,4 @@ def _draw_lengths(axes: Axes, letters: tuple[str, str], frame: _Frame) -> None:
     for number, side in enumerate(("right", "left")):
         x, y = 0.5 * (corners[number] + corners[number + 1])
         size = float(np.ptp(frame.region, axis=0)[number])
-        axes.text(x, y - 0.02 * frame.size, f" ${letters[number]}$, length {size:.2f} ", ha=side, va="top", fontsize=8)
+        axes.text(x, y - 0.02 * frame.size, f" ${letters[number]}$ \n length {size:.2f} ", ha=side, va="top", fontsize=8)

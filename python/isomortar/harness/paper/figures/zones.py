@@ -9,16 +9,18 @@ from numpy.typing import NDArray
 
 from isomortar.geometry.patch import FloatArray
 
-#: A part has at most two corners of its cell and four places where the field is zero on an edge.
-_CORNERS = 6
+#: The triangles of a cell, by its corners in turn: in them a field has no saddle.
+_TRIANGLES = np.array([[0, 1, 2], [0, 2, 3]])
+#: A part of a triangle has at most two of its corners and two places where the field is zero on an edge.
+_CORNERS = 4
 
 
 @dataclass(frozen=True)
 class Zones:
     """Cells of a grid of m2 x m1 places by the sign of a field at their corners.
 
-    `positive`, `negative`: whole cells, shape (m2 - 1, m1 - 1). `cut`: rows and columns of the other cells. `parts`: of each cut cell
-    the positive and the negative part, shape (cut cells, 2, 6, k); corners may repeat.
+    `positive`, `negative`: whole cells, shape (m2 - 1, m1 - 1). `parts`: the positive and the negative part of each triangle of the
+    other cells, shape (n, 2, 4, k); corners may repeat. `cut`: rows and columns of the cells that the triangles belong to.
     """
 
     positive: NDArray[np.bool_]
@@ -32,9 +34,11 @@ def zones(points: FloatArray, field: FloatArray) -> Zones:
     corners = _around(points)
     values = _around(field[..., None])[..., 0]
     positive, negative = values.min(axis=-1) >= 0, values.max(axis=-1) < 0
-    cut = np.nonzero(~positive & ~negative)
-    parts = [[_part(p, v), _part(p, -v)] for p, v in zip(corners[cut], values[cut], strict=True)]
-    return Zones(positive, negative, (cut[0], cut[1]), np.array(parts).reshape(-1, 2, _CORNERS, points.shape[-1]))
+    rows, columns = (np.repeat(number, len(_TRIANGLES)) for number in np.nonzero(~positive & ~negative))
+    triangle = np.tile(_TRIANGLES, (len(rows) // len(_TRIANGLES), 1))
+    cut = rows[:, None], columns[:, None], triangle
+    parts = [[_part(p, v, v >= 0), _part(p, v, v < 0)] for p, v in zip(corners[cut], values[cut], strict=True)]
+    return Zones(positive, negative, (rows, columns), np.array(parts).reshape(-1, 2, _CORNERS, points.shape[-1]))
 
 
 def corners_of(cells: NDArray[np.bool_]) -> NDArray[np.bool_]:
@@ -48,13 +52,13 @@ def _around(grid: FloatArray) -> FloatArray:
     return np.stack([grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]], axis=2)
 
 
-def _part(corners: FloatArray, values: FloatArray) -> FloatArray:
-    """The part of a quadrilateral where the field is positive, linear along its edges."""
+def _part(corners: FloatArray, values: FloatArray, inside: NDArray[np.bool_]) -> FloatArray:
+    """The part of a triangle on the side of the corners that are inside; one corner, repeated, where none is."""
     kept = []
-    for k in range(4):
-        here, there = values[k], values[(k + 1) % 4]
-        if here >= 0:
-            kept.append(corners[k])
-        if (here > 0 > there) or (here < 0 < there):
-            kept.append(corners[k] + here / (here - there) * (corners[(k + 1) % 4] - corners[k]))
+    for here, there in ((0, 1), (1, 2), (2, 0)):
+        if inside[here]:
+            kept.append(corners[here])
+        if inside[here] != inside[there]:
+            kept.append(corners[here] + values[here] / (values[here] - values[there]) * (corners[there] - corners[here]))
+    kept = kept or [corners[0]]
     return np.array(kept + [kept[-1]] * (_CORNERS - len(kept)))
