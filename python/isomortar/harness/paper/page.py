@@ -74,9 +74,9 @@ def as_data(report: Report) -> dict[str, Any]:
 
 
 def _saved(folder: Path, plate: Plate) -> dict[str, str]:
-    """What the page shows of a figure, after its file is written; the figure itself is large and not kept."""
+    """What the page shows of a figure whose file is written; the figure itself is large and not kept. Plots have their title in them."""
     plate.picture.save(folder / plate.name)
-    return {"title": plate.title, "caption": plate.caption, "html": plate.picture.html}
+    return {"title": "" if plate.picture.vector else plate.title, "caption": plate.caption, "html": plate.picture.html}
 
 
 def page(report: Report, drawn: Mapping[str, Sequence[Mapping[str, str]]]) -> str:
