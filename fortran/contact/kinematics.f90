@@ -31,6 +31,10 @@ module isomortar_contact_kinematics
     real(wp) :: curvature(2, 2)
     !> Inverse of H_ab = a_ab + g b_ab.
     real(wp) :: inverse_h(2, 2)
+    !> Coordinates that stay while the point moves: the foot is on a C0 line.
+    logical :: fixed(2) = .false.
+    !> The normal turns about such a line with the slave point.
+    logical :: turns = .false.
     !> Surface derivatives by column (derivative_column), up to the order that is needed.
     real(wp) :: surface(3, 10)
   end type contact_point_t
@@ -166,7 +170,24 @@ contains
         call add_product(scale * point%gap * point%inverse_metric(a, b), turned(:, a), turned(:, b), form(1:9, 1:9))
       end do
     end do
+    if (point%turns) call add_turn(point, scale / point%gap, form(1:3, 1:3))
   end subroutine gap_variation
+
+  !> Add scale * (dx - dS)^T P (Dx - DS), P the projector across the normal and the free tangents: on a C0 line.
+  pure subroutine add_turn(point, scale, form)
+    type(contact_point_t), intent(in) :: point
+    real(wp), intent(in) :: scale
+    real(wp), intent(inout) :: form(:, :)
+    integer :: a, i
+
+    do i = 1, 3
+      form(i, i) = form(i, i) + scale
+    end do
+    call add_product(-scale, point%normal, point%normal, form)
+    do a = 1, 2
+      call add_product(-scale * point%inverse_metric(a, a), point%tangent(:, a), point%tangent(:, a), form)
+    end do
+  end subroutine add_turn
 
   !> Add traction_a Ddxi^a, scaled, to a bilinear form over the components.
   pure subroutine traction_variation(point, variations, traction, form)
