@@ -2,7 +2,7 @@
 !>
 !> Gap and normal are continuous from a face onto the line, along it, and onto the next face.
 module isomortar_contact_kink
-  use isomortar_base_algebra, only: cross
+  use isomortar_base_algebra, only: cross, inverse2
   use isomortar_base_kinds, only: wp
   use isomortar_contact_kinematics, only: contact_point_t
   use isomortar_nurbs_surface, only: derivative_columns, surface_basis, surface_nodes, surface_t
@@ -34,15 +34,13 @@ contains
     if (point%turns) point%normal = sign(1.0_wp, dot_product(d, facing)) * d / norm2(d)
     point%gap = -dot_product(d, point%normal)
     point%inverse_metric = 0.0_wp
-    point%inverse_h = 0.0_wp
     do a = 1, 2
       do b = 1, 2
         point%curvature(a, b) = dot_product(point%normal, point%surface(:, 2 + a + b))
       end do
-      if (fixed(a)) cycle
-      point%inverse_metric(a, a) = 1.0_wp / point%metric(a, a)
-      point%inverse_h(a, a) = 1.0_wp / (point%metric(a, a) + point%gap * point%curvature(a, a))
+      if (.not. fixed(a)) point%inverse_metric(a, a) = 1.0_wp / point%metric(a, a)
     end do
+    point%inverse_h = inverse2(point%metric + point%gap * point%curvature)
   end subroutine hold_on_lines
 
   !> Mean of the outward unit normals of the faces that meet on the lines: `place` is the lowest of their elements.
