@@ -213,10 +213,12 @@ def slave_tables(
     return np.ascontiguousarray(nodes.T), np.ascontiguousarray(basis.T), area
 
 
-def project_points(slave: SlaveArrays, master: MasterArrays, positions: FloatArray, origin: FloatArray, had: IntArray) -> Projections:
-    """Project every slave quadrature point, from `origin` where `had` is 1, from a coarse search elsewhere.
+def project_points(
+    slave: SlaveArrays, master: MasterArrays, positions: FloatArray, origin: FloatArray, had: IntArray, starts: FloatArray | None = None
+) -> Projections:
+    """Project every slave quadrature point, from `starts` where `had` is 1, from a coarse search elsewhere.
 
-    `origin` is also where the slip increment is counted from.
+    `origin` is where the slip increment is counted from, and where the search starts unless `starts` are given.
 
     Raises
     ------
@@ -226,7 +228,7 @@ def project_points(slave: SlaveArrays, master: MasterArrays, positions: FloatArr
     q = len(slave.area)
     _checked("origin", origin, np.float64, q, 2)
     _checked("had", had, np.int32, q)
-    xi = origin.copy()
+    xi = (origin if starts is None else starts).copy()
     element, fixed, found, slip, slips, status, place = _kernel.project_points(
         slave.nodes.T, slave.basis.T, slave.area, slave.point, master.kind, master.knots, master.point, master.weight, positions.T,
         had, origin.T, had, xi.T,

@@ -82,6 +82,10 @@ class Monolithic(Method):
                 correction, notes = solve_bordered(self._equilibrium, iterate.balance, iterate.laws, iterate.targets, None)[0], ()
             iterate, halved = self._update(iterate, correction, start, stiffness, seen if iteration >= CYCLE_FREE else [], iteration)
             notes += halved
+            put = sum(
+                pair.feet.follow(k.projections) for pair, k in zip(self._equilibrium.pairs, iterate.balance.kinematics, strict=True)
+            )
+            notes += (f"{put} feet put on lines",) if put else ()
             seen.append(iterate.states)
             visited.append(iterate.elements)
         raise ConvergenceError(
