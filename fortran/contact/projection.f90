@@ -23,8 +23,6 @@ module isomortar_contact_projection
 
   !> Relative size of the last Newton step: its error is the square of that.
   real(wp), parameter :: last_step = epsilon(1.0_wp)**0.6_wp
-  !> Slopes of half the squared distance below this share of the element's squared length are round-off.
-  real(wp), parameter :: flat_slope = 64.0_wp * epsilon(1.0_wp)
   !> Squared distances whose ratio is less are the same but for round-off.
   real(wp), parameter :: same_distance = 1.0_wp + 8.0_wp * epsilon(1.0_wp)
 
@@ -34,8 +32,6 @@ module isomortar_contact_projection
     real(wp) :: xi(2)
     !> Half of the squared distance.
     real(wp) :: distance
-    !> Coordinates that the search leaves where they are, on C0 lines.
-    logical :: held(2)
     !> For each coordinate -1 or 1 where the distance falls across the lower or upper bound of the element, else 0.
     integer :: pressing(2)
     logical :: settled
@@ -45,9 +41,6 @@ contains
 
   !> Project x from coordinates `xi`, which are replaced by the result; `place` is its element by direction, and `fixed` says
   !> which coordinates stay on a C0 line while x moves.
-  !>
-  !> A search that starts exactly on such a line stays there as long as the distance turns across it: also where it falls to both
-  !> sides, over a valley, so that a foot that has been put on the line follows it until one of the faces takes it smoothly.
   pure subroutine project(surface, positions, x, xi, place, fixed, outcome)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :), x(3)
@@ -55,112 +48,52 @@ contains
     integer, intent(out) :: place(2), outcome
     logical, intent(out) :: fixed(2)
     type(search_t) :: here
-    logical :: held(2)
-
-    held = .true.
-    do
-      call begin_search(surface, xi, held, here)
-      call search(surface, positions, x, here, fixed, outcome)
-      if (.not. any(here%held)) exit
-      held = outcome == projection_inside .and. turning(surface, positions, x, here)
-      if (all(held .eqv. here%held)) exit
-    end do
-    xi = here%xi
-    place = here%place
-    fixed = fixed .or. here%held
-  end subroutine project
-
-  !> A search from coordinates xi; those of `held` that are on a C0 line are held there, in the element below.
-  pure subroutine begin_search(surface, xi, held, here)
-    type(surface_t), intent(in) :: surface
-    real(wp), intent(in) :: xi(2)
-    logical, intent(in) :: held(2)
-    type(search_t), intent(out) :: here
-    integer :: a
-
-    here%xi = xi
-    here%held = .false.
-    do a = 1, 2
-      associate (direction => surface%direction(a))
-        here%place(a) = element_at(direction, xi(a))
-        if (.not. held(a) .or. here%place(a) == 1) cycle
-        if (xi(a) > direction%boundary(here%place(a) - 1)) cycle
-        here%held(a) = is_kink(direction, here%place(a) - 1)
-        if (here%held(a)) here%place(a) = here%place(a) - 1
-      end associate
-    end do
-  end subroutine begin_search
-
-  !> Search element by element.
-  pure subroutine search(surface, positions, x, here, fixed, outcome)
-    type(surface_t), intent(in) :: surface
-    real(wp), intent(in) :: positions(:, :), x(3)
-    type(search_t), intent(inout) :: here
-    logical, intent(out) :: fixed(2)
-    integer, intent(out) :: outcome
     logical :: moved
     integer :: visit
 
+    here%place = [element_at(surface%direction(1), xi(1)), element_at(surface%direction(2), xi(2))]
+    here%xi = xi
     call search_element(surface, positions, x, here)
     fixed = .false.
     outcome = projection_lost
     do visit = 1, 8 + 2 * surface_element_count(surface)
       if (.not. here%settled) return
-      if (all(here%pressing == 0)) then
-        outcome = projection_inside
+      xi = here%xi
+      place = here%place
+      outcome = projection_inside
+      if (all(here%pressing == 0)) return
+      if (all(here%pressing == 0 .or. on_edge(surface, here))) then
+        outcome = projection_outside
         return
       end if
-      moved = .false.
-      if (.not. all(here%pressing == 0 .or. on_edge(surface, here))) call cross_boundary(surface, positions, x, here, moved)
+      call cross_boundary(surface, positions, x, here, moved)
       if (.not. moved) then
-        outcome = merge(projection_outside, projection_inside, any(on_edge(surface, here)))
-        call settle_on_lines(surface, here, fixed)
+        if (any(on_edge(surface, here))) outcome = projection_outside
+        call settle_on_lines(surface, here%pressing, xi, place, fixed)
         return
       end if
+      outcome = projection_lost
     end do
-  end subroutine search
+  end subroutine project
 
-  !> Fix the coordinates that press against a C0 line which neither side improves; the foot then belongs to the element below.
-  pure subroutine settle_on_lines(surface, here, fixed)
+  !> Fix the coordinates that press against a C0 line which neither side improves.
+  pure subroutine settle_on_lines(surface, pressing, xi, place, fixed)
     type(surface_t), intent(in) :: surface
-    type(search_t), intent(inout) :: here
+    integer, intent(in) :: pressing(2)
+    real(wp), intent(inout) :: xi(2)
+    integer, intent(inout) :: place(2)
     logical, intent(inout) :: fixed(2)
     integer :: a, line
 
     do a = 1, 2
-      line = here%place(a) + min(here%pressing(a), 0)
-      if (here%pressing(a) == 0 .or. line == 0 .or. line == surface%direction(a)%elements) cycle
+      line = place(a) + min(pressing(a), 0)
+      if (pressing(a) == 0 .or. line == 0 .or. line == surface%direction(a)%elements) cycle
       fixed(a) = is_kink(surface%direction(a), line)
-      if (fixed(a)) here%place(a) = line
+      if (.not. fixed(a)) cycle
+      place(a) = line
+      xi(a) = surface%direction(a)%boundary(line)
     end do
   end subroutine settle_on_lines
-
-  !> Held coordinates in which the distance falls to both sides of their line, or rises to both.
-  pure function turning(surface, positions, x, here) result(turns)
-    type(surface_t), intent(in) :: surface
-    real(wp), intent(in) :: positions(:, :), x(3)
-    type(search_t), intent(in) :: here
-    logical :: turns(2)
-    integer :: nodes(product(surface%direction%order + 1)), a, place(2), side
-    real(wp) :: distance, slope(2), hessian(2, 2), metric(2, 2), slopes(0:1)
-
-    turns = here%held
-    do a = 1, 2
-      if (.not. turns(a)) cycle
-      do side = 0, 1
-        place = here%place
-        place(a) = place(a) + side
-        call surface_nodes(surface, place, nodes)
-        call distance_derivatives(surface, place, nodes, positions(:, surface%point(nodes)), x, here%xi, distance, slope, hessian, &
-          metric)
-        slopes(side) = slope(a)
-        associate (boundary => surface%direction(a)%boundary)
-          turns(a) = turns(a) .and. abs(slope(a)) > flat_slope * (boundary(place(a)) - boundary(place(a) - 1)) * metric(a, a)
-        end associate
-      end do
-      turns(a) = turns(a) .and. (slopes(0) < 0.0_wp .neqv. slopes(1) < 0.0_wp)
-    end do
-  end function turning
 
   !> Where the search presses against the edge of the patch.
   pure function on_edge(surface, here) result(edge)
@@ -217,7 +150,7 @@ contains
     do iteration = 1, 100
       call distance_derivatives(surface, here%place, nodes, points, x, here%xi, here%distance, slope, hessian, metric)
       call find_pressing(here, slope, metric, low, high)
-      step = newton_step(slope, hessian, metric, here%pressing == 0 .and. .not. here%held)
+      step = newton_step(slope, hessian, metric, here%pressing == 0)
       if (maxval(abs(step) / (high - low)) > 1.0e-3_wp) then
         call limit_step(surface, here, nodes, points, x, slope, low, high, step)
       end if
@@ -257,8 +190,7 @@ contains
 
     here%pressing = 0
     do a = 1, 2
-      if (here%held(a)) cycle
-      shift = flat_slope * (high(a) - low(a)) * metric(a, a)
+      shift = 64.0_wp * epsilon(1.0_wp) * (high(a) - low(a)) * metric(a, a)
       if (here%xi(a) <= low(a) .and. slope(a) > shift) here%pressing(a) = -1
       if (here%xi(a) >= high(a) .and. slope(a) < -shift) here%pressing(a) = 1
     end do

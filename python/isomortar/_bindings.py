@@ -68,7 +68,10 @@ class Pattern:
 
 @dataclass(frozen=True)
 class Projections:
-    """Slave quadrature points on the master: coordinates, element, coordinates that a C0 line fixes, whether found, slip, whether it counts."""
+    """Slave quadrature points on the master: coordinates, element, whether found, slip increment and whether it counts.
+
+    `fixed`: 1 for coordinates that stay while the point moves, on lines across which the master is only continuous, shape (points, 2).
+    """
 
     xi: FloatArray
     element: IntArray
@@ -213,12 +216,10 @@ def slave_tables(
     return np.ascontiguousarray(nodes.T), np.ascontiguousarray(basis.T), area
 
 
-def project_points(
-    slave: SlaveArrays, master: MasterArrays, positions: FloatArray, origin: FloatArray, had: IntArray, starts: FloatArray | None = None
-) -> Projections:
-    """Project every slave quadrature point, from `starts` where `had` is 1, from a coarse search elsewhere.
+def project_points(slave: SlaveArrays, master: MasterArrays, positions: FloatArray, origin: FloatArray, had: IntArray) -> Projections:
+    """Project every slave quadrature point, from `origin` where `had` is 1, from a coarse search elsewhere.
 
-    `origin` is where the slip increment is counted from, and where the search starts unless `starts` are given.
+    `origin` is also where the slip increment is counted from.
 
     Raises
     ------
@@ -228,7 +229,7 @@ def project_points(
     q = len(slave.area)
     _checked("origin", origin, np.float64, q, 2)
     _checked("had", had, np.int32, q)
-    xi = (origin if starts is None else starts).copy()
+    xi = origin.copy()
     element, fixed, found, slip, slips, status, place = _kernel.project_points(
         slave.nodes.T, slave.basis.T, slave.area, slave.point, master.kind, master.knots, master.point, master.weight, positions.T,
         had, origin.T, had, xi.T,
@@ -273,8 +274,8 @@ def contact_forces(
     _checked("forces", forces, np.float64, len(positions), 3)
     _kernel.contact_forces(
         slave.nodes.T, slave.basis.T, slave.area, slave.point, master.kind, master.knots, master.point, master.weight, positions.T,
-        projections.xi.T, projections.element.T, projections.fixed.T, projections.found, int(friction > 0), response.pressure, response.traction.T,
-        response.state, forces.T,
+        projections.xi.T, projections.element.T, projections.fixed.T, projections.found, int(friction > 0), response.pressure,
+        response.traction.T, response.state, forces.T,
     )  # fmt: skip
 
 
@@ -295,8 +296,8 @@ def contact_blocks(
     _checked("tangent", tangent, np.float64, len(pattern.column), 3, 3)
     _kernel.contact_blocks(
         slave.nodes.T, slave.basis.T, slave.area, slave.point, master.kind, master.knots, master.point, master.weight, positions.T,
-        projections.xi.T, projections.element.T, projections.fixed.T, projections.found, projections.slips, int(friction > 0), response.pressure,
-        response.traction.T, response.state, response.field_slip.T, row_pattern.start, row_pattern.column, rows.T,
+        projections.xi.T, projections.element.T, projections.fixed.T, projections.found, projections.slips, int(friction > 0),
+        response.pressure, response.traction.T, response.state, response.field_slip.T, row_pattern.start, row_pattern.column, rows.T,
         pattern.start, pattern.column, tangent.T,
     )  # fmt: skip
 

@@ -43,8 +43,8 @@ steps = 1
 motions.top = {{ translate = [0, 0, -0.05] }}
 """
 #: How far the bowl is moved (order 2, where the uneven master is curved, half of it): above the master feet are on ridges, below its
-#: surface in valleys; "held" above the valleys, on whose lines their search starts.
-MOVED = {"ridges": 0.08, "valleys": -0.06, "held": 0.02}
+#: surface in valleys.
+MOVED = {"ridges": 0.08, "valleys": -0.06}
 #: Directions this short (as a share of the size) keep the differences from reaching the end of a line's share of the points.
 SHORT = 1e-3
 #: On lines tractions do not work on the projection's change: it has no part there.
@@ -84,10 +84,6 @@ def on_lines(order: int, side: str) -> dict[str, float]:
     positions = state.positions + (0.03 if order == 1 else 0.01) * uneven
     positions[equilibrium.numbering.points["slave"], 2] += MOVED[side] / order
     start = state.contacts[0]
-    if side == "held":
-        line = problem.body("master").patch.face_directions("w1")[0].boundaries[1:-1]
-        nearest = np.abs(start.projection[:, :1] - line).argmin(axis=1)
-        start = replace(start, projection=np.column_stack([line[nearest], start.projection[:, 1]]))
     n = len(pair.pair.slave.point)
     law = pair.law(np.array([20.0, 10.0]), np.zeros(n), np.zeros((n, 2)))
     pressure, length = (np.resize(np.array(pattern), n) for pattern in ((-1.0, 1.0, 0.7), (0.0, 0.5, 2.0)))

@@ -83,12 +83,6 @@ class Direction:
         return np.unique(self.knots)
 
     @property
-    def kinks(self) -> FloatArray:
-        """Inner element boundaries across which the functions are only continuous."""
-        inner, multiplicity = np.unique(self.knots[(self.knots > self.knots[0]) & (self.knots < self.knots[-1])], return_counts=True)
-        return inner if self.family == "L" else inner[multiplicity >= self.order]
-
-    @property
     def elements(self) -> int:
         """Number of elements: non-empty knot spans."""
         return len(self.boundaries) - 1

@@ -57,12 +57,11 @@ class Pair:
         self.slave_reach = incidence(self.slave.point[self.slave.nodes], numbering.count)
         self.master_reach = None
         self.master_elements = (0, 0)
-        self.master_directions = None
         if not isinstance(contact.master, RigidPlane):
             body = problem.body(contact.master.body)
             reached = surface_element_points(body.patch, contact.master.face, numbering.points[body.name])
             self.master_reach = incidence(reached, numbering.count)
-            self.master_directions = directions = body.patch.face_directions(contact.master.face)
+            directions = body.patch.face_directions(contact.master.face)
             self.master_elements = (directions[0].elements, directions[1].elements)
         self.neighbour_matrix = sparse.csr_array(self.elements_of_point @ self.elements_of_point.T)
         self.neighbours: Pattern = pattern_of(self.neighbour_matrix)

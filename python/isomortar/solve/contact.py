@@ -11,7 +11,6 @@ from isomortar._bindings import ROW_KINDS, Control, Law, Pattern, Projections, R
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import SolverSettings
 from isomortar.model.pairs import Pair
-from isomortar.solve.feet import Feet
 from isomortar.solve.reach import ContactPatterns, Reach
 from isomortar.solve.record import ContactResult, ContactState
 from isomortar.solve.timing import Ledger
@@ -48,7 +47,6 @@ class PairMechanics:
         self.friction = pair.contact.friction
         self.summed = settings.slip_sum == "paper" and self.friction > 0
         self.reach = Reach(pair, self.summed, settings.method == "uzawa")
-        self.feet = Feet(pair.master_directions)
         n = len(pair.slave.point)
         self.diagonal = Pattern(np.arange(n + 1, dtype=np.int32), np.arange(n, dtype=np.int32))
         self._ledger = ledger
@@ -70,8 +68,7 @@ class PairMechanics:
         """Project and integrate the control quantities; slips count from `start`."""
         pair = self.pair
         with self._ledger.phase("projection"):
-            starts = self.feet.starts(start.projection)
-            projections = _bindings.project_points(pair.slave, pair.master, positions, start.projection, start.projected, starts)
+            projections = _bindings.project_points(pair.slave, pair.master, positions, start.projection, start.projected)
         with self._ledger.phase("contact"):
             control = _bindings.control_quantities(pair.slave, pair.master, positions, projections)
         self._ledger.counts["projections"] += len(pair.slave.area)

@@ -47,7 +47,6 @@ class Method(ABC):
         equilibrium = self._equilibrium
         for pair in equilibrium.pairs:
             pair.reach.begin_step()
-            pair.feet.begin_increment()
         with equilibrium.ledger.phase("solid"):
             stiffness = equilibrium.solid.stiffness(start.positions)
         return equilibrium.supports.increment(start.positions, time), stiffness

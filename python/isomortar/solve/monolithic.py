@@ -52,8 +52,9 @@ class Iterate:
 
     @property
     def elements(self) -> IntArray:
-        """Master elements that the slave quadrature points project on, shape (points of all pairs, 2)."""
-        return np.concatenate([k.projections.element for k in self.balance.kinematics] or [np.zeros((0, 2), dtype=np.int32)])
+        """Master elements and fixed coordinates of the slave quadrature points, shape (points of all pairs, 4)."""
+        places = [np.hstack([k.projections.element, k.projections.fixed]) for k in self.balance.kinematics]
+        return np.concatenate(places or [np.zeros((0, 4), dtype=np.int32)])
 
 
 class Monolithic(Method):
@@ -82,10 +83,6 @@ class Monolithic(Method):
                 correction, notes = solve_bordered(self._equilibrium, iterate.balance, iterate.laws, iterate.targets, None)[0], ()
             iterate, halved = self._update(iterate, correction, start, stiffness, seen if iteration >= CYCLE_FREE else [], iteration)
             notes += halved
-            put = sum(
-                pair.feet.follow(k.projections) for pair, k in zip(self._equilibrium.pairs, iterate.balance.kinematics, strict=True)
-            )
-            notes += (f"{put} feet put on lines",) if put else ()
             seen.append(iterate.states)
             visited.append(iterate.elements)
         raise ConvergenceError(
