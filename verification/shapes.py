@@ -1,10 +1,14 @@
-"""Exact curved bodies as coarse rational patches, with their volumes and areas: sectors of cylinders, tori and spherical shells."""
+"""Bodies with known shapes: sectors of cylinders, tori and spherical shells, coarse and exact with their volumes and areas; a roof."""
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 
 from isomortar.geometry.patch import Direction, FloatArray, Patch
+from isomortar.geometry.primitives import box
+from isomortar.geometry.refinement import mesh
 
 _LINE = Direction("N", 1, np.array([0.0, 0.0, 1.0, 1.0]))
 _ARC = Direction("N", 2, np.array([0.0, 0.0, 0.0, 1.0, 1.0, 1.0]))
@@ -65,3 +69,12 @@ def _arc(start: float, end: float) -> tuple[FloatArray, FloatArray]:
     angles = np.array([start, start + half, end])
     weights = np.array([1.0, np.cos(half), 1.0])
     return np.column_stack([np.cos(angles), np.sin(angles)]) / weights[:, None], weights
+
+
+def roof(order: int, slope: float) -> Patch:
+    """Two by two Lagrange elements below z = slope |x| (curved a little at order 2), -1 < x < 1, 0 < y < 1: bent along x = 0."""
+    patch = mesh(box((-1.0, 0.0, -1.0), (1.0, 1.0, 0.0)), ("L", "L", "L"), (order, order, 1), (2, 2, 1))
+    points = patch.control_points.copy()
+    x, top = np.abs(points[:, 0]), points[:, 2] > -0.5
+    points[top, 2] = (slope * x + (order - 1) * 0.05 * x**2)[top]
+    return replace(patch, control_points=points)

@@ -19,7 +19,7 @@ end subroutine slave_tables
 
 !> Project every slave quadrature point (isomortar_contact_control). `xi` holds starts where `started` is 1.
 subroutine project_points(nodes, basis, area, point, nlocal, nelements, nquad, nslave, kind, knots, nknots, master_point, &
-    master_weight, nmaster, x, n, started, origin, had, xi, element, found, slip, slips, status, place)
+    master_weight, nmaster, x, n, started, origin, had, xi, element, fixed, found, slip, slips, status, place)
   use iso_c_binding, only: c_double, c_int
   use isomortar_api_unpack, only: unpack_master, unpack_slave
   use isomortar_contact_control, only: project => project_points, projections_t
@@ -30,19 +30,22 @@ subroutine project_points(nodes, basis, area, point, nlocal, nelements, nquad, n
   real(c_double), intent(in) :: basis(nlocal, nquad), area(nquad), knots(nknots), master_weight(nmaster), x(3, n)
   real(c_double), intent(in) :: origin(2, nquad)
   real(c_double), intent(inout) :: xi(2, nquad)
-  integer(c_int), intent(out) :: element(2, nquad), found(nquad), slips(nquad)
+  integer(c_int), intent(out) :: element(2, nquad), fixed(2, nquad), found(nquad), slips(nquad)
   real(c_double), intent(out) :: slip(2, nquad)
   integer(c_int), intent(out) :: status, place
   type(projections_t) :: projections
 
-  allocate (projections%place(2, nquad), projections%found(nquad), projections%slip(2, nquad), projections%slips(nquad))
+  allocate (projections%place(2, nquad), projections%fixed(2, nquad), projections%found(nquad), projections%slip(2, nquad), &
+    projections%slips(nquad))
   projections%xi = xi
   projections%place = 0
+  projections%fixed = .false.
   projections%found = .false.
   call project(unpack_slave(nodes, basis, area, point), unpack_master(kind, knots, master_point, master_weight), x, &
     started /= 0, origin, had /= 0, projections, status, place)
   xi = projections%xi
   element = projections%place - 1
+  fixed = merge(1, 0, projections%fixed)
   found = merge(1, 0, projections%found)
   slip = 0.0_c_double
   slips = 0
@@ -53,14 +56,14 @@ end subroutine project_points
 
 !> Control quantities from projections (isomortar_contact_control).
 subroutine control_quantities(nodes, basis, area, point, nlocal, nelements, nquad, nslave, kind, knots, nknots, master_point, &
-    master_weight, nmaster, x, n, xi, element, found, slip, weight, square, gap, control_slip, metric, point_metric)
+    master_weight, nmaster, x, n, xi, element, fixed, found, slip, weight, square, gap, control_slip, metric, point_metric)
   use iso_c_binding, only: c_double, c_int
   use isomortar_api_unpack, only: unpack_master, unpack_slave
   use isomortar_contact_control, only: control_t, integrate => control_quantities, projections_t
   implicit none
   integer(c_int), intent(in) :: nlocal, nelements, nquad, nslave, nknots, nmaster, n
   integer(c_int), intent(in) :: nodes(nlocal, nelements), point(nslave), kind(11), master_point(nmaster)
-  integer(c_int), intent(in) :: element(2, nquad), found(nquad)
+  integer(c_int), intent(in) :: element(2, nquad), fixed(2, nquad), found(nquad)
   real(c_double), intent(in) :: basis(nlocal, nquad), area(nquad), knots(nknots), master_weight(nmaster), x(3, n)
   real(c_double), intent(in) :: xi(2, nquad), slip(2, nquad)
   real(c_double), intent(out) :: weight(nslave), square(nslave), gap(nslave), control_slip(2, nslave), metric(3, nslave)
@@ -70,6 +73,7 @@ subroutine control_quantities(nodes, basis, area, point, nlocal, nelements, nqua
 
   projections%xi = xi
   projections%place = element + 1
+  projections%fixed = fixed /= 0
   projections%found = found /= 0
   projections%slip = slip
   allocate (control%weight(nslave), control%square(nslave), control%gap(nslave), control%slip(2, nslave), &
@@ -123,7 +127,7 @@ end subroutine augmented_multipliers
 
 !> Add contact forces; separately on slave and master control points (isomortar_contact_blocks).
 subroutine contact_forces(nodes, basis, area, point, nlocal, nelements, nquad, nslave, kind, knots, nknots, master_point, &
-    master_weight, nmaster, x, n, xi, element, found, with_friction, pressure, traction, state, forces)
+    master_weight, nmaster, x, n, xi, element, fixed, found, with_friction, pressure, traction, state, forces)
   use iso_c_binding, only: c_double, c_int
   use isomortar_api_unpack, only: unpack_master, unpack_slave
   use isomortar_contact_blocks, only: integrate_forces, multipliers_t
@@ -131,7 +135,7 @@ subroutine contact_forces(nodes, basis, area, point, nlocal, nelements, nquad, n
   implicit none
   integer(c_int), intent(in) :: nlocal, nelements, nquad, nslave, nknots, nmaster, n
   integer(c_int), intent(in) :: nodes(nlocal, nelements), point(nslave), kind(11), master_point(nmaster)
-  integer(c_int), intent(in) :: element(2, nquad), found(nquad), with_friction, state(nslave)
+  integer(c_int), intent(in) :: element(2, nquad), fixed(2, nquad), found(nquad), with_friction, state(nslave)
   real(c_double), intent(in) :: basis(nlocal, nquad), area(nquad), knots(nknots), master_weight(nmaster), x(3, n)
   real(c_double), intent(in) :: xi(2, nquad), pressure(nslave), traction(2, nslave)
   real(c_double), intent(inout) :: forces(3, n)
@@ -139,6 +143,7 @@ subroutine contact_forces(nodes, basis, area, point, nlocal, nelements, nquad, n
 
   projections%xi = xi
   projections%place = element + 1
+  projections%fixed = fixed /= 0
   projections%found = found /= 0
   call integrate_forces(unpack_slave(nodes, basis, area, point), unpack_master(kind, knots, master_point, master_weight), x, &
     projections, with_friction /= 0, multipliers_t(pressure, traction, state /= 0), forces)
@@ -146,8 +151,8 @@ end subroutine contact_forces
 
 !> Add constraint rows and the geometric tangent (isomortar_contact_blocks).
 subroutine contact_blocks(nodes, basis, area, point, nlocal, nelements, nquad, nslave, kind, knots, nknots, master_point, &
-    master_weight, nmaster, x, n, xi, element, found, slips, with_friction, pressure, traction, state, field_slip, row_start, &
-    row_column, nrows, nkinds, rows, start, nstart, column, nblocks, tangent)
+    master_weight, nmaster, x, n, xi, element, fixed, found, slips, with_friction, pressure, traction, state, field_slip, &
+    row_start, row_column, nrows, nkinds, rows, start, nstart, column, nblocks, tangent)
   use iso_c_binding, only: c_double, c_int
   use isomortar_api_unpack, only: unpack_master, unpack_pattern, unpack_slave
   use isomortar_contact_blocks, only: integrate_blocks, multipliers_t
@@ -155,7 +160,7 @@ subroutine contact_blocks(nodes, basis, area, point, nlocal, nelements, nquad, n
   implicit none
   integer(c_int), intent(in) :: nlocal, nelements, nquad, nslave, nknots, nmaster, n, nrows, nkinds, nstart, nblocks
   integer(c_int), intent(in) :: nodes(nlocal, nelements), point(nslave), kind(11), master_point(nmaster)
-  integer(c_int), intent(in) :: element(2, nquad), found(nquad), slips(nquad), with_friction, state(nslave)
+  integer(c_int), intent(in) :: element(2, nquad), fixed(2, nquad), found(nquad), slips(nquad), with_friction, state(nslave)
   integer(c_int), intent(in) :: row_start(nslave + 1), row_column(nrows), start(nstart), column(nblocks)
   real(c_double), intent(in) :: basis(nlocal, nquad), area(nquad), knots(nknots), master_weight(nmaster), x(3, n)
   real(c_double), intent(in) :: xi(2, nquad), pressure(nslave), traction(2, nslave), field_slip(2, nquad)
@@ -164,6 +169,7 @@ subroutine contact_blocks(nodes, basis, area, point, nlocal, nelements, nquad, n
 
   projections%xi = xi
   projections%place = element + 1
+  projections%fixed = fixed /= 0
   projections%found = found /= 0
   projections%slips = slips /= 0
   call integrate_blocks(unpack_slave(nodes, basis, area, point), unpack_master(kind, knots, master_point, master_weight), x, &

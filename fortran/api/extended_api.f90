@@ -29,10 +29,11 @@ subroutine solid_difference(layout, knots, nknots, point, weight, npoints, gauss
 end subroutine solid_difference
 
 !> Directional derivatives of all that a contact pair's tangent is made of (isomortar_api_difference), by central differences along
-!> `along` of the positions and `pressure_along`, `traction_along` of the law's multipliers. `xi`, `element`, `found`, `state` are
-!> those of the double-precision kernel; `switched` counts points and control points for which they are not the same on both sides.
+!> `along` of the positions and `pressure_along`, `traction_along` of the law's multipliers. `xi`, `element`, `fixed`, `found` and
+!> `state` are those of the double-precision kernel; `switched` counts points and control points for which they are not the same on
+!> both sides.
 subroutine contact_difference(nodes, basis, area, point, nlocal, nelements, nquad, nslave, kind, knots, nknots, master_point, &
-    master_weight, nmaster, x, along, step, n, xi, element, found, origin, had, summed, penalties, friction, pressure_k, &
+    master_weight, nmaster, x, along, step, n, xi, element, fixed, found, origin, had, summed, penalties, friction, pressure_k, &
     traction_k, pressure_along, traction_along, pressure, traction, state, gap, coordinates, slip, metric, pressure_change, &
     traction_change, normal_forces, tangential_forces, forces, switched, status, place)
   use iso_c_binding, only: c_double, c_int
@@ -44,36 +45,37 @@ subroutine contact_difference(nodes, basis, area, point, nlocal, nelements, nqua
   implicit none
   integer(c_int), intent(in) :: nlocal, nelements, nquad, nslave, nknots, nmaster, n
   integer(c_int), intent(in) :: nodes(nlocal, nelements), point(nslave), kind(11), master_point(nmaster)
-  integer(c_int), intent(in) :: element(2, nquad), found(nquad), had(nquad), summed, state(nslave)
+  integer(c_int), intent(in) :: element(2, nquad), fixed(2, nquad), found(nquad), had(nquad), summed, state(nslave)
   real(c_double), intent(in) :: basis(nlocal, nquad), area(nquad), knots(nknots), master_weight(nmaster), x(3, n), along(3, n), step
   real(c_double), intent(in) :: xi(2, nquad), origin(2, nquad), penalties(2), friction, pressure_k(nslave), traction_k(2, nslave)
   real(c_double), intent(in) :: pressure_along(nslave), traction_along(2, nslave), pressure(nslave), traction(2, nslave)
   real(c_double), intent(out) :: gap(nslave), coordinates(2, nslave), slip(2, nslave), metric(3, nslave), pressure_change(nslave)
   real(c_double), intent(out) :: traction_change(2, nslave), normal_forces(3, n), tangential_forces(3, n), forces(3, n)
   integer(c_int), intent(out) :: switched, status, place
-  type(fixed_t) :: fixed
+  type(fixed_t) :: kept
   type(law_t) :: law
   type(quantities_t) :: sides(2)
   real(wp) :: h, shift
   integer :: side
 
-  fixed%slave = unpack_slave(nodes, basis, area, point)
-  fixed%master = unpack_master(kind, knots, master_point, master_weight)
-  fixed%start = real(xi, wp)
-  fixed%origin = real(origin, wp)
-  fixed%had = had /= 0
-  fixed%frozen = multipliers_t(real(pressure, wp), real(traction, wp), state /= 0)
-  fixed%summed = summed /= 0
+  kept%slave = unpack_slave(nodes, basis, area, point)
+  kept%master = unpack_master(kind, knots, master_point, master_weight)
+  kept%start = real(xi, wp)
+  kept%origin = real(origin, wp)
+  kept%had = had /= 0
+  kept%frozen = multipliers_t(real(pressure, wp), real(traction, wp), state /= 0)
+  kept%summed = summed /= 0
   h = real(step, wp)
   switched = 0
   do side = 1, 2
     shift = (2 * side - 3) * h
     law = law_t(real(penalties(1), wp), real(penalties(2), wp), real(friction, wp), real(pressure_k, wp) + shift * pressure_along, &
       real(traction_k, wp) + shift * traction_along)
-    call evaluate_contact(fixed, real(x, wp) + shift * along, law, sides(side), status, place)
+    call evaluate_contact(kept, real(x, wp) + shift * along, law, sides(side), status, place)
     if (status /= 0) return
     switched = switched + count(sides(side)%response%state /= state) + count(sides(side)%projections%found .neqv. (found /= 0)) &
-      + count(any(sides(side)%projections%place /= element + 1, dim=1) .and. found /= 0)
+      + count(any(sides(side)%projections%place /= element + 1 .or. (sides(side)%projections%fixed .neqv. fixed /= 0), dim=1) &
+      .and. found /= 0)
   end do
   gap = real(difference(sides(2)%control%gap, sides(1)%control%gap, h), c_double)
   coordinates = real(difference(sides(2)%coordinates, sides(1)%coordinates, h), c_double)

@@ -15,10 +15,10 @@ module isomortar_contact_blocks
 
   public :: integrate_blocks, integrate_forces
 
-  !> Kinds of constraint rows: <R^I dg>, <R^I dxi^a>, <R^I dxi^a> over points with a history, <R^I R^I da_ab>,
+  !> Kinds of constraint rows: <R^I dg>, <R^I slip^a> that tractions work on, <R^I dxi^a> over points with a history, <R^I R^I da_ab>,
   !> <R^I da_ab zeta^b>.
   integer, parameter, public :: row_gap = 1
-  integer, parameter, public :: row_projection = 2
+  integer, parameter, public :: row_work = 2
   integer, parameter, public :: row_slip = 4
   integer, parameter, public :: row_metric = 6
   integer, parameter, public :: row_slip_sum = 9
@@ -78,7 +78,7 @@ contains
         call take_sample(slave, master, positions, projections, e, q, merge(0, 2, master%is_plane), with_friction, &
           element, mark, sample)
         field = fields_at(slave, multipliers, e, q)
-        row = slave%area(q) * (field(1) * sample%variations%gap + matmul(sample%variations%projection, field(2:3)))
+        row = slave%area(q) * (field(1) * sample%variations%gap + matmul(sample%variations%slip, field(2:3)))
         do a = 1, size(sample%local)
           associate (force => forces(:, element%points(sample%local(a))))
             force = force + matmul(reshape(row(1:3 * size(sample%coefficients, 2)), [3, size(sample%coefficients, 2)]), &
@@ -230,7 +230,7 @@ contains
     forms(:, row_gap) = sample%variations%gap
     if (size(rows, 2) > 1) then
       metric = metric_variation(sample%point, sample%variations)
-      forms(:, row_projection:row_projection + 1) = sample%variations%projection
+      forms(:, row_work:row_work + 1) = sample%variations%slip
       forms(:, row_slip:row_slip + 1) = merge(1.0_wp, 0.0_wp, slips) * sample%variations%projection
       forms(:, row_metric:row_metric + 2) = metric
     end if

@@ -3,6 +3,7 @@ module isomortar_contact_control
   use isomortar_base_kinds, only: wp
   use isomortar_base_status, only: status_lost_projection, status_ok
   use isomortar_contact_kinematics, only: contact_point, contact_point_t, plane_point
+  use isomortar_contact_kink, only: hold_on_lines
   use isomortar_contact_master, only: master_t
   use isomortar_contact_projection, only: nearest_start, project, projection_inside, projection_lost, projection_outside, &
     sample_surface
@@ -19,6 +20,8 @@ module isomortar_contact_control
     real(wp), allocatable :: xi(:, :)
     !> Master element by direction; 0 where there is none (plane, no projection).
     integer, allocatable :: place(:, :)
+    !> Coordinates that stay while the point moves (on C0 lines; of points that are found), shape (2, points).
+    logical, allocatable :: fixed(:, :)
     logical, allocatable :: found(:)
     !> Slip increment since the last converged load step; zero without a history.
     real(wp), allocatable :: slip(:, :)
@@ -63,10 +66,11 @@ contains
       x = slave_position(slave, positions, q)
       if (master%is_plane) then
         projections%xi(:, q) = matmul(x - master%origin, master%tangent)
+        projections%fixed(:, q) = .false.
         outcome = projection_inside
       else
         if (.not. started(q)) projections%xi(:, q) = nearest_start(coordinates, samples, x)
-        call project(master%surface, positions, x, projections%xi(:, q), projections%place(:, q), outcome)
+        call project(master%surface, positions, x, projections%xi(:, q), projections%place(:, q), projections%fixed(:, q), outcome)
       end if
       if (outcome == projection_lost) then
         status = status_lost_projection
@@ -118,6 +122,8 @@ contains
       call surface_nodes(surface, projections%place(:, q), nodes)
       call surface_basis(surface, projections%place(:, q), nodes, projections%xi(:, q), order, functions(:, 1:columns))
       point = contact_point(x, matmul(positions(:, surface%point(nodes)), functions(:, 1:columns)), surface%outward)
+      if (.not. any(projections%fixed(:, q))) return
+      call hold_on_lines(surface, positions, x, projections%xi(:, q), projections%place(:, q), projections%fixed(:, q), point)
     end associate
   end subroutine point_on_master
 

@@ -31,6 +31,10 @@ module isomortar_contact_kinematics
     real(wp) :: curvature(2, 2)
     !> Inverse of H_ab = a_ab + g b_ab.
     real(wp) :: inverse_h(2, 2)
+    !> Coordinates that stay while the point moves: the foot is on a C0 line.
+    logical :: fixed(2) = .false.
+    !> The normal turns about such a line with the slave point.
+    logical :: turns = .false.
     !> Surface derivatives by column (derivative_column), up to the order that is needed.
     real(wp) :: surface(3, 10)
   end type contact_point_t
@@ -38,7 +42,10 @@ module isomortar_contact_kinematics
   !> First variations as rows over the components of the short vectors.
   type, public :: variations_t
     real(wp) :: gap(all_components)
+    !> dxi.
     real(wp) :: projection(all_components, 2)
+    !> The slip that tractions do their work on: dxi; on a C0 line, where that is zero, as if the element's face went on.
+    real(wp) :: slip(all_components, 2)
   end type variations_t
 
 contains
@@ -95,7 +102,7 @@ contains
     range = [3 * k - 2, 3 * k - 1, 3 * k]
   end function components
 
-  !> Rows of dg and dxi.
+  !> Rows of dg, dxi and the slip.
   pure function first_variations(point, vectors) result(self)
     type(contact_point_t), intent(in) :: point
     integer, intent(in) :: vectors
@@ -110,13 +117,19 @@ contains
       right(1:3, a) = point%tangent(:, a)
       if (vectors > 1) right(components(1 + a), a) = -point%gap * point%normal
     end do
-    self%projection = matmul(right, point%inverse_h)
+    self%slip = matmul(right, point%inverse_h)
+    self%projection = self%slip
+    if (.not. any(point%fixed)) return
+    do a = 1, 2
+      self%projection(:, a) = 0.0_wp
+      if (.not. point%fixed(a)) self%projection(:, a) = right(:, a) / (point%metric(a, a) + point%gap * point%curvature(a, a))
+    end do
   end function first_variations
 
   !> Rows of dS,a with the projection moving along: dS,a + S,ab dxi^b, three rows.
-  pure function moving_tangent(point, variations, a) result(rows)
+  pure function moving_tangent(point, projection, a) result(rows)
     type(contact_point_t), intent(in) :: point
-    type(variations_t), intent(in) :: variations
+    real(wp), intent(in) :: projection(:, :)
     integer, intent(in) :: a
     real(wp) :: rows(all_components, 3)
     integer :: b, i
@@ -125,7 +138,7 @@ contains
     do i = 1, 3
       rows(3 * a + i, i) = 1.0_wp
       do b = 1, 2
-        rows(:, i) = rows(:, i) + point%surface(i, second_column(a, b)) * variations%projection(:, b)
+        rows(:, i) = rows(:, i) + point%surface(i, second_column(a, b)) * projection(:, b)
       end do
     end do
   end function moving_tangent
@@ -137,8 +150,8 @@ contains
     real(wp) :: rows(all_components, 3)
     real(wp) :: first(all_components, 3), second(all_components, 3)
 
-    first = moving_tangent(point, variations, 1)
-    second = moving_tangent(point, variations, 2)
+    first = moving_tangent(point, variations%projection, 1)
+    second = moving_tangent(point, variations%projection, 2)
     rows(:, 1) = 2.0_wp * matmul(first, point%tangent(:, 1))
     rows(:, 2) = matmul(first, point%tangent(:, 2)) + matmul(second, point%tangent(:, 1))
     rows(:, 3) = 2.0_wp * matmul(second, point%tangent(:, 2))
@@ -166,38 +179,73 @@ contains
         call add_product(scale * point%gap * point%inverse_metric(a, b), turned(:, a), turned(:, b), form(1:9, 1:9))
       end do
     end do
+    if (point%turns) call add_turn(point, scale / point%gap, form(1:3, 1:3))
   end subroutine gap_variation
 
-  !> Add traction_a Ddxi^a, scaled, to a bilinear form over the components.
+  !> Add scale * (dx - dS)^T P (Dx - DS), P the projector across the normal and the free tangents: on a C0 line.
+  pure subroutine add_turn(point, scale, form)
+    type(contact_point_t), intent(in) :: point
+    real(wp), intent(in) :: scale
+    real(wp), intent(inout) :: form(:, :)
+    integer :: a, i
+
+    do i = 1, 3
+      form(i, i) = form(i, i) + scale
+    end do
+    call add_product(-scale, point%normal, point%normal, form)
+    do a = 1, 2
+      call add_product(-scale * point%inverse_metric(a, a), point%tangent(:, a), point%tangent(:, a), form)
+    end do
+  end subroutine add_turn
+
+  !> Rows of dx - dS - a_b dxi^b, three rows.
+  pure function moving_distance(point, projection) result(rows)
+    type(contact_point_t), intent(in) :: point
+    real(wp), intent(in) :: projection(:, :)
+    real(wp) :: rows(all_components, 3)
+    integer :: i
+
+    rows = 0.0_wp
+    do i = 1, 3
+      rows(i, i) = 1.0_wp
+      rows(:, i) = rows(:, i) - matmul(projection, point%tangent(i, :))
+    end do
+  end function moving_distance
+
+  !> Add traction_a D(slip)^a, scaled, to a bilinear form over the components: formulation.md has it for slips dxi; here the
+  !> forces' slips are d, the projection's own changes D.
   pure subroutine traction_variation(point, variations, traction, form)
     type(contact_point_t), intent(in) :: point
     type(variations_t), intent(in) :: variations
     real(wp), intent(in) :: traction(2)
     real(wp), intent(inout) :: form(:, :)
-    real(wp) :: apart(all_components, 3), along(all_components, 3), d(3), row(all_components), theta(2), factor
+    real(wp), dimension(all_components, 3) :: apart, apart_moving, along, along_moving
+    real(wp) :: d(3), row(all_components), theta(2), factor
     integer :: b, c, i, m
 
     theta = matmul(traction, point%inverse_h)
     d = -point%gap * point%normal
-    apart = 0.0_wp
-    do i = 1, 3
-      apart(i, i) = 1.0_wp
-      apart(:, i) = apart(:, i) - matmul(variations%projection, point%tangent(i, :))
-    end do
+    apart = moving_distance(point, variations%slip)
+    apart_moving = apart
+    if (any(point%fixed)) apart_moving = moving_distance(point, variations%projection)
     do b = 1, 2
-      along = moving_tangent(point, variations, b)
+      along = moving_tangent(point, variations%slip, b)
+      along_moving = along
+      if (any(point%fixed)) along_moving = moving_tangent(point, variations%projection, b)
       do i = 1, 3
-        call add_symmetric(theta(b), apart(:, i), along(:, i), form)
+        call add_product(theta(b), apart(:, i), along_moving(:, i), form)
+        call add_product(theta(b), along(:, i), apart_moving(:, i), form)
       end do
       do c = 1, 2
         row = 0.0_wp
         row(components(1 + c)) = -point%tangent(:, b)
         row(components(second_vector(b, c))) = d
-        call add_symmetric(theta(b), row, variations%projection(:, c), form)
+        call add_product(theta(b), row, variations%projection(:, c), form)
+        call add_product(theta(b), variations%slip(:, c), row, form)
         do m = 1, 2
           factor = dot_product(d, point%surface(:, third_column(b, c, m))) &
             - dot_product(point%tangent(:, b), point%surface(:, second_column(c, m)))
-          call add_product(theta(b) * factor, variations%projection(:, c), variations%projection(:, m), form)
+          call add_product(theta(b) * factor, variations%slip(:, c), variations%projection(:, m), form)
         end do
       end do
     end do

@@ -3,9 +3,10 @@
 !> Each element is searched by Newton's method within its bounds; where the distance still falls across a boundary the
 !> search goes on in the neighbour. The distance falls strictly from element to element, so the search ends: inside an
 !> element, on a line that neither side improves (a C0 line), or on the edge of the patch (no projection).
+!> Coordinates across such a line are fixed, and the foot belongs to the lower element, wherever the search came from.
 module isomortar_contact_projection
   use isomortar_base_kinds, only: wp
-  use isomortar_nurbs_direction, only: element_at
+  use isomortar_nurbs_direction, only: element_at, is_kink
   use isomortar_nurbs_surface, only: derivative_columns, surface_basis, surface_element_count, surface_element_of, &
     surface_nodes, surface_t
   implicit none
@@ -22,6 +23,8 @@ module isomortar_contact_projection
 
   !> Relative size of the last Newton step: its error is the square of that.
   real(wp), parameter :: last_step = epsilon(1.0_wp)**0.6_wp
+  !> Squared distances whose ratio is less are the same but for round-off.
+  real(wp), parameter :: same_distance = 1.0_wp + 8.0_wp * epsilon(1.0_wp)
 
   !> Where a search stands.
   type :: search_t
@@ -36,12 +39,14 @@ module isomortar_contact_projection
 
 contains
 
-  !> Project x from coordinates `xi`, which are replaced by the result; `place` is its element by direction.
-  pure subroutine project(surface, positions, x, xi, place, outcome)
+  !> Project x from coordinates `xi`, which are replaced by the result; `place` is its element by direction, and `fixed` says
+  !> which coordinates stay on a C0 line while x moves.
+  pure subroutine project(surface, positions, x, xi, place, fixed, outcome)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :), x(3)
     real(wp), intent(inout) :: xi(2)
     integer, intent(out) :: place(2), outcome
+    logical, intent(out) :: fixed(2)
     type(search_t) :: here
     logical :: moved
     integer :: visit
@@ -49,6 +54,7 @@ contains
     here%place = [element_at(surface%direction(1), xi(1)), element_at(surface%direction(2), xi(2))]
     here%xi = xi
     call search_element(surface, positions, x, here)
+    fixed = .false.
     outcome = projection_lost
     do visit = 1, 8 + 2 * surface_element_count(surface)
       if (.not. here%settled) return
@@ -61,10 +67,33 @@ contains
         return
       end if
       call cross_boundary(surface, positions, x, here, moved)
-      if (.not. moved) return ! settled on a line that neither side improves
+      if (.not. moved) then
+        if (any(on_edge(surface, here))) outcome = projection_outside
+        call settle_on_lines(surface, here%pressing, xi, place, fixed)
+        return
+      end if
       outcome = projection_lost
     end do
   end subroutine project
+
+  !> Fix the coordinates that press against a C0 line which neither side improves.
+  pure subroutine settle_on_lines(surface, pressing, xi, place, fixed)
+    type(surface_t), intent(in) :: surface
+    integer, intent(in) :: pressing(2)
+    real(wp), intent(inout) :: xi(2)
+    integer, intent(inout) :: place(2)
+    logical, intent(inout) :: fixed(2)
+    integer :: a, line
+
+    do a = 1, 2
+      line = place(a) + min(pressing(a), 0)
+      if (pressing(a) == 0 .or. line == 0 .or. line == surface%direction(a)%elements) cycle
+      fixed(a) = is_kink(surface%direction(a), line)
+      if (.not. fixed(a)) cycle
+      place(a) = line
+      xi(a) = surface%direction(a)%boundary(line)
+    end do
+  end subroutine settle_on_lines
 
   !> Where the search presses against the edge of the patch.
   pure function on_edge(surface, here) result(edge)
@@ -75,7 +104,8 @@ contains
     edge = (here%pressing < 0 .and. here%place == 1) .or. (here%pressing > 0 .and. here%place == surface%direction%elements)
   end function on_edge
 
-  !> Go on in the neighbour across the boundary (the diagonal one first) in which the distance falls further.
+  !> Go on in the neighbour across the boundary (the diagonal one first) in which the distance falls further, or, where round-off
+  !> hides that, in which the search ends inside.
   pure subroutine cross_boundary(surface, positions, x, here, moved)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :), x(3)
@@ -93,6 +123,7 @@ contains
       there%place = here%place + step
       call search_element(surface, positions, x, there)
       moved = there%distance < here%distance ! where the search there does not settle, the point is lost and not on a line
+      if (there%settled .and. all(there%pressing == 0)) moved = there%distance <= here%distance * same_distance
       if (moved) exit
     end do
     if (moved) here = there

@@ -4,7 +4,7 @@ module isomortar_nurbs_direction
   implicit none
   private
 
-  public :: new_direction, basis, element_at
+  public :: new_direction, basis, element_at, is_kink
 
   integer, parameter, public :: family_nurbs = 1
   integer, parameter, public :: family_lagrange = 2
@@ -71,6 +71,14 @@ contains
     end do
     element = low
   end function element_at
+
+  !> Whether functions are only continuous from element to element + 1.
+  pure logical function is_kink(self, element)
+    type(direction_t), intent(in) :: self
+    integer, intent(in) :: element
+
+    is_kink = self%first(element + 1) - self%first(element) >= self%order
+  end function is_kink
 
   !> The order + 1 functions of an element at u, and their derivatives: values(j, k) is the k-th derivative.
   pure subroutine basis(self, element, u, derivatives, values)

@@ -68,10 +68,14 @@ class Pattern:
 
 @dataclass(frozen=True)
 class Projections:
-    """Slave quadrature points on the master: coordinates, element, whether found, slip increment and whether it counts."""
+    """Slave quadrature points on the master: coordinates, element, whether found, slip increment and whether it counts.
+
+    `fixed`: 1 for coordinates that stay while the point moves, on lines across which the master is only continuous, shape (points, 2).
+    """
 
     xi: FloatArray
     element: IntArray
+    fixed: IntArray
     found: IntArray
     slip: FloatArray
     slips: IntArray
@@ -226,20 +230,20 @@ def project_points(slave: SlaveArrays, master: MasterArrays, positions: FloatArr
     _checked("origin", origin, np.float64, q, 2)
     _checked("had", had, np.int32, q)
     xi = origin.copy()
-    element, found, slip, slips, status, place = _kernel.project_points(
+    element, fixed, found, slip, slips, status, place = _kernel.project_points(
         slave.nodes.T, slave.basis.T, slave.area, slave.point, master.kind, master.knots, master.point, master.weight, positions.T,
         had, origin.T, had, xi.T,
     )  # fmt: skip
     if status:
         _raise(status, place - 1)
-    return Projections(xi, element.T, found, slip.T, slips)
+    return Projections(xi, element.T, fixed.T, found, slip.T, slips)
 
 
 def control_quantities(slave: SlaveArrays, master: MasterArrays, positions: FloatArray, projections: Projections) -> Control:
     """Integrate the control quantities of every slave control point."""
     weight, square, gap, slip, metric, point_metric = _kernel.control_quantities(
         slave.nodes.T, slave.basis.T, slave.area, slave.point, master.kind, master.knots, master.point, master.weight, positions.T,
-        projections.xi.T, projections.element.T, projections.found, projections.slip.T,
+        projections.xi.T, projections.element.T, projections.fixed.T, projections.found, projections.slip.T,
     )  # fmt: skip
     return Control(weight, square, gap, slip.T, metric.T, point_metric.T)
 
@@ -270,8 +274,8 @@ def contact_forces(
     _checked("forces", forces, np.float64, len(positions), 3)
     _kernel.contact_forces(
         slave.nodes.T, slave.basis.T, slave.area, slave.point, master.kind, master.knots, master.point, master.weight, positions.T,
-        projections.xi.T, projections.element.T, projections.found, int(friction > 0), response.pressure, response.traction.T,
-        response.state, forces.T,
+        projections.xi.T, projections.element.T, projections.fixed.T, projections.found, int(friction > 0), response.pressure,
+        response.traction.T, response.state, forces.T,
     )  # fmt: skip
 
 
@@ -292,8 +296,8 @@ def contact_blocks(
     _checked("tangent", tangent, np.float64, len(pattern.column), 3, 3)
     _kernel.contact_blocks(
         slave.nodes.T, slave.basis.T, slave.area, slave.point, master.kind, master.knots, master.point, master.weight, positions.T,
-        projections.xi.T, projections.element.T, projections.found, projections.slips, int(friction > 0), response.pressure,
-        response.traction.T, response.state, response.field_slip.T, row_pattern.start, row_pattern.column, rows.T,
+        projections.xi.T, projections.element.T, projections.fixed.T, projections.found, projections.slips, int(friction > 0),
+        response.pressure, response.traction.T, response.state, response.field_slip.T, row_pattern.start, row_pattern.column, rows.T,
         pattern.start, pattern.column, tangent.T,
     )  # fmt: skip
 

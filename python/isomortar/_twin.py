@@ -92,7 +92,8 @@ def contact_difference(
     -------
     ContactChange
     int
-        Points and control points whose branch (projection, master element, state) is not the same on both sides of the difference.
+        Points and control points whose branch (projection, master element, fixed coordinates, state) is not the same on both sides of
+        the difference.
 
     Raises
     ------
@@ -101,8 +102,9 @@ def contact_difference(
     """
     *changes, switched, status, place = _extended.contact_difference(
         slave.nodes.T, slave.basis.T, slave.area, slave.point, master.kind, master.knots, master.point, master.weight, positions.T,
-        along.T, STEP, projections.xi.T, projections.element.T, projections.found, origin.T, had, int(law.summed), law.penalties,
-        law.friction, law.pressure, law.traction.T, pressure_along, traction_along.T, held.pressure, held.traction.T, held.state,
+        along.T, STEP, projections.xi.T, projections.element.T, projections.fixed.T, projections.found, origin.T, had, int(law.summed),
+        law.penalties, law.friction, law.pressure, law.traction.T, pressure_along, traction_along.T, held.pressure, held.traction.T,
+        held.state,
     )  # fmt: skip
     _check(status, place)
     return ContactChange(*[np.ascontiguousarray(change.T) for change in changes]), switched

@@ -210,7 +210,7 @@ def test_tangent_is_checked_part_by_part(invoke: Invoke) -> None:
 def test_unknown_scene_and_results(invoke: Invoke) -> None:
     code, _, err = invoke("run", "presss")
     assert code == 2
-    assert "press, iron" in err
+    assert "press, block, iron" in err
     code, _, err = invoke("plot", "nothing.h5")
     assert code == 1
     assert "nothing.h5 does not exist" in err

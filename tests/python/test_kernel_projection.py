@@ -9,7 +9,7 @@ import pytest
 
 from isomortar import _bindings
 from isomortar._bindings import MasterArrays, Projections, SlaveArrays
-from isomortar.geometry.primitives import ring
+from isomortar.geometry.primitives import box, ring
 from isomortar.geometry.refinement import mesh
 from isomortar.model.numbering import patch_arrays
 
@@ -65,3 +65,31 @@ def test_the_same_point_from_any_start_on_the_side_of_the_point(order: int, elem
         found, gap = project(order, elements, points, starts)
         np.testing.assert_allclose(gap, RADIUS - distance, rtol=0, atol=1e-14)
         np.testing.assert_allclose(found.xi, exact.xi, rtol=0, atol=1e-13)
+
+
+def project_on_roof(points: np.ndarray, starts: np.ndarray | None = None) -> Projections:
+    """Projections onto four linear elements, ridged along x = 0: -1 < x < 1, 0 < y < 1, z = -0.4 |x|."""
+    patch = mesh(box((-1.0, 0.0, -1.0), (1.0, 1.0, 0.0)), ("L", "L", "L"), (1, 1, 1), (2, 2, 1))
+    control_points = patch.control_points.copy()
+    top = control_points[:, 2] > -0.5
+    control_points[top, 2] = -0.4 * np.abs(control_points[top, 0])
+    arrays = patch_arrays(patch, np.arange(len(patch.weights), dtype=np.int32))
+    master = MasterArrays(np.concatenate([[3, 1], arrays.layout]).astype(np.int32), arrays.knots, arrays.point, arrays.weight)
+    number = np.arange(len(points), dtype=np.int32)
+    slave = SlaveArrays(number[:, None].copy(), np.ones((len(points), 1)), np.ones(len(points)), number + np.int32(len(control_points)))
+    positions = np.ascontiguousarray(np.concatenate([control_points, points]))
+    had = np.full(len(points), int(starts is not None), dtype=np.int32)
+    return _bindings.project_points(slave, master, positions, np.zeros((len(points), 2)) if starts is None else starts, had)
+
+
+@pytest.mark.parametrize("start", [None, 0.1, 0.5, 0.9])
+def test_foot_on_a_ridge_is_fixed_across_it_and_in_the_lower_element(start: float | None) -> None:
+    points = np.array([[0.02, 0.3, 0.1], [-0.02, 0.3, 0.1], [0.5, 0.3, 0.1]])
+    feet = project_on_roof(points, None if start is None else np.full((3, 2), start))
+    assert feet.fixed.tolist() == [[1, 0], [1, 0], [0, 0]]
+    assert feet.element.tolist() == [[0, 0], [0, 0], [1, 0]]
+    np.testing.assert_allclose(feet.xi[:2], [[0.5, 0.3], [0.5, 0.3]], rtol=0, atol=1e-15)
+
+
+def test_beyond_the_edge_above_a_ridge_there_is_no_projection() -> None:
+    assert project_on_roof(np.array([[0.0, 1.1, 0.1], [0.01, -0.1, 0.1]])).found.tolist() == [0, 0]

@@ -32,6 +32,7 @@ class Sweep:
 
 #: The bundled scenes as the paper varies them, with the references of its figures.
 _BUNDLED = {
+    "block": Sweep("master", "uv", "interface"),
     "press": Sweep("block", "uv", "floor"),
     "twist": Sweep("master", "uv", "interface", "N4"),
     "twist-sharp": Sweep("master", "uv", "interface", "N4"),

@@ -37,7 +37,7 @@ PARTS = {
     "tangential, metric": "<R R a_ab> of active control points",
     "stick": "control tractions of sticking control points",
     "slip": "control tractions of slipping control points",
-    "multipliers": "control pressures and tractions by the multipliers before",
+    "multipliers": "control pressures and tractions, and forces, by the multipliers before",
     "whole": "all forces, multipliers condensed",
     "symmetry": "solid and normal parts, relative to their norm",
 }
@@ -222,26 +222,35 @@ class PairTangent(PairState):
         """Samples of all parts, and the contact forces' change by the condensed tangent and by the twin."""
         twin = self.twin(along)
         state = self.response.state
-        rows = row_product(self.blocks.patterns.rows, self.blocks.rows, along)[_active(state)]
+        rows = row_product(self.blocks.patterns.rows, self.blocks.rows, along)
+        off_lines = _active(state) & ~self._near_lines()  # on C0 lines tractions work on more than the projection's change
         changes = row_product(self.blocks.patterns.wide, self.blocks.changes, along)
         samples = [
             ("normal, geometric", block_product(self.pattern, self.normal, along), twin.normal_forces),
-            ("normal, gap", rows[:, 0], twin.gap[_active(state)]),
+            ("normal, gap", rows[_active(state), 0], twin.gap[_active(state)]),
             ("normal, pressure", changes[:, 0], twin.pressure),
         ]
         if self.pair.friction > 0:
             samples += [
                 ("tangential, geometric", block_product(self.pattern, self.tangential, along), twin.tangential_forces),
-                ("tangential, projection", rows[:, 1:3], twin.coordinates[_active(state)]),
-                ("tangential, slip increment", rows[:, 3:5], twin.slip[_active(state)]),
-                ("tangential, metric", rows[:, 5:8], twin.metric[_active(state)]),
+                ("tangential, projection", rows[off_lines, 1:3], twin.coordinates[off_lines]),
+                ("tangential, slip increment", rows[_active(state), 3:5], twin.slip[_active(state)]),
+                ("tangential, metric", rows[_active(state), 5:8], twin.metric[_active(state)]),
                 ("stick", changes[_sticks(state), 1:], twin.traction[_sticks(state)]),
                 ("slip", changes[_slips(state), 1:], twin.traction[_slips(state)]),
             ]
         return samples, block_product(self.pattern, self.condensed, along), twin.forces
 
-    def along_multipliers(self, random: np.random.Generator, length: float) -> Sample:
-        """Change of the law's pressures and tractions with the multipliers that it starts from."""
+    def _near_lines(self) -> np.ndarray:
+        """Whether a foot within the reach of a slave control point is on a C0 line, shape (slave control points,)."""
+        slave = self.pair.pair.slave
+        elements = np.any(self.kinematics.projections.fixed.reshape(len(slave.nodes), -1), axis=1)
+        near = np.zeros(len(slave.point), dtype=bool)
+        near[slave.nodes[elements]] = True
+        return near
+
+    def along_multipliers(self, random: np.random.Generator, length: float) -> list[Sample]:
+        """Change of the law's pressures and tractions, and of the forces, with the multipliers that it starts from."""
         law, response = self.visit.law, self.response
         pressure = length * random.standard_normal(law.pressure.shape) * np.abs(response.pressure).max()
         traction = length * random.standard_normal(law.traction.shape) * np.abs(response.traction).max()
@@ -249,7 +258,11 @@ class PairTangent(PairState):
         slope = response.traction_slope
         tractions = slope[:, 0] * pressure[:, None] + np.einsum("iba,ib->ia", slope[:, 1:3], traction)
         ours = np.column_stack([np.where(_active(response.state), pressure, 0.0), tractions])
-        return "multipliers", ours, np.column_stack([twin.pressure, twin.traction])
+        changed = np.column_stack([twin.pressure, twin.traction])
+        owner = np.repeat(np.arange(len(ours)), np.diff(self.blocks.patterns.rows.start))
+        forces = np.zeros_like(self.positions)
+        np.add.at(forces, self.blocks.patterns.rows.column, np.einsum("bk,bkc->bc", ours[owner], self.blocks.rows[:, :3]))
+        return [("multipliers", ours, changed), ("multipliers", forces, twin.forces)]
 
     def single_points(self, count: int, random: np.random.Generator, length: float) -> Iterator[FloatArray]:
         """Changes of single control points that bear on the contact, `count` on each side."""
@@ -292,7 +305,7 @@ def _sample(
         for along in (*fields[1:], *tangent.single_points(directions, random, length)):
             yield from tangent.along_positions(along)[0]
         if tangent.pair.friction > 0:
-            yield tangent.along_multipliers(random, length)
+            yield from tangent.along_multipliers(random, length)
     yield _symmetry(equilibrium, solid, linear)
 
 

@@ -52,8 +52,9 @@ class Iterate:
 
     @property
     def elements(self) -> IntArray:
-        """Master elements that the slave quadrature points project on, shape (points of all pairs, 2)."""
-        return np.concatenate([k.projections.element for k in self.balance.kinematics] or [np.zeros((0, 2), dtype=np.int32)])
+        """Master elements and fixed coordinates of the slave quadrature points, shape (points of all pairs, 4)."""
+        places = [np.hstack([k.projections.element, k.projections.fixed]) for k in self.balance.kinematics]
+        return np.concatenate(places or [np.zeros((0, 4), dtype=np.int32)])
 
 
 class Monolithic(Method):

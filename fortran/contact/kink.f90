@@ -1,0 +1,84 @@
+!> Feet of slave points on C0 lines of the master (formulation.md Section 3): there the normal is the direction of the distance.
+!>
+!> Gap and normal are continuous from a face onto the line, along it, and onto the next face.
+module isomortar_contact_kink
+  use isomortar_base_algebra, only: cross, inverse2
+  use isomortar_base_kinds, only: wp
+  use isomortar_contact_kinematics, only: contact_point_t
+  use isomortar_nurbs_surface, only: derivative_columns, surface_basis, surface_nodes, surface_t
+  implicit none
+  private
+
+  public :: hold_on_lines
+
+  !> A distance below this share of the element's size has no direction.
+  real(wp), parameter :: least_distance = 1.0e-10_wp
+
+contains
+
+  !> Kinematics at a foot with fixed coordinates, from those of the lower element's face at the same place.
+  pure subroutine hold_on_lines(surface, positions, x, xi, place, fixed, point)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in) :: positions(:, :), x(3), xi(2)
+    integer, intent(in) :: place(2)
+    logical, intent(in) :: fixed(2)
+    type(contact_point_t), intent(inout) :: point
+    real(wp) :: d(3), facing(3)
+    integer :: a, b
+
+    d = x - point%surface(:, 1)
+    facing = mean_normal(surface, positions, xi, place, fixed)
+    point%fixed = fixed
+    point%turns = norm2(d) > least_distance * element_size(surface, place, point)
+    point%normal = facing
+    if (point%turns) point%normal = sign(1.0_wp, dot_product(d, facing)) * d / norm2(d)
+    point%gap = -dot_product(d, point%normal)
+    point%inverse_metric = 0.0_wp
+    do a = 1, 2
+      do b = 1, 2
+        point%curvature(a, b) = dot_product(point%normal, point%surface(:, 2 + a + b))
+      end do
+      if (.not. fixed(a)) point%inverse_metric(a, a) = 1.0_wp / point%metric(a, a)
+    end do
+    point%inverse_h = inverse2(point%metric + point%gap * point%curvature)
+  end subroutine hold_on_lines
+
+  !> Mean of the outward unit normals of the faces that meet on the lines: `place` is the lowest of their elements.
+  pure function mean_normal(surface, positions, xi, place, fixed) result(normal)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in) :: positions(:, :), xi(2)
+    integer, intent(in) :: place(2)
+    logical, intent(in) :: fixed(2)
+    real(wp) :: normal(3)
+    integer :: nodes(product(surface%direction%order + 1)), i, j
+    real(wp) :: values(size(nodes), derivative_columns(1)), tangents(3, 2), face(3)
+
+    normal = 0.0_wp
+    do j = 0, merge(1, 0, fixed(2))
+      do i = 0, merge(1, 0, fixed(1))
+        call surface_nodes(surface, place + [i, j], nodes)
+        call surface_basis(surface, place + [i, j], nodes, xi, 1, values)
+        tangents = matmul(positions(:, surface%point(nodes)), values(:, 2:3))
+        face = surface%outward * cross(tangents(:, 1), tangents(:, 2))
+        normal = normal + face / norm2(face)
+      end do
+    end do
+    normal = normal / norm2(normal)
+  end function mean_normal
+
+  !> The longer of an element's lengths along its coordinates.
+  pure real(wp) function element_size(surface, place, point)
+    type(surface_t), intent(in) :: surface
+    integer, intent(in) :: place(2)
+    type(contact_point_t), intent(in) :: point
+    integer :: a
+
+    element_size = 0.0_wp
+    do a = 1, 2
+      associate (boundary => surface%direction(a)%boundary)
+        element_size = max(element_size, (boundary(place(a)) - boundary(place(a) - 1)) * norm2(point%tangent(:, a)))
+      end associate
+    end do
+  end function element_size
+
+end module isomortar_contact_kink

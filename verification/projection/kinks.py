@@ -1,0 +1,66 @@
+"""Feet on C0 lines: around a ridge and through a valley of the master gap and normal are continuous, from any start."""
+
+from __future__ import annotations
+
+import numpy as np
+from shapes import roof
+
+from isomortar import _bindings
+from isomortar._bindings import MasterArrays, Projections, Response, SlaveArrays
+from isomortar.geometry.patch import FloatArray
+from isomortar.harness import Bound, case
+from isomortar.model.numbering import patch_arrays
+
+#: Distance of the path from the line, and number of its points.
+RADIUS, POINTS = 0.1, 401
+
+
+def feet(bend: str, order: int, targets: FloatArray, starts: FloatArray | None) -> tuple[Projections, FloatArray, FloatArray]:
+    """Projections of points onto the upper face of a roof, their gaps, and the normals there (the forces of unit pressures)."""
+    patch = roof(order, 0.4 if bend == "valley" else -0.4)
+    own, n = len(patch.weights), len(targets)
+    arrays = patch_arrays(patch, np.arange(own, dtype=np.int32))
+    master = MasterArrays(np.concatenate([[3, 1], arrays.layout]).astype(np.int32), arrays.knots, arrays.point, arrays.weight)
+    numbers = np.arange(n, dtype=np.int32)
+    slave = SlaveArrays(numbers[:, None].copy(), np.ones((n, 1)), np.ones(n), numbers + np.int32(own))
+    positions = np.ascontiguousarray(np.concatenate([patch.control_points, targets]))
+    had = np.full(n, starts is not None, dtype=np.int32)
+    projections = _bindings.project_points(slave, master, positions, np.zeros((n, 2)) if starts is None else starts, had)
+    gap = _bindings.control_quantities(slave, master, positions, projections).gap
+    ones, zeros, forces = np.ones(n), np.zeros((n, 2)), np.zeros_like(positions)
+    response = Response(ones, zeros, np.ones(n, np.int32), ones, np.zeros((n, 6, 2)), zeros)
+    _bindings.contact_forces(slave, master, positions, projections, 0.0, response, forces)
+    return projections, gap, -forces[own:]
+
+
+@case(
+    claim="Around a ridge outside the master, and through a valley inside it, gap and normal are continuous, from any start.",
+    tier="gate",
+    grid={"bend": ["ridge", "valley"], "order": [1, 2]},
+    bounds={
+        "gap": Bound(at_most=1e-14, reason="round-off: on the line the gap is the distance from it"),
+        "gap's slope": Bound(at_most=1.0 + 1e-9, reason="theory: a distance changes by no more than the way gone"),
+        "normal's turn": Bound(at_most=1.0 + 1e-6, reason="theory: about the line the normal turns with the point, on faces by less"),
+        "foot": Bound(at_most=1e-12, reason="round-off: the distance has one least value"),
+        "on the line": Bound(at_least=0.2, at_most=0.8, reason="definition: the path meets both faces and the line"),
+        "element": Bound(at_most=0.0, reason="definition: a foot on a line belongs to the lower element, from any start"),
+    },
+)
+def around(bend: str, order: int) -> dict[str, float]:
+    """Along an arc about the line: errors of the gap on it, slopes of gap and normal, and what other starts change."""
+    angle = np.linspace(-0.7, 0.7, POINTS)
+    side = 1.0 if bend == "ridge" else -1.0
+    targets = np.column_stack([RADIUS * np.sin(angle), 0.21 + 0.05 * angle, side * RADIUS * np.cos(angle)])
+    projections, gap, normal = feet(bend, order, targets, None)
+    on = projections.fixed[:, 0] == 1
+    way = np.linalg.norm(np.diff(targets[:, [0, 2]], axis=0), axis=1)
+    random = np.random.default_rng(order)
+    others = [feet(bend, order, targets, random.uniform(0.0, 1.0, (POINTS, 2)))[0] for _ in range(10)]
+    return {
+        "gap": float(np.abs(gap[on] + side * RADIUS).max()),
+        "gap's slope": float(np.max(np.abs(np.diff(gap)) / np.linalg.norm(np.diff(targets, axis=0), axis=1))),
+        "normal's turn": float(np.max(np.linalg.norm(np.diff(normal, axis=0), axis=1) * RADIUS / way)),
+        "foot": float(np.max([np.abs(other.xi - projections.xi).max() for other in others])),
+        "on the line": float(on.mean()),
+        "element": float(np.max([np.abs(other.element - projections.element)[on].max() for other in others])),
+    }
