@@ -19,7 +19,7 @@ PRESS = Study(
         Run("L1", "L1", (4, 4, 1), "Lagrange elements of order 1"),
         Run("L2", "L2", (2, 2, 1), "Lagrange elements of order 2"),
         Run("N2-fine", "N2", (6, 6, 1), "reference for NURBS"),
-        Run("L1-fine", "L1", (8, 8, 1), "reference for Lagrange elements"),
+        Run("L1-fine", "L1", (8, 8, 1), "reference for Lagrange elements", (), ("monolithic",)),
         own_method("tolerance", "N2", (3, 3, 1), "N2 with tolerance 0.001", TOLERANCE),
     ),
     changes=("stages.press.steps=2",),
@@ -36,7 +36,7 @@ TWIST = Study(
     instances=(7,),
     runs=(
         *nurbs((3, 3, 1), 2, 3),
-        Run("fine-N3", "N3", (4, 4, 1), "reference: four elements laterally"),
+        Run("fine-N3", "N3", (4, 4, 1), "reference: four elements laterally", (), ("monolithic",)),
         Run("L1", "L1", (3, 3, 1), "master of Lagrange elements of order 1", (), ("monolithic",)),
         Run("L2", "L2", (2, 2, 1), "master of Lagrange elements of order 2", (), ("monolithic",)),
     ),
@@ -59,7 +59,7 @@ IRON = Study(
     instances=(8,),
     runs=(
         *nurbs((5, 2, 2), 2, 3),
-        Run("A", "N2", (8, 2, 2), "N2 with 8 elements along the drag"),
+        Run("A", "N2", (8, 2, 2), "N2 with 8 elements along the drag", (), ("monolithic",)),
         Run("C", "N2", (5, 2, 2), "N2 pressed down by 0.4", ("stages.press.motions.top.translate=[0,0,-0.4]",), ("monolithic",)),
         Run("L1", "L1", (5, 2, 2), "master of Lagrange elements of order 1", (), ("monolithic",)),
         Run("L2", "L2", (3, 2, 2), "master of Lagrange elements of order 2", (), ("monolithic",)),
