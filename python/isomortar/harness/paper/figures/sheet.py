@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from isomortar.geometry.patch import FloatArray
 
 #: Inches. `_BAR`: what the colour bar takes with its numbers and its label.
-_WIDTH, _WIDEST, _TITLE, _SPACE, _KEY, _BAR = 10.6, 6.2, 0.3, 0.12, 0.34, 1.15
+_WIDTH, _WIDEST, _TITLE, _SPACE, _KEY, _BAR = 10.6, 6.2, 0.3, 0.12, 0.34, 1.25
 _BAR_WIDTH, _LONGEST_BAR, _SHORTEST_BAR = 0.17, 4.2, 2.6
 
 #: Over the range of a colour bar: round-off does not go beyond it.
@@ -62,7 +62,7 @@ class Sheet:
         length = min(_LONGEST_BAR, 0.9 * (self._size[1] - self._below))
         middle = self._below + 0.5 * (self._size[1] - self._below)
         self.figure.colorbar(
-            colours, cax=self._axes(self._size[0] - _BAR, middle - 0.5 * length, _BAR_WIDTH, length), extend=extend, label=label
+            colours, cax=self._axes(self._size[0] - _BAR + _SPACE, middle - 0.5 * length, _BAR_WIDTH, length), extend=extend, label=label
         )
 
     def _panel(self, column: int, row: int, wide: float, high: float, title: str) -> Axes:
