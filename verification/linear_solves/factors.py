@@ -1,0 +1,107 @@
+"""The sparse LU: what it solves, what it refuses, and what it lets go."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+
+import numpy as np
+from scipy import sparse
+
+from isomortar._compiled import kernel
+from isomortar._sparse import SparseLU
+from isomortar.errors import KernelError, SingularSystemError
+from isomortar.geometry.patch import FloatArray
+from isomortar.harness import Bound, case
+
+#: Unknowns of a chain, and constraints that border it.
+LENGTH, BORDER = 400, 12
+#: The unknown that nothing holds.
+FREE = 137
+#: Status of a handle that was released (fortran/base/status.f90).
+STALE = 6
+
+_SAID = "definition: the one that was made so"
+
+
+def bordered() -> sparse.csr_array:
+    """An unsymmetric chain with springs over six decades, bordered by constraint rows: zeros on the diagonal, as with multipliers."""
+    random = np.random.default_rng(5)
+    springs = 10.0 ** random.uniform(-3, 3, LENGTH - 1)
+    diagonal = np.append(springs, 0.0) + np.insert(springs, 0, 0.0) + 1.0
+    chain = sparse.diags_array([diagonal, -springs, -0.8 * springs], offsets=[0, 1, -1])
+    rows = sparse.random_array((BORDER, LENGTH), density=0.05, rng=random)
+    return sparse.csr_array(sparse.block_array([[chain, 1.3 * rows.T], [rows, None]]))
+
+
+def factors(matrix: sparse.csr_array, ordering: str) -> tuple[SparseLU, FloatArray]:
+    """The analysis of a matrix's pattern, and its entries in the pattern's order."""
+    matrix.sort_indices()
+    pattern = (np.asarray(index, dtype=np.int64) for index in (matrix.indptr, matrix.indices))
+    return SparseLU(*pattern, ordering=ordering), matrix.data  # type: ignore[arg-type]
+
+
+@case(
+    claim="The sparse LU solves bordered, badly scaled systems to round-off, with refinement and without.",
+    tier="gate",
+    grid={"ordering": ("metis", "amd"), "refine": (0, 2)},
+    bounds={"residual": Bound(at_most=1e-14, reason="round-off: backward error of an LU with threshold pivoting, some tens of units")},
+)
+def solution(ordering: str, refine: int) -> dict[str, float]:
+    """Largest error of a row over the sizes of its terms, of three right-hand sides."""
+    matrix = bordered()
+    lu, values = factors(matrix, ordering)
+    b = np.random.default_rng(6).standard_normal((LENGTH + BORDER, 3))
+    x = lu.factorise(values).solve(b, refine=refine)
+    return {"residual": float((np.abs(matrix @ x - b) / (abs(matrix) @ np.abs(x) + np.abs(b))).max())}
+
+
+@case(
+    claim="A singular system is refused, and the unknown that nothing holds is named.",
+    tier="gate",
+    grid={"ordering": ("metis", "amd")},
+    bounds={"place": Bound(at_least=FREE, at_most=FREE, reason=_SAID)},
+)
+def singular(ordering: str) -> dict[str, float]:
+    """The unknown that is named where one has nothing in its row and column but a zero on the diagonal."""
+    matrix = bordered().tocoo()
+    kept = (matrix.row != FREE) & (matrix.col != FREE)
+    row, column = np.append(matrix.row[kept], FREE), np.append(matrix.col[kept], FREE)
+    lu, values = factors(sparse.csr_array((np.append(matrix.data[kept], 0.0), (row, column))), ordering)
+    try:
+        lu.factorise(values)
+    except SingularSystemError as error:
+        return {"place": float(error.place)}
+    return {}
+
+
+@case(
+    claim="What was released, refused or never made solves nothing.",
+    tier="gate",
+    bounds={
+        "released twice": Bound(at_least=STALE, at_most=STALE, reason=_SAID),
+        "released": Bound(at_least=STALE, at_most=STALE, reason=_SAID),
+        "never made": Bound(at_least=STALE, at_most=STALE, reason=_SAID),
+        "refused": Bound(at_least=1.0, at_most=1.0, reason="definition: the factors of the matrix before must not be taken for those"),
+    },
+)
+def handles() -> dict[str, float]:
+    """Status codes of the kernel, the slot of the released handle taken by others meanwhile; whether a refused matrix solves nothing."""
+    matrix = bordered()
+    pattern = [np.asarray(index, dtype=np.int64) for index in (matrix.indptr, matrix.indices)]
+    handle = kernel.sparse_analyse(*pattern, True)[0]
+    kernel.sparse_release(handle)
+    lu, values = factors(matrix, "metis")
+    lu.factorise(values)
+    b = np.ones((len(pattern[0]) - 1, 1), order="F")
+    found = {
+        "released twice": float(kernel.sparse_release(handle)),
+        "released": float(kernel.sparse_solve(handle, *pattern, values, b, 0)[-1]),
+        "never made": float(kernel.sparse_release(-1)),
+    }
+    with suppress(SingularSystemError):
+        lu.factorise(np.zeros_like(values))
+    try:
+        lu.solve(b[:, 0])
+    except KernelError:
+        return found | {"refused": 1.0}
+    return found | {"refused": 0.0}

@@ -1,0 +1,43 @@
+"""The first projection of a slave point has no start: a coarse search must find the nearest of several feet."""
+
+from __future__ import annotations
+
+import numpy as np
+from projection.closest_points import Surface
+
+from isomortar.geometry.patch import FloatArray, Patch
+from isomortar.geometry.primitives import box
+from isomortar.geometry.refinement import mesh
+from isomortar.harness import Bound, case
+
+#: Height and number of the waves along each side.
+HEIGHT, WAVES = 0.12, 2
+
+
+def waves(elements: int) -> Surface:
+    """The upper face of a cubic block, raised to hills and hollows."""
+    patch = mesh(box((0.0, 0.0, -0.5), (1.0, 1.0, 0.0)), ("N",) * 3, (3, 3, 1), (elements, elements, 1))
+    points: FloatArray = patch.control_points.copy()
+    top = patch.face_points("w1")
+    x, y = points[top, 0], points[top, 1]
+    points[top, 2] = HEIGHT * np.sin(2 * np.pi * WAVES * x) * np.sin(2 * np.pi * WAVES * y)
+    return Surface(Patch(patch.directions, points, patch.weights), "w1")
+
+
+@case(
+    claim="Without a start, the nearest of all feet on a wavy surface is found.",
+    tier="gate",
+    bounds={
+        "farther": Bound(at_most=1e-9, reason="definition: no point of a fine grid is nearer; Newton's method ends below this"),
+        "found": Bound(at_least=1.0, at_most=1.0, reason="definition: targets above the middle have their feet inside"),
+    },
+)
+def nearest_of_many() -> dict[str, float]:
+    """By how much the foot is farther than the nearest of a grid, at most, and the share of targets that are found."""
+    face = waves(8)
+    random = np.random.default_rng(11)
+    targets = np.column_stack([random.uniform(0.3, 0.7, (60, 2)), random.uniform(-0.05, 0.25, 60)])
+    projections = face.project(targets)
+    distance = np.linalg.norm(face.points(projections.xi) - targets, axis=1)
+    nearest = face.sampled_distance(targets, 161)
+    return {"farther": float(np.maximum(0.0, (distance - nearest).max())), "found": float(projections.found.mean())}
