@@ -15,8 +15,8 @@ module isomortar_contact_blocks
 
   public :: integrate_blocks, integrate_forces
 
-  !> Kinds of constraint rows: <R^I dg>, <R^I slip^a> that tractions work on, <R^I dxi^a> over points with a history, <R^I R^I da_ab>,
-  !> <R^I da_ab zeta^b>.
+  !> Kinds of constraint rows: <R^I dg>, <R^I slip^a> that tractions work on, <R^I dxi^a> over points with a history,
+  !> <R^I R^I da_ab>, <R^I da_ab zeta^b>.
   integer, parameter, public :: row_gap = 1
   integer, parameter, public :: row_work = 2
   integer, parameter, public :: row_slip = 4
