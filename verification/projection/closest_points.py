@@ -39,12 +39,18 @@ class Surface:
 
     def points(self, xi: FloatArray) -> FloatArray:
         """Points at coordinates, shape (n, 3)."""
-        return np.einsum("qa,qai->qi", *self._functions(xi))
+        functions, control_points = self._functions(xi)
+        return np.einsum("qa,qai->qi", functions[:, 0], control_points)
+
+    def tangents(self, xi: FloatArray, direction: int) -> FloatArray:
+        """Derivatives of the points by coordinate 0 or 1, shape (n, 3)."""
+        functions, control_points = self._functions(xi)
+        return np.einsum("qa,qai->qi", functions[:, 1 + direction], control_points)
 
     def _functions(self, xi: FloatArray) -> tuple[FloatArray, FloatArray]:
         arrays = patch_arrays(self.patch, np.arange(len(self.patch.weights), dtype=np.int32))
         nodes, values = _bindings.surface_functions(arrays, "uvw".index(self.face[0]) + 1, int(self.face[1]), np.ascontiguousarray(xi))
-        return values[:, 0], self.patch.control_points[self.patch.face_points(self.face)][nodes]
+        return values, self.patch.control_points[self.patch.face_points(self.face)][nodes]
 
     def project(self, targets: FloatArray, starts: FloatArray | None = None) -> Projections:
         """The kernel's projections: each target is a slave of one quadrature point; without starts from its coarse search."""
@@ -132,6 +138,34 @@ def edges_and_corners(shape: str, kind: str) -> dict[str, float]:
         "outside": float(np.max([np.max(low - xi), np.max(xi - high), 0.0])),
         "corner": float(np.linalg.norm(face.points(above.xi) - places, axis=1).max()),
     }
+
+
+@case(
+    claim="Beyond the edge of a patch, the search ends at the nearest place of the edge.",
+    tier="gate",
+    grid={"shape": list(PATCHES), "kind": ["N2", "N3", "N4"]},
+    bounds={
+        "found": Bound(at_most=0.0, reason="definition: a target beyond the edge takes no part in contact"),
+        "foot": Bound(at_most=2e-14, reason="round-off: of the surface's points; Newton's method along the edge ends below it"),
+    },
+)
+def along_edges(shape: str, kind: str) -> dict[str, float]:
+    """Targets that are found, and largest distance from the foot: targets lie off the four edges, along and above the surface."""
+    face = surface(shape, kind[0], int(kind[1:]))
+    low, high = face.ends
+    found, worst = 0, 0.0
+    for a, end in ((0, low), (0, high), (1, low), (1, high)):
+        xi = low + np.random.default_rng(a).uniform(0.1, 0.9, (20, 2)) * (high - low)
+        start = xi.copy()
+        xi[:, a] = end[a]
+        feet = face.points(xi)
+        outwards = np.cross(face.tangents(xi, 1 - a), normal(shape, feet))
+        outwards *= np.sign(np.einsum("qi,qi->q", outwards, feet - face.points(start)))[:, None]
+        targets = feet + 0.2 * outwards / np.linalg.norm(outwards, axis=1)[:, None] + 0.1 * normal(shape, feet)
+        projections = face.project(targets, start)
+        found += int(projections.found.sum())
+        worst = float(np.maximum(worst, np.linalg.norm(face.points(projections.xi) - feet, axis=1).max()))
+    return {"found": float(found), "foot": worst}
 
 
 @case(
