@@ -12,6 +12,7 @@ from isomortar.harness.paper.catalogue import chosen
 from isomortar.harness.paper.findings import STATEMENTS
 from isomortar.harness.paper.outcome import Outcome, Outcomes
 from isomortar.harness.paper.page import Report
+from isomortar.harness.paper.settled import Settled, settled_curves
 from isomortar.harness.paper.statements import Evidence, NotMeasuredError, Statement, ratio, successive
 
 STUDIES = {study.scene: study for study in chosen((), False)}
@@ -63,6 +64,26 @@ def test_deviation_of_known_curves_and_over_other_load_steps():
         line, numbers={**line.numbers, **{k: line.numbers[k][:11] + line.numbers[k][11::2] for k in ("share", "stage", "force")}}
     )
     assert measures.deviation(coarse, line) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_distance_from_an_over_refined_curve():
+    settled = Settled(np.concatenate([np.full(PRESSED, 7.0), np.full(DRAGGED, 2.0)]), 0.001)
+    assert settled.distance(outcome("N2", np.full(DRAGGED, 2.1))) == pytest.approx(0.05, rel=1e-12)
+    assert settled.distance(outcome("N2", np.full(DRAGGED, 2.1), failure="it folded")) is None
+    assert Settled(np.ones(5), 0.001).distance(outcome("N2", np.full(DRAGGED, 2.1))) is None
+
+
+def test_stored_curves_are_of_the_studies_and_settled_far_below_what_is_compared():
+    found = settled_curves(Path(__file__).parents[2] / "reference_data")
+    assert set(found) == set(STUDIES)
+    for scene, settled in found.items():
+        study = STUDIES[scene]
+        assert len(settled.curve) == study.load(study.runs[0], "monolithic").problem().total_steps
+        assert 0 < settled.uncertainty <= 0.02
+
+
+def test_without_references_there_are_no_settled_curves(tmp_path):
+    assert settled_curves(tmp_path) == {}
 
 
 def test_ripple_is_what_a_cubic_does_not_follow():
@@ -149,7 +170,7 @@ def test_quotients():
 
 
 def report(*outcomes: Outcome, judgements=()) -> Report:
-    return Report(Outcomes((IRON,), outcomes), tuple(judgements), 0, False, None)
+    return Report(Outcomes((IRON,), outcomes), tuple(judgements), 0, False, None, {})
 
 
 def test_complete_is_a_report_without_a_failed_nurbs_run_or_a_gap_in_the_table():

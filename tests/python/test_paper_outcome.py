@@ -38,7 +38,7 @@ def test_a_failed_run_keeps_what_had_converged_and_is_shown(tmp_path):
     assert 1 <= found.steps < found.total_steps == 8
     assert len(found.curve) == found.steps
     assert found.numbers["solves"] > 0
-    report = Report(Outcomes((plan[0],), (found,)), (), 0, True, datetime.now().astimezone())
+    report = Report(Outcomes((plan[0],), (found,)), (), 0, True, datetime.now().astimezone(), {})
     assert as_data(report)["runs"][0]["load_steps"] == [found.steps, 8]
     text = page(report, {"press": []})
     assert "does not converge" in text

@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from isomortar.cli.verification import CORES, FAILED, measure_all
+from isomortar.cli.verification import CORES, FAILED, REFERENCES, ReferencesOption, measure_all
 
 
 def paper(
@@ -20,6 +20,7 @@ def paper(
         Path | None,
         typer.Option(file_okay=False, help="Folder of page, figures and runs.", show_default="results/paper or results/paper-quick"),
     ] = None,
+    references: ReferencesOption = REFERENCES,
 ) -> None:
     """The paper's numerical section: every study, every figure, and every statement with the number that measures it.
 
@@ -40,17 +41,19 @@ def paper(
     from isomortar.harness.paper.catalogue import chosen
     from isomortar.harness.paper.findings import STATEMENTS
     from isomortar.harness.paper.outcome import Outcomes, cells_of, outcome
+    from isomortar.harness.paper.settled import settled_curves
     from isomortar.harness.runner import local_processes
 
     studies = chosen([name.strip() for name in study.split(",") if name.strip()], quick)
     folder = out or Path("results") / ("paper-quick" if quick else "paper")
+    settled = {} if quick else settled_curves(references)
     started, clock = datetime.now().astimezone(), time.perf_counter()
     planned = cells_of(studies, folder)
     results = measure_all([cell for *_, cell in planned], folder, lambda *_: None, local_processes(jobs), False)
     outcomes = Outcomes(studies, tuple(outcome(*plan, result.measurement) for plan, result in zip(planned, results, strict=True)))
     statements = [statement for statement in STATEMENTS if statement.concerns(studies)]
     judgements = tuple(statement.judge(outcomes) for statement in statements)
-    report = page.Report(outcomes, judgements, len(STATEMENTS) - len(statements), quick, started)
+    report = page.Report(outcomes, judgements, len(STATEMENTS) - len(statements), quick, started, settled)
     path = page.write(folder, report)
     print(f"{len(results)} runs, {len(report.failed)} failed, {time.perf_counter() - clock:.0f} s")
     print(", ".join(f"{count} {state}" for state, count in report.counts.items()))

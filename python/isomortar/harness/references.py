@@ -69,7 +69,11 @@ class Reference:
 
     def get(self, cell: Cell, number: str) -> Expected | None:
         """The dataset of a cell and number; None: there is none."""
-        return self._expected.get(dataset_name(cell, number))
+        return self.dataset(dataset_name(cell, number))
+
+    def dataset(self, name: str) -> Expected | None:
+        """The dataset of a name; None: there is none."""
+        return self._expected.get(name)
 
 
 def dataset_name(cell: Cell, number: str) -> str:

@@ -14,6 +14,7 @@ from typing import Any
 from isomortar.harness.elevation.page import percent
 from isomortar.harness.paper.outcome import Outcome, Outcomes
 from isomortar.harness.paper.plates import NAMES, Plate, gap_between_methods, plates
+from isomortar.harness.paper.settled import Settled
 from isomortar.harness.paper.statements import STATES, Judgement
 from isomortar.harness.paper.studies import METHODS, Study
 from isomortar.harness.report import plain, template
@@ -22,13 +23,17 @@ from isomortar.harness.store import compiler, kernel_hash, program_hash, write_w
 
 @dataclass(frozen=True)
 class Report:
-    """All that the page shows; `left_out` counts the statements that these studies have not the runs for."""
+    """All that the page shows.
+
+    `left_out` counts the statements that these studies have not the runs for; `settled` has over-refined curves by scene.
+    """
 
     outcomes: Outcomes
     judgements: tuple[Judgement, ...]
     left_out: int
     quick: bool
     started: datetime
+    settled: Mapping[str, Settled]
 
     @property
     def counts(self) -> dict[str, int]:
@@ -40,6 +45,11 @@ class Report:
     def failed(self) -> list[Outcome]:
         """Runs that did not come to their end."""
         return [o for o in self.outcomes.entries if o.failure]
+
+    def off(self, outcome: Outcome) -> float | None:
+        """Distance of a run from the study's over-refined curve; None where there is none."""
+        settled = self.settled.get(outcome.study.scene)
+        return settled.distance(outcome) if settled else None
 
     @property
     def complete(self) -> bool:
@@ -69,7 +79,7 @@ def as_data(report: Report) -> dict[str, Any]:
         "compiler": compiler(),
         "verdicts": report.counts,
         "statements": [_statement(judgement) for judgement in report.judgements],
-        "runs": [_run(report.outcomes, outcome) for outcome in report.outcomes.entries],
+        "runs": [_run(report, outcome) for outcome in report.outcomes.entries],
     }
 
 
@@ -84,8 +94,7 @@ def page(report: Report, drawn: Mapping[str, Sequence[Mapping[str, str]]]) -> st
     return template("paper/page.html").render(
         report=report,
         studies=[
-            (study, _rows(report.outcomes, study), drawn[study.scene], _seconds(report.outcomes.of(study)))
-            for study in report.outcomes.studies
+            (study, _rows(report, study), drawn[study.scene], _seconds(report.outcomes.of(study))) for study in report.outcomes.studies
         ],
         names=NAMES,
         total=_seconds(report.outcomes.entries),
@@ -104,10 +113,11 @@ def shown(value: float, in_percent: bool) -> str:
     return f"{100 * value:.3g} %" if in_percent and abs(value) >= 1e-6 else f"{value:.3g}"
 
 
-def _rows(outcomes: Outcomes, study: Study) -> list[list[tuple[Outcome, float | None]]]:
-    """Runs of a study with their outcomes by method, and how far these are from each other."""
+def _rows(report: Report, study: Study) -> list[list[tuple[Outcome, float | None, float | None]]]:
+    """Runs of a study with their outcomes by method, how far these are from each other, and from the over-refined curve."""
+    outcomes = report.outcomes
     found = [[outcomes.named(study, run.name, method) for method in METHODS] for run in study.runs]
-    return [[(o, gap_between_methods(outcomes, o)) for o in row if o] for row in found]
+    return [[(o, gap_between_methods(outcomes, o), report.off(o)) for o in row if o] for row in found]
 
 
 def _seconds(outcomes: Sequence[Outcome]) -> float:
@@ -124,7 +134,7 @@ def _statement(judgement: Judgement) -> dict[str, Any]:
     }
 
 
-def _run(outcomes: Outcomes, outcome: Outcome) -> dict[str, Any]:
+def _run(report: Report, outcome: Outcome) -> dict[str, Any]:
     return {
         "key": outcome.key,
         "method": outcome.method,
@@ -132,6 +142,7 @@ def _run(outcomes: Outcomes, outcome: Outcome) -> dict[str, Any]:
         "command": outcome.study.command(outcome.run, outcome.method),
         "failure": outcome.failure or None,
         "load_steps": [outcome.steps, outcome.total_steps],
-        "from_the_papers_method": gap_between_methods(outcomes, outcome),
+        "from_the_papers_method": gap_between_methods(report.outcomes, outcome),
+        "from_the_over_refined_curve": report.off(outcome),
         **outcome.numbers,
     }

@@ -1,0 +1,55 @@
+"""The curves that the paper's studies look at, on meshes far finer than the studies' own, and how far off they still are."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from isomortar.geometry.patch import FloatArray
+from isomortar.harness import Bound, Curve, Matches, case
+from isomortar.harness.discretisations import Elements
+from isomortar.harness.measures import expected_order, reference_uncertainty
+from isomortar.harness.paper.plans import FULL
+from isomortar.harness.paper.studies import Run, Study
+from isomortar.solve.simulation import Simulation
+
+#: By study: its highest order that is smooth enough, and three meshes, each twice as fine as the one before in the studied directions.
+MESHES: dict[str, tuple[int, tuple[Elements, Elements, Elements]]] = {
+    "press": (3, ((6, 6, 6), (12, 12, 6), (24, 24, 6))),
+    "twist": (4, ((4, 4, 3), (8, 8, 3), (16, 16, 3))),
+    "iron": (5, ((10, 5, 3), (20, 5, 3), (40, 5, 3))),
+    "tire": (3, ((32, 4, 4), (64, 4, 4), (128, 4, 4))),
+}
+STUDIES = {study.scene: study for study in FULL}
+
+
+def computed(study: Study, order: int, elements: Elements) -> FloatArray:
+    """The study's quantity after every load step, converged, shape (load steps,)."""
+    problem = study.load(Run("over-refined", f"N{order}", elements, ""), "monolithic").problem()
+    moving = next(number for number, s in enumerate(problem.supports) if any(any(m.translate) or m.rotate for m in s.motions))
+    component = "xyz".index(study.quantity.component)
+    reactions = [step.reactions[moving] for step in Simulation(problem).run()]
+    return np.array([getattr(reaction, study.quantity.kind)[component] for reaction in reactions])
+
+
+@case(
+    claim="The curve that a study of the paper looks at has settled, and is what it was.",
+    tier="weekly",
+    grid={"study": tuple(MESHES)},
+    bounds={
+        "curve": Matches("paper_curves", "reference: the same run of this program; its uncertainty is that of the mesh"),
+        "uncertainty": Bound(at_most=0.02, reason="definition: a reference is to be nearer than what is compared with it, 2 % and more"),
+    },
+)
+def settled(study: str) -> dict[str, Any]:
+    """The curve on the finest of three meshes, and its distance from that of no end of elements by the two refinements."""
+    order, meshes = MESHES[study]
+    coarse, medium, fine = (computed(STUDIES[study], order, elements) for elements in meshes)
+    first, second = (float(np.abs(b - a).max() / np.abs(fine).max()) for a, b in ((coarse, medium), (medium, fine)))
+    best = expected_order("force", order, slave_refined=study in ("press", "tire"))
+    steps = np.arange(1.0, len(fine) + 1)
+    return {
+        "curve": Curve(steps, fine, "load step", STUDIES[study].quantity.label, log_y=False),
+        "uncertainty": reference_uncertainty(first, second, best),
+    }
