@@ -75,6 +75,29 @@ def singular(ordering: str) -> dict[str, float]:
 
 
 @case(
+    claim="A system that is singular but for round-off is refused too.",
+    tier="gate",
+    grid={"ordering": ("metis", "amd")},
+    bounds={
+        "refused": Bound(at_least=1.0, at_most=1.0, reason="definition: its solution has no correct digit"),
+        "place": Bound(at_least=LENGTH + BORDER, reason="definition: an unknown of the part that floats"),
+    },
+)
+def floating(ordering: str) -> dict[str, float]:
+    """Share of matrices that are refused, with a chain beside that nothing holds, its springs changed; least unknown that is named."""
+    places = []
+    for springs in np.random.default_rng(7).uniform(0.1, 1.0, (20, 5)):
+        ends = np.append(springs, 0.0) + np.insert(springs, 0, 0.0)
+        chain = sparse.diags_array([ends, -springs, -springs], offsets=[0, 1, -1])
+        lu, values = factors(sparse.csr_array(sparse.block_diag([bordered(), chain])), ordering)
+        try:
+            lu.factorise(values)
+        except SingularSystemError as error:
+            places.append(error.place)
+    return {"refused": len(places) / 20, "place": float(min(places, default=-1))}
+
+
+@case(
     claim="What was released, refused or never made solves nothing.",
     tier="gate",
     bounds={
