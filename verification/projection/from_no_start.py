@@ -1,4 +1,4 @@
-"""The first projection of a slave point has no start: a coarse search must find the nearest of several feet."""
+"""Surfaces with several feet of a point: the first projection finds the nearest, a search from a start never ends farther away."""
 
 from __future__ import annotations
 
@@ -41,3 +41,22 @@ def nearest_of_many() -> dict[str, float]:
     distance = np.linalg.norm(face.points(projections.xi) - targets, axis=1)
     nearest = face.sampled_distance(targets, 161)
     return {"farther": float(np.maximum(0.0, (distance - nearest).max())), "found": float(projections.found.mean())}
+
+
+@case(
+    claim="From any start on a wavy surface, the search ends no farther from the target than it began.",
+    tier="gate",
+    bounds={
+        "farther": Bound(at_most=1e-14, reason="round-off: of the distances; every step and every change of element makes them smaller"),
+        "nearer": Bound(at_least=0.1, reason="definition: a search that stands still is none; starts are a wave's length away"),
+    },
+)
+def never_farther() -> dict[str, float]:
+    """By how much the end is farther from the target than the start, at most, and nearer, in the mean."""
+    face = waves(8)
+    random = np.random.default_rng(12)
+    targets = np.column_stack([random.uniform(0.2, 0.8, (300, 2)), random.uniform(-0.1, 0.4, 300)])
+    starts = random.uniform(0.05, 0.95, (300, 2))
+    ends = face.project(targets, starts).xi
+    before, after = (np.linalg.norm(face.points(xi) - targets, axis=1) for xi in (starts, ends))
+    return {"farther": float(np.maximum(0.0, (after - before).max())), "nearer": float((before - after).mean())}

@@ -2,11 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from small_scenes import bowl
 
 from isomortar.harness import Bound, case
+from isomortar.solve.contact import Kinematics
 from isomortar.solve.simulation import Simulation
+
+
+def without_some(kinematics: Kinematics) -> Kinematics:
+    """Every third quadrature point taken for one that lies beyond the master."""
+    projections = kinematics.projections
+    kept = np.resize(np.array([1, 1, 0], np.int32), len(projections.found))
+    return replace(kinematics, projections=replace(projections, found=projections.found * kept))
 
 
 @case(
@@ -21,13 +31,13 @@ from isomortar.solve.simulation import Simulation
     },
 )
 def forces_are_rows(master: str, slip_sum: str, friction: float) -> dict[str, float]:
-    """Largest difference over the largest force, at the end of a run; slipping control points there."""
+    """Largest difference over the largest force, at the end of a run, some quadrature points left out; slipping control points there."""
     problem = bowl(master, friction, slip_sum=slip_sum)
     simulation = Simulation(problem)
     *_, before, last = simulation.run()
     pair = simulation.equilibrium.pairs[0]
     positions, start, end = last.state.positions, before.state.contacts[0], last.state.contacts[0]
-    kinematics = pair.kinematics(positions, start)
+    kinematics = without_some(pair.kinematics(positions, start))
     law = pair.law(pair.parameters(kinematics.control, 1.0), end.pressure, end.traction)
     response = pair.respond(kinematics, law)
     blocks = pair.blocks(positions, kinematics, law, response)
