@@ -1,4 +1,7 @@
 !> Residual and tangent of one body.
+!>
+!> Elements are computed in batches by all threads. Sums into the system are then formed by row: a thread has rows of its own and
+!> goes through the elements in their order, so that the bits of the result do not depend on the number of threads.
 module isomortar_solid_assembly
   use isomortar_base_kinds, only: wp
   use isomortar_base_status, only: status_ok
@@ -6,10 +9,26 @@ module isomortar_solid_assembly
   use isomortar_nurbs_tensor_product, only: line_pairs, line_pairs_t
   use isomortar_solid_element, only: component_pairs, element_residual, element_tangent, sample_element, samples_t
   use isomortar_sparse_blocks, only: mark_row, pattern_t
+!$ use omp_lib, only: omp_get_max_threads
   implicit none
   private
 
   public :: add_body
+
+  !> Numbers that the tangents of a batch may hold, so that they are still in the cache when they are added: 1 MiB.
+  integer, parameter :: batch_room = 2**17
+  !> Elements of the smallest batch, so that every thread has some.
+  integer, parameter :: smallest_batch = 8
+  !> Rows that stand together in a share.
+  integer, parameter :: row_group = 8
+
+  !> One element of a batch.
+  type :: element_t
+    integer, allocatable :: local(:), nodes(:)
+    real(wp), allocatable :: weight(:), forces(:, :), block(:)
+    type(samples_t) :: samples
+    integer :: status
+  end type element_t
 
 contains
 
@@ -30,83 +49,145 @@ contains
     type(pattern_t), intent(in), optional :: pattern
     real(wp), intent(inout), optional :: tangent(:, :, :)
     type(line_rule_t), allocatable :: u(:), v(:), w(:)
-    type(samples_t) :: samples
-    integer, allocatable :: local(:), nodes(:), columns(:)
     type(line_pairs_t), allocatable :: uu(:), vv(:), ww(:)
-    real(wp), allocatable :: forces(:, :), weight(:), block(:)
-    integer :: a, at(3), e, n
+    type(element_t), allocatable :: batch(:)
+    integer :: at(3), first, k, many
 
     call line_rule(patch%direction(1), points(1), 1, u)
     call line_rule(patch%direction(2), points(2), 1, v)
     call line_rule(patch%direction(3), points(3), 1, w)
-    n = product(patch%direction%order + 1)
-    allocate (local(n), nodes(n), forces(3, n), columns(size(positions, 2)))
     if (present(tangent)) then
-      allocate (block(6 * n**2))
       call line_pairs(u, uu)
       call line_pairs(v, vv)
       call line_pairs(w, ww)
     end if
+    call reserve(product(patch%direction%order + 1), element_count(patch), present(tangent), batch)
     smallest_jacobian = huge(1.0_wp)
-    status = status_ok
-    place = 0
-    do e = 1, element_count(patch)
-      at = element_of(patch, e)
-      call element_nodes(patch, at, local)
-      nodes(:) = patch%point(local)
-      weight = patch%weight(local)
-      call sample_element(u(at(1)), v(at(2)), w(at(3)), weight, positions(:, nodes), references(:, nodes), samples, status)
-      smallest_jacobian = min(smallest_jacobian, samples%smallest_jacobian)
-      if (status /= status_ok) then
-        place = e
-        return
-      end if
-      call element_residual(u(at(1)), v(at(2)), w(at(3)), weight, samples, bulk, shear, forces)
-      do a = 1, n ! a control point may stand twice in an element of a closed ring
-        residual(:, nodes(a)) = residual(:, nodes(a)) + forces(:, a)
+    do first = 0, element_count(patch) - 1, size(batch)
+      many = min(size(batch), element_count(patch) - first)
+      !$omp parallel do private(at) schedule(dynamic)
+      do k = 1, many
+        at = element_of(patch, first + k)
+        call take_element(patch, at, u(at(1)), v(at(2)), w(at(3)), bulk, shear, positions, references, batch(k))
+        if (present(tangent) .and. batch(k)%status == status_ok) then
+          call element_tangent(uu(at(1)), vv(at(2)), ww(at(3)), batch(k)%samples, bulk, shear, batch(k)%block)
+        end if
       end do
-      if (present(tangent)) then
-        call element_tangent(uu(at(1)), vv(at(2)), ww(at(3)), samples, bulk, shear, block)
-        call add_block(pattern, nodes, weight, patch%direction%order + 1, block, columns, tangent)
-      end if
+      !$omp end parallel do
+      do k = 1, many
+        smallest_jacobian = min(smallest_jacobian, batch(k)%samples%smallest_jacobian)
+        status = batch(k)%status
+        place = first + k
+        if (status /= status_ok) return
+        call add_forces(batch(k), residual)
+      end do
+      if (present(tangent)) call add_blocks(pattern, batch(:many), patch%direction%order + 1, tangent)
     end do
+    place = 0
   end subroutine add_body
 
-  !> Add the tangent of an element, as `element_tangent` gives it, to the compressed one.
-  !> `count` is the number of functions by direction.
-  pure subroutine add_block(pattern, nodes, weight, count, block, columns, tangent)
-    type(pattern_t), intent(in) :: pattern
-    integer, intent(in) :: nodes(:), count(3)
-    real(wp), intent(in) :: weight(:), block(6, count(1), count(1), count(2), count(2), count(3), count(3))
-    integer, intent(inout) :: columns(:)
-    real(wp), intent(inout) :: tangent(:, :, :)
-    integer :: a, a1, a2, a3, b, b1, b2, b3, i, k, pair
-    real(wp) :: both
+  !> Make room for a batch of elements of n functions.
+  pure subroutine reserve(n, elements, with_tangent, batch)
+    integer, intent(in) :: n, elements
+    logical, intent(in) :: with_tangent
+    type(element_t), allocatable, intent(out) :: batch(:)
+    integer :: k
 
-    do a3 = 1, count(3)
-      do a2 = 1, count(2)
-        do a1 = 1, count(1)
-          a = a1 + count(1) * (a2 - 1 + count(2) * (a3 - 1))
-          call mark_row(pattern, nodes(a), columns)
-          do b3 = 1, count(3)
-            do b2 = 1, count(2)
-              do b1 = 1, count(1)
-                b = b1 + count(1) * (b2 - 1 + count(2) * (b3 - 1))
-                both = weight(a) * weight(b)
-                associate (target => tangent(:, :, columns(nodes(b))))
-                  do pair = 1, 6
-                    i = component_pairs(1, pair)
-                    k = component_pairs(2, pair)
-                    target(k, i) = target(k, i) + both * block(pair, a1, b1, a2, b2, a3, b3)
-                    if (i /= k) target(i, k) = target(i, k) + both * block(pair, b1, a1, b2, a2, b3, a3)
-                  end do
-                end associate
+    allocate (batch(min(elements, max(smallest_batch, batch_room / (6 * n**2)))))
+    do k = 1, size(batch)
+      allocate (batch(k)%local(n), batch(k)%nodes(n), batch(k)%weight(n), batch(k)%forces(3, n))
+      if (with_tangent) allocate (batch(k)%block(6 * n**2))
+    end do
+  end subroutine reserve
+
+  !> Sample one element and compute its forces.
+  pure subroutine take_element(patch, at, u, v, w, bulk, shear, positions, references, element)
+    type(patch_t), intent(in) :: patch
+    integer, intent(in) :: at(3)
+    type(line_rule_t), intent(in) :: u, v, w
+    real(wp), intent(in) :: bulk, shear, positions(:, :), references(:, :)
+    type(element_t), intent(inout) :: element
+
+    call element_nodes(patch, at, element%local)
+    element%nodes(:) = patch%point(element%local)
+    element%weight(:) = patch%weight(element%local)
+    call sample_element(u, v, w, element%weight, positions(:, element%nodes), references(:, element%nodes), element%samples, &
+      element%status)
+    if (element%status /= status_ok) return
+    call element_residual(u, v, w, element%weight, element%samples, bulk, shear, element%forces)
+  end subroutine take_element
+
+  !> Add the forces of an element; a control point may stand twice in an element of a closed ring.
+  pure subroutine add_forces(element, residual)
+    type(element_t), intent(in) :: element
+    real(wp), intent(inout) :: residual(:, :)
+    integer :: a
+
+    do a = 1, size(element%nodes)
+      residual(:, element%nodes(a)) = residual(:, element%nodes(a)) + element%forces(:, a)
+    end do
+  end subroutine add_forces
+
+  !> Add the tangents of a batch of elements, shares of the rows at the same time. `count` is the number of functions by direction.
+  subroutine add_blocks(pattern, batch, count, tangent)
+    type(pattern_t), intent(in) :: pattern
+    type(element_t), intent(in) :: batch(:)
+    integer, intent(in) :: count(3)
+    real(wp), intent(inout) :: tangent(:, :, :)
+    integer, allocatable :: columns(:)
+    integer :: a, a1, a2, a3, k, shares, share
+
+    shares = 1
+!$  shares = omp_get_max_threads()
+    !$omp parallel do private(columns, k, a, a1, a2, a3)
+    do share = 0, shares - 1
+      allocate (columns(size(pattern%start) - 1))
+      do k = 1, size(batch)
+        associate (element => batch(k))
+          a = 0
+          do a3 = 1, count(3)
+            do a2 = 1, count(2)
+              do a1 = 1, count(1)
+                a = a + 1
+                if (modulo(element%nodes(a) / row_group, shares) /= share) cycle
+                call mark_row(pattern, element%nodes(a), columns)
+                call add_row(element, [a1, a2, a3], a, count, element%block, columns, tangent)
               end do
             end do
           end do
+        end associate
+      end do
+      deallocate (columns)
+    end do
+    !$omp end parallel do
+  end subroutine add_blocks
+
+  !> Add one row of blocks of an element's tangent, as `element_tangent` gives it: that of function a, in the directions `at`.
+  pure subroutine add_row(element, at, a, count, block, columns, tangent)
+    type(element_t), intent(in) :: element
+    integer, intent(in) :: at(3), a, count(3), columns(:)
+    real(wp), intent(in) :: block(6, count(1), count(1), count(2), count(2), count(3), count(3))
+    real(wp), intent(inout) :: tangent(:, :, :)
+    integer :: b, b1, b2, b3, i, k, pair
+    real(wp) :: both
+
+    b = 0
+    do b3 = 1, count(3)
+      do b2 = 1, count(2)
+        do b1 = 1, count(1)
+          b = b + 1
+          both = element%weight(a) * element%weight(b)
+          associate (target => tangent(:, :, columns(element%nodes(b))))
+            do pair = 1, 6
+              i = component_pairs(1, pair)
+              k = component_pairs(2, pair)
+              target(k, i) = target(k, i) + both * block(pair, at(1), b1, at(2), b2, at(3), b3)
+              if (i /= k) target(i, k) = target(i, k) + both * block(pair, b1, at(1), b2, at(2), b3, at(3))
+            end do
+          end associate
         end do
       end do
     end do
-  end subroutine add_block
+  end subroutine add_row
 
 end module isomortar_solid_assembly

@@ -29,6 +29,8 @@ from isomortar.harness.measurement import Measurement
 COMMAND = (sys.executable, "-m", "isomortar.harness.worker")
 #: Lines of the standard error that a crash is reported with.
 _LAST_WORDS = 30
+#: Cores go to cells; who wants another share of them says so.
+_ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 
 
 def task_of(cell: Cell) -> dict[str, Any]:
@@ -72,7 +74,9 @@ class Worker:
             self._errors.truncate(0)
             pipe = subprocess.PIPE
             # In a session of its own: Ctrl-C is for the run, which ends it; a process that dies by itself counts as crashed.
-            self._process = subprocess.Popen(self._command, stdin=pipe, stdout=pipe, stderr=self._errors, start_new_session=True)
+            self._process = subprocess.Popen(
+                self._command, stdin=pipe, stdout=pipe, stderr=self._errors, env=_ONE_THREAD | os.environ, start_new_session=True
+            )
         return self._process
 
     def _end(self) -> None:
