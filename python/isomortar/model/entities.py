@@ -117,12 +117,13 @@ class Stage:
     steps: int
 
 
-#: What helps the monolithic Newton loop on the way to the solution (formulation.md Section 6); none changes the solution.
-#: forgiving: slip rows with the current traction in place of the cone's. margin: what slips at the start of an increment goes on
+#: What helps Newton's method on the way to the solution (formulation.md Section 6); none changes the solution.
+#: keeping: factors of an earlier tangent serve for as long as solves with them leave a small share of the residual. The others help the
+#: monolithic loop. forgiving: slip rows with the current traction in place of the cone's. margin: what slips at the start of an increment goes on
 #: slipping. reversal: predicted slip against its traction sticks instead. halving: updates that fold an element, lose a
 #: projection, return to an earlier set of states, or double the merit are halved.
-Measure = Literal["forgiving", "margin", "reversal", "halving"]
-MEASURES: tuple[Measure, ...] = ("forgiving", "margin", "reversal", "halving")
+Measure = Literal["forgiving", "margin", "reversal", "halving", "keeping"]
+MEASURES: tuple[Measure, ...] = ("forgiving", "margin", "reversal", "halving", "keeping")
 
 
 @dataclass(frozen=True)
@@ -148,7 +149,7 @@ class SolverSettings:
     max_augmentations, max_iterations, max_cuts : int
         `max_cuts`: how often a load step may be halved.
     measures : tuple of str
-        Monolithic: what helps Newton's method on the way (MEASURES; Section 6, steps 4, 6, 7).
+        What helps Newton's method on the way (MEASURES; Section 6, steps 4, 6, 7).
     path_tolerance : float or None
         Relative error of the control multipliers that a load increment may make by itself, estimated by halving it; None: the
         increments are the stages' load steps.

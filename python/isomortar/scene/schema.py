@@ -264,7 +264,7 @@ class SolverTable(Table):
     max_cuts: Annotated[int, Field(strict=True, ge=0)] = _SOLVER.max_cuts
     """How often a load step may be halved before the run ends."""
     measures: tuple[Measure, ...] = _SOLVER.measures
-    """Monolithic: what helps Newton's method on the way; leave one out to see what it does."""
+    """What helps Newton's method on the way; leave one out to see what it does."""
     path_tolerance: Positive | None = _SOLVER.path_tolerance
     """Error of the multipliers that a load increment may make, estimated by halving it; absent: the load steps as given."""
 

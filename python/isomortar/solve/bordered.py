@@ -104,11 +104,29 @@ def solve_bordered(
         values += more_values
         size += int(np.count_nonzero(border.equation >= 0))
     right = _right_hand_side(equilibrium, balance, targets, borders, sources, values, prescribed, size)
-    solution = -equilibrium.solve(sources, values, right)
-    positions = np.zeros_like(balance.positions) if prescribed is None else prescribed.copy()
-    positions.ravel()[equilibrium.supports.free] += solution[: len(equilibrium.supports.free)]
-    changes = [_multiplier_change(border, target, solution) for border, target in zip(borders, targets, strict=True)]
-    return Correction(positions, tuple(c[:, 0] for c in changes), tuple(c[:, 1:] for c in changes)), borders
+    correction = _correction(equilibrium, equilibrium.solve(sources, values, right), targets, borders)
+    if prescribed is not None:
+        correction.positions[...] += prescribed
+    return correction, borders
+
+
+def solve_with_kept_factors(
+    equilibrium: Equilibrium, balance: Balance, targets: Sequence[Response], borders: Sequence[Border | None]
+) -> Correction:
+    """Correction by the factors of the last `solve_bordered`, which gave `borders`; the states must be the same."""
+    size = len(equilibrium.supports.free) + sum(int(np.count_nonzero(b.equation >= 0)) for b in borders if b is not None)
+    right = _right_hand_side(equilibrium, balance, targets, borders, [], [], None, size)
+    return _correction(equilibrium, equilibrium.solve_again(right), targets, borders)
+
+
+def _correction(
+    equilibrium: Equilibrium, solution: FloatArray, targets: Sequence[Response], borders: Sequence[Border | None]
+) -> Correction:
+    """Newton's correction from the solution of the linear system."""
+    positions = np.zeros_like(equilibrium.numbering.reference)
+    positions.ravel()[equilibrium.supports.free] = -solution[: len(equilibrium.supports.free)]
+    changes = [_multiplier_change(border, target, -solution) for border, target in zip(borders, targets, strict=True)]
+    return Correction(positions, tuple(c[:, 0] for c in changes), tuple(c[:, 1:] for c in changes))
 
 
 def _border(equilibrium: Equilibrium, k: int, balance: Balance, law: Law, target: Response, first: int) -> Border | None:

@@ -118,6 +118,12 @@ class Equilibrium:
         correction.ravel()[self.supports.free] -= self.solve(sources, values, right.ravel()[self.supports.free])
         return correction
 
+    def kept_correction(self, balance: Balance) -> FloatArray:
+        """Correction of all positions by the factors of the last tangent, with the prescribed positions as they are."""
+        correction = np.zeros_like(balance.positions)
+        correction.ravel()[self.supports.free] = -self.solve_again(balance.total.ravel()[self.supports.free])
+        return correction
+
     def solve(self, sources: list[Source], values: list[FloatArray], right: FloatArray) -> FloatArray:
         """Solve the system of the given sources; the first is the solid's. Free unknowns come first, multipliers after them.
 
@@ -132,6 +138,11 @@ class Equilibrium:
         except SingularSystemError as error:
             raise self._name_singularity(error.place, system.rcond) from error
         return system.solve(right)
+
+    def solve_again(self, right: FloatArray) -> FloatArray:
+        """Solve with the factors of the last `solve`."""
+        assert self._system is not None, "nothing was solved before"
+        return self._system.solve(right)
 
     def _name_singularity(self, place: int, rcond: float) -> SingularSystemError:
         """The error that says what leaves equation `place` without a pivot."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from isomortar.geometry.patch import FloatArray
 from isomortar.solve.equilibrium import Balance, Equilibrium
+from isomortar.solve.newton import KEPT_FACTORS
 from isomortar.solve.record import AugmentationRecord, Observer, State
 
 
@@ -20,8 +21,9 @@ class Increment:
 
     @property
     def iterations(self) -> int:
-        """Linear solves of the longest Newton loop."""
-        return max(len(record.iterations) - 1 for record in self.augmentations)
+        """Tangents of the longest Newton loop."""
+        loops = (record.iterations[1:] for record in self.augmentations)
+        return max(sum(KEPT_FACTORS not in iteration.notes for iteration in loop) for loop in loops)
 
 
 class Method(ABC):

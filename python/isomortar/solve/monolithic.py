@@ -10,10 +10,10 @@ import numpy as np
 from isomortar._bindings import Law, Response
 from isomortar.errors import ConvergenceError, FoldedElementError, LostProjectionError
 from isomortar.geometry.patch import FloatArray, IntArray
-from isomortar.solve.bordered import Border, Correction, solve_bordered
+from isomortar.solve.bordered import Border, Correction, solve_bordered, solve_with_kept_factors
 from isomortar.solve.equilibrium import Balance
 from isomortar.solve.method import Increment, Method
-from isomortar.solve.newton import observed_order, relative_residual, residual_round_off
+from isomortar.solve.newton import KEPT_FACTORS, KEPT_SHARE, observed_order, relative_residual, residual_round_off
 from isomortar.solve.record import AugmentationRecord, IterationRecord, State
 
 #: Share of the cone within which a trial counts as slip at the start of an increment (Section 6, step 6).
@@ -69,6 +69,8 @@ class Monolithic(Method):
         seen = [iterate.states]
         visited = [iterate.elements]
         notes: tuple[str, ...] = ()
+        borders: Sequence[Border | None] = ()
+        keep = False
         for iteration in range(self._settings.max_iterations + 1):
             record = self._record(iteration, iterate, notes)
             log.append(record)
@@ -77,12 +79,18 @@ class Monolithic(Method):
                 return self._increment(iterate, log, stiffness)
             if iteration == self._settings.max_iterations or not np.isfinite(iterate.merit):
                 break
-            if iteration == 0:
-                iterate, correction, notes = self._predict(iterate, start, stiffness, prescribed)
+            last, following = iterate, self._by_kept_factors(iterate, start, stiffness, borders) if keep else None
+            if following is not None:
+                iterate, notes = following, (KEPT_FACTORS,)
             else:
-                correction, notes = solve_bordered(self._equilibrium, iterate.balance, iterate.laws, iterate.targets, None)[0], ()
-            iterate, halved = self._update(iterate, correction, start, stiffness, seen if iteration >= CYCLE_FREE else [], iteration)
-            notes += halved
+                if iteration == 0:
+                    last, correction, borders, notes = self._predict(iterate, start, stiffness, prescribed)
+                else:
+                    correction, borders = solve_bordered(self._equilibrium, iterate.balance, iterate.laws, iterate.targets, None)
+                    notes = ()
+                iterate, halved = self._update(last, correction, start, stiffness, seen if iteration >= CYCLE_FREE else [], iteration)
+                notes += halved
+            keep = iterate.states == last.states and iterate.merit <= KEPT_SHARE * last.merit and "keeping" in self._settings.measures
             seen.append(iterate.states)
             visited.append(iterate.elements)
         raise ConvergenceError(
@@ -142,12 +150,12 @@ class Monolithic(Method):
 
     def _predict(
         self, iterate: Iterate, start: State, stiffness: float, prescribed: FloatArray
-    ) -> tuple[Iterate, Correction, tuple[str, ...]]:
+    ) -> tuple[Iterate, Correction, list[Border | None], tuple[str, ...]]:
         """The first solve, with the prescribed increment; slips that would reverse stick instead, and it is repeated."""
         equilibrium = self._equilibrium
         correction, borders = solve_bordered(equilibrium, iterate.balance, iterate.laws, iterate.targets, prescribed)
         if "reversal" not in self._settings.measures:
-            return iterate, correction, ()
+            return iterate, correction, borders, ()
         held = [law.held for law in iterate.laws]
         notes: tuple[str, ...] = ()
         for _ in range(MAX_REVERSALS):
@@ -160,7 +168,18 @@ class Monolithic(Method):
             iterate = self._evaluate(start.positions, multipliers, start, stiffness, margin, held)
             correction, borders = solve_bordered(equilibrium, iterate.balance, iterate.laws, iterate.targets, prescribed)
             notes = (f"reversal of {sum(int(h.sum()) for h in held)}",)
-        return iterate, correction, notes
+        return iterate, correction, borders, notes
+
+    def _by_kept_factors(
+        self, iterate: Iterate, start: State, stiffness: float, borders: Sequence[Border | None]
+    ) -> Iterate | None:
+        """The next iterate with the factors of an earlier tangent; None if it is no better, or changes states."""
+        correction = solve_with_kept_factors(self._equilibrium, iterate.balance, iterate.targets, borders)
+        try:
+            following = self._evaluate(*_moved(iterate, correction, 1.0), start, stiffness)
+        except (FoldedElementError, LostProjectionError):
+            return None
+        return following if following.states == iterate.states and following.merit < iterate.merit else None
 
     def _reversals(self, k: int, iterate: Iterate, correction: Correction, border: Border | None) -> np.ndarray:
         """Slipping control points whose predicted trial change opposes their traction: s^a dt_a < 0."""
@@ -180,15 +199,7 @@ class Monolithic(Method):
         for halving in range(halvings + 1):
             last = halving == halvings
             try:
-                following = self._evaluate(
-                    iterate.balance.positions + share * correction.positions,
-                    [
-                        (law.pressure + share * dp, law.traction + share * dt)
-                        for law, dp, dt in zip(iterate.laws, correction.pressures, correction.tractions, strict=True)
-                    ],
-                    start,
-                    stiffness,
-                )
+                following = self._evaluate(*_moved(iterate, correction, share), start, stiffness)
             except (FoldedElementError, LostProjectionError) as error:
                 if last or iteration == 0:
                     raise
@@ -211,6 +222,13 @@ class Monolithic(Method):
         record = AugmentationRecord(1, float(parameters[0]), float(parameters[1]), iterate.gap_pressure, iterate.gap_traction, tuple(log))
         round_off = residual_round_off(self._equilibrium, iterate.balance, stiffness)
         return Increment(iterate.balance, (record,), (observed_order(log, round_off),))
+
+
+def _moved(iterate: Iterate, correction: Correction, share: float) -> tuple[FloatArray, list[tuple[FloatArray, FloatArray]]]:
+    """Positions and multipliers of an iterate with a share of a correction."""
+    changes = zip(iterate.laws, correction.pressures, correction.tractions, strict=True)
+    multipliers = [(law.pressure + share * dp, law.traction + share * dt) for law, dp, dt in changes]
+    return iterate.balance.positions + share * correction.positions, multipliers
 
 
 def _toggling(seen: Sequence[bytes], visited: Sequence[IntArray], summed: bool) -> str:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import count
 
 import numpy as np
 
 from isomortar._bindings import Law
-from isomortar.errors import ConvergenceError
+from isomortar.errors import ConvergenceError, FoldedElementError, LostProjectionError
 from isomortar.geometry.patch import FloatArray
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.record import IterationRecord, State
@@ -15,6 +17,10 @@ from isomortar.solve.record import IterationRecord, State
 #: The residual is measured against no less than this share of the stiffness times the size of the bodies: while bodies move
 #: rigidly, internal forces are round-off and no relative test would pass (formulation.md Section 5).
 FORCE_FLOOR = 1e-4
+#: Factors are kept as long as a solve leaves at most this share of the residual.
+KEPT_SHARE = 0.2
+#: Note of an iteration that was solved with factors of an earlier tangent.
+KEPT_FACTORS = "kept factors"
 
 
 def relative_residual(equilibrium: Equilibrium, balance: Balance, stiffness: float) -> float:
@@ -33,48 +39,85 @@ def _scale(equilibrium: Equilibrium, balance: Balance, stiffness: float) -> floa
     return max(float(np.linalg.norm(balance.internal)), FORCE_FLOOR * stiffness * equilibrium.numbering.size)
 
 
-def solve_positions(
-    equilibrium: Equilibrium,
-    positions: FloatArray,
-    prescribed: FloatArray,
-    start: State,
-    laws: Sequence[Law],
-    stiffness: float,
-    report: Callable[[IterationRecord], None],
-) -> Balance:
-    """Positions in balance with the laws.
+@dataclass(frozen=True)
+class _Iterate:
+    """Forces at the positions of one iteration, and their relative residual."""
+
+    balance: Balance
+    residual: float
+
+
+class PositionSolver:
+    """Newton's method for the positions of one load increment.
+
+    Factors are kept for as long as solves with them leave a small share of the residual: from one augmentation to the next, and at the
+    end of a Newton loop, the tangent changes little, and its factors are by far the dearest part of a solve.
 
     Parameters
     ----------
-    positions : ndarray, shape (control points, 3)
-        Where the iteration starts.
-    prescribed : ndarray, shape (control points, 3)
-        Increment of the prescribed positions, which enters the first linear solve.
     start : State
         Last converged state: slips count from it.
     stiffness : float
         Largest diagonal entry of the solid tangent, for the floor of the residual's scale.
-    report : callable
-        Gets the record of every iteration.
-
-    Raises
-    ------
-    ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError
     """
-    settings = equilibrium.problem.settings
-    moves = bool(np.any(prescribed))
-    for iteration in range(settings.max_iterations + 1):
-        balance = equilibrium.balance(positions, start, laws)
-        residual = relative_residual(equilibrium, balance, stiffness)
-        report(IterationRecord(iteration, residual, balance.active, balance.active - balance.slipping, balance.slipping))
-        if not np.isfinite(residual):
-            break
-        if residual <= settings.newton_tolerance and not (moves and iteration == 0):
-            return balance
-        if iteration < settings.max_iterations:
-            increment = prescribed if iteration == 0 else np.zeros_like(prescribed)
-            positions = positions + equilibrium.correction(balance, laws, increment)
-    raise ConvergenceError(f"Newton's method stopped at a relative residual of {residual:.2e} after {iteration} iterations")
+
+    def __init__(self, equilibrium: Equilibrium, start: State, stiffness: float) -> None:
+        self._equilibrium, self._start, self._stiffness = equilibrium, start, stiffness
+        self._factorised = False
+
+    def solve(
+        self, positions: FloatArray, prescribed: FloatArray, laws: Sequence[Law], report: Callable[[IterationRecord], None]
+    ) -> Balance:
+        """Positions in balance with the laws.
+
+        Parameters
+        ----------
+        positions : ndarray, shape (control points, 3)
+            Where the iteration starts.
+        prescribed : ndarray, shape (control points, 3)
+            Increment of the prescribed positions, which enters the first linear solve.
+        report : callable
+            Gets the record of every iteration.
+
+        Raises
+        ------
+        ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError
+        """
+        settings = self._equilibrium.problem.settings
+        moves = bool(np.any(prescribed))
+        keeps = "keeping" in settings.measures
+        keep = keeps and self._factorised and not moves
+        iterate, notes = self._evaluate(positions, laws), tuple[str, ...]()
+        tangents = 0
+        for iteration in count():
+            balance = iterate.balance
+            report(IterationRecord(iteration, iterate.residual, balance.active, balance.active - balance.slipping, balance.slipping, notes))
+            if iterate.residual <= settings.newton_tolerance and not moves:
+                return balance
+            following, notes = self._by_kept_factors(iterate, laws) if keep else None, (KEPT_FACTORS,)
+            if following is None:
+                if tangents == settings.max_iterations or not np.isfinite(iterate.residual):
+                    break
+                correction = self._equilibrium.correction(balance, laws, prescribed if moves else np.zeros_like(prescribed))
+                following, notes = self._evaluate(balance.positions + correction, laws), ()
+                self._factorised, moves = True, False
+                tangents += 1
+            keep = keeps and following.residual <= KEPT_SHARE * iterate.residual
+            iterate = following
+        raise ConvergenceError(f"Newton's method stopped at a relative residual of {iterate.residual:.2e} after {iteration} iterations")
+
+    def _evaluate(self, positions: FloatArray, laws: Sequence[Law]) -> _Iterate:
+        balance = self._equilibrium.balance(positions, self._start, laws)
+        return _Iterate(balance, relative_residual(self._equilibrium, balance, self._stiffness))
+
+    def _by_kept_factors(self, iterate: _Iterate, laws: Sequence[Law]) -> _Iterate | None:
+        """The next iterate with the factors of an earlier tangent; None if it is no better."""
+        correction = self._equilibrium.kept_correction(iterate.balance)
+        try:
+            following = self._evaluate(iterate.balance.positions + correction, laws)
+        except (FoldedElementError, LostProjectionError):
+            return None
+        return following if following.residual < iterate.residual else None
 
 
 def observed_order(log: Sequence[IterationRecord], round_off: float) -> float:

@@ -10,7 +10,7 @@ from isomortar._bindings import Law
 from isomortar.errors import ConvergenceError
 from isomortar.solve.equilibrium import Balance
 from isomortar.solve.method import Increment, Method
-from isomortar.solve.newton import observed_order, residual_round_off, solve_positions
+from isomortar.solve.newton import PositionSolver, observed_order, residual_round_off
 from isomortar.solve.record import AugmentationRecord, IterationRecord, State
 
 
@@ -26,6 +26,7 @@ class Uzawa(Method):
             pair.law(base / pair.penalty_area, s.pressure, s.traction) for pair, s in zip(equilibrium.pairs, start.contacts, strict=True)
         ]
 
+        newton = PositionSolver(equilibrium, start, stiffness)
         positions, records, orders, growth = start.positions, [], [], 1.0
         for augmentation in range(1, self._settings.max_augmentations + 1):
             log: list[IterationRecord] = []
@@ -34,7 +35,7 @@ class Uzawa(Method):
                 log.append(record)
                 self._observer.iteration(step, time, number, record)
 
-            balance = solve_positions(equilibrium, positions, prescribed, start, laws, stiffness, report)
+            balance = newton.solve(positions, prescribed, laws, report)
             orders.append(observed_order(log, residual_round_off(equilibrium, balance, stiffness)))
             changes = self._changes(laws, balance)
             normal, tangential = (float(penalty) for penalty in growth * base)
