@@ -47,10 +47,24 @@ contains
     integer :: d
 
     do d = 1, kinds
-      target(:, :, d) = matmul(transpose(source(:, :, d)), line%values(:, 0, :))
+      call contract(transpose(source(:, :, d)), line%values(:, 0, :), target(:, :, d))
     end do
-    target(:, :, kinds + 1) = matmul(transpose(source(:, :, 1)), line%values(:, 1, :))
+    call contract(transpose(source(:, :, 1)), line%values(:, 1, :), target(:, :, kinds + 1))
   end subroutine spread_line
+
+  !> Product of a tall matrix with a small one: loops that run down the columns suit it better than those of matmul.
+  pure subroutine contract(tall, small, product)
+    real(wp), intent(in) :: tall(:, :), small(:, :)
+    real(wp), contiguous, intent(out) :: product(:, :)
+    integer :: a, q
+
+    do q = 1, size(small, 2)
+      product(:, q) = tall(:, 1) * small(1, q)
+      do a = 2, size(small, 1)
+        product(:, q) = product(:, q) + tall(:, a) * small(a, q)
+      end do
+    end do
+  end subroutine contract
 
   !> Sum over points and kinds of densities times functions: from (points, field, kind) to (field, u, v, w) of the control points.
   pure subroutine integrate(u, v, w, fields, densities, sums)
@@ -72,15 +86,19 @@ contains
     integer, intent(in) :: kinds, rest
     real(wp), intent(in) :: source(size(line%weight), rest, kinds)
     real(wp), intent(out) :: target(rest, size(line%values, 1), kinds - 1)
-    real(wp) :: slopes(size(line%weight), size(line%values, 1)), values(size(line%weight), size(line%values, 1))
+    real(wp) :: both(rest, 2 * size(line%weight)), tables(2 * size(line%weight), size(line%values, 1))
     integer :: d
 
-    values = transpose(line%values(:, 0, :))
-    slopes = transpose(line%values(:, 1, :))
-    target(:, :, 1) = matmul(transpose(source(:, :, 1)), values) + matmul(transpose(source(:, :, 2)), slopes)
-    do d = 2, kinds - 1
-      target(:, :, d) = matmul(transpose(source(:, :, d + 1)), values)
-    end do
+    associate (m => size(line%weight))
+      tables(:m, :) = transpose(line%values(:, 0, :))
+      tables(m + 1:, :) = transpose(line%values(:, 1, :))
+      both(:, :m) = transpose(source(:, :, 1))
+      both(:, m + 1:) = transpose(source(:, :, 2))
+      call contract(both, tables, target(:, :, 1))
+      do d = 2, kinds - 1
+        call contract(transpose(source(:, :, d + 1)), tables(:m, :), target(:, :, d))
+      end do
+    end associate
   end subroutine gather_line
 
   !> Tables of the elements of a direction for `integrate_pairs`.
