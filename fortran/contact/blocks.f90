@@ -32,22 +32,30 @@ module isomortar_contact_blocks
     logical, allocatable :: active(:)
   end type multipliers_t
 
-  !> One slave element: its control points of both sides and its dense contributions.
-  type :: element_t
-    !> Number of control points; slave ones come first.
-    integer :: count
-    integer, allocatable :: points(:)
-    real(wp), allocatable :: rows(:, :, :)
-    real(wp), allocatable :: tangent(:, :)
-  end type element_t
-
-  !> One quadrature point: control points within the element, coefficients of the short vectors, variations.
+  !> One quadrature point: control points of the slave and the master element, coefficients of the short vectors (control points,
+  !> vectors), variations.
   type :: sample_t
     type(contact_point_t) :: point
     type(variations_t) :: variations
-    integer, allocatable :: local(:)
+    integer, allocatable :: points(:)
     real(wp), allocatable :: coefficients(:, :)
   end type sample_t
+
+  !> Quadrature points of a slave element that project on the same master element. They share their control points, so that the sums
+  !> over them are products of matrices.
+  type :: batch_t
+    !> Quadrature points in it.
+    integer :: count
+    !> Area times R^I, (slave control points, quadrature points), and the same with R^I R^I.
+    real(wp), allocatable :: weight(:, :), square_weight(:, :)
+    !> Coefficients of the short vectors, (control points, vectors, quadrature points).
+    real(wp), allocatable :: coefficients(:, :, :)
+    !> Variations that the rows integrate, (control points, component, quadrature points, kind).
+    real(wp), allocatable :: rows(:, :, :, :)
+    !> Second variations by short vectors on the left, by control points on the right:
+    !> (right control point, left component, right component, left vector, quadrature points).
+    real(wp), allocatable :: second(:, :, :, :, :)
+  end type batch_t
 
 contains
 
@@ -60,33 +68,25 @@ contains
     logical, intent(in) :: with_friction
     type(multipliers_t), intent(in) :: multipliers
     real(wp), intent(inout) :: forces(:, :)
-    type(element_t) :: element
     type(sample_t) :: sample
     real(wp) :: field(3), row(all_components)
-    integer, allocatable :: mark(:)
     integer :: a, e, per_element, q
 
-    allocate (mark(size(positions, 2)))
-    mark = 0
     per_element = size(slave%area) / size(slave%nodes, 2)
-    call reserve(slave, master, per_element, element, sample)
     do e = 1, size(slave%nodes, 2)
       if (.not. any(multipliers%active(slave%nodes(:, e)))) cycle
-      call begin_element(slave, e, element)
       do q = (e - 1) * per_element + 1, e * per_element
         if (.not. projections%found(q)) cycle
-        call take_sample(slave, master, positions, projections, e, q, merge(0, 2, master%is_plane), with_friction, &
-          element, mark, sample)
+        call take_sample(slave, master, positions, projections, e, q, merge(0, 2, master%is_plane), with_friction, sample)
         field = fields_at(slave, multipliers, e, q)
         row = slave%area(q) * (field(1) * sample%variations%gap + matmul(sample%variations%slip, field(2:3)))
-        do a = 1, size(sample%local)
-          associate (force => forces(:, element%points(sample%local(a))))
+        do a = 1, size(sample%points)
+          associate (force => forces(:, sample%points(a)))
             force = force + matmul(reshape(row(1:3 * size(sample%coefficients, 2)), [3, size(sample%coefficients, 2)]), &
               sample%coefficients(a, :))
           end associate
         end do
       end do
-      mark(element%points(1:element%count)) = 0
     end do
   end subroutine integrate_forces
 
@@ -105,62 +105,62 @@ contains
     real(wp), intent(in) :: field_slip(:, :)
     type(pattern_t), intent(in) :: row_pattern, pattern
     real(wp), intent(inout) :: rows(:, :, :), tangent(:, :, :)
-    type(element_t) :: element
     type(sample_t) :: sample
-    integer, allocatable :: mark(:), columns(:)
-    integer :: e, met, per_element, q
+    type(batch_t) :: batch
+    logical :: pending(size(slave%area) / size(slave%nodes, 2)), together(size(slave%area) / size(slave%nodes, 2))
+    integer :: columns(size(positions, 2))
+    integer :: before, e, k
 
-    allocate (mark(size(positions, 2)), columns(size(positions, 2)))
-    mark = 0
-    per_element = size(slave%area) / size(slave%nodes, 2)
-    call reserve(slave, master, per_element, element, sample)
-    allocate (element%rows(3 * size(element%points), size(rows, 2), size(slave%nodes, 1)))
-    allocate (element%tangent(3 * size(element%points), 3 * size(element%points)))
-    element%rows = 0.0_wp
-    element%tangent = 0.0_wp
+    call reserve(slave, master, size(pending), short_vectors(master%is_plane, with_friction), size(rows, 2), batch)
     do e = 1, size(slave%nodes, 2)
       if (.not. any(multipliers%active(slave%nodes(:, e)))) cycle
-      call begin_element(slave, e, element)
-      do q = (e - 1) * per_element + 1, e * per_element
-        if (.not. projections%found(q)) cycle
-        call take_sample(slave, master, positions, projections, e, q, master_order(master, with_friction), with_friction, element, &
-          mark, sample)
-        call add_rows(sample, slave%basis(:, q), slave%area(q), projections%slips(q), field_slip(:, q), element%rows)
-        if (.not. master%is_plane) call add_geometric(sample, slave%area(q), fields_at(slave, multipliers, e, q), element%tangent)
+      before = (e - 1) * size(pending)
+      pending = projections%found(before + 1:before + size(pending))
+      do while (any(pending))
+        together = pending .and. same_element(projections%place(:, before + 1:before + size(pending)), first_of(pending))
+        pending = pending .and. .not. together
+        batch%count = 0
+        do k = 1, size(together)
+          if (.not. together(k)) cycle
+          call take_sample(slave, master, positions, projections, e, before + k, master_order(master, with_friction), &
+            with_friction, sample)
+          call add_sample(slave, before + k, projections%slips(before + k), sample, field_slip(:, before + k), &
+            fields_at(slave, multipliers, e, before + k), master%is_plane, batch)
+        end do
+        call scatter_rows(slave%nodes(:, e), multipliers%active, batch, sample%points, row_pattern, columns, rows)
+        if (.not. master%is_plane) call scatter_tangent(batch, sample%points, pattern, columns, tangent)
       end do
-      call scatter_rows(slave%nodes(:, e), multipliers%active, element, row_pattern, columns, rows)
-      if (.not. master%is_plane) call scatter_tangent(element, pattern, columns, tangent)
-      mark(element%points(1:element%count)) = 0
-      met = 3 * element%count ! clear what was used alone: the room is for the largest element there could be
-      element%rows(:met, :, :) = 0.0_wp
-      element%tangent(:met, :met) = 0.0_wp
     end do
   end subroutine integrate_blocks
 
-  !> Make room for the largest element: every quadrature point on a master element of its own.
-  pure subroutine reserve(slave, master, per_element, element, sample)
+  !> Number of the first that is true.
+  pure integer function first_of(flags)
+    logical, intent(in) :: flags(:)
+
+    first_of = findloc(flags, .true., dim=1)
+  end function first_of
+
+  !> Which places are the same as place k.
+  pure function same_element(places, k) result(same)
+    integer, intent(in) :: places(:, :), k
+    logical :: same(size(places, 2))
+
+    same = places(1, :) == places(1, k) .and. places(2, :) == places(2, k)
+  end function same_element
+
+  !> Make room for the quadrature points of an element.
+  pure subroutine reserve(slave, master, per_element, vectors, kinds, batch)
     type(slave_t), intent(in) :: slave
     type(master_t), intent(in) :: master
-    integer, intent(in) :: per_element
-    type(element_t), intent(inout) :: element
-    type(sample_t), intent(inout) :: sample
-    integer :: most
+    integer, intent(in) :: per_element, vectors, kinds
+    type(batch_t), intent(out) :: batch
+    integer :: n
 
-    most = per_element * master_point_count(master)
-    if (.not. master%is_plane) most = min(most, size(master%surface%point))
-    allocate (element%points(size(slave%nodes, 1) + most))
-    allocate (sample%local(size(slave%nodes, 1) + master_point_count(master)))
+    n = size(slave%nodes, 1) + master_point_count(master)
+    allocate (batch%weight(size(slave%nodes, 1), per_element), batch%square_weight(size(slave%nodes, 1), per_element))
+    allocate (batch%coefficients(n, vectors, per_element), batch%rows(n, 3, per_element, kinds))
+    if (.not. master%is_plane) allocate (batch%second(n, 3, 3, vectors, per_element))
   end subroutine reserve
-
-  !> Start an element with its slave control points.
-  pure subroutine begin_element(slave, e, element)
-    type(slave_t), intent(in) :: slave
-    integer, intent(in) :: e
-    type(element_t), intent(inout) :: element
-
-    element%count = size(slave%nodes, 1)
-    element%points(1:element%count) = slave%point(slave%nodes(:, e))
-  end subroutine begin_element
 
   !> p, t_1, t_2 at a quadrature point.
   pure function fields_at(slave, multipliers, e, q) result(field)
@@ -177,155 +177,162 @@ contains
     end do
   end function fields_at
 
-  !> Kinematics, variations and coefficients of the short vectors at a quadrature point; master control points that the
-  !> element has not met yet are appended to it (`mark` holds the place of those it has).
-  pure subroutine take_sample(slave, master, positions, projections, e, q, order, with_friction, element, mark, sample)
+  !> Control points, kinematics, variations and coefficients of the short vectors at a quadrature point.
+  pure subroutine take_sample(slave, master, positions, projections, e, q, order, with_friction, sample)
     type(slave_t), intent(in) :: slave
     type(master_t), intent(in) :: master
     real(wp), intent(in) :: positions(:, :)
     type(projections_t), intent(in) :: projections
     integer, intent(in) :: e, q, order
     logical, intent(in) :: with_friction
-    type(element_t), intent(inout) :: element
-    integer, intent(inout) :: mark(:)
     type(sample_t), intent(inout) :: sample
-    integer :: a, n, nodes(master_point_count(master)), vectors
+    integer :: n, nodes(master_point_count(master)), vectors
     real(wp) :: functions(master_point_count(master), derivative_columns(order))
 
     n = size(slave%nodes, 1)
     vectors = short_vectors(master%is_plane, with_friction .and. order > 2)
     call point_on_master(slave, master, positions, projections, q, order, sample%point, nodes, functions)
     sample%variations = first_variations(sample%point, vectors)
-    if (.not. allocated(sample%coefficients)) allocate (sample%coefficients(size(sample%local), vectors))
-    sample%coefficients = 0.0_wp
-    sample%coefficients(1:n, 1) = slave%basis(:, q)
-    do a = 1, n
-      sample%local(a) = a
-      mark(slave%point(slave%nodes(a, e))) = a
-    end do
+    if (.not. allocated(sample%points)) then
+      allocate (sample%points(n + size(nodes)), sample%coefficients(n + size(nodes), vectors))
+      sample%coefficients = 0.0_wp
+    end if
+    sample%points(:n) = slave%point(slave%nodes(:, e))
+    sample%coefficients(:n, 1) = slave%basis(:, q)
     if (master%is_plane) return
-    do a = 1, size(nodes)
-      associate (global => master%surface%point(nodes(a)))
-        if (mark(global) == 0) then
-          element%count = element%count + 1
-          element%points(element%count) = global
-          mark(global) = element%count
-        end if
-        sample%local(n + a) = mark(global)
-      end associate
-    end do
+    sample%points(n + 1:) = master%surface%point(nodes)
     sample%coefficients(n + 1:, 1) = -functions(:, 1)
     sample%coefficients(n + 1:, 2:vectors) = functions(:, 2:vectors)
   end subroutine take_sample
 
-  !> Add the constraint rows of one quadrature point: row(component of the element, kind, slave control point).
-  pure subroutine add_rows(sample, basis, area, slips, field_slip, rows)
+  !> Add a quadrature point to a batch.
+  pure subroutine add_sample(slave, q, slips, sample, field_slip, field, is_plane, batch)
+    type(slave_t), intent(in) :: slave
+    integer, intent(in) :: q
+    logical, intent(in) :: slips, is_plane
     type(sample_t), intent(in) :: sample
-    real(wp), intent(in) :: basis(:), area, field_slip(2)
+    real(wp), intent(in) :: field_slip(2), field(3)
+    type(batch_t), intent(inout) :: batch
+
+    batch%count = batch%count + 1
+    associate (m => batch%count)
+      batch%weight(:, m) = slave%area(q) * slave%basis(:, q)
+      batch%square_weight(:, m) = slave%area(q) * slave%basis(:, q)**2
+      batch%coefficients(:, :, m) = sample%coefficients
+      call spread_rows(sample, slips, field_slip, size(batch%rows, 4), batch%rows(:, :, m, :))
+      if (.not. is_plane) call spread_geometric(sample, slave%area(q), field, batch%second(:, :, :, :, m))
+    end associate
+  end subroutine add_sample
+
+  !> Variations that the constraint rows integrate, by control points: (control point, component, kind).
+  pure subroutine spread_rows(sample, slips, field_slip, kinds, rows)
+    type(sample_t), intent(in) :: sample
     logical, intent(in) :: slips
-    real(wp), intent(inout) :: rows(:, :, :)
-    real(wp) :: forms(all_components, size(rows, 2)), metric(all_components, 3), factor(size(rows, 2)), spread(3, size(rows, 2))
-    integer :: a, b, i, kind, vectors
+    real(wp), intent(in) :: field_slip(2)
+    integer, intent(in) :: kinds
+    real(wp), intent(out) :: rows(:, :, :)
+    real(wp) :: forms(all_components, kinds), metric(all_components, 3)
+    real(wp) :: by_vector(size(sample%coefficients, 2), 3 * kinds)
+    integer :: i, kind
 
     forms(:, row_gap) = sample%variations%gap
-    if (size(rows, 2) > 1) then
+    if (kinds > 1) then
       metric = metric_variation(sample%point, sample%variations)
       forms(:, row_work:row_work + 1) = sample%variations%slip
       forms(:, row_slip:row_slip + 1) = merge(1.0_wp, 0.0_wp, slips) * sample%variations%projection
       forms(:, row_metric:row_metric + 2) = metric
     end if
-    if (size(rows, 2) == all_rows) then
+    if (kinds == all_rows) then
       forms(:, row_slip_sum) = metric(:, 1) * field_slip(1) + metric(:, 2) * field_slip(2)
       forms(:, row_slip_sum + 1) = metric(:, 2) * field_slip(1) + metric(:, 3) * field_slip(2)
     end if
-    vectors = size(sample%coefficients, 2)
-    do a = 1, size(sample%local)
-      spread = 0.0_wp
-      do kind = 1, size(rows, 2)
-        do b = 1, vectors
-          spread(:, kind) = spread(:, kind) + sample%coefficients(a, b) * forms(3 * b - 2:3 * b, kind)
-        end do
-      end do
-      do i = 1, size(basis)
-        factor = basis(i) * area
-        if (size(rows, 2) > 1) factor(row_metric:row_metric + 2) = basis(i)**2 * area
-        do kind = 1, size(rows, 2)
-          associate (row => rows(3 * sample%local(a) - 2:3 * sample%local(a), kind, i))
-            row = row + factor(kind) * spread(:, kind)
-          end associate
-        end do
+    do kind = 1, kinds
+      do i = 1, 3
+        by_vector(:, 3 * (kind - 1) + i) = forms(i:3 * size(by_vector, 1):3, kind)
       end do
     end do
-  end subroutine add_rows
+    rows = reshape(matmul(sample%coefficients, by_vector), shape(rows))
+  end subroutine spread_rows
 
-  !> Add area * (p Ddg + t_a Ddxi^a) of one quadrature point.
-  pure subroutine add_geometric(sample, area, field, tangent)
+  !> area * (p Ddg + t_a Ddxi^a) by short vectors on the left and control points on the right:
+  !> (right control point, left component, right component, left vector).
+  pure subroutine spread_geometric(sample, area, field, second)
     type(sample_t), intent(in) :: sample
     real(wp), intent(in) :: area, field(3)
-    real(wp), intent(inout) :: tangent(:, :)
-    real(wp) :: form(3 * size(sample%coefficients, 2), 3 * size(sample%coefficients, 2))
-    real(wp) :: column(3 * size(sample%coefficients, 2))
-    integer :: a, b, j, k, l, vectors
+    real(wp), intent(out) :: second(:, :, :, :)
+    real(wp) :: form(3 * size(second, 4), 3 * size(second, 4)), by_vector(size(second, 4), 3, 3, size(second, 4))
+    integer :: k, l, vectors
 
-    vectors = size(sample%coefficients, 2)
+    vectors = size(second, 4)
     form = 0.0_wp
     if (abs(field(1)) > 0.0_wp) call gap_variation(sample%point, sample%variations, area * field(1), form)
     if (vectors == 6 .and. any(abs(field(2:3)) > 0.0_wp)) then
       call traction_variation(sample%point, sample%variations, area * field(2:3), form)
     end if
-    do b = 1, size(sample%local)
-      do j = 1, 3
-        column = 0.0_wp
-        do l = 1, vectors
-          column = column + sample%coefficients(b, l) * form(:, 3 * (l - 1) + j)
-        end do
-        associate (target => tangent(:, 3 * (sample%local(b) - 1) + j))
-          do a = 1, size(sample%local)
-            do k = 1, vectors
-              associate (three => target(3 * sample%local(a) - 2:3 * sample%local(a)))
-                three = three + sample%coefficients(a, k) * column(3 * k - 2:3 * k)
-              end associate
-            end do
-          end do
-        end associate
+    do k = 1, vectors
+      do l = 1, vectors
+        by_vector(l, :, :, k) = form(3 * k - 2:3 * k, 3 * l - 2:3 * l)
       end do
     end do
-  end subroutine add_geometric
+    second = reshape(matmul(sample%coefficients, reshape(by_vector, [vectors, 9 * vectors])), shape(second))
+  end subroutine spread_geometric
 
-  !> Add the rows of an element to those of its active slave control points.
-  pure subroutine scatter_rows(nodes, active, element, pattern, columns, rows)
-    integer, intent(in) :: nodes(:)
+  !> Add the rows of a batch to those of its active slave control points.
+  pure subroutine scatter_rows(nodes, active, batch, points, pattern, columns, rows)
+    integer, intent(in) :: nodes(:), points(:)
     logical, intent(in) :: active(:)
-    type(element_t), intent(in) :: element
+    type(batch_t), intent(in) :: batch
     type(pattern_t), intent(in) :: pattern
     integer, intent(inout) :: columns(:)
     real(wp), intent(inout) :: rows(:, :, :)
-    integer :: a, i
+    real(wp) :: sums(size(points), 3, size(nodes), size(rows, 2))
+    integer :: a, i, kind
 
+    do kind = 1, size(rows, 2)
+      if (kind >= row_metric .and. kind < row_metric + 3) then
+        call sum_points(3 * size(points), batch%count, size(nodes), batch%rows(:, :, :, kind), batch%square_weight, &
+          sums(:, :, :, kind))
+      else
+        call sum_points(3 * size(points), batch%count, size(nodes), batch%rows(:, :, :, kind), batch%weight, sums(:, :, :, kind))
+      end if
+    end do
     do i = 1, size(nodes)
       if (.not. active(nodes(i))) cycle
       call mark_row(pattern, nodes(i), columns)
-      do a = 1, element%count
-        associate (row => rows(:, :, columns(element%points(a))))
-          row = row + element%rows(3 * a - 2:3 * a, :, i)
+      do a = 1, size(points)
+        associate (row => rows(:, :, columns(points(a))))
+          row = row + sums(a, :, i, :)
         end associate
       end do
     end do
   end subroutine scatter_rows
 
-  !> Add the geometric tangent of an element.
-  pure subroutine scatter_tangent(element, pattern, columns, tangent)
-    type(element_t), intent(in) :: element
+  !> sums = left right^T, over m quadrature points.
+  pure subroutine sum_points(n_left, m, n_right, left, right, sums)
+    integer, intent(in) :: n_left, m, n_right
+    real(wp), intent(in) :: left(n_left, m), right(n_right, m)
+    real(wp), intent(out) :: sums(n_left, n_right)
+
+    sums = matmul(left, transpose(right))
+  end subroutine sum_points
+
+  !> Add the geometric tangent of a batch.
+  pure subroutine scatter_tangent(batch, points, pattern, columns, tangent)
+    type(batch_t), intent(in) :: batch
+    integer, intent(in) :: points(:)
     type(pattern_t), intent(in) :: pattern
     integer, intent(inout) :: columns(:)
     real(wp), intent(inout) :: tangent(:, :, :)
+    real(wp) :: sums(size(points), 3, 3, size(points))
     integer :: a, b
 
-    do a = 1, element%count
-      call mark_row(pattern, element%points(a), columns)
-      do b = 1, element%count
-        associate (block => tangent(:, :, columns(element%points(b))))
-          block = block + transpose(element%tangent(3 * a - 2:3 * a, 3 * b - 2:3 * b))
+    call sum_points(9 * size(points), size(batch%coefficients, 2) * batch%count, size(points), batch%second, batch%coefficients, &
+      sums)
+    do a = 1, size(points)
+      call mark_row(pattern, points(a), columns)
+      do b = 1, size(points)
+        associate (block => tangent(:, :, columns(points(b))))
+          block = block + transpose(sums(b, :, :, a))
         end associate
       end do
     end do

@@ -15,7 +15,7 @@ from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.solve.timing import Ledger
 
 #: Systems with fewer unknowns are ordered by minimum degree, larger ones by nested dissection (measured: toolchain.md).
-SMALL_SYSTEM = 1000
+SMALL_SYSTEM = 2000
 
 
 @dataclass(frozen=True, eq=False)
