@@ -64,12 +64,25 @@ def test_both_methods_find_the_same_solution(slip_sum: str) -> None:
         np.testing.assert_allclose(a.state.positions, b.state.positions, atol=1e-7)
 
 
-@pytest.mark.parametrize("left_out", ["forgiving", "margin", "reversal", "halving", "nothing"])
+@pytest.mark.parametrize("left_out", ["forgiving", "margin", "reversal", "halving", "keeping", "nothing"])
 def test_measures_on_the_way_do_not_change_the_solution(left_out: str) -> None:
     everything = small_iron()
     kept = tuple(m for m in everything.settings.measures if m != left_out)
     a, b = run(everything)[-1], run(replace(everything, settings=replace(everything.settings, measures=kept)))[-1]
     np.testing.assert_allclose(a.state.positions, b.state.positions, atol=1e-9)
+
+
+@pytest.mark.parametrize("method", ["monolithic", "uzawa"])
+def test_factors_are_kept_while_they_serve(method: str) -> None:
+    keeping = small_iron(method=method)
+    afresh = replace(keeping, settings=replace(keeping.settings, measures=("forgiving", "margin", "reversal", "halving")))
+    one, other = run(keeping), run(afresh)
+    assert all(r.counters["solves"] == r.counters["factorisations"] for r in other)
+    assert not any("kept factors" in i.notes for r in other for a in r.augmentations for i in a.iterations)
+    assert any("kept factors" in i.notes for r in one for a in r.augmentations for i in a.iterations)
+    factors = [sum(r.counters["factorisations"] for r in results) for results in (one, other)]
+    assert factors[0] < 0.8 * factors[1]
+    np.testing.assert_allclose(one[-1].state.positions, other[-1].state.positions, atol=1e-8)
 
 
 def test_contact_conditions_after_every_step() -> None:

@@ -173,13 +173,13 @@ class Monolithic(Method):
     def _by_kept_factors(
         self, iterate: Iterate, start: State, stiffness: float, borders: Sequence[Border | None]
     ) -> Iterate | None:
-        """The next iterate with the factors of an earlier tangent; None if it is no better, or changes states."""
+        """The next iterate with the factors of an earlier tangent; None if these leave too much of the merit, or states change."""
         correction = solve_with_kept_factors(self._equilibrium, iterate.balance, iterate.targets, borders)
         try:
             following = self._evaluate(*_moved(iterate, correction, 1.0), start, stiffness)
         except (FoldedElementError, LostProjectionError):
             return None
-        return following if following.states == iterate.states and following.merit < iterate.merit else None
+        return following if following.states == iterate.states and following.merit <= KEPT_SHARE * iterate.merit else None
 
     def _reversals(self, k: int, iterate: Iterate, correction: Correction, border: Border | None) -> np.ndarray:
         """Slipping control points whose predicted trial change opposes their traction: s^a dt_a < 0."""

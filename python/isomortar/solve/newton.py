@@ -111,13 +111,13 @@ class PositionSolver:
         return _Iterate(balance, relative_residual(self._equilibrium, balance, self._stiffness))
 
     def _by_kept_factors(self, iterate: _Iterate, laws: Sequence[Law]) -> _Iterate | None:
-        """The next iterate with the factors of an earlier tangent; None if it is no better."""
+        """The next iterate with the factors of an earlier tangent; None if these leave too much of the residual."""
         correction = self._equilibrium.kept_correction(iterate.balance)
         try:
             following = self._evaluate(iterate.balance.positions + correction, laws)
         except (FoldedElementError, LostProjectionError):
             return None
-        return following if following.residual < iterate.residual else None
+        return following if following.residual <= KEPT_SHARE * iterate.residual else None
 
 
 def observed_order(log: Sequence[IterationRecord], round_off: float) -> float:
