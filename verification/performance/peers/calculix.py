@@ -8,28 +8,22 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 #: Pressure per overclosure, and traction per slip while a point sticks; force per volume. The block is about 10 stiff and 0.5 high.
 PRESSURE_SLOPE, STICK_SLOPE = 1e4, 1e3
-#: CalculiX's own bound of the largest residual over the average force.
-OWN_TOLERANCE = 5e-3
-
 _TOTAL_FORCE = re.compile(r"total force .* for set TOP and time\s+(\S+)\s+(\S+)\s+(\S+)\s+(\S+)")
 
 
-def deck(problem: Mapping[str, Any], tolerance: float = OWN_TOLERANCE) -> str:
+def deck(problem: Mapping[str, Any]) -> str:
     """The input deck of a block problem, its load steps as increments of one step a stage.
 
     Parameters
     ----------
     problem : mapping
         As `performance.block.description` makes it; without stages a deck that is read and nothing else.
-    tolerance : float
-        Largest residual over the average force at which an increment has converged.
     """
     lines = ["*HEADING", "Sliding a block on a larger one"]
     first_node = first_element = 1
@@ -40,7 +34,9 @@ def deck(problem: Mapping[str, Any], tolerance: float = OWN_TOLERANCE) -> str:
         lines += [f"*ELEMENT, TYPE=C3D8, ELSET={name}"]
         lines += [f"{first_element + k}, " + ", ".join(str(first_node + n) for n in brick) for k, brick in enumerate(bricks)]
         layer = body["elements"][0] * body["elements"][1]
-        touching, level = (range(layer), body["upper"][2]) if contact == "S1" else (range(len(bricks) - layer, len(bricks)), body["lower"][2])
+        touching, level = (
+            (range(layer), body["upper"][2]) if contact == "S1" else (range(len(bricks) - layer, len(bricks)), body["lower"][2])
+        )
         lines += [f"*SURFACE, NAME=FACE_{name}", *(f"{first_element + k}, {contact}" for k in touching)]
         lines += [f"*NSET, NSET={held}", *(f"{first_node + k}," for k in np.flatnonzero(np.isclose(points[:, 2], level)))]
         lines += [f"*SOLID SECTION, ELSET={name}, MATERIAL=RUBBER"]
@@ -49,7 +45,7 @@ def deck(problem: Mapping[str, Any], tolerance: float = OWN_TOLERANCE) -> str:
     lines += ["*SURFACE INTERACTION, NAME=RUBBING", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR", f"{PRESSURE_SLOPE:g}"]
     lines += ["*FRICTION", f"{problem['friction']:g}, {STICK_SLOPE:g}"]
     lines += ["*CONTACT PAIR, INTERACTION=RUBBING, TYPE=SURFACE TO SURFACE", "FACE_slave, FACE_master"]
-    return "\n".join([*lines, *_steps(problem["stages"], tolerance)]) + "\n"
+    return "\n".join([*lines, *_steps(problem["stages"], problem["tolerance"])]) + "\n"
 
 
 def _box(lower: Sequence[float], upper: Sequence[float], elements: Sequence[int]) -> tuple[np.ndarray, list[list[int]]]:
@@ -63,7 +59,7 @@ def _box(lower: Sequence[float], upper: Sequence[float], elements: Sequence[int]
 
 
 def _steps(stages: Sequence[Mapping[str, Any]], tolerance: float) -> Iterator[str]:
-    """A CalculiX step a stage; the top's displacement grows linearly in it."""
+    """A CalculiX step a stage; the top's displacement grows linearly in it. The tolerance is that of the largest residual over the average force."""
     place = np.zeros(3)
     for stage in stages:
         place = place + stage["translate"]
@@ -84,14 +80,3 @@ def forces(dat: str, stages: Sequence[Mapping[str, Any]]) -> list[list[float]]:
 def linear_solves(cvg: str) -> int:
     """Iterations, a linear solve each, from the text of the .cvg file: those of increments that failed included."""
     return sum(1 for line in cvg.splitlines() if line.split() and line.split()[0].isdigit())
-
-
-def read(folder: Path, problem: Mapping[str, Any]) -> dict[str, Any]:
-    """What a run in a folder came to: unknowns, linear solves, forces on the top, and the last thing that it said if it failed."""
-    stages = problem["stages"]
-    nodes = sum(int(np.prod(np.array(problem[name]["elements"]) + 1)) for name in ("slave", "master"))
-    return {
-        "unknowns": 3 * nodes,
-        "solves": linear_solves((folder / "block.cvg").read_text()),
-        "forces": forces((folder / "block.dat").read_text(), stages),
-    }

@@ -6,7 +6,7 @@ import json
 import os
 import subprocess
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
@@ -92,8 +92,3 @@ def has_module(python: str, module: str) -> bool:
         return run([python, "-c", f"import importlib.util; raise SystemExit(importlib.util.find_spec({module!r}) is None)"]).status == 0
     except OSError:
         return False
-
-
-def versions(found: Mapping[str, Any]) -> str:
-    """Name and version of a program, from its answer."""
-    return f"{found['program']} {found['version']}"
