@@ -59,7 +59,7 @@ def _box(lower: Sequence[float], upper: Sequence[float], elements: Sequence[int]
 
 
 def _steps(stages: Sequence[Mapping[str, Any]], tolerance: float) -> Iterator[str]:
-    """A CalculiX step a stage; the top's displacement grows linearly in it. The tolerance is that of the largest residual over the average force."""
+    """A CalculiX step a stage; the top's displacement grows linearly in it. The tolerance bounds the residual over the average force."""
     place = np.zeros(3)
     for stage in stages:
         place = place + stage["translate"]
