@@ -14,7 +14,7 @@ printf '==> Installing Debian packages%s: %s\n' "${as_root:+ with sudo}" "${pack
 "${as_root[@]}" apt-get update -qq
 "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -qq -y --no-install-recommends "${packages[@]}"
 
-printf '==> Installing into .peers: nutils, NGSolve\n'
+printf '==> Installing into .peers: nutils with MKL, NGSolve\n'
 python3 -m venv .peers
 .peers/bin/python -m pip install --quiet --upgrade pip
-.peers/bin/python -m pip install --quiet 'nutils>=9' 'ngsolve>=6.2'
+.peers/bin/python -m pip install --quiet 'nutils>=9' 'mkl<2026' 'ngsolve>=6.2'
