@@ -27,6 +27,21 @@ def test_every_column_is_measured(name: str) -> None:
         assert all(math.isfinite(value) for value in row.values() if not isinstance(value, str))
 
 
+@pytest.mark.parametrize("name", ["block", "bulk"])
+def test_programs_that_are_there_do_the_same_work_and_others_say_how_to_get_them(name: str) -> None:
+    outcome = tried(name)
+    assert not outcome.failed, outcome.cost.message
+    measured = [row for row in outcome.rows if row.keys() & {"CPU", "solve"}]
+    assert all("not installed" in str(row["note"]) for row in outcome.rows if row not in measured)
+    assert "isomortar" in {row["program"] for row in measured}
+    for row in measured:
+        if name == "bulk":
+            assert float(row["difference"]) < 1e-10
+        else:  # other contact laws on a coarse mesh: some per cent; a wrong material, friction or load step is far off
+            own = next(one for one in measured if (one["stages"], one["program"]) == (row["stages"], "isomortar"))
+            assert float(row["normal force"]) == pytest.approx(float(own["normal force"]), rel=0.08)
+
+
 def test_phases_add_up() -> None:
     (row,) = tried("iteration_phases").rows
     parts = [float(row[phase]) for phase in ("solid", "projection", "contact", "factor", "solve", "other")]

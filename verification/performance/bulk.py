@@ -110,8 +110,9 @@ def bulk(quick: bool) -> Iterator[Row]:
     """A hyperelastic block without contact, held at its top and deformed smoothly; CPU seconds with one thread.
 
     Assembly is that of forces and tangent, solve the factors and Newton's correction. All have the same strain energy, elements, Gauss
-    points, and space of functions, in the basis of each. isomortar orders the unknowns once for all iterations; the others do
-    it in every solve: GetFEM in MUMPS, NGSolve (on half of the matrix) and nutils in MKL Pardiso where they find it. All but isomortar derive forces and tangent from the energy by themselves.
+    points, and space of functions, in the basis of each. isomortar orders the unknowns once for all iterations; the others do it in every
+    solve: GetFEM in MUMPS, NGSolve (on half of the matrix) and nutils in MKL Pardiso where they find it. All but isomortar derive forces
+    and tangent from the energy by themselves.
 
     The difference is the largest from isomortar's numbers, relative: work and second variation in the direction of a smooth field,
     and the work of Newton's correction; with linear elements also forces, product of the tangent, and correction, at all nodes.
