@@ -1,64 +1,57 @@
-"""Seconds per Newton iteration by phase, and the share of Python.
-
-    python verification/performance/iteration_phases.py [--scene iron] [--orders 2,3] [--steps 25] [--set solver.method=uzawa]
-
-Orders are the master's along its first direction. `other` is what no kernel phase accounts for: Python. Run it on an idle machine with one
-thread of the linear algebra library (OPENBLAS_NUM_THREADS=1).
-"""
+"""What a Newton iteration costs: by phase, and against the number of unknowns."""
 
 from __future__ import annotations
 
-import argparse
-from collections import Counter
-from itertools import islice
+from collections.abc import Iterator
+from itertools import product
 
-from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
+from performance.problems import Phases, phases, problem
 
-PHASES = ("solid", "projection", "contact", "factor", "solve", "other")
+from isomortar.harness.bench import Plot, Row, benchmark
+
+PHASES = ("solid", "projection", "contact", "factor", "solve", "other", "total")
+#: Load steps of the ironing scene: it is pressed for 10, then dragged.
+STEPS = 25
+
+_MILLISECONDS = dict.fromkeys(PHASES, "ms")
 
 
-def milliseconds(scene: str, order: int, steps: int, settings: list[str]) -> tuple[dict[str, float], int]:
-    """Milliseconds per linear solve by phase and in total, and the number of linear solves.
+def milliseconds(found: Phases) -> dict[str, float]:
+    """Milliseconds per linear solve, by phase and in total."""
+    return {phase: 1e3 * found.seconds[phase] / found.solves for phase in PHASES}
 
-    Parameters
-    ----------
-    scene : str
-        Scene with a body named master.
-    order : int
-        Of the master along its first direction.
-    steps : int
-        Load steps that are run.
-    settings : list of str
-        Overrides.
+
+@benchmark(
+    question="What does a Newton iteration of a contact problem cost, and which part of it?",
+    columns={"kind": "", "unknowns": "", "solves": "", **_MILLISECONDS, "contact share": "%", "Python share": "%"},
+    plots=(Plot("unknowns", "total"),),
+    limits={
+        "contact share": (25.0, "projection, contact forces and contact tangent are to cost little beside solid and factors"),
+        "Python share": (5.0, "what stands in Python is to cost nothing that one would notice"),
+    },
+)
+def iteration_phases(quick: bool) -> Iterator[Row]:
+    """The ironing scene, master of order 1 to 5 along the drag; milliseconds of CPU time per linear solve.
+
+    `other` is what no phase of the kernel accounts for: Python, and the patterns of the contact. The contact share is that of
+    projection and contact together.
     """
-    problem = Scene.load(scene, [f"bodies.master.mesh.order=[{order},2,2]", *settings]).problem()
-    seconds: Counter[str] = Counter()
-    solves = 0
-    for result in islice(Simulation(problem).run(), steps):
-        seconds.update(result.timings)
-        solves += result.counters["factorisations"]
-    return {phase: 1e3 * seconds[phase] / solves for phase in (*PHASES, "total")}, solves
+    for kind in ("N2",) if quick else ("N2", "N3", "N4", "N5"):
+        found = phases(problem("iron", kind, (6, 3, 2) if quick else None), 2 if quick else STEPS)
+        part = {phase: 100.0 * seconds / found.seconds["total"] for phase, seconds in found.seconds.items()}
+        shares = {"contact share": part["projection"] + part["contact"], "Python share": part["other"]}
+        yield {"kind": kind, "unknowns": found.unknowns, "solves": found.solves, **milliseconds(found), **shares}
 
 
-def main() -> None:
-    """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--scene", default="iron")
-    parser.add_argument("--orders", default="2,3", help="default: %(default)s")
-    parser.add_argument("--steps", type=int, default=25, help="load steps (default: %(default)s)")
-    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="as for isomortar run")
-    options = parser.parse_args()
-    print(f"milliseconds per Newton iteration, {options.scene}, {options.steps} load steps")
-    print("order  solves" + "".join(f"{phase:>11}" for phase in (*PHASES, "total")) + "   Python")
-    for order in map(int, options.orders.split(",")):
-        phases, solves = milliseconds(options.scene, order, options.steps, options.set)
-        print(
-            f"N{order:<5} {solves:6d}"
-            + "".join(f"{value:11.2f}" for value in phases.values())
-            + f"{phases['other'] / phases['total']:8.1%}"
-        )
-
-
-if __name__ == "__main__":
-    main()
+@benchmark(
+    question="How does the cost of an iteration grow with unknowns and order?",
+    columns={"kind": "", "elements": "", "unknowns": "", "solves": "", **_MILLISECONDS},
+    plots=tuple(Plot("unknowns", phase, "kind") for phase in ("total", "solid", "factor", "contact")),
+)
+def cost_of_unknowns(quick: bool) -> Iterator[Row]:
+    """The first load step of the press, orders 1 to 5 along the contact on several meshes; milliseconds of CPU time per linear solve."""
+    meshes = ((4, 4, 2), (6, 6, 3), (8, 8, 4), (12, 12, 6))
+    for kind, mesh in product(("N1", "N2") if quick else ("N1", "N2", "N3", "N4", "N5"), meshes[:1] if quick else meshes):
+        found = phases(problem("press", kind, mesh), 1)
+        size: Row = {"elements": "x".join(map(str, mesh)), "unknowns": found.unknowns, "solves": found.solves}
+        yield {"kind": kind, **size, **milliseconds(found)}

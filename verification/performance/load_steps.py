@@ -1,25 +1,18 @@
-"""What larger load steps cost: convergence and accuracy of the monolithic method.
-
-    python verification/performance/load_steps.py [--scenes twist,iron] [--factors 1,2,4] [--set bodies.master.mesh.order=[3,3,2]]
-
-Every stage is run with its number of load steps divided by the factor (rounded up). For each run: linear solves per load step (median,
-most), cut increments, CPU seconds, and the largest deviation of force and moment of the moved body from the run with the scene's own
-load steps, at the load steps that both have, relative to the largest force and moment of that run. Friction makes the result depend on the
-path, so that the deviation falls with the load step but is not round-off.
-"""
+"""What larger load steps cost: convergence and accuracy of the monolithic method."""
 
 from __future__ import annotations
 
-import argparse
-import time
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from time import process_time
 
 import numpy as np
+from performance.problems import problem
 
 from isomortar.geometry.patch import FloatArray
+from isomortar.harness.bench import Row, benchmark
 from isomortar.model.entities import Motion, Problem
-from isomortar.scene import Scene
 from isomortar.solve.simulation import Simulation
 
 #: A load step by its stage and the share of the stage that is done.
@@ -37,6 +30,40 @@ class Run:
     seconds: float
 
 
+@benchmark(
+    question="What do larger load steps cost, in solves and in accuracy?",
+    columns={
+        "scene": "",
+        "larger": "",
+        "steps": "",
+        "median": "",
+        "most": "",
+        "solves": "",
+        "cuts": "",
+        "CPU": "s",
+        "force": "",
+        "moment": "",
+    },
+)
+def load_steps(quick: bool) -> Iterator[Row]:
+    """Every stage with its load steps divided by a factor, rounded up: linear solves per load step (median, most) and in all.
+
+    `force` and `moment` are the largest deviation of the moved body's from the run with the scene's own load steps, at the load steps that
+    both have, relative to the largest of that run. Friction makes the result depend on the path: the deviation falls
+    with the load step but is not round-off.
+    """
+    for scene in ("press",) if quick else ("twist", "iron"):
+        own = problem(scene, "N2", (4, 4, 2) if quick else None)
+        support = moved_support(own)
+        fine: Run | None = None
+        for factor in (1, 5) if quick else (1, 2, 4):
+            found = run(coarsened(own, factor), support)
+            fine = fine or found
+            deviations = {"force": deviation(found.force, fine.force), "moment": deviation(found.moment, fine.moment)}
+            counts = {"median": float(np.median(found.solves)), "most": max(found.solves), "solves": sum(found.solves), "cuts": found.cuts}
+            yield {"scene": scene, "larger": factor, "steps": len(found.solves), **counts, "CPU": found.seconds, **deviations}
+
+
 def coarsened(problem: Problem, factor: int) -> Problem:
     """The problem with load steps that are larger by a factor."""
     return replace(problem, stages=tuple(replace(stage, steps=-(-stage.steps // factor)) for stage in problem.stages))
@@ -44,9 +71,9 @@ def coarsened(problem: Problem, factor: int) -> Problem:
 
 def run(problem: Problem, support: int) -> Run:
     """Run to the end; a run that stops raises."""
-    start = time.process_time()
+    start = process_time()
     results = list(Simulation(problem).run())
-    seconds = time.process_time() - start
+    seconds = process_time() - start
     moments = [(k, Fraction(i + 1, stage.steps)) for k, stage in enumerate(problem.stages) for i in range(stage.steps)]
     reactions = [result.reactions[support] for result in results]
     return Run(
@@ -67,29 +94,3 @@ def deviation(coarse: dict[Moment, FloatArray], fine: dict[Moment, FloatArray]) 
 def moved_support(problem: Problem) -> int:
     """Number of the first support that moves."""
     return next(k for k, support in enumerate(problem.supports) if any(motion != Motion() for motion in support.motions))
-
-
-def main() -> None:
-    """Measure and print row by row."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--scenes", default="twist,iron")
-    parser.add_argument("--factors", default="1,2,4")
-    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE")
-    options = parser.parse_args()
-    print(f"{'scene':9s} {'larger':>6s} {'steps':>5s} {'median':>6s} {'most':>5s} {'cuts':>4s} {'CPU s':>7s} {'force':>9s} {'moment':>9s}")
-    for scene in options.scenes.split(","):
-        problem = Scene.load(scene, options.set).problem()
-        support = moved_support(problem)
-        fine: Run | None = None
-        for factor in (int(f) for f in options.factors.split(",")):
-            found = run(coarsened(problem, factor), support)
-            fine = fine or found
-            print(
-                f"{scene:9s} {factor:5d}x {len(found.solves):5d} {np.median(found.solves):6.1f} {max(found.solves):5d} {found.cuts:4d} "
-                f"{found.seconds:7.1f} {deviation(found.force, fine.force):9.1e} {deviation(found.moment, fine.moment):9.1e}",
-                flush=True,
-            )
-
-
-if __name__ == "__main__":
-    main()

@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 import isomortar
+from isomortar.cli.bench import bench
 from isomortar.cli.mutants import mutants
 from isomortar.cli.paper import paper
 from isomortar.cli.report import report
@@ -191,6 +192,7 @@ app.command()(verify)
 app.command()(bless)
 app.add_typer(report, name="report")
 app.command()(paper)
+app.command()(bench)
 app.command()(mutants)
 
 

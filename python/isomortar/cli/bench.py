@@ -1,0 +1,91 @@
+"""``isomortar bench``."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from datetime import datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from isomortar.cli.verification import CASES, FAILED
+
+if TYPE_CHECKING:
+    from isomortar.harness.bench import Row
+    from isomortar.harness.bench.processes import Outcome
+
+
+def bench(
+    names: Annotated[list[str] | None, typer.Argument(metavar="NAME", help="Benchmarks to run.", show_default="all")] = None,
+    quick: Annotated[bool, typer.Option("--quick", help="Only try them, on the smallest input: says nothing about speed.")] = False,
+    out: Annotated[Path, typer.Option(file_okay=False, help="Folder of page, numbers and history.")] = Path("results/bench"),
+    cases: Annotated[Path, typer.Option("--cases", file_okay=False, help="Folder above that of the benchmarks, performance/.")] = CASES,
+) -> None:
+    """Measure what isomortar costs: by phase, order and mesh, against the limits of the machine, and beside other programs.
+
+    The benchmarks stand in verification/performance/. Each runs in a process of its own with one thread, one after another, and is
+    written to bench.html and bench.json in the folder when it has ended; history.jsonl keeps all runs for the trend. Times are CPU
+    seconds. What the machine can do at most is measured before and after: where that changes, trust ratios only.
+
+    Programs that isomortar is compared with are used where they are installed; else their row says how to install them.
+
+    Exit code 1 if a benchmark did not come to its end. A limit that is missed is shown, and fails nothing.
+
+    For example:
+
+    - `isomortar bench`
+    - `isomortar bench factorisation solid_assembly`
+    - `isomortar bench --quick --out /tmp/tried`
+    """
+    from isomortar.harness.bench import collection, machine, processes, record
+
+    benchmarks = collection.select(collection.collect(cases), names or [])
+    console = Console(stderr=True, highlight=False)
+    run = record.Run(datetime.now().astimezone(), quick, machine.machine(), (machine.limits(),))
+
+    for benchmark in benchmarks:
+        console.print(f"{benchmark.name}: {benchmark.question}", style="bold", soft_wrap=True)
+        outcome = processes.run(benchmark, quick, lambda row: console.print(f"  {_line(row)}", markup=False, soft_wrap=True))
+        if outcome.failed:
+            console.print(outcome.cost.message, markup=False, style="red", soft_wrap=True)
+        run = replace(run, outcomes=(*run.outcomes, outcome))
+        record.add(out, run, outcome)
+        record.keep(out, run)
+    run = replace(run, limits=(*run.limits, machine.limits()))
+    record.keep(out, run)
+    for outcome in run.outcomes:
+        _print(outcome)
+    print(" -> ".join(f"dgemm {limits.dgemm:.1f} GF/s, triad {limits.triad:.1f} GB/s, load {limits.load:.1f}" for limits in run.limits))
+    print(out / record.PAGE)
+    if any(outcome.failed for outcome in run.outcomes):
+        raise typer.Exit(FAILED)
+
+
+def _line(row: Row) -> str:
+    """A row as it comes."""
+    from isomortar.harness.bench.page import text
+
+    return "  ".join(f"{name} {text(value)}" for name, value in row.items())
+
+
+def _print(outcome: Outcome) -> None:
+    """The table of a benchmark, and how its limits stand."""
+    from isomortar.harness.bench.declaration import NOTE
+    from isomortar.harness.bench.page import headings, text
+    from isomortar.harness.bench.verdicts import verdicts
+
+    benchmark, console = outcome.benchmark, Console(highlight=False)
+    table = Table(*headings(benchmark), title=benchmark.question, title_justify="left")
+    for row in outcome.rows:
+        table.add_row(*(text(row.get(name, "")) for name in benchmark.columns), end_section=False)
+    console.print(table)
+    for row in outcome.rows:
+        if NOTE in row:
+            console.print(f"{_line(row)}", markup=False, soft_wrap=True)
+    for verdict in verdicts(outcome):
+        style = {"met": "green", "missed": "red", "not measured": "yellow"}[verdict.state]
+        said = f"{verdict.column} {verdict.state}: {text(verdict.worst)} ({verdict.row}), at most {verdict.at_most:g}: {verdict.why}"
+        console.print(said, markup=False, style=style, soft_wrap=True)

@@ -1,0 +1,78 @@
+"""The machine: what it is, and what it can do at most at the moment, which other times are compared with.
+
+``python -m isomortar.harness.bench.machine`` measures in a process of its own.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import re
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+from scipy.linalg import blas
+
+from isomortar.harness.bench.declaration import cpu_seconds
+
+#: Rows of the matrices that are multiplied: three of them fill 24 MB.
+ROWS = 1000
+#: Entries of the vectors that are added: 128 MB each, above all caches.
+ENTRIES = 1 << 24
+#: The least of so many runs is the limit.
+_RUNS = 7
+
+
+@dataclass(frozen=True)
+class Machine:
+    """Model of the processor, number of cores, memory in bytes."""
+
+    processor: str
+    cores: int
+    memory: float
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What one core did at most, in CPU time: GF/s of dgemm, GB/s of y + a x; and how many processes wanted to run meanwhile."""
+
+    dgemm: float
+    triad: float
+    load: float
+
+
+def machine() -> Machine:
+    """What this machine is."""
+    try:
+        found = re.search(r"model name\s*: (.*)", Path("/proc/cpuinfo").read_text())
+    except OSError:
+        found = None
+    memory = float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
+    return Machine(found.group(1) if found else platform.processor(), os.cpu_count() or 1, memory)
+
+
+def dgemm_rate(rows: int = ROWS) -> float:
+    """GF/s of a product of square matrices by NumPy's linear algebra library."""
+    one, other = np.random.default_rng(1).standard_normal((2, rows, rows))
+    return float(2e-9 * rows**3 / cpu_seconds(lambda: one @ other, _RUNS)[1])
+
+
+def triad_rate(entries: int = ENTRIES) -> float:
+    """GB/s of y + a x in place: two vectors are read and one is written."""
+    x, y = np.ones((2, entries))
+    return float(24e-9 * entries / cpu_seconds(lambda: blas.daxpy(x, y, a=0.5), _RUNS)[1])
+
+
+def limits() -> Limits:
+    """Measure in a process of its own, with one thread."""
+    from isomortar.harness.bench.processes import fresh
+
+    with fresh(["-m", __name__]) as process:
+        said, _ = process.communicate()
+    return Limits(**json.loads(said))
+
+
+if __name__ == "__main__":
+    print(json.dumps(asdict(Limits(dgemm_rate(), triad_rate(), os.getloadavg()[0]))))

@@ -1,0 +1,120 @@
+"""Benchmarks in processes of their own: a fresh one each, with one thread of the linear algebra libraries.
+
+The process is ``python -m isomortar.harness.bench.processes FILE NAME [quick]``: it writes a row a line of JSON on its standard output, and
+last what the whole cost.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+import traceback
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from isomortar.harness.bench.declaration import Benchmark, Row
+from isomortar.harness.measurement import peak_memory
+
+#: One thread each: OpenBLAS, OpenMP, MKL.
+ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+#: Lines of the standard error that a crash is reported with.
+_LAST_WORDS = 30
+
+
+@dataclass(frozen=True)
+class Cost:
+    """What a whole benchmark took: CPU seconds, the most memory in bytes; and why it ended early, if it did."""
+
+    cpu_seconds: float = 0.0
+    peak_memory: float = 0.0
+    message: str = ""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """A benchmark with its rows. Those that came before a failure stand."""
+
+    benchmark: Benchmark
+    rows: tuple[Row, ...]
+    cost: Cost
+
+    @property
+    def failed(self) -> bool:
+        """Whether it ended before its end."""
+        return bool(self.cost.message)
+
+
+def fresh(arguments: Sequence[str], errors: Any = None) -> subprocess.Popen[str]:
+    """A Python process with one thread, whose standard output can be read.
+
+    Parameters
+    ----------
+    arguments : sequence of str
+        Of the interpreter.
+    errors : file, optional
+        Takes the standard error.
+    """
+    return subprocess.Popen(
+        [sys.executable, *arguments], env={**os.environ, **ONE_THREAD}, stdout=subprocess.PIPE, stderr=errors, text=True
+    )
+
+
+def run(benchmark: Benchmark, quick: bool, found: Callable[[Row], None]) -> Outcome:
+    """Run a benchmark in a process of its own; `found` is told of every row as it comes."""
+    rows: list[Row] = []
+    cost: Cost | None = None
+    with tempfile.TemporaryFile("w+") as errors:
+        arguments = ["-m", __name__, str(benchmark.path), benchmark.name, *(["quick"] if quick else [])]
+        with fresh(arguments, errors) as process:
+            try:
+                for line in process.stdout or ():
+                    entry = json.loads(line)
+                    if "cost" in entry:
+                        cost = Cost(**entry["cost"])
+                    else:
+                        rows.append(entry["row"])
+                        found(rows[-1])
+            except BaseException:  # Ctrl-C too: nothing goes on measuring behind
+                process.kill()
+                raise
+        errors.seek(0)
+        words = "\n".join(errors.read().splitlines()[-_LAST_WORDS:])
+    return Outcome(benchmark, tuple(rows), cost or Cost(message=f"{words}\nthe process ended with status {process.returncode}".strip()))
+
+
+def measure(benchmark: Benchmark, quick: bool, found: Callable[[Row], None]) -> Cost:
+    """Run a benchmark here and now."""
+    start, message = time.process_time(), ""
+    try:
+        for row in benchmark.function(quick):
+            found(_plain(benchmark.checked(row)))
+    except Exception:  # whatever a benchmark raises is its failure, not that of the run
+        message = traceback.format_exc()
+    return Cost(time.process_time() - start, peak_memory(), message)
+
+
+def _plain(row: Row) -> Row:
+    """Python's own numbers, which JSON knows."""
+    return {name: value.item() if isinstance(value, np.generic) else value for name, value in row.items()}
+
+
+def _main(path: str, name: str, *quick: str) -> None:
+    from isomortar.harness.bench.collection import benchmarks_of, select
+
+    answers = os.fdopen(os.dup(1), "w", buffering=1)
+    os.dup2(2, 1)  # what a benchmark prints must not get among the rows
+    (benchmark,) = select(benchmarks_of(Path(path)), [name])
+    cost = measure(benchmark, bool(quick), lambda row: print(json.dumps({"row": row}), file=answers))
+    print(json.dumps({"cost": asdict(cost)}), file=answers)
+
+
+if __name__ == "__main__":
+    _main(*sys.argv[1:])

@@ -1,0 +1,61 @@
+"""The project's own benchmarks come to their end on the smallest input. What they take is not judged."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+from isomortar.harness.bench.collection import collect
+from isomortar.harness.bench.processes import Outcome, run
+
+BENCHMARKS = {one.name: one for one in collect(Path(__file__).parents[2] / "verification")}
+
+
+def tried(name: str) -> Outcome:
+    return run(BENCHMARKS[name], True, lambda _: None)
+
+
+@pytest.mark.parametrize("name", ["cost_of_unknowns", "iteration_phases", "linear_solves", "load_steps", "memory", "solid_assembly"])
+def test_every_column_is_measured(name: str) -> None:
+    outcome = tried(name)
+    assert not outcome.failed, outcome.cost.message
+    assert outcome.rows
+    for row in outcome.rows:
+        assert set(row) == set(BENCHMARKS[name].columns)
+        assert all(math.isfinite(value) for value in row.values() if not isinstance(value, str))
+
+
+@pytest.mark.parametrize("name", ["block", "bulk"])
+def test_programs_that_are_there_do_the_same_work_and_others_say_how_to_get_them(name: str) -> None:
+    outcome = tried(name)
+    assert not outcome.failed, outcome.cost.message
+    measured = [row for row in outcome.rows if row.keys() & {"CPU", "solve"}]
+    assert all("not installed" in str(row["note"]) for row in outcome.rows if row not in measured)
+    assert "isomortar" in {row["program"] for row in measured}
+    for row in measured:
+        if name == "bulk":
+            assert float(row["difference"]) < 1e-10
+        else:  # other contact laws on a coarse mesh: some per cent; a wrong material, friction or load step is far off
+            own = next(one for one in measured if (one["stages"], one["program"]) == (row["stages"], "isomortar"))
+            assert float(row["normal force"]) == pytest.approx(float(own["normal force"]), rel=0.08)
+
+
+def test_phases_add_up() -> None:
+    (row,) = tried("iteration_phases").rows
+    parts = [float(row[phase]) for phase in ("solid", "projection", "contact", "factor", "solve", "other")]
+    assert min(parts) >= 0.0
+    assert sum(parts) == pytest.approx(float(row["total"]))
+    assert row["contact share"] == pytest.approx(100.0 * (parts[1] + parts[2]) / float(row["total"]))
+
+
+def test_solvers_that_are_there_solve_and_others_say_how_to_get_them() -> None:
+    outcome = tried("factorisation")
+    assert not outcome.failed, outcome.cost.message
+    for row in outcome.rows:
+        if "note" in row:
+            assert "install" in str(row["note"])
+        else:
+            assert float(row["residual"]) < 1e-8  # round-off times what pivots within a block lose; a wrong solve is of size one
+    assert {row["program"] for row in outcome.rows if "note" not in row} >= {"isomortar", "SciPy SuperLU"}

@@ -1,0 +1,187 @@
+"""A small block pressed onto a larger one and slid along it: isomortar beside GetFEM and CalculiX."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import sys
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from performance.peers import calculix
+from performance.peers.programs import DEBIAN_PYTHON, has_module, timed
+
+import isomortar
+from isomortar.harness.bench import Row, benchmark
+from isomortar.harness.bench.declaration import REPEATS
+from isomortar.model.numbering import Numbering
+from isomortar.scene import Scene
+
+#: The scene's bodies as NURBS of order 2 on the same elements.
+N2 = tuple(f"bodies.{body}.mesh.{key}" for body in ("slave", "master") for key in ("family=N", "order=[2,2,2]"))
+#: A coarse one with short load steps, for `quick`.
+COARSE = (
+    "bodies.slave.mesh.elements=[2,2,1]",
+    "bodies.master.mesh.elements=[3,3,2]",
+    "stages.press.steps=2",
+    "stages.press.motions.top.translate=[0,0,-0.1]",
+    "stages.slide.steps=2",
+    "stages.slide.motions.top.translate=[0.02,0,0]",
+)
+#: All that isomortar does before its first load step: imports, reading the scene, setting the system up.
+START_UP = """
+import sys
+import isomortar.cli.commands, isomortar.driver
+from isomortar.scene import Scene
+from isomortar.solve.simulation import Simulation
+Simulation(Scene.load("block", sys.argv[1:]).problem())
+"""
+
+
+def description(scene: Scene) -> dict[str, Any]:
+    """What the other programs have to know of the scene, in plain numbers that JSON holds."""
+    tables, problem = scene.tables, scene.problem()
+    (contact,), material = problem.contacts, problem.bodies[0].material
+    bodies = {
+        body.name: {
+            "lower": body.patch.control_points.min(axis=0).tolist(),
+            "upper": body.patch.control_points.max(axis=0).tolist(),
+            "elements": [direction.elements for direction in body.patch.directions],
+        }
+        for body in problem.bodies
+    }
+    return {
+        **bodies,
+        "bulk": material.bulk,
+        "shear": material.shear,
+        "friction": contact.friction,
+        "solid_points": problem.bodies[0].quadrature[0],
+        "contact_points": contact.quadrature[0],
+        "tolerance": problem.settings.newton_tolerance,
+        "stages": [{"steps": stage.steps, "translate": list(stage.motions["top"].translate)} for stage in tables.stages],
+    }
+
+
+def heading(scene: Scene, program: str, kind: str) -> Row:
+    """What a row is about. Unknowns are displacements of all control points or nodes, those at supports included."""
+    problem = scene.problem()
+    stages = ", ".join(stage.name for stage in problem.stages)
+    unknowns = 3 * Numbering(problem).count
+    return {"stages": stages, "program": program, "kind": kind, "unknowns": unknowns, "tolerance": problem.settings.newton_tolerance}
+
+
+def pressing(scene: Scene) -> str:
+    """The override that leaves a scene its first stage alone."""
+    first = scene.tables.stages[0]
+    return f'stages=[{{name="{first.name}", steps={first.steps}, motions.top.translate={list(first.motions["top"].translate)}}}]'
+
+
+def measured(solves: int, seconds: float, start_up: float, forces: Sequence[Sequence[float]]) -> dict[str, float | int | str]:
+    """What a run came to: its cost, its load steps, and the forces on the top after the last of them."""
+    ends = {"normal force": -forces[-1][2], "tangential force": forces[-1][0]} if forces else {}
+    return {"load steps": len(forces), "linear solves": solves, "CPU": seconds, "start-up": start_up, **ends}
+
+
+def isomortar_run(overrides: Sequence[str], repeats: int) -> Row:
+    """The program as a person calls it, results file and all."""
+    with tempfile.TemporaryDirectory() as folder:
+        output = Path(folder) / "block.h5"
+        settings = [argument for override in overrides for argument in ("--set", override)]
+        command = [sys.executable, "-m", "isomortar", "run", "block", "--quiet", "--overwrite", "--output", str(output), *settings]
+        finished, seconds = timed(command, repeats=repeats)
+        with isomortar.Results(output) as results:
+            forces = results.curve("force", support="top").tolist()
+            solves = int(results.counters()["solves"].sum())
+    _, start_up = timed([sys.executable, "-c", START_UP, *overrides], repeats=repeats)
+    row = measured(solves, seconds, start_up, forces)
+    if finished.status != 0:
+        row["note"] = f"forces and linear solves up to load step {len(forces)}, CPU of all tries; {finished.last_words}"
+    return row
+
+
+def getfem_run(problem: Mapping[str, Any], repeats: int) -> Row:
+    """GetFEM's Python interface."""
+    if not has_module(DEBIAN_PYTHON, "getfem"):
+        return {"note": "not installed: apt-get install python3-getfem"}
+    command = [DEBIAN_PYTHON, str(Path(__file__).parent / "peers" / "getfem_block.py")]
+    finished, seconds = timed(command, json.dumps(problem), repeats=repeats)
+    if finished.status != 0:
+        return {"note": finished.last_words}
+    _, start_up = timed(command, json.dumps({**problem, "stages": []}), repeats=repeats)
+    found = finished.answer()
+    return {
+        **measured(sum(found["solves"]), seconds, start_up, found["forces"]),
+        "note": found.get("ended", "what isomortar is compared with"),
+    }
+
+
+def calculix_run(problem: Mapping[str, Any], repeats: int) -> Row:
+    """CalculiX, from its input deck."""
+    if shutil.which("ccx") is None:
+        return {"note": "not installed: apt-get install calculix-ccx"}
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "block.inp").write_text(calculix.deck(problem))
+        (folder / "empty.inp").write_text(calculix.deck({**problem, "stages": []}))
+        finished, seconds = timed(["ccx", "-i", "block"], folder=folder, repeats=repeats)
+        _, start_up = timed(["ccx", "-i", "empty"], folder=folder, repeats=repeats)
+        forces = calculix.forces((folder / "block.dat").read_text(), problem["stages"])
+        solves = calculix.linear_solves((folder / "block.cvg").read_text())
+    said = "another volumetric energy, A1/2 (J - 1)^2; contact by a penalty"
+    said += f"; {finished.last_words}" if finished.status != 0 else ""
+    return {**measured(solves, seconds, start_up, forces), "note": said}
+
+
+def compared(row: Row, getfem: Row) -> Row:
+    """A row of isomortar with its CPU time as a share of GetFEM's, where both came to the end."""
+    if "note" in row:
+        return row
+    if getfem.get("load steps") != row["load steps"]:
+        return {**row, "note": f"GetFEM, to compare with: {getfem['note']}"}
+    return {**row, "of GetFEM": float(row["CPU"]) / float(getfem["CPU"])}
+
+
+@benchmark(
+    question="What does the same frictional contact problem cost in isomortar, GetFEM and CalculiX?",
+    columns={
+        "stages": "",
+        "program": "",
+        "kind": "",
+        "unknowns": "",
+        "tolerance": "",
+        "load steps": "",
+        "linear solves": "",
+        "CPU": "s",
+        "start-up": "s",
+        "normal force": "",
+        "tangential force": "",
+        "of GetFEM": "",
+    },
+    limits={"of GetFEM": (0.2, "CPU seconds of the whole process over GetFEM's on the same elements")},
+)
+def block(quick: bool) -> Iterator[Row]:
+    """The bundled scene `block`: a block pressed onto a larger one in 5 load steps, slid along it in 10; and the pressing alone.
+
+    All have the same boxes, elements (linear hexahedra; N2 on the same grid for isomortar), load steps, friction, and bound of the
+    relative residual, each in its own norm. GetFEM and isomortar have the same strain energy, and as many Gauss points where they are of
+    one order. What can not be made the same is how contact is enforced: mortar with multipliers (isomortar), multipliers with raytracing
+    (GetFEM), a penalty at integration points (CalculiX, which has another volumetric energy as well).
+
+    CPU is user and system time of the whole process, with one thread: starting, reading, computing, and writing what the program writes by
+    itself. Start-up, a part of it, is the same process without a load step: imports, reading, setting the system up. Unknowns are
+    displacements, those at supports included. Forces are those on the upper block's top after the last load step. The sharp edges are not
+    converged with the mesh: the forces say whether the programs do the same, not which is right.
+    """
+    coarse, repeats = (COARSE, 1) if quick else ((), REPEATS)
+    for only in ((pressing(Scene.load("block", coarse)),), ()):
+        linear = (*coarse, *only)
+        scene = Scene.load("block", linear)
+        problem = description(scene)
+        getfem = getfem_run(problem, repeats)
+        yield {**heading(scene, "GetFEM", "L1"), **getfem}
+        yield {**heading(scene, "CalculiX", "L1"), **calculix_run(problem, repeats)}
+        for kind, overrides in (("L1", linear), ("N2", (*N2, *linear))):
+            row = compared(isomortar_run(overrides, repeats), getfem)
+            yield {**heading(Scene.load("block", overrides), "isomortar", kind), **row}

@@ -1,0 +1,97 @@
+"""What the benchmarks run: scenes in other discretisations, their systems of equations, and their times in CPU seconds."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import islice
+from time import process_time
+from unittest.mock import patch
+
+import numpy as np
+from scipy import sparse
+
+from isomortar.geometry.patch import FloatArray
+from isomortar.harness.discretisations import Discretisation, overrides, sweep_of
+from isomortar.model.entities import Problem
+from isomortar.scene import Scene
+from isomortar.solve import timing
+from isomortar.solve.equilibrium import Equilibrium
+from isomortar.solve.simulation import Simulation
+from isomortar.solve.system import LinearSystem
+
+#: Size of the deformation of a body whose tangent is wanted, relative to its coordinates.
+STRAIN = 0.02
+
+
+@dataclass(frozen=True)
+class System:
+    """A linear system as Newton's method solves it."""
+
+    matrix: sparse.csr_array
+    right: FloatArray
+
+
+@dataclass(frozen=True)
+class Phases:
+    """CPU seconds by phase and in total, linear solves, and free unknowns of some load steps."""
+
+    seconds: dict[str, float]
+    solves: int
+    unknowns: int
+
+
+def problem(scene: str, kind: str, elements: tuple[int, int, int] | None = None, settings: Sequence[str] = ()) -> Problem:
+    """A bundled scene with its swept body in the discretisation of a kind, on the body's own elements or others."""
+    loaded = Scene.load(scene)
+    sweep = sweep_of(loaded)
+    u, v, w = elements or [d.elements for d in loaded.problem().body(sweep.body).patch.directions]
+    return Scene.load(scene, [*overrides(loaded, sweep, Discretisation(kind, (u, v, w))), *settings]).problem()
+
+
+def solid_block(order: int, elements: tuple[int, int, int]) -> Equilibrium:
+    """The block of the press alone, of one order in all directions, held at its top."""
+    mesh = "bodies.block.mesh"
+    settings = [f"{mesh}.order={[order] * 3}", f"{mesh}.elements={list(elements)}"]
+    return Equilibrium(Scene.load("press", settings).problem(), timing.Ledger())
+
+
+def deformed(equilibrium: Equilibrium) -> FloatArray:
+    """Positions of control points with a smooth deformation, shape (control points, 3)."""
+    x = equilibrium.numbering.reference
+    return x + STRAIN * np.sin(3.0 * x[:, [1, 2, 0]])
+
+
+def solid_system(equilibrium: Equilibrium, positions: FloatArray) -> LinearSystem:
+    """The linear system of the solid alone, assembled and factorised once."""
+    system = LinearSystem(len(equilibrium.supports.free), [equilibrium.solid_source], equilibrium.ledger)
+    system.factorise([equilibrium.solid.forces_and_tangent(positions)[1]])
+    return system
+
+
+def last_system(problem: Problem, steps: int) -> System:
+    """The last linear system that is solved in some load steps, multipliers included."""
+    solved: list[System] = []
+    solve = LinearSystem.solve
+
+    def note(system: LinearSystem, right: FloatArray) -> FloatArray:
+        solved[:] = [System(system.matrix().copy(), right.copy())]
+        return solve(system, right)
+
+    with patch.object(LinearSystem, "solve", note):
+        for _ in islice(Simulation(problem).run(), steps):
+            pass
+    return solved[0]
+
+
+def phases(problem: Problem, steps: int) -> Phases:
+    """Run some load steps and add up what they took; the solver's own clock is that of the wall, here it is set to CPU time."""
+    seconds: Counter[str] = Counter()
+    solves = 0
+    with patch.object(timing, "perf_counter", process_time):
+        simulation = Simulation(problem)
+        for result in islice(simulation.run(), steps):
+            seconds.update(result.timings)
+            solves += result.counters["factorisations"]
+    return Phases(dict(seconds), solves, len(simulation.equilibrium.supports.free))

@@ -1,0 +1,108 @@
+"""Instructions that the kernel takes for a fixed piece of work, counted by valgrind: unlike times they are the same on a busy machine."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Mapping
+from itertools import islice
+from pathlib import Path
+
+import numpy as np
+
+from isomortar.harness import Bound, Matches, case
+from isomortar.harness.cases import Claim
+from isomortar.scene import Scene
+from isomortar.solve.simulation import Simulation
+
+#: A small twist on a master of order 3: two deformable bodies with friction; its first two load steps, with contact in both.
+SCENE, STEPS = "twist", 2
+SETTINGS = (
+    "bodies.slave.mesh.elements=[2,2,2]",
+    "bodies.master.mesh.order=[3,3,2]",
+    "bodies.master.mesh.elements=[3,3,2]",
+    "stages.press.steps=4",
+)
+#: Routines of the kernel's interface by the work that they do, and those that count in `load steps` alone.
+WORK = {
+    "solid": ("add_body_",),
+    "projection": ("project_points_",),
+    "contact": ("control_quantities_", "augmented_multipliers_", "contact_forces_", "contact_blocks_", "multiplier_rows_"),
+    "factors": ("sparse_analyse_", "sparse_factorise_"),
+    "solves": ("sparse_solve_",),
+}
+OTHERS = ("slave_tables_", "surface_functions_", "condense_multipliers_", "find_places_", "add_values_", "sparse_release_")
+#: valgrind knows no AVX-512; and the routines that OpenBLAS takes must not depend on the machine.
+CORE = {"OPENBLAS_CORETYPE": "Haswell", "OPENBLAS_NUM_THREADS": "1", "PYTHONHASHSEED": "0"}
+#: Share by which a count may differ.
+SHARE = 0.02
+
+COUNTERS = ("callgrind",) if shutil.which("valgrind") else ("none",)
+
+
+def run() -> float:
+    """Do the work; returns what the forces of the two supports leave over, relative to either's."""
+    *_, last = islice(Simulation(Scene.load(SCENE, SETTINGS).problem()).run(), STEPS)
+    forces = np.array([reaction.force for reaction in last.reactions])
+    return float(np.linalg.norm(forces.sum(axis=0)) / np.linalg.norm(forces[0]))
+
+
+def count() -> dict[str, float]:
+    """Instructions by the work that they do, and of all routines of the kernel together."""
+    routines = [*(name for names in WORK.values() for name in names), *OTHERS]
+    with tempfile.TemporaryDirectory() as folder:
+        output = Path(folder) / "callgrind.out"
+        options = ["--tool=callgrind", f"--callgrind-out-file={output}", *(f"--toggle-collect={name}" for name in routines)]
+        # This file's folder is put on the path of the process.
+        command = ["valgrind", *options, sys.executable, "-c", "import instructions; instructions.run()"]
+        _finish(command, Path(__file__).parent)
+        said = _finish(["callgrind_annotate", "--inclusive=yes", "--threshold=100", str(output)], Path(folder))
+    found = {name: float(number.replace(",", "")) for number, name in re.findall(r"^ *([\d,]+)[^:\n]*:(\w+_) ", said, re.MULTILINE)}
+    total = re.search(r"^ *([\d,]+).* PROGRAM TOTALS", said, re.MULTILINE)
+    assert total, "callgrind_annotate prints totals"
+    counts = {work: sum(found[name] for name in names) for work, names in WORK.items()}
+    return {**counts, "load steps": float(total.group(1).replace(",", ""))}
+
+
+def _finish(command: list[str], folder: Path) -> str:
+    """Run a program to its end.
+
+    Raises
+    ------
+    RuntimeError
+        It failed: with its last words.
+    """
+    finished = subprocess.run(command, cwd=folder, env={**os.environ, **CORE}, capture_output=True, text=True)
+    if finished.returncode != 0:
+        raise RuntimeError(f"{command[0]} ended with status {finished.returncode}: {finished.stderr[-2000:]}")
+    return finished.stdout
+
+
+def claims(counter: str) -> Mapping[str, Claim]:
+    """Counts are compared where they are taken."""
+    balance: dict[str, Claim] = {
+        "imbalance": Bound(at_most=1e-7, reason="theory: equilibrium, to the tolerance of Newton's method times ten")
+    }
+    reason = (
+        "reference: counts of the same work repeat to far less than one per cent; a smaller one is to be blessed, lest it grow back unseen"
+    )
+    same: dict[str, Claim] = {name: Matches("instructions", reason, allowance=SHARE) for name in (*WORK, "load steps")}
+    return {**balance, **same} if counter == "callgrind" else balance
+
+
+@case(
+    claim="The kernel takes as many instructions for two load steps as it did, to two per cent, built with the compiler and the libraries "
+    "that the record of the reference names: after a change of those, bless anew. With counter=none there is no valgrind here "
+    "(apt-get install valgrind): no instructions are counted, nothing is said of them, and only the work's own result is judged.",
+    tier="nightly",
+    grid={"counter": COUNTERS},
+    bounds=claims,
+    scene=SCENE,
+)
+def instructions(counter: str) -> dict[str, float]:
+    """Run here for the result, then in a process under valgrind, which counts within the kernel's routines alone."""
+    return {"imbalance": run(), **(count() if counter == "callgrind" else {})}
