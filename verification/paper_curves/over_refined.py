@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from isomortar.geometry.patch import FloatArray
-from isomortar.harness import Bound, Curve, Matches, case
+from isomortar.harness import Bound, Matches, case
 from isomortar.harness.discretisations import Elements
 from isomortar.harness.measures import expected_order, reference_uncertainty
 from isomortar.harness.paper.plans import FULL
@@ -15,10 +15,11 @@ from isomortar.harness.paper.studies import Run, Study
 from isomortar.solve.simulation import Simulation
 
 #: By study: its highest order that is smooth enough, and three meshes, each twice as fine as the one before in the studied directions.
+#: Not the dragging force: its ripples follow the elements that the sharp rim of the slave leaves, and change by 5 % of the force from 10 to 20
+#: and from 20 to 40 elements of order 5 alike, with a slave of 10 x 10 elements of order 3 too.
 MESHES: dict[str, tuple[int, tuple[Elements, Elements, Elements]]] = {
     "press": (3, ((6, 6, 6), (12, 12, 6), (24, 24, 6))),
     "twist": (4, ((4, 4, 3), (8, 8, 3), (16, 16, 3))),
-    "iron": (5, ((10, 5, 3), (20, 5, 3), (40, 5, 3))),
     "tire": (3, ((32, 4, 4), (64, 4, 4), (128, 4, 4))),
 }
 STUDIES = {study.scene: study for study in FULL}
@@ -48,8 +49,7 @@ def settled(study: str) -> dict[str, Any]:
     coarse, medium, fine = (computed(STUDIES[study], order, elements) for elements in meshes)
     first, second = (float(np.abs(b - a).max() / np.abs(fine).max()) for a, b in ((coarse, medium), (medium, fine)))
     best = expected_order("force", order, slave_refined=study in ("press", "tire"))
-    steps = np.arange(1.0, len(fine) + 1)
     return {
-        "curve": Curve(steps, fine, "load step", STUDIES[study].quantity.label, log_y=False),
+        "curve": fine,
         "uncertainty": reference_uncertainty(first, second, best),
     }

@@ -40,7 +40,7 @@ class Settled:
 
 
 def settled_curves(references: Path) -> Mapping[str, Settled]:
-    """By scene; empty where the folder has no such reference.
+    """By scene, of those that have settled; empty where the folder has no such reference.
 
     Raises
     ------
@@ -50,7 +50,7 @@ def settled_curves(references: Path) -> Mapping[str, Settled]:
     if not (references / NAME / "record.toml").exists():
         return {}
     reference = Reference(references / NAME)
-    found = {scene: reference.dataset(DATASET.format(scene=scene)) for scene in ("press", "twist", "iron", "tire")}
+    found = {scene: reference.dataset(DATASET.format(scene=scene)) for scene in ("press", "twist", "tire")}
     return {
         scene: Settled(expected.values, float(expected.uncertainty.max() / np.abs(expected.values).max()))
         for scene, expected in found.items()

@@ -142,8 +142,9 @@ class Judgement:
 
     @property
     def state(self) -> State:
-        """The worst of the verdicts: a statement holds if it does by every method that it is judged on."""
-        return min((v.state for v in self.verdicts), key=STATES.index)
+        """The worst of the verdicts by methods whose runs came to their end; a method whose runs did not is shown beside it."""
+        measured = [v.state for v in self.verdicts if v.state != "not measured"]
+        return min(measured, key=STATES.index, default="not measured")
 
 
 def successive(runs: list[Outcome], measure: Callable[[Outcome], float]) -> dict[str, float]:
