@@ -37,7 +37,7 @@ def test_a_failed_run_keeps_what_had_converged_and_is_shown(tmp_path):
     assert found.failure.startswith(f"load step {found.steps + 1} (stage 'press') does not converge")
     assert 1 <= found.steps < found.total_steps == 8
     assert len(found.curve) == found.steps
-    assert found.numbers["solves"] > 0
+    assert found.numbers["tangents"] > 0
     report = Report(Outcomes((plan[0],), (found,)), (), 0, True, datetime.now().astimezone(), {})
     assert as_data(report)["runs"][0]["load_steps"] == [found.steps, 8]
     text = page(report, {"press": []})
@@ -68,6 +68,6 @@ def test_another_scene_text_has_another_results_file(tmp_path):
 
 def test_a_results_file_that_is_gone_is_asked_for_before_anything_runs(tmp_path):
     *_, cell = planned(tmp_path)
-    Store(tmp_path / "cells").put(cell, Measurement("measured", {"solves": 1.0}))
+    Store(tmp_path / "cells").put(cell, Measurement("measured", {"tangents": 1.0}))
     with pytest.raises(InputError, match="is gone; remove"):
         planned(tmp_path)

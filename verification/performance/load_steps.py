@@ -25,20 +25,20 @@ class Run:
 
     force: dict[Moment, FloatArray]
     moment: dict[Moment, FloatArray]
-    solves: list[int]
+    tangents: list[int]
     cuts: int
     seconds: float
 
 
 @benchmark(
-    question="What do larger load steps cost, in solves and in accuracy?",
+    question="What do larger load steps cost, in tangents and in accuracy?",
     columns={
         "scene": "",
         "larger": "",
         "steps": "",
         "median": "",
         "most": "",
-        "solves": "",
+        "tangents": "",
         "cuts": "",
         "CPU": "s",
         "force": "",
@@ -46,7 +46,7 @@ class Run:
     },
 )
 def load_steps(quick: bool) -> Iterator[Row]:
-    """Every stage with its load steps divided by a factor, rounded up: linear solves per load step (median, most) and in all.
+    """Every stage with its load steps divided by a factor, rounded up: tangents per load step (median, most) and in all.
 
     `force` and `moment` are the largest deviation of the moved body's from the run with the scene's own load steps, at the load steps that
     both have, relative to the largest of that run. Friction makes the result depend on the path: the deviation falls
@@ -60,8 +60,8 @@ def load_steps(quick: bool) -> Iterator[Row]:
             found = run(coarsened(own, factor), support)
             fine = fine or found
             deviations = {"force": deviation(found.force, fine.force), "moment": deviation(found.moment, fine.moment)}
-            counts = {"median": float(np.median(found.solves)), "most": max(found.solves), "solves": sum(found.solves), "cuts": found.cuts}
-            yield {"scene": scene, "larger": factor, "steps": len(found.solves), **counts, "CPU": found.seconds, **deviations}
+            counts = {"median": float(np.median(found.tangents)), "most": max(found.tangents), "tangents": sum(found.tangents), "cuts": found.cuts}
+            yield {"scene": scene, "larger": factor, "steps": len(found.tangents), **counts, "CPU": found.seconds, **deviations}
 
 
 def coarsened(problem: Problem, factor: int) -> Problem:
@@ -79,7 +79,7 @@ def run(problem: Problem, support: int) -> Run:
     return Run(
         dict(zip(moments, (reaction.force for reaction in reactions), strict=True)),
         dict(zip(moments, (reaction.moment for reaction in reactions), strict=True)),
-        [result.counters["solves"] for result in results],
+        [result.counters["factorisations"] for result in results],
         sum(result.cuts for result in results),
         seconds,
     )

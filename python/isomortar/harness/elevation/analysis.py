@@ -54,7 +54,7 @@ class Step:
     end: Discretisation
     unknowns: float
     cpu: float
-    solves: float
+    tangents: float
     roughness: dict[str, float]
     gains: dict[str, float]
     at_least: tuple[str, ...]
@@ -206,7 +206,7 @@ def _step(analysis: Analysis, way: str, start: Point, end: Point) -> Step:
         end.discretisation,
         end.unknowns / start.unknowns,
         end.numbers["cpu_seconds"] / start.numbers["cpu_seconds"],
-        end.numbers["solves"] / start.numbers["solves"],
+        end.numbers["tangents"] / start.numbers["tangents"],
         {m: end.roughness[m] / start.roughness[m] for m in analysis.curves},
         {m: start.errors[m] / left[m] if left[m] else math.inf for m in resolved},
         tuple(m for m in resolved if m in end.floor),

@@ -19,12 +19,12 @@ from isomortar.results import style
 _COSTS: tuple[tuple[str, Callable[[Point], float]], ...] = (
     ("unknowns", lambda p: p.unknowns),
     ("CPU seconds", lambda p: p.numbers["cpu_seconds"]),
-    ("linear solves", lambda p: p.numbers["solves"]),
+    ("tangents", lambda p: p.numbers["tangents"]),
 )
 
 
 def error_against_cost(analysis: Analysis, measure: str) -> str:
-    """Error in per cent, and below which it says nothing, against unknowns, CPU seconds and solves."""
+    """Error in per cent, and below which it says nothing, against unknowns, CPU seconds and tangents."""
     with page_style():
         figure, panels = _against_cost(analysis, lambda point: 100 * point.errors[measure], f"error of the {measure}, %")
         _floor(panels, 100 * analysis.uncertainty[measure])
@@ -32,7 +32,7 @@ def error_against_cost(analysis: Analysis, measure: str) -> str:
 
 
 def roughness_against_cost(analysis: Analysis, measure: str) -> str:
-    """Second-difference energy of a curve over that of the reference, against unknowns, CPU seconds and solves."""
+    """Second-difference energy of a curve over that of the reference, against unknowns, CPU seconds and tangents."""
     with page_style():
         figure, panels = _against_cost(analysis, lambda point: point.roughness[measure], f"roughness of the {measure}")
         for axes in panels:

@@ -86,6 +86,6 @@ def _run(point: Point) -> dict[str, Any]:
     row: dict[str, Any] = {"kind": chosen.kind, "elements": list(chosen.elements), "failure": point.failure or None}
     if point.failure:
         return row
-    scalars = {name: point.numbers[name] for name in ("control_points", "solves", "cuts", "cpu_seconds")}
+    scalars = {name: point.numbers[name] for name in ("control_points", "tangents", "cuts", "cpu_seconds")}
     curves = {name: point.numbers[name] for name in ("time", *CURVES)}
     return row | scalars | {"unknowns": point.unknowns, "errors": point.errors, "roughness": point.roughness, "floor": point.floor} | curves

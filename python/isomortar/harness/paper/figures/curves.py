@@ -68,14 +68,16 @@ def draw(lines: Sequence[Line], title: str, y_label: str) -> Picture:
 
 
 def _draw_differences(axes: Axes, lines: Sequence[Line], looks: Sequence[dict[str, Any]], reference: Line) -> None:
-    """How far the lines are off the reference, those that are within sight of it."""
+    """How far the lines are off the reference, those that are within sight of it: of those that go to the end at least two."""
     scale = max(float(np.abs(reference.values).max()), 1e-300)
     off = [100 * (line.values - np.interp(line.times, reference.times, reference.values)) / scale for line in lines]
     reach = [float(np.abs(values).max()) for values in off]
-    nearest = min((r for r, line in zip(reach, lines, strict=True) if not line.reference), default=0.0)
+    ended = max(line.times[-1] for line in lines)
+    reaches = sorted(r for r, line in zip(reach, lines, strict=True) if not line.reference and line.times[-1] == ended)
+    farthest = max([_FAR * reaches[0], *reaches[1:2]]) if reaches else max(reach)
     left_out = []
     for number, (line, drawn, values) in enumerate(zip(lines, looks, off, strict=True)):
-        if line.reference or reach[number] <= _FAR * nearest:
+        if line.reference or reach[number] <= farthest:
             axes.plot(line.times, values, markevery=_marks(len(line.times), number), **drawn)
         else:
             left_out.append(line.label)

@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from isomortar.geometry.patch import FloatArray
 
 #: Inches. `_BAR`: what the colour bar takes with its numbers and its label.
-_WIDTH, _WIDEST, _TITLE, _SPACE, _KEY, _BAR = 10.6, 6.2, 0.3, 0.12, 0.34, 1.25
+_WIDTH, _WIDEST, _TITLE, _SPACE, _KEY, _BAR = 10.6, 6.2, 0.3, 0.12, 0.34, 1.5
 _BAR_WIDTH, _LONGEST_BAR, _SHORTEST_BAR = 0.17, 4.2, 2.6
 
 #: Over the range of a colour bar: round-off does not go beyond it.
