@@ -15,8 +15,8 @@ from isomortar.harness.paper.studies import Run, Study
 from isomortar.solve.simulation import Simulation
 
 #: By study: its highest order that is smooth enough, and three meshes, each twice as fine as the one before in the studied directions.
-#: Not the dragging force: its ripples follow the elements that the sharp rim of the slave leaves, and change by 5 % of the force from 10 to 20
-#: and from 20 to 40 elements of order 5 alike, with a slave of 10 x 10 elements of order 3 too.
+#: Not the dragging force: its ripples follow the elements that the sharp rim of the slave leaves, and change by 5 % of the force from
+#: 10 to 20 and from 20 to 40 elements of order 5 alike, with a slave of 10 x 10 elements of order 3 too.
 MESHES: dict[str, tuple[int, tuple[Elements, Elements, Elements]]] = {
     "press": (3, ((6, 6, 6), (12, 12, 6), (24, 24, 6))),
     "twist": (4, ((4, 4, 3), (8, 8, 3), (16, 16, 3))),

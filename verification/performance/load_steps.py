@@ -60,7 +60,12 @@ def load_steps(quick: bool) -> Iterator[Row]:
             found = run(coarsened(own, factor), support)
             fine = fine or found
             deviations = {"force": deviation(found.force, fine.force), "moment": deviation(found.moment, fine.moment)}
-            counts = {"median": float(np.median(found.tangents)), "most": max(found.tangents), "tangents": sum(found.tangents), "cuts": found.cuts}
+            counts = {
+                "median": float(np.median(found.tangents)),
+                "most": max(found.tangents),
+                "tangents": sum(found.tangents),
+                "cuts": found.cuts,
+            }
             yield {"scene": scene, "larger": factor, "steps": len(found.tangents), **counts, "CPU": found.seconds, **deviations}
 
 

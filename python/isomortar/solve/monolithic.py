@@ -170,9 +170,7 @@ class Monolithic(Method):
             notes = (f"reversal of {sum(int(h.sum()) for h in held)}",)
         return iterate, correction, borders, notes
 
-    def _by_kept_factors(
-        self, iterate: Iterate, start: State, stiffness: float, borders: Sequence[Border | None]
-    ) -> Iterate | None:
+    def _by_kept_factors(self, iterate: Iterate, start: State, stiffness: float, borders: Sequence[Border | None]) -> Iterate | None:
         """The next iterate with the factors of an earlier tangent; None if these leave too much of the merit, or states change."""
         correction = solve_with_kept_factors(self._equilibrium, iterate.balance, iterate.targets, borders)
         try:
