@@ -18,7 +18,7 @@ from isomortar.model.solid import Solid
 from isomortar.model.supports import Supports
 from isomortar.solve.contact import Kinematics, PairMechanics
 from isomortar.solve.record import State
-from isomortar.solve.system import LinearSystem, Source, block_product
+from isomortar.solve.system import LinearSystem, Source, block_product, entries
 from isomortar.solve.timing import Ledger
 
 
@@ -167,7 +167,7 @@ class Equilibrium:
             or any(a is not b for a, b in zip(patterns, self._system_patterns, strict=True))
         ):
             if self._solid_entries is None:
-                self._solid_entries = self.solid_source.entries(len(self.supports.free))
+                self._solid_entries = entries([self.solid_source], len(self.supports.free))
             self._system = LinearSystem(size, sources, self.ledger, self._solid_entries)
             self._system_patterns = patterns
         return self._system

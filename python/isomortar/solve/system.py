@@ -27,18 +27,21 @@ class Source:
     column_of: IntArray
     transposed: bool = False
 
-    def entries(self, size: int) -> sparse.csr_array:
-        """Pattern of ones in the numbering of the system."""
-        blocks = len(self.pattern.column)
-        rows, columns = len(self.row_of), len(self.column_of)
-        ones = sparse.bsr_array(
-            (np.ones((blocks, 3, 3), dtype=np.int8), self.pattern.column, self.pattern.start), shape=(rows, columns)
-        ).tocoo()
-        row, column = self.row_of[ones.row], self.column_of[ones.col]
-        if self.transposed:
-            row, column = column, row
+    def places(self) -> tuple[IntArray, IntArray]:
+        """Rows and columns of the entries in the numbering of the system, without those that are dropped."""
+        rows, columns = self.row_of.reshape(-1, 3), self.column_of.reshape(-1, 3)
+        block_row = np.repeat(np.arange(len(rows)), np.diff(self.pattern.start))
+        row = np.broadcast_to(rows[block_row][:, :, None], (len(block_row), 3, 3)).ravel()
+        column = np.broadcast_to(columns[self.pattern.column][:, None, :], (len(block_row), 3, 3)).ravel()
         kept = (row >= 0) & (column >= 0)
-        return sparse.csr_array((ones.data[kept], (row[kept], column[kept])), shape=(size, size))
+        return (column[kept], row[kept]) if self.transposed else (row[kept], column[kept])
+
+
+def entries(sources: Sequence[Source], size: int) -> sparse.csr_array:
+    """Pattern of ones of several sources together, in the numbering of the system."""
+    places = [source.places() for source in sources]
+    row, column = (np.concatenate([place[k] for place in places]) for k in range(2))
+    return sparse.csr_array((np.ones(len(row), dtype=np.int8), (row, column)), shape=(size, size))
 
 
 class LinearSystem:
@@ -47,16 +50,17 @@ class LinearSystem:
     def __init__(self, size: int, sources: Sequence[Source], ledger: Ledger, known: sparse.csr_array | None = None) -> None:
         """`known` is the pattern of the first source in its own rows and columns, where it is at hand already."""
         self._ledger = ledger
-        total = sources[0].entries(size) if known is None else known.copy()
+        total = entries(sources[:1], size) if known is None else known.copy()
         total.resize((size, size))
-        for source in sources[1:]:
-            total = total + source.entries(size)
-        total = sparse.csr_array(total)
+        if len(sources) > 1:
+            total = sparse.csr_array(total + entries(sources[1:], size))
         total.sort_indices()
         self._start, self._column = total.indptr.astype(np.int64), total.indices.astype(np.int64)
-        self._places = [_bindings.find_places(s.pattern, s.row_of, s.column_of, s.transposed, self._start, self._column) for s in sources]
         self.values = np.zeros(len(self._column))
         with ledger.phase("factor"):
+            self._places = [
+                _bindings.find_places(s.pattern, s.row_of, s.column_of, s.transposed, self._start, self._column) for s in sources
+            ]
             self._factors = SparseLU(self._start, self._column, ordering="amd" if size < SMALL_SYSTEM else "metis")
         ledger.counts["analyses"] += 1
 
