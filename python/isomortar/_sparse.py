@@ -23,6 +23,9 @@ ORDERINGS = ("metis", "amd")
 _OK, _SINGULAR, _STALE_HANDLE, _OUT_OF_MEMORY = 0, 5, 6, 7
 
 
+Ordering = Literal["metis", "amd"]
+
+
 @dataclass(frozen=True)
 class FactorStatistics:
     """What the last factorisation cost.
@@ -71,16 +74,18 @@ class SparseLU:
 
     Attributes
     ----------
+    ordering : str
     rcond : float
         Estimate of the reciprocal condition (smallest over largest pivot) of the last matrix; NaN before the first.
     statistics : FactorStatistics or None
         What the last successful factorisation cost.
     """
 
-    def __init__(self, indptr: LongArray, indices: LongArray, *, ordering: Literal["metis", "amd"] = "metis") -> None:
+    def __init__(self, indptr: LongArray, indices: LongArray, *, ordering: Ordering = "metis") -> None:
         _check_pattern(indptr, indices)
         if ordering not in ORDERINGS:
             raise InputError(f"is {ordering!r}; allowed: {', '.join(ORDERINGS)}", "ordering")
+        self.ordering = ordering
         self.rcond = float("nan")
         self.statistics: FactorStatistics | None = None
         self._indptr, self._indices = indptr, indices
@@ -90,6 +95,11 @@ class SparseLU:
         _check_status(status, place)
         # Not at exit: a thread may still be at work, and the memory goes with the process.
         weakref.finalize(self, _kernel.sparse_release, self._handle).atexit = False
+
+    @property
+    def flops(self) -> float:
+        """Floating-point operations of the last successful factorisation; infinite before the first."""
+        return self.statistics.flops if self.statistics else float("inf")
 
     @property
     def unknowns(self) -> int:

@@ -12,7 +12,7 @@ from scipy.sparse.linalg import splu
 
 from isomortar._sparse import SparseLU
 from isomortar.geometry.patch import FloatArray
-from isomortar.solve.system import SMALL_SYSTEM
+from isomortar.solve.system import orderings
 
 
 class Solver(ABC):
@@ -43,9 +43,10 @@ class Isomortar(Solver):
     name = "isomortar"
 
     def analyse(self) -> None:
-        """Order."""
-        pattern = (np.asarray(index, dtype=np.int64) for index in (self.matrix.indptr, self.matrix.indices))
-        self._lu = SparseLU(*pattern, ordering="amd" if self.matrix.shape[0] < SMALL_SYSTEM else "metis")
+        """Order; where either ordering may be the faster, by what the first factors take."""
+        indptr, indices = (np.asarray(index, dtype=np.int64) for index in (self.matrix.indptr, self.matrix.indices))
+        rivals = [SparseLU(indptr, indices, ordering=name) for name in orderings(self.matrix.shape[0])]
+        self._lu = min((lu.factorise(self.matrix.data) for lu in rivals), key=lambda lu: lu.flops) if len(rivals) > 1 else rivals[0]
 
     def factorise(self) -> None:
         """Factorise."""

@@ -9,6 +9,7 @@ import numpy as np
 from scipy import sparse
 
 from isomortar._bindings import Law, Response
+from isomortar._sparse import Ordering
 from isomortar.errors import SingularSystemError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Problem
@@ -63,6 +64,7 @@ class Equilibrium:
         self._solid_entries: sparse.csr_array | None = None
         self._system: LinearSystem | None = None
         self._system_patterns: list[object] = []
+        self._orderings: dict[int, tuple[Ordering]] = {}  # by the number of sources: with each pair that is in contact the matrix differs
 
     def initial_state(self) -> State:
         """The reference configuration without contact."""
@@ -137,6 +139,7 @@ class Equilibrium:
             system.factorise(values)
         except SingularSystemError as error:
             raise self._name_singularity(error.place, system.rcond) from error
+        self._orderings[len(sources)] = (system.ordering,)
         return system.solve(right)
 
     def solve_again(self, right: FloatArray) -> FloatArray:
@@ -168,6 +171,7 @@ class Equilibrium:
         ):
             if self._solid_entries is None:
                 self._solid_entries = entries([self.solid_source], len(self.supports.free))
-            self._system = LinearSystem(size, sources, self.ledger, self._solid_entries)
+            tried = self._orderings.get(len(sources))
+            self._system = LinearSystem(size, sources, self.ledger, self._solid_entries, tried)
             self._system_patterns = patterns
         return self._system

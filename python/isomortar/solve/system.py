@@ -10,12 +10,18 @@ from scipy import sparse
 
 from isomortar import _bindings
 from isomortar._bindings import Pattern
-from isomortar._sparse import SparseLU
+from isomortar._sparse import Ordering, SparseLU
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.solve.timing import Ledger
 
-#: Systems with fewer unknowns are ordered by minimum degree, larger ones by nested dissection (measured: toolchain.md).
-SMALL_SYSTEM = 2000
+#: Systems with fewer unknowns than the first are ordered by minimum degree, with more than the second by nested dissection. In between
+#: either can take up to twice as long as the other: there the first matrix is factorised both ways.
+UNDOUBTED = (1000, 5000)
+
+
+def orderings(size: int) -> tuple[Ordering, ...]:
+    """Orderings to try for a system of so many unknowns."""
+    return (*(("amd",) if size <= UNDOUBTED[1] else ()), *(("metis",) if size >= UNDOUBTED[0] else ()))
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,8 +53,19 @@ def entries(sources: Sequence[Source], size: int) -> sparse.csr_array:
 class LinearSystem:
     """A system of a fixed pattern: analysed once, assembled, factorised and solved many times."""
 
-    def __init__(self, size: int, sources: Sequence[Source], ledger: Ledger, known: sparse.csr_array | None = None) -> None:
-        """`known` is the pattern of the first source in its own rows and columns, where it is at hand already."""
+    def __init__(
+        self,
+        size: int,
+        sources: Sequence[Source],
+        ledger: Ledger,
+        known: sparse.csr_array | None = None,
+        tried: Sequence[Ordering] | None = None,
+    ) -> None:
+        """Analyse the pattern of all sources together.
+
+        `known` is that of the first source in its own rows and columns, where it is at hand already. Of the orderings `tried` (default:
+        those of the size) the one is kept whose first factors take the fewest operations.
+        """
         self._ledger = ledger
         total = entries(sources[:1], size) if known is None else known.copy()
         total.resize((size, size))
@@ -61,8 +78,8 @@ class LinearSystem:
             self._places = [
                 _bindings.find_places(s.pattern, s.row_of, s.column_of, s.transposed, self._start, self._column) for s in sources
             ]
-            self._factors = SparseLU(self._start, self._column, ordering="amd" if size < SMALL_SYSTEM else "metis")
-        ledger.counts["analyses"] += 1
+            self._rivals = [SparseLU(self._start, self._column, ordering=name) for name in tried or orderings(size)]
+        ledger.counts["analyses"] += len(self._rivals)
 
     def factorise(self, sources: Sequence[FloatArray]) -> None:
         """Gather the values of all sources and factorise.
@@ -76,18 +93,25 @@ class LinearSystem:
             self.values[:] = 0.0
             for places, source in zip(self._places, sources, strict=True):
                 _bindings.add_values(places, source, self.values)
-            self._factors.factorise(self.values)
+            for factors in self._rivals:
+                factors.factorise(self.values)
+            self._rivals = [min(self._rivals, key=lambda factors: factors.flops)]
         self._ledger.counts["factorisations"] += 1
 
     @property
     def rcond(self) -> float:
         """Estimate of the reciprocal condition of the last factors."""
-        return self._factors.rcond
+        return self._rivals[0].rcond
+
+    @property
+    def ordering(self) -> Ordering:
+        """The ordering that was kept, after the first factors."""
+        return self._rivals[0].ordering
 
     def solve(self, right: FloatArray) -> FloatArray:
         """Solution for one right-hand side, shape (unknowns,)."""
         with self._ledger.phase("solve"):
-            solution = self._factors.solve(right, refine=0)
+            solution = self._rivals[0].solve(right, refine=0)
         self._ledger.counts["solves"] += 1
         return solution
 
