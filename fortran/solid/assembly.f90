@@ -17,7 +17,7 @@ module isomortar_solid_assembly
 
   !> Numbers that the tangents of a batch may hold, so that they are still in the cache when they are added: 1 MiB.
   integer, parameter :: batch_room = 2**17
-  !> Elements of the smallest batch, so that every thread has some.
+  !> Elements of the smallest batch; it has one for every thread at least.
   integer, parameter :: smallest_batch = 8
   !> Rows that stand together in a share.
   integer, parameter :: row_group = 8
@@ -87,13 +87,15 @@ contains
   end subroutine add_body
 
   !> Make room for a batch of elements of n functions.
-  pure subroutine reserve(n, elements, with_tangent, batch)
+  subroutine reserve(n, elements, with_tangent, batch)
     integer, intent(in) :: n, elements
     logical, intent(in) :: with_tangent
     type(element_t), allocatable, intent(out) :: batch(:)
-    integer :: k
+    integer :: k, least
 
-    allocate (batch(min(elements, max(smallest_batch, batch_room / (6 * n**2)))))
+    least = smallest_batch
+!$  least = max(least, omp_get_max_threads())
+    allocate (batch(min(elements, max(least, batch_room / (6 * n**2)))))
     do k = 1, size(batch)
       allocate (batch(k)%local(n), batch(k)%nodes(n), batch(k)%weight(n), batch(k)%forces(3, n))
       if (with_tangent) allocate (batch(k)%block(6 * n**2))

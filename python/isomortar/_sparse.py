@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 import weakref
 from dataclasses import dataclass
-from typing import Literal, Self
+from typing import Literal, Self, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,13 +17,13 @@ FloatArray = NDArray[np.float64]
 LongArray = NDArray[np.int64]
 
 #: Orderings on offer: METIS's nested dissection wins on large solids, approximate minimum degree on small contact-heavy systems.
-ORDERINGS = ("metis", "amd")
 
 # Status codes of fortran/base/status.f90 that the factorisation returns.
 _OK, _SINGULAR, _STALE_HANDLE, _OUT_OF_MEMORY = 0, 5, 6, 7
 
 
 Ordering = Literal["metis", "amd"]
+ORDERINGS: tuple[Ordering, ...] = get_args(Ordering)
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ import json
 import math
 import sys
 from collections.abc import Iterator
+from datetime import datetime
 from pathlib import Path
 
 import pytest
@@ -188,3 +189,10 @@ def test_history_survives_a_line_that_was_cut_short(tmp_path: Path) -> None:
     path.write_text('{"benchmark": "a", "rows": {"N2": {"time": 1.0}}}\n{"benchmark": "b", "rows": {}}\n{"benchm')
     assert history.read(path, "a").values("N2", "time") == [1.0]
     assert history.read(tmp_path / "none", "a").runs == ()
+    path.write_text(path.read_text() + "\n")
+    whole = len(path.read_text().splitlines())
+    path.write_text(path.read_text()[:-1])
+    ran = Outcome(declared([]), ({"kind": "N2", "time": 2.0},), Cost())
+    history.append(path, ran, datetime.now().astimezone())
+    assert len(path.read_text().splitlines()) == whole + 1
+    assert history.read(path, ran.benchmark.name).values("N2", "time") == [2.0]

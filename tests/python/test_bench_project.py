@@ -17,7 +17,9 @@ def tried(name: str) -> Outcome:
     return run(BENCHMARKS[name], True, lambda _: None)
 
 
-@pytest.mark.parametrize("name", ["cost_of_unknowns", "iteration_phases", "linear_solves", "load_steps", "memory", "solid_assembly"])
+@pytest.mark.parametrize(
+    "name", ["cost_of_unknowns", "iteration_phases", "linear_solves", "load_steps", "memory", "solid_assembly", "threads"]
+)
 def test_every_column_is_measured(name: str) -> None:
     outcome = tried(name)
     assert not outcome.failed, outcome.cost.message
@@ -48,6 +50,11 @@ def test_phases_add_up() -> None:
     assert min(parts) >= 0.0
     assert sum(parts) == pytest.approx(float(row["total"]))
     assert row["contact share"] == pytest.approx(100.0 * (parts[1] + parts[2]) / float(row["total"]))
+
+
+def test_every_benchmark_is_tried_here() -> None:
+    text = Path(__file__).read_text()
+    assert all(f'"{name}"' in text for name in BENCHMARKS)
 
 
 def test_solvers_that_are_there_solve_and_others_say_how_to_get_them() -> None:

@@ -6,6 +6,7 @@ from scipy import sparse
 
 from isomortar._bindings import Pattern
 from isomortar._sparse import SparseLU
+from isomortar.errors import SingularSystemError
 from isomortar.solve.system import LinearSystem, Source, orderings
 from isomortar.solve.timing import Ledger
 
@@ -47,6 +48,10 @@ def test_orderings_in_doubt_by_size(size: int, expected: set[str]) -> None:
     assert set(orderings(size)) == expected
 
 
+def refuse(*_: object, **__: object) -> SparseLU:
+    raise SingularSystemError("by this ordering", 0)
+
+
 def test_in_doubt_the_ordering_with_fewer_operations_is_kept() -> None:
     pattern, blocks = grid(8)
     n = 3 * (len(pattern.start) - 1)
@@ -60,6 +65,10 @@ def test_in_doubt_the_ordering_with_fewer_operations_is_kept() -> None:
     }
     assert rivals["amd"] != rivals["metis"]
     assert system.ordering == min(rivals, key=rivals.__getitem__)
+    refusing = LinearSystem(n, [Source(pattern, equation, equation)], Ledger())
+    refusing._rivals[["amd", "metis"].index(system.ordering)].factorise = refuse  # type: ignore[method-assign]
+    refusing.factorise([blocks])
+    assert refusing.ordering != system.ordering
     told = LinearSystem(n, [Source(pattern, equation, equation)], Ledger(), tried=("amd",))
     told.factorise([blocks])
     assert told.ordering == "amd"

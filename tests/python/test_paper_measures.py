@@ -75,7 +75,7 @@ def test_distance_from_an_over_refined_curve():
 
 def test_stored_curves_are_of_the_studies_and_settled_far_below_what_is_compared():
     found = settled_curves(Path(__file__).parents[2] / "reference_data")
-    assert set(found) == set(STUDIES)
+    assert set(found) == set(STUDIES) - {"iron"}
     for scene, settled in found.items():
         study = STUDIES[scene]
         assert len(settled.curve) == study.load(study.runs[0], "monolithic").problem().total_steps
@@ -151,6 +151,9 @@ def test_numbers_that_are_not_finite_are_not_measured():
     judged = smoother().judge(Outcomes((IRON,), tuple(runs)))
     assert judged.state == "not measured"
     assert "N3 / N2" in judged.verdicts[0].why
+    runs = dragged(N2=0.4, N3=0.2, N4=0.1, N5=0.05)
+    one = [outcome("N3", math.nan * STEPS, "paper") if (r.run.name, r.method) == ("N3", "paper") else r for r in runs]
+    assert smoother().judge(Outcomes((IRON,), tuple(one))).state == "not measured"  # its runs came to their end
 
 
 def test_of_lagrange_elements_those_that_ended_count_if_there_are_two():

@@ -85,6 +85,16 @@ def test_factors_are_kept_while_they_serve(method: str) -> None:
     np.testing.assert_allclose(one[-1].state.positions, other[-1].state.positions, atol=1e-8)
 
 
+@pytest.mark.parametrize("method", ["monolithic", "uzawa"])
+def test_iterations_by_kept_factors_do_not_count_as_tangents(method: str) -> None:
+    plain = run(small_iron(method=method))
+    loops = [a.iterations[1:] for r in plain for a in r.augmentations if r.cuts == 0]
+    needed = max(sum("kept factors" not in i.notes for i in loop) for loop in loops)
+    assert any(len(loop) > needed for loop in loops)
+    limited = run(small_iron(method=method, max_iterations=needed))
+    assert [r.cuts for r in limited] == [r.cuts for r in plain]
+
+
 def test_contact_conditions_after_every_step() -> None:
     problem = small_iron()
     for result in run(problem):

@@ -93,7 +93,7 @@ def isomortar_run(overrides: Sequence[str], repeats: int) -> Row:
         finished, seconds = timed(command, repeats=repeats)
         with isomortar.Results(output) as results:
             forces = results.curve("force", support="top").tolist()
-            solves = int(results.counters()["factorisations"].sum())
+            solves = int(results.counters()["solves"].sum())
     _, start_up = timed([sys.executable, "-c", START_UP, *overrides], repeats=repeats)
     row = measured(solves, seconds, start_up, forces)
     if finished.status != 0:

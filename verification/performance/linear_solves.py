@@ -22,7 +22,7 @@ KINDS = {"press": ("N2", "N3", "L2"), "twist": ("N2", "N3"), "iron": ("N2", "N3"
 
 
 @benchmark(
-    question="How many tangents does a load step take, each factorised once, by method?",
+    question="How many tangents does a load step take, by method?",
     columns={
         "scene": "",
         "kind": "",

@@ -37,7 +37,7 @@ WORK = {
 }
 OTHERS = ("slave_tables_", "surface_functions_", "condense_multipliers_", "find_places_", "add_values_", "sparse_release_")
 #: valgrind knows no AVX-512; and the routines that OpenBLAS takes must not depend on the machine.
-CORE = {"OPENBLAS_CORETYPE": "Haswell", "OPENBLAS_NUM_THREADS": "1", "PYTHONHASHSEED": "0"}
+CORE = {"OPENBLAS_CORETYPE": "Haswell", "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "PYTHONHASHSEED": "0"}
 #: Share by which a count may differ.
 SHARE = 0.02
 

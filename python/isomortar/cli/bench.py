@@ -38,7 +38,7 @@ def bench(
 
     - `isomortar bench`
     - `isomortar bench factorisation solid_assembly`
-    - `isomortar bench --quick --out /tmp/tried`
+    - `isomortar bench --quick --out results/tried`
     """
     from isomortar.harness.bench import collection, machine, processes, record
 
@@ -80,11 +80,11 @@ def _print(outcome: Outcome) -> None:
     benchmark, console = outcome.benchmark, Console(highlight=False)
     table = Table(*headings(benchmark), title=benchmark.question, title_justify="left")
     for row in outcome.rows:
-        table.add_row(*(text(row.get(name, "")) for name in benchmark.columns), end_section=False)
+        table.add_row(*(text(row.get(name, "")) for name in benchmark.columns))
     console.print(table)
     for row in outcome.rows:
         if NOTE in row:
-            console.print(f"{_line(row)}", markup=False, soft_wrap=True)
+            console.print(_line(row), markup=False, soft_wrap=True)
     for verdict in verdicts(outcome):
         style = {"met": "green", "missed": "red", "not measured": "yellow"}[verdict.state]
         said = f"{verdict.column} {verdict.state}: {text(verdict.worst)} ({verdict.row}), at most {verdict.at_most:g}: {verdict.why}"

@@ -117,7 +117,7 @@ class Stage:
     steps: int
 
 
-#: What helps Newton's method on the way to the solution (formulation.md Section 6); none changes the solution.
+#: What helps Newton's method on the way to the solution (formulation.md Section 6, but for keeping); none changes the solution.
 #: keeping: factors of an earlier tangent serve for as long as solves with them leave a small share of the residual. The others
 #: help the monolithic loop. forgiving: slip rows with the current traction in place of the cone's. margin: what slips at the
 #: start of an increment goes on slipping. reversal: predicted slip against its traction sticks instead. halving: updates that

@@ -56,7 +56,7 @@ STEP = {
     "step": _count("number of the load step, from 1 over all stages"),
     "stage": Quantity(TEXT, "text", "stage that the load step belongs to"),
     "time": _real("load step", "load time"),
-    "newton_order": _real("1", "observed order of Newton's method, median over the step's converged solves; NaN: too few iterations"),
+    "newton_order": _real("1", "observed order of Newton's method, median over the step's Newton loops; NaN: too few tangents"),
     "substeps": _count("load increments that the step was made of"),
     "cuts": _count("how often a load increment was cut"),
     "next_increment": _real("load step", "load increment that the step-size control tries next"),

@@ -260,7 +260,7 @@ class SolverTable(Table):
     max_augmentations: Count = _SOLVER.max_augmentations
     """Augmentations after which a load step is cut."""
     max_iterations: Count = _SOLVER.max_iterations
-    """Newton iterations after which a load step is cut."""
+    """Tangents of a Newton loop after which a load step is cut."""
     max_cuts: Annotated[int, Field(strict=True, ge=0)] = _SOLVER.max_cuts
     """How often a load step may be halved before the run ends."""
     measures: tuple[Measure, ...] = _SOLVER.measures

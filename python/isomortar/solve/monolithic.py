@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import count
 
 import numpy as np
 
@@ -70,19 +71,20 @@ class Monolithic(Method):
         visited = [iterate.elements]
         notes: tuple[str, ...] = ()
         borders: Sequence[Border | None] = ()
-        keep = False
-        for iteration in range(self._settings.max_iterations + 1):
+        keep, tangents = False, 0
+        for iteration in count():
             record = self._record(iteration, iterate, notes)
             log.append(record)
             self._observer.iteration(step, time, 1, record)
             if self._converged(iterate) and not (moves and iteration == 0):
                 return self._increment(iterate, log, stiffness)
-            if iteration == self._settings.max_iterations or not np.isfinite(iterate.merit):
-                break
             last, following = iterate, self._by_kept_factors(iterate, start, stiffness, borders) if keep else None
             if following is not None:
                 iterate, notes = following, (KEPT_FACTORS,)
+            elif tangents == self._settings.max_iterations or not np.isfinite(iterate.merit):
+                break
             else:
+                tangents += 1
                 if iteration == 0:
                     last, correction, borders, notes = self._predict(iterate, start, stiffness, prescribed)
                 else:

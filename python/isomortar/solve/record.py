@@ -113,7 +113,8 @@ class StepResult:
     augmentations : tuple of AugmentationRecord
         Iteration log, over all sub-steps.
     newton_order : float
-        Observed order of Newton's method, median over the converged solves of the step; NaN: too few iterations.
+        Observed order of Newton's method, median over the converged solves of the step; NaN: too few iterations with a
+        tangent of their own.
     substeps, cuts : int
         Load increments that the step was made of, and how often an increment was cut.
     next_increment : float

@@ -20,7 +20,7 @@ from isomortar.solve.uzawa import Uzawa
 _REASONS_TO_CUT = (ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError)
 
 
-#: Newton loops of at most this many linear solves let a cut load increment grow back; of this many make the next one shorter.
+#: Newton loops of at most this many tangents let a cut load increment grow back; of this many make the next one shorter.
 EASY_ITERATIONS, HARD_ITERATIONS = 12, 25
 
 _METHODS: dict[str, type[Method]] = {"monolithic": Monolithic, "uzawa": Uzawa}

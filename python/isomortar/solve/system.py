@@ -11,6 +11,7 @@ from scipy import sparse
 from isomortar import _bindings
 from isomortar._bindings import Pattern
 from isomortar._sparse import Ordering, SparseLU
+from isomortar.errors import SingularSystemError
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.solve.timing import Ledger
 
@@ -93,9 +94,15 @@ class LinearSystem:
             self.values[:] = 0.0
             for places, source in zip(self._places, sources, strict=True):
                 _bindings.add_values(places, source, self.values)
+            sound, refused = [], None
             for factors in self._rivals:
-                factors.factorise(self.values)
-            self._rivals = [min(self._rivals, key=lambda factors: factors.flops)]
+                try:
+                    sound.append(factors.factorise(self.values))
+                except SingularSystemError as error:  # by this ordering
+                    refused = refused or error
+            if refused and not sound:
+                raise refused
+            self._rivals = [min(sound, key=lambda factors: factors.flops)]
         self._ledger.counts["factorisations"] += 1
 
     @property

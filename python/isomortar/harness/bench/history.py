@@ -39,8 +39,9 @@ def append(path: Path, outcome: Outcome, when: datetime) -> None:
     rows = {label(row): {name: value for name, value in row.items() if isinstance(value, float)} for row in outcome.rows}
     entry = {"when": when.isoformat(timespec="seconds"), "program": program_hash()[:12], "benchmark": outcome.benchmark.name, "rows": rows}
     path.parent.mkdir(parents=True, exist_ok=True)
+    torn = path.exists() and not path.read_bytes().endswith(b"\n")
     with path.open("a") as file:
-        file.write(json.dumps(entry) + "\n")
+        file.write("\n" * torn + json.dumps(entry) + "\n")
 
 
 def read(path: Path, name: str) -> Trend:

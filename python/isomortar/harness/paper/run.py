@@ -32,7 +32,7 @@ from isomortar.scene.scene import Scene
         "traction": Shown("root mean square of the covariant control tractions by surface direction, shape (steps, 2)"),
         "traction_norm": Shown("root mean square of the lengths of the control tractions, shape (steps,)"),
         "control_points": Shown("of all bodies"),
-        "tangents": Bound(at_least=1, reason="definition: tangents of all load steps, each factorised once"),
+        "tangents": Bound(at_least=1, reason="definition: tangents of all load steps, factorised"),
         "augmentations": Shown("of all load steps; one an increment where multipliers are unknowns"),
         "cuts": Shown("load increments that were cut"),
         "seconds": Shown("wall clock of the recorded load steps, also of those before a kill"),

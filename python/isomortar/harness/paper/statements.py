@@ -143,8 +143,8 @@ class Judgement:
     @property
     def state(self) -> State:
         """The worst of the verdicts by methods whose runs came to their end; a method whose runs did not is shown beside it."""
-        measured = [v.state for v in self.verdicts if v.state != "not measured"]
-        return min(measured, key=STATES.index, default="not measured")
+        ended = [v.state for v in self.verdicts if v.state != "not measured" or v.values]
+        return min(ended, key=STATES.index, default="not measured")
 
 
 def successive(runs: list[Outcome], measure: Callable[[Outcome], float]) -> dict[str, float]:
