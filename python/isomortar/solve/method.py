@@ -21,7 +21,12 @@ class Increment:
 
     @property
     def iterations(self) -> int:
-        """Tangents of the longest Newton loop."""
+        """Linear solves of the longest Newton loop."""
+        return max(len(record.iterations) - 1 for record in self.augmentations)
+
+    @property
+    def tangents(self) -> int:
+        """Tangents of the Newton loop with the most of them."""
         loops = (record.iterations[1:] for record in self.augmentations)
         return max(sum(KEPT_FACTORS not in iteration.notes for iteration in loop) for loop in loops)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -20,8 +20,8 @@ from isomortar.solve.uzawa import Uzawa
 _REASONS_TO_CUT = (ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError)
 
 
-#: Newton loops of at most this many tangents let a cut load increment grow back; of this many make the next one shorter.
-EASY_ITERATIONS, HARD_ITERATIONS = 12, 25
+#: Newton loops of at most this many linear solves let a cut load increment grow back; of this many tangents make the next one shorter.
+EASY_ITERATIONS, HARD_TANGENTS = 12, 25
 
 _METHODS: dict[str, type[Method]] = {"monolithic": Monolithic, "uzawa": Uzawa}
 
@@ -93,7 +93,7 @@ class Simulation:
             for part in parts:
                 log += part.augmentations
                 orders += [order for order in part.orders if np.isfinite(order)]
-            self._grow(increment, max(part.iterations for part in parts))
+            self._grow(increment, parts)
         return self._result(step, state, parts[-1].balance, tuple(log), orders, substeps, cuts)
 
     def _advance(self, state: State, time: float, target: float, step: int) -> list[Increment]:
@@ -120,11 +120,11 @@ class Simulation:
                 worst = max(worst, float(np.linalg.norm(a.pressure - b.pressure)) / pressure, float(traction) / size if size else 0.0)
         return worst
 
-    def _grow(self, increment: float, iterations: int) -> None:
-        """The next load increment: longer after few iterations, shorter after many, a recorded step at the most."""
-        if iterations <= EASY_ITERATIONS:
+    def _grow(self, increment: float, parts: Sequence[Increment]) -> None:
+        """The next load increment: longer after few linear solves, shorter after many tangents, a recorded step at the most."""
+        if max(part.iterations for part in parts) <= EASY_ITERATIONS:
             self._increment = min(1.0, 2.0 * increment)
-        elif iterations >= HARD_ITERATIONS:
+        elif max(part.tangents for part in parts) >= HARD_TANGENTS:
             self._increment = 0.5 * increment
         else:
             self._increment = min(1.0, max(increment, self._increment))

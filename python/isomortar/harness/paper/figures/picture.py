@@ -15,6 +15,8 @@ from isomortar.results.reader import Results
 from isomortar.results.style import style
 
 _DPI_OF_PAGE, _DPI_OF_FILE = 140, 300
+#: Width of a plot on the page for an inch of the figure.
+_PIXELS_OF_PAGE = 108
 
 
 @dataclass(frozen=True)
@@ -50,7 +52,8 @@ def plot(figure: Figure, title: str) -> Picture:
     """A picture of lines."""
     with page_style():
         text = svg_text(figure, title)
-    label = f'<svg role="img" aria-label="{escape(title, quote=True)}"'
+    width = _PIXELS_OF_PAGE * figure.get_figwidth()  # so that letters are of one size on the page
+    label = f'<svg role="img" style="width: {width:.0f}px" aria-label="{escape(title, quote=True)}"'
     return Picture(text.replace("<svg", label, 1), figure, vector=True)
 
 
