@@ -7,7 +7,7 @@ elements and the integrals are not segmented: what is left is the error of that 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.interpolate import BSpline
@@ -132,7 +132,8 @@ def nested_bounds(slave_order: int, master_order: int, tilt: float) -> dict[str,
 def uniform_pressure_nested(slave_order: int, master_order: int, tilt: float) -> dict[str, float]:
     """Error of the pressure field, master of one element per slave element."""
     given = problem(slave_order, master_order, tilt, slave_order + master_order + 1, SLAVE_ELEMENTS)
-    return {"pressure": errors(given).field}
+    settings = replace(given.settings, measures=())  # a tangent for every solve: the last one goes far below the tolerance
+    return {"pressure": errors(replace(given, settings=settings)).field}
 
 
 def default_rule(slave_order: int, master_order: int) -> tuple[int, int]:
