@@ -1,52 +1,53 @@
 ! What Python sees of the sparse LU (see isomortar_sparse_factorisation). Compressed rows, 0-based; status code last.
 ! `sparse_factorise` and `sparse_solve` run without Python's lock: one call at a time for one handle.
 
-!> Order and analyse a pattern; `by_metis` 1: METIS, 0: AMD.
-subroutine sparse_analyse(n, nnz, indptr, indices, by_metis, handle, place, status)
-  use iso_c_binding, only: c_int, c_int64_t
+!> Order and analyse a pattern; `by_metis` 1: METIS, 0: AMD. `narrow` 1: indices of 32 bits, where the estimate of the factors is
+!> at most `narrow_limit` bytes; 0: of 64.
+subroutine sparse_analyse(n, nnz, indptr, indices, by_metis, narrow_limit, handle, narrow, place, status)
+  use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_sparse_factorisation, only: analyse
   implicit none
   integer(c_int64_t), intent(in) :: n, nnz
   integer(c_int64_t), intent(in) :: indptr(n + 1), indices(nnz)
   integer(c_int), intent(in) :: by_metis
+  real(c_double), intent(in) :: narrow_limit
   integer(c_int64_t), intent(out) :: handle, place
-  integer(c_int), intent(out) :: status
+  integer(c_int), intent(out) :: narrow, status
+  logical :: is_narrow
 
-  call analyse(indptr, indices, by_metis == 1, handle, place, status)
+  call analyse(indptr, indices, by_metis == 1, narrow_limit, handle, is_narrow, place, status)
+  narrow = merge(1, 0, is_narrow)
 end subroutine sparse_analyse
 
 !> Factorise a matrix of the pattern analysed; when singular, `place` is the unknown that is determined least.
-recursive subroutine sparse_factorise(handle, n, nnz, indptr, indices, values, rcond_min, rcond, flops, peak_bytes, &
-  factor_entries, place, status)
+recursive subroutine sparse_factorise(handle, nnz, values, rcond_min, rcond, flops, peak_bytes, factor_entries, place, status)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_sparse_factorisation, only: factorise
   implicit none
   !f2py threadsafe
-  integer(c_int64_t), intent(in) :: handle, n, nnz
-  integer(c_int64_t), intent(in) :: indptr(n + 1), indices(nnz)
+  integer(c_int64_t), intent(in) :: handle, nnz
   real(c_double), intent(in) :: values(nnz), rcond_min
   real(c_double), intent(out) :: rcond, flops, peak_bytes, factor_entries
   integer(c_int64_t), intent(out) :: place
   integer(c_int), intent(out) :: status
 
-  call factorise(handle, indptr, indices, values, rcond_min, rcond, flops, peak_bytes, factor_entries, place, status)
+  call factorise(handle, values, rcond_min, rcond, flops, peak_bytes, factor_entries, place, status)
 end subroutine sparse_factorise
 
 !> Solve for several right-hand sides with at most `refine` steps of refinement each.
-recursive subroutine sparse_solve(handle, n, nnz, columns, indptr, indices, values, b, refine, x, place, status)
+recursive subroutine sparse_solve(handle, n, nnz, columns, values, b, refine, x, place, status)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_sparse_factorisation, only: solve
   implicit none
   !f2py threadsafe
   integer(c_int64_t), intent(in) :: handle, n, nnz, columns
-  integer(c_int64_t), intent(in) :: indptr(n + 1), indices(nnz)
   real(c_double), intent(in) :: values(nnz), b(n, columns)
   integer(c_int), intent(in) :: refine
   real(c_double), intent(out) :: x(n, columns)
   integer(c_int64_t), intent(out) :: place
   integer(c_int), intent(out) :: status
 
-  call solve(handle, indptr, indices, values, b, refine, x, place, status)
+  call solve(handle, values, b, refine, x, place, status)
 end subroutine sparse_solve
 
 !> Free what a handle owns.

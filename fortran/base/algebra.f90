@@ -33,11 +33,12 @@ contains
   pure function inverse(a, det) result(b)
     real(wp), intent(in) :: a(3, 3)
     real(wp), intent(in) :: det
-    real(wp) :: b(3, 3)
+    real(wp) :: b(3, 3), scale
 
-    b(1, :) = cross(a(:, 2), a(:, 3)) / det
-    b(2, :) = cross(a(:, 3), a(:, 1)) / det
-    b(3, :) = cross(a(:, 1), a(:, 2)) / det
+    scale = 1.0_wp / det
+    b(1, :) = cross(a(:, 2), a(:, 3)) * scale
+    b(2, :) = cross(a(:, 3), a(:, 1)) * scale
+    b(3, :) = cross(a(:, 1), a(:, 2)) * scale
   end function inverse
 
   !> Inverse of a 2x2 matrix.

@@ -80,11 +80,12 @@ contains
   !> Derivatives by the parameters of a rational field, from those of its denominator and numerators: (component, parameter).
   pure function quotient(denominator, numerator) result(slope)
     real(wp), intent(in) :: denominator(4), numerator(3, 4)
-    real(wp) :: slope(3, 3)
+    real(wp) :: slope(3, 3), scale
     integer :: d
 
+    scale = 1.0_wp / denominator(1)
     do d = 1, 3
-      slope(:, d) = (numerator(:, 1 + d) - numerator(:, 1) * (denominator(1 + d) / denominator(1))) / denominator(1)
+      slope(:, d) = (numerator(:, 1 + d) - numerator(:, 1) * (denominator(1 + d) * scale)) * scale
     end do
   end function quotient
 

@@ -12,11 +12,20 @@ import scipy.sparse.linalg as spl
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from isomortar import _kernel
+from isomortar import _kernel, _sparse
 from isomortar._sparse import ORDERINGS, SparseLU
 from isomortar.errors import InputError, KernelError, SingularSystemError
 
 STALE_HANDLE = 6
+
+
+@pytest.fixture(autouse=True, scope="module", params=[32, 64], ids=["narrow", "wide"])
+def index_bits(request):
+    """Everything holds with either width of indices."""
+    with pytest.MonkeyPatch.context() as patched:
+        if request.param == 64:
+            patched.setattr(_sparse, "NARROW_LIMIT", 0.0)
+        yield request.param
 
 
 def compressed(matrix):
@@ -80,6 +89,21 @@ def test_solution_is_that_of_scipy(ordering, n, seed, density, refine):
     x = factorised(matrix, ordering=ordering).solve(b, refine=refine)
     expected = spl.spsolve(sp.csc_array(matrix), b)
     np.testing.assert_allclose(x, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
+
+
+def test_indices_have_the_width_that_the_factors_need(index_bits):
+    matrix = held(block_of_elements(3, 3, 3), np.arange(48))
+    assert factorised(matrix).index_bits == index_bits
+
+
+def test_either_width_gives_the_same_bits(monkeypatch):
+    matrix = held(block_of_elements(4, 4, 4), np.arange(75))
+    b = np.random.default_rng(6).standard_normal(matrix.shape[0])
+    solutions = []
+    for limit in (0.0, 2.0**30):
+        monkeypatch.setattr(_sparse, "NARROW_LIMIT", limit)
+        solutions.append(factorised(matrix).solve(b))
+    np.testing.assert_array_equal(*solutions)
 
 
 def test_several_right_hand_sides_are_solved_one_by_one():
@@ -272,16 +296,16 @@ def test_empty_rows_are_singular_not_broken():
 
 def test_stale_handles_return_a_status():
     indptr, indices, values = compressed(sp.eye_array(5))
-    handle, _, status = _kernel.sparse_analyse(indptr, indices, 1)
+    handle, _, _, status = _kernel.sparse_analyse(indptr, indices, 1, _sparse.NARROW_LIMIT)
     assert status == 0
-    assert _kernel.sparse_solve(handle, indptr, indices, values, np.ones((5, 1), order="F"), 0)[-1] == STALE_HANDLE  # no factors yet
+    assert _kernel.sparse_solve(handle, values, np.ones((5, 1), order="F"), 0)[-1] == STALE_HANDLE  # no factors yet
     assert _kernel.sparse_release(handle) == 0
-    again, _, _ = _kernel.sparse_analyse(indptr, indices, 1)
+    again, *_ = _kernel.sparse_analyse(indptr, indices, 1, _sparse.NARROW_LIMIT)
     assert again != handle  # the slot is used again, the handle is not
     for stale in (handle, 0, -1, 7, 2**62):
         assert _kernel.sparse_release(stale) == STALE_HANDLE
-        assert _kernel.sparse_factorise(stale, indptr, indices, values, 0.0)[-1] == STALE_HANDLE
-        assert _kernel.sparse_solve(stale, indptr, indices, values, np.ones((5, 1), order="F"), 0)[-1] == STALE_HANDLE
+        assert _kernel.sparse_factorise(stale, values, 0.0)[-1] == STALE_HANDLE
+        assert _kernel.sparse_solve(stale, values, np.ones((5, 1), order="F"), 0)[-1] == STALE_HANDLE
     assert _kernel.sparse_release(again) == 0
 
 

@@ -1,9 +1,8 @@
 """The command line ``isomortar``."""
 
-import os
+from isomortar._process import own_process
 
-# Before anything loads it: threads of the linear algebra library do not make the solves faster, and get in the way of the assembly's.
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+own_process()
 
 from isomortar.cli.commands import main
 

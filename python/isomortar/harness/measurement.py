@@ -14,6 +14,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from isomortar._process import give_back_memory
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness.cases import Cell, Curve, SkippedError
 from isomortar.harness.orders import Convergence
@@ -69,6 +70,7 @@ def measure(cell: Cell) -> Measurement:
 
 def forget_peak_memory() -> None:
     """Let the peak begin anew, where the system can (Linux); elsewhere it is that of the process so far."""
+    give_back_memory()
     with contextlib.suppress(OSError):
         Path("/proc/self/clear_refs").write_text("5")
 

@@ -22,6 +22,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
+from isomortar._process import own_process
 from isomortar.harness.cases import TIMEOUTS, Cell
 from isomortar.harness.measurement import Measurement
 
@@ -125,6 +126,7 @@ def _serve() -> None:
     from isomortar.harness.measurement import measure
     from isomortar.harness.store import sources_hash
 
+    own_process()
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a case prints must not get among the answers
     tasks: queue.SimpleQueue[str] = queue.SimpleQueue()

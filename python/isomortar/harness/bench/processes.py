@@ -20,6 +20,7 @@ from typing import Any
 
 import numpy as np
 
+from isomortar._process import own_process
 from isomortar.harness.bench.declaration import Benchmark, Row
 from isomortar.harness.measurement import peak_memory
 
@@ -109,6 +110,7 @@ def _plain(row: Row) -> Row:
 def _main(path: str, name: str, *quick: str) -> None:
     from isomortar.harness.bench.collection import benchmarks_of, select
 
+    own_process()
     answers = os.fdopen(os.dup(1), "w", buffering=1)
     os.dup2(2, 1)  # what a benchmark prints must not get among the rows
     (benchmark,) = select(benchmarks_of(Path(path)), [name])

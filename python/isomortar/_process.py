@@ -1,0 +1,30 @@
+"""Settings of a process that is isomortar's own; as a library it leaves its host's as they are."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+
+# Parameters of glibc's mallopt.
+_M_TRIM_THRESHOLD, _M_MMAP_MAX = -1, -4
+
+
+def own_process() -> None:
+    """Set up a process before it loads the kernel.
+
+    One thread for the linear algebra library: more do not make the solves faster, and get in the way of the assembly's. And memory that
+    is freed stays with the process: factors and matrices come and go, and pages that the system has to find and clear anew each time
+    are up to a quarter of a factorisation. Where the C library is not glibc, only the first.
+    """
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    library = ctypes.CDLL(None)
+    if hasattr(library, "mallopt"):
+        library.mallopt(_M_MMAP_MAX, 0)
+        library.mallopt(_M_TRIM_THRESHOLD, -1)
+
+
+def give_back_memory() -> None:
+    """Return what is freed to the system, where the C library is glibc."""
+    library = ctypes.CDLL(None)
+    if hasattr(library, "malloc_trim"):
+        library.malloc_trim(0)
