@@ -117,7 +117,8 @@ contains
       before = (e - 1) * size(pending)
       pending = projections%found(before + 1:before + size(pending))
       do while (any(pending))
-        together = pending .and. same_element(projections%place(:, before + 1:before + size(pending)), first_of(pending))
+        k = findloc(pending, .true., dim=1)
+        together = pending .and. same_element(projections%place(:, before + 1:before + size(pending)), k)
         pending = pending .and. .not. together
         batch%count = 0
         do k = 1, size(together)
@@ -132,13 +133,6 @@ contains
       end do
     end do
   end subroutine integrate_blocks
-
-  !> Number of the first that is true.
-  pure integer function first_of(flags)
-    logical, intent(in) :: flags(:)
-
-    first_of = findloc(flags, .true., dim=1)
-  end function first_of
 
   !> Which places are the same as place k.
   pure function same_element(places, k) result(same)

@@ -163,8 +163,8 @@ contains
     type(variations_t), intent(in) :: variations
     real(wp), intent(in) :: scale
     real(wp), intent(inout) :: form(:, :)
-    real(wp) :: slope(9, 2), turned(9, 2), xi(9, 2)
-    integer :: a, b
+    real(wp) :: lifted(9, 2), slope(9, 2), turned(9, 2), xi(9, 2)
+    integer :: a
 
     xi = variations%projection(1:9, :)
     slope = 0.0_wp
@@ -172,12 +172,11 @@ contains
       slope(components(1 + a), a) = point%normal
     end do
     turned = slope + matmul(xi, point%curvature)
+    lifted = point%gap * matmul(turned, point%inverse_metric)
     do a = 1, 2
-      call add_symmetric(scale, slope(:, a), xi(:, a), form(1:9, 1:9))
-      do b = 1, 2
-        call add_product(scale * point%curvature(a, b), xi(:, a), xi(:, b), form(1:9, 1:9))
-        call add_product(scale * point%gap * point%inverse_metric(a, b), turned(:, a), turned(:, b), form(1:9, 1:9))
-      end do
+      call add_product(scale, slope(:, a), xi(:, a), form(1:9, 1:9))
+      call add_product(scale, xi(:, a), turned(:, a), form(1:9, 1:9))
+      call add_product(scale, turned(:, a), lifted(:, a), form(1:9, 1:9))
     end do
     if (point%turns) call add_turn(point, scale / point%gap, form(1:3, 1:3))
   end subroutine gap_variation
@@ -220,36 +219,53 @@ contains
     real(wp), intent(in) :: traction(2)
     real(wp), intent(inout) :: form(:, :)
     real(wp), dimension(all_components, 3) :: apart, apart_moving, along, along_moving
-    real(wp) :: d(3), row(all_components), theta(2), factor
-    integer :: b, c, i, m
+    real(wp) :: carried(all_components), row(all_components), theta(2)
+    integer :: c, i
 
     theta = matmul(traction, point%inverse_h)
-    d = -point%gap * point%normal
     apart = moving_distance(point, variations%slip)
     apart_moving = apart
-    if (any(point%fixed)) apart_moving = moving_distance(point, variations%projection)
-    do b = 1, 2
-      along = moving_tangent(point, variations%slip, b)
-      along_moving = along
-      if (any(point%fixed)) along_moving = moving_tangent(point, variations%projection, b)
-      do i = 1, 3
-        call add_product(theta(b), apart(:, i), along_moving(:, i), form)
-        call add_product(theta(b), along(:, i), apart_moving(:, i), form)
-      end do
-      do c = 1, 2
-        row = 0.0_wp
-        row(components(1 + c)) = -point%tangent(:, b)
-        row(components(second_vector(b, c))) = d
-        call add_product(theta(b), row, variations%projection(:, c), form)
-        call add_product(theta(b), variations%slip(:, c), row, form)
-        do m = 1, 2
-          factor = dot_product(d, point%surface(:, third_column(b, c, m))) &
-            - dot_product(point%tangent(:, b), point%surface(:, second_column(c, m)))
-          call add_product(theta(b) * factor, variations%slip(:, c), variations%projection(:, m), form)
-        end do
-      end do
+    along = theta(1) * moving_tangent(point, variations%slip, 1) + theta(2) * moving_tangent(point, variations%slip, 2)
+    along_moving = along
+    if (any(point%fixed)) then
+      apart_moving = moving_distance(point, variations%projection)
+      along_moving = theta(1) * moving_tangent(point, variations%projection, 1) &
+        + theta(2) * moving_tangent(point, variations%projection, 2)
+    end if
+    do i = 1, 3
+      call add_product(1.0_wp, apart(:, i), along_moving(:, i), form)
+      call add_product(1.0_wp, along(:, i), apart_moving(:, i), form)
+    end do
+    do c = 1, 2
+      call second_row(point, theta, variations%projection, c, row, carried)
+      call add_product(1.0_wp, row, variations%projection(:, c), form)
+      call add_product(1.0_wp, variations%slip(:, c), row + carried, form)
     end do
   end subroutine traction_variation
+
+  !> What stands beside dxi^c in the slip's second variation, weighted with theta: the row of the vectors' own changes, and that of
+  !> their further derivatives as the projection moves.
+  pure subroutine second_row(point, theta, projection, c, row, carried)
+    type(contact_point_t), intent(in) :: point
+    real(wp), intent(in) :: theta(2), projection(:, :)
+    integer, intent(in) :: c
+    real(wp), intent(out) :: row(all_components), carried(all_components)
+    real(wp) :: d(3), factor
+    integer :: b, m
+
+    d = -point%gap * point%normal
+    row = 0.0_wp
+    carried = 0.0_wp
+    do b = 1, 2
+      row(components(1 + c)) = row(components(1 + c)) - theta(b) * point%tangent(:, b)
+      row(components(second_vector(b, c))) = row(components(second_vector(b, c))) + theta(b) * d
+      do m = 1, 2
+        factor = dot_product(d, point%surface(:, third_column(b, c, m))) &
+          - dot_product(point%tangent(:, b), point%surface(:, second_column(c, m)))
+        carried = carried + theta(b) * factor * projection(:, m)
+      end do
+    end do
+  end subroutine second_row
 
   !> form += scale * left right^T.
   pure subroutine add_product(scale, left, right, form)
@@ -261,14 +277,5 @@ contains
       form(:, k) = form(:, k) + (scale * right(k)) * left
     end do
   end subroutine add_product
-
-  !> form += scale * (left right^T + right left^T).
-  pure subroutine add_symmetric(scale, left, right, form)
-    real(wp), intent(in) :: scale, left(:), right(:)
-    real(wp), intent(inout) :: form(:, :)
-
-    call add_product(scale, left, right, form)
-    call add_product(scale, right, left, form)
-  end subroutine add_symmetric
 
 end module isomortar_contact_kinematics

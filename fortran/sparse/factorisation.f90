@@ -26,7 +26,7 @@ module isomortar_sparse_factorisation
     type(lu_t) :: lu
   end type factorisation
 
-  type(factorisation), save :: table(0:slots - 1)
+  type(factorisation) :: table(0:slots - 1)
 
 contains
 
@@ -181,12 +181,11 @@ contains
     real(c_double), contiguous, intent(in) :: values(:)
     integer(c_int64_t) :: unknown
 
-    real(c_double), allocatable :: b(:), x(:)
+    real(c_double) :: b(lu%unknowns), x(lu%unknowns)
     integer(c_int64_t) :: code
     integer :: i
 
-    b = [(1.0_c_double + modulo(i * 0.618_c_double, 1.0_c_double), i=1, lu%unknowns)]
-    allocate (x(lu%unknowns))
+    b = [(1.0_c_double + modulo(i * 0.618_c_double, 1.0_c_double), i=1, size(b))]
     call substitute(lu, values, b, 0, x, code)
     if (code == umfpack_ok .and. all(abs(x) <= huge(x))) then
       unknown = maxloc(abs(x), dim=1) - 1

@@ -1,7 +1,8 @@
 !> LU factors of one sparse matrix by UMFPACK, with indices of 32 bits where the factors fit, else of 64.
 !>
-!> Narrow indices are a tenth to an eighth faster; they cap the factors at 2 GiB. The matrix A comes in compressed rows (0-based). UMFPACK
-!> reads these as the compressed columns of the transpose, factorises that, and solves with the transpose of what it factorised.
+!> Narrow indices are a tenth to an eighth faster; they cap the factors at 2 GiB. The matrix A comes in compressed rows (0-based).
+!> UMFPACK reads these as the compressed columns of the transpose, factorises that, and solves with the transpose of what it
+!> factorised: A x = b.
 module isomortar_sparse_lu
   use, intrinsic :: iso_c_binding, only: c_double, c_int, c_int64_t, c_null_ptr, c_ptr
   use isomortar_sparse_umfpack, only: umfpack_defaults, umfpack_symbolic, umfpack_numeric, umfpack_solve, &

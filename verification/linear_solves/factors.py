@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from unittest.mock import patch
 
 import numpy as np
 from scipy import sparse
 
 from isomortar._compiled import kernel
-from isomortar._sparse import SparseLU
+from isomortar._sparse import NARROW_LIMIT, SparseLU
 from isomortar.errors import KernelError, SingularSystemError
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, case
@@ -33,23 +34,26 @@ def bordered() -> sparse.csr_array:
     return sparse.csr_array(sparse.block_array([[chain, 1.3 * rows.T], [rows, None]]))
 
 
-def factors(matrix: sparse.csr_array, ordering: str) -> tuple[SparseLU, FloatArray]:
+def factors(matrix: sparse.csr_array, ordering: str, index_bits: int = 32) -> tuple[SparseLU, FloatArray]:
     """The analysis of a matrix's pattern, and its entries in the pattern's order."""
     matrix.sort_indices()
     pattern = (np.asarray(index, dtype=np.int64) for index in (matrix.indptr, matrix.indices))
-    return SparseLU(*pattern, ordering=ordering), matrix.data  # type: ignore[arg-type]
+    with patch("isomortar._sparse.NARROW_LIMIT", NARROW_LIMIT if index_bits == 32 else 0.0):
+        lu = SparseLU(*pattern, ordering=ordering)  # type: ignore[arg-type]
+    assert lu.index_bits == index_bits, "factors as small as these fit either way"
+    return lu, matrix.data
 
 
 @case(
     claim="The sparse LU solves bordered, badly scaled systems to round-off, with refinement and without.",
     tier="gate",
-    grid={"ordering": ("metis", "amd"), "refine": (0, 2)},
+    grid={"ordering": ("metis", "amd"), "refine": (0, 2), "index_bits": (32, 64)},
     bounds={"residual": Bound(at_most=1e-14, reason="round-off: backward error of an LU with threshold pivoting, some tens of units")},
 )
-def solution(ordering: str, refine: int) -> dict[str, float]:
+def solution(ordering: str, refine: int, index_bits: int) -> dict[str, float]:
     """Largest error of a row over the sizes of its terms, of three right-hand sides."""
     matrix = bordered()
-    lu, values = factors(matrix, ordering)
+    lu, values = factors(matrix, ordering, index_bits)
     b = np.random.default_rng(6).standard_normal((LENGTH + BORDER, 3))
     x = lu.factorise(values).solve(b, refine=refine)
     return {"residual": float((np.abs(matrix @ x - b) / (abs(matrix) @ np.abs(x) + np.abs(b))).max())}
@@ -58,15 +62,15 @@ def solution(ordering: str, refine: int) -> dict[str, float]:
 @case(
     claim="A singular system is refused, and the unknown that nothing holds is named.",
     tier="gate",
-    grid={"ordering": ("metis", "amd")},
+    grid={"ordering": ("metis", "amd"), "index_bits": (32, 64)},
     bounds={"place": Bound(at_least=FREE, at_most=FREE, reason=_SAID)},
 )
-def singular(ordering: str) -> dict[str, float]:
+def singular(ordering: str, index_bits: int) -> dict[str, float]:
     """The unknown that is named where one has nothing in its row and column but a zero on the diagonal."""
     matrix = bordered().tocoo()
     kept = (matrix.row != FREE) & (matrix.col != FREE)
     row, column = np.append(matrix.row[kept], FREE), np.append(matrix.col[kept], FREE)
-    lu, values = factors(sparse.csr_array((np.append(matrix.data[kept], 0.0), (row, column))), ordering)
+    lu, values = factors(sparse.csr_array((np.append(matrix.data[kept], 0.0), (row, column))), ordering, index_bits)
     try:
         lu.factorise(values)
     except SingularSystemError as error:
@@ -111,14 +115,14 @@ def handles() -> dict[str, float]:
     """Status codes of the kernel, the slot of the released handle taken by others meanwhile; whether a refused matrix solves nothing."""
     matrix = bordered()
     pattern = [np.asarray(index, dtype=np.int64) for index in (matrix.indptr, matrix.indices)]
-    handle = kernel.sparse_analyse(*pattern, True)[0]
+    handle = kernel.sparse_analyse(*pattern, True, NARROW_LIMIT)[0]
     kernel.sparse_release(handle)
     lu, values = factors(matrix, "metis")
     lu.factorise(values)
     b = np.ones((len(pattern[0]) - 1, 1), order="F")
     found = {
         "released twice": float(kernel.sparse_release(handle)),
-        "released": float(kernel.sparse_solve(handle, *pattern, values, b, 0)[-1]),
+        "released": float(kernel.sparse_solve(handle, values, b, 0)[-1]),
         "never made": float(kernel.sparse_release(-1)),
     }
     with suppress(SingularSystemError):
