@@ -10,13 +10,15 @@ _M_TRIM_THRESHOLD, _M_MMAP_MAX = -1, -4
 
 
 def own_process() -> None:
-    """Set up a process before it loads the kernel.
+    """Set up a process before it loads the kernel; what the user's environment says of threads stands.
 
-    One thread for the linear algebra library: more do not make the solves faster, and get in the way of the assembly's. And memory that
-    is freed stays with the process: factors and matrices come and go, and pages that the system has to find and clear anew each time
-    are up to a quarter of a factorisation. Where the C library is not glibc, only the first.
+    One thread for the linear algebra library: more do not make the solves faster, and get in the way of the assembly's. Threads of the
+    assembly sleep when they wait: two runs on the same cores would hold each other up tenfold. And memory that is freed stays with the
+    process: factors and matrices come and go, and pages that the system has to find and clear anew each time are up to a quarter of a
+    factorisation (where the C library is glibc).
     """
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    os.environ.setdefault("OMP_WAIT_POLICY", "passive")
     library = ctypes.CDLL(None)
     if hasattr(library, "mallopt"):
         library.mallopt(_M_MMAP_MAX, 0)

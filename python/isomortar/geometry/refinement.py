@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 import splinepy
-from scipy.interpolate import BSpline
 
 from isomortar.errors import InputError
 from isomortar.geometry.patch import MAX_ORDER, Direction, Family, FloatArray, Patch
@@ -51,7 +50,7 @@ def mesh(patch: Patch, families: Sequence[Family], orders: Sequence[int], elemen
         source = directions[axis]
         boundaries = _subdivided(source.boundaries, elements[axis])
         nodes = _subdivided(boundaries, orders[axis] * elements[axis])
-        grid = BSpline(source.knots, grid, source.order, axis=axis)(nodes)
+        grid = _evaluated(source, grid, axis, nodes)
         directions[axis] = Direction("L", orders[axis], boundaries)
     weights = grid[..., 3]
     points = grid[..., :3] / weights[..., None]
@@ -60,6 +59,13 @@ def mesh(patch: Patch, families: Sequence[Family], orders: Sequence[int], elemen
         first = tuple(slice(None) if family == "L" else slice(0, 1) for family in families)
         weights = weights / weights[first]
     return Patch((directions[0], directions[1], directions[2]), points.reshape(-1, 3, order="F"), weights.ravel(order="F"))
+
+
+def _evaluated(direction: Direction, grid: FloatArray, axis: int, parameters: FloatArray) -> FloatArray:
+    """Values of B-splines along an axis of a grid of control values: parameters take the place of control points."""
+    control = np.moveaxis(grid, axis, 0)
+    line = splinepy.BSpline(degrees=[direction.order], knot_vectors=[direction.knots], control_points=control.reshape(len(control), -1))
+    return np.moveaxis(line.evaluate(parameters[:, None]).reshape(len(parameters), *control.shape[1:]), 0, axis)
 
 
 def surface_samples(patch: Patch, face: str, order: int = 4) -> FloatArray:

@@ -25,6 +25,14 @@ def pattern_of(matrix: sparse.csr_array) -> Pattern:
     return Pattern(matrix.indptr.astype(np.int32), matrix.indices.astype(np.int32))
 
 
+def rows_of(matrix: sparse.csr_array, chosen: np.ndarray) -> sparse.csr_array:
+    """The chosen rows of a matrix of ones; the others are empty."""
+    count = np.diff(matrix.indptr)
+    start = np.zeros_like(matrix.indptr)
+    np.cumsum(np.where(chosen, count, 0), out=start[1:])
+    return sparse.csr_array((np.ones(start[-1], dtype=np.int32), matrix.indices[np.repeat(chosen, count)], start), shape=matrix.shape)
+
+
 def element_points(patch: Patch, points: IntArray) -> IntArray:
     """Global control points of each element of a patch, shape (elements, control points of an element)."""
     index = [_direction_points(d) for d in patch.directions]

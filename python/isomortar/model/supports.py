@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model.entities import Problem, Stage, Support, unit
@@ -16,6 +15,13 @@ def progress(stages: Sequence[Stage], time: float) -> FloatArray:
     """Share of each stage that has passed at a load time (in load steps), shape (stages,)."""
     starts = np.cumsum([0] + [stage.steps for stage in stages])[:-1]
     return np.clip((time - starts) / np.array([stage.steps for stage in stages]), 0.0, 1.0)
+
+
+def rotation(axis: FloatArray, angle: float) -> FloatArray:
+    """Matrix that turns vectors about a unit axis, by Rodrigues' formula; SciPy's rotations take a tenth of the start of a run to load."""
+    x, y, z = axis
+    across = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return np.eye(3) + np.sin(angle) * across + 2.0 * np.sin(0.5 * angle) ** 2 * across @ across
 
 
 class Supports:
@@ -51,7 +57,9 @@ class Supports:
 
     def centre(self, support: Support, time: float) -> FloatArray:
         """The moving centre c + u(t) of a support, shape (3,)."""
-        shares = progress(self._problem.stages, time)
+        return self._centre(support, progress(self._problem.stages, time))
+
+    def _centre(self, support: Support, shares: FloatArray) -> FloatArray:
         shift = sum((share * np.asarray(motion.translate) for share, motion in zip(shares, support.motions, strict=True)), np.zeros(3))
         return np.asarray(support.centre, dtype=np.float64) + shift
 
@@ -70,12 +78,12 @@ class Supports:
             Rows of control points without support hold their reference positions.
         """
         positions = self._numbering.reference.copy()
+        shares = progress(self._problem.stages, time)
         for k, support in enumerate(self._problem.supports):
-            shares = progress(self._problem.stages, time)
             angle = sum(share * motion.rotate for share, motion in zip(shares, support.motions, strict=True))
-            turn = Rotation.from_rotvec(np.radians(angle) * unit(support.axis))
             points = self.points[k]
-            target = self.centre(support, time) + turn.apply(self._numbering.reference[points] - np.asarray(support.centre))
+            arms = self._numbering.reference[points] - np.asarray(support.centre)
+            target = self._centre(support, shares) + arms @ rotation(unit(support.axis), np.radians(angle)).T
             for component in support.components:
                 positions[points, component] = target[:, component]
         return positions

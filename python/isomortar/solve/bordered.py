@@ -16,7 +16,7 @@ import numpy as np
 
 from isomortar._bindings import Law, Pattern, Response
 from isomortar.geometry.patch import FloatArray, IntArray
-from isomortar.solve.contact import Blocks, PairMechanics
+from isomortar.solve.contact import Blocks, PairMechanics, median
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.system import Source, block_product
 
@@ -143,7 +143,7 @@ def _border(equilibrium: Equilibrium, k: int, balance: Balance, law: Law, target
     equation[reached, :components] = first + np.arange(count, dtype=np.int32).reshape(-1, components)
     control = balance.kinematics[k].control
     lengths = np.concatenate([[1.0], pair.tangent_lengths(control)])
-    weight = np.where(control.weight > 0, control.weight, np.median(control.weight))
+    weight = np.where(control.weight > 0, control.weight, median(control.weight))
     return Border(pair, blocks, equation.ravel(), weight[:, None] / lengths, float(law.penalties[0]) * lengths, target)
 
 

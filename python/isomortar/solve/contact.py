@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -37,6 +38,18 @@ class Blocks:
     changes: FloatArray
     trial: FloatArray
     geometric: FloatArray
+
+
+def median(values: FloatArray) -> Any:
+    """Median over the first axis. NumPy's own takes twenty times as long for a few hundred numbers."""
+    ordered = np.sort(values, axis=0)
+    return 0.5 * (ordered[(len(ordered) - 1) // 2] + ordered[len(ordered) // 2])
+
+
+def moment(arms: FloatArray, forces: FloatArray) -> FloatArray:
+    """Sum of arms x forces, shape (3,); NumPy's `cross` takes eight times as long."""
+    products = arms.T @ forces
+    return np.array([products[1, 2] - products[2, 1], products[2, 0] - products[0, 2], products[0, 1] - products[1, 0]])
 
 
 class PairMechanics:
@@ -77,7 +90,7 @@ class PairMechanics:
     def parameters(self, control: Control, stiffness: float) -> FloatArray:
         """Complementarity parameters of the monolithic method, normal and tangential: K_max / median of w^I and a multiple of it."""
         present = control.weight[control.weight > 0]
-        normal = stiffness / (np.median(present) if present.size else self.pair.area)
+        normal = stiffness / (median(present) if present.size else self.pair.area)
         return np.array([normal, TANGENTIAL_FACTOR * normal])
 
     def law(self, penalties: FloatArray, pressure: FloatArray, traction: FloatArray) -> Law:
@@ -120,21 +133,22 @@ class PairMechanics:
         return blocks.patterns.tangent, tangent
 
     def contravariant(self, control: Control, traction: FloatArray) -> FloatArray:
-        """Contravariant components of control tractions in the discrete metric, shape (slave control points, 2)."""
-        m = control.metric / np.where(control.square > 0, control.square, 1.0)[:, None]
-        determinant = m[:, 0] * m[:, 2] - m[:, 1] ** 2
-        raised = np.column_stack([m[:, 2] * traction[:, 0] - m[:, 1] * traction[:, 1], m[:, 0] * traction[:, 1] - m[:, 1] * traction[:, 0]])
-        return np.asarray(raised / np.where(determinant > 0, determinant, 1.0)[:, None])
+        """Contravariant components of control tractions in the discrete metric, shape (..., slave control points, 2)."""
+        m11, m12, m22 = (control.metric / np.where(control.square > 0, control.square, 1.0)[:, None]).T
+        determinant = m11 * m22 - m12**2
+        scale = 1.0 / np.where(determinant > 0, determinant, 1.0)
+        first, second = traction[..., 0], traction[..., 1]
+        return np.stack([(m22 * first - m12 * second) * scale, (m11 * second - m12 * first) * scale], axis=-1)
 
     def tangent_lengths(self, control: Control) -> FloatArray:
         """Typical lengths of the master's tangent vectors a_1, a_2 where the slave projects, shape (2,)."""
         present = control.square > 0
         squared = control.metric[present][:, [0, 2]] / control.square[present, None]
-        return np.sqrt(np.median(squared, axis=0)) if np.any(present) and self.friction > 0 else np.ones(2)
+        return np.sqrt(median(squared)) if np.any(present) and self.friction > 0 else np.ones(2)
 
     def traction_norms(self, control: Control, traction: FloatArray) -> FloatArray:
-        """Metric norm of control tractions, shape (slave control points,)."""
-        squared = np.einsum("ia,ia->i", self.contravariant(control, traction), traction)
+        """Metric norm of control tractions, shape (..., slave control points)."""
+        squared = np.einsum("...a,...a->...", self.contravariant(control, traction), traction)
         return np.sqrt(np.maximum(squared, 0.0))
 
     def result(self, positions: FloatArray, kinematics: Kinematics, response: Response) -> ContactResult:
@@ -149,8 +163,8 @@ class PairMechanics:
         return ContactResult(
             force_slave=slave_forces.sum(axis=0),
             force_master=master_forces.sum(axis=0),
-            moment_slave=np.cross(positions, slave_forces).sum(axis=0),
-            moment_master=np.cross(positions, master_forces).sum(axis=0),
+            moment_slave=moment(positions, slave_forces),
+            moment_master=moment(positions, master_forces),
             active=int(np.count_nonzero(response.state)),
             slip=int(np.count_nonzero(response.state == 2)),
             traction_norm=self.traction_norms(control, response.traction),

@@ -141,7 +141,7 @@ class Monolithic(Method):
         pressure, traction = np.zeros(2), np.zeros(2)
         for pair, kinematics, now, target in zip(self._equilibrium.pairs, balance.kinematics, balance.responses, targets, strict=True):
             pressure += [np.sum((now.pressure - target.pressure) ** 2), np.sum(target.pressure**2)]
-            norms = [pair.traction_norms(kinematics.control, t) for t in (now.traction - target.traction, target.traction)]
+            norms = pair.traction_norms(kinematics.control, np.stack([now.traction - target.traction, target.traction]))
             floor = (0.01 * pair.friction) ** 2 * float(np.sum(target.pressure**2))
             traction += [np.sum(norms[0] ** 2), max(float(np.sum(norms[1] ** 2)), floor)]
         return tuple(float(np.sqrt(a / b)) if b > 0 else 0.0 for a, b in (pressure, traction))  # type: ignore[return-value]

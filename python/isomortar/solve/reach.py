@@ -10,7 +10,7 @@ from scipy import sparse
 from isomortar._bindings import Pattern, Projections
 from isomortar.geometry.patch import IntArray
 from isomortar.model.pairs import Pair
-from isomortar.model.pattern import pattern_of
+from isomortar.model.pattern import pattern_of, rows_of
 
 
 @dataclass(frozen=True)
@@ -73,12 +73,11 @@ class Reach:
             shape = (len(pair.slave.nodes), pair.master_reach.shape[0])
             meets = sparse.csr_array((np.ones(len(touched), dtype=np.int32), (elements, masters)), shape=shape)
             reach = reach + meets @ pair.master_reach
-        chosen = sparse.diags_array(active.astype(np.int32), format="csr", dtype=np.int32)
-        rows = sparse.csr_array(chosen @ pair.elements_of_point @ reach)
-        wide = sparse.csr_array(chosen @ pair.neighbour_matrix @ rows) if self._summed else rows
+        rows = rows_of(pair.elements_of_point, active) @ reach
+        wide = rows_of(pair.neighbour_matrix, active) @ rows if self._summed else rows
         if self._condensed:
-            tangent = sparse.csr_array(rows.T @ wide)
+            tangent = rows.T.tocsr() @ wide
         else:
-            chosen_elements = reach[active[pair.slave.nodes].any(axis=1)]
-            tangent = sparse.csr_array(chosen_elements.T @ chosen_elements)
+            members = rows_of(reach, np.any(active[pair.slave.nodes], axis=1))
+            tangent = members.T.tocsr() @ members
         return ContactPatterns(pattern_of(rows), pattern_of(wide), pattern_of(tangent))

@@ -10,6 +10,7 @@ from isomortar.errors import ConvergenceError, FoldedElementError, LostProjectio
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Problem
 from isomortar.solve.advice import StepAdvice, advice_on_problem
+from isomortar.solve.contact import moment
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.method import Increment, Method
 from isomortar.solve.monolithic import Monolithic
@@ -152,8 +153,7 @@ class Simulation:
         reactions = []
         for support, points in zip(self.problem.supports, self.equilibrium.supports.points, strict=True):
             centre = self.equilibrium.supports.centre(support, time)
-            moment = np.cross(positions[points] - centre, total[points]).sum(axis=0)
-            reactions.append(Reaction(total[points].sum(axis=0), moment, centre))
+            reactions.append(Reaction(total[points].sum(axis=0), moment(positions[points] - centre, total[points]), centre))
         return tuple(reactions)
 
     def _result(

@@ -68,11 +68,11 @@ class LinearSystem:
         those of the size) the one is kept whose first factors take the fewest operations.
         """
         self._ledger = ledger
-        total = entries(sources[:1], size) if known is None else known.copy()
-        total.resize((size, size))
+        first = entries(sources[:1], size) if known is None else known
+        start = np.append(first.indptr, np.full(size + 1 - len(first.indptr), first.nnz, dtype=first.indptr.dtype))
+        total = sparse.csr_array((first.data, first.indices, start), shape=(size, size))
         if len(sources) > 1:
-            total = sparse.csr_array(total + entries(sources[1:], size))
-        total.sort_indices()
+            total = total + entries(sources[1:], size)
         self._start, self._column = total.indptr.astype(np.int64), total.indices.astype(np.int64)
         self.values = np.zeros(len(self._column))
         with ledger.phase("factor"):

@@ -1,0 +1,22 @@
+"""Motions of supports: turns against SciPy's rotations."""
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from isomortar.model.entities import unit
+from isomortar.model.supports import rotation
+
+coordinates = st.floats(-1.0, 1.0)
+
+
+@given(st.tuples(coordinates, coordinates, coordinates).filter(lambda v: np.linalg.norm(v) > 1e-3), st.floats(-20.0, 20.0))
+def test_turn_is_that_of_scipy(axis, angle):
+    expected = Rotation.from_rotvec(angle * unit(axis)).as_matrix()
+    np.testing.assert_allclose(rotation(unit(axis), angle), expected, rtol=0.0, atol=4e-15)
+
+
+def test_small_turns_keep_their_digits():
+    turned = rotation(np.array([0.0, 0.0, 1.0]), 1e-9) @ np.array([1.0, 0.0, 0.0]) - np.array([1.0, 0.0, 0.0])
+    np.testing.assert_allclose(turned[:2], [0.0, 1e-9], rtol=1e-15, atol=1e-18)
