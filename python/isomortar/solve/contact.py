@@ -146,10 +146,13 @@ class PairMechanics:
         squared = control.metric[present][:, [0, 2]] / control.square[present, None]
         return np.sqrt(median(squared)) if np.any(present) and self.friction > 0 else np.ones(2)
 
+    def traction_squares(self, control: Control, traction: FloatArray) -> FloatArray:
+        """Squared metric norm of control tractions, shape (..., slave control points)."""
+        return np.maximum(np.einsum("...a,...a->...", self.contravariant(control, traction), traction), 0.0)
+
     def traction_norms(self, control: Control, traction: FloatArray) -> FloatArray:
         """Metric norm of control tractions, shape (..., slave control points)."""
-        squared = np.einsum("...a,...a->...", self.contravariant(control, traction), traction)
-        return np.sqrt(np.maximum(squared, 0.0))
+        return np.sqrt(self.traction_squares(control, traction))
 
     def result(self, positions: FloatArray, kinematics: Kinematics, response: Response) -> ContactResult:
         """Measured quantities at the end of a load step."""

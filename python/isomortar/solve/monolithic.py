@@ -140,10 +140,11 @@ class Monolithic(Method):
         """Relative distance of pressures and tractions from what the contact conditions make of them."""
         pressure, traction = np.zeros(2), np.zeros(2)
         for pair, kinematics, now, target in zip(self._equilibrium.pairs, balance.kinematics, balance.responses, targets, strict=True):
-            pressure += [np.sum((now.pressure - target.pressure) ** 2), np.sum(target.pressure**2)]
-            norms = pair.traction_norms(kinematics.control, np.stack([now.traction - target.traction, target.traction]))
-            floor = (0.01 * pair.friction) ** 2 * float(np.sum(target.pressure**2))
-            traction += [np.sum(norms[0] ** 2), max(float(np.sum(norms[1] ** 2)), floor)]
+            apart = now.pressure - target.pressure
+            size = target.pressure @ target.pressure
+            pressure += apart @ apart, size
+            squares = pair.traction_squares(kinematics.control, np.stack([now.traction - target.traction, target.traction])).sum(axis=1)
+            traction += squares[0], max(squares[1], (0.01 * pair.friction) ** 2 * size)
         return tuple(float(np.sqrt(a / b)) if b > 0 else 0.0 for a, b in (pressure, traction))  # type: ignore[return-value]
 
     def _converged(self, iterate: Iterate) -> bool:

@@ -47,7 +47,7 @@ class Reach:
         """The patterns for the given projections and states of the control points."""
         active = state > 0
         touched = self._touched_elements(projections, active)
-        if self.patterns is not None and not np.any(active & ~self._active) and np.isin(touched, self._touched).all():
+        if self.patterns is not None and not np.any(active & ~self._active) and _is_part(touched, self._touched):
             return self.patterns
         if not self._fresh:
             active, touched = active | self._active, np.union1d(touched, self._touched)
@@ -81,3 +81,8 @@ class Reach:
             members = rows_of(reach, np.any(active[pair.slave.nodes], axis=1))
             tangent = members.T.tocsr() @ members
         return ContactPatterns(pattern_of(rows), pattern_of(wide), pattern_of(tangent))
+
+
+def _is_part(some: np.ndarray, of: np.ndarray) -> bool:
+    """Whether all of some sorted numbers are among others, sorted too."""
+    return not len(some) or (len(of) > 0 and bool(np.all(of[np.minimum(np.searchsorted(of, some), len(of) - 1)] == some)))
