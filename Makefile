@@ -13,7 +13,7 @@ help: ## print this list
 
 setup: $(READY) ## install what is missing, build, once
 
-$(READY): pyproject.toml tools/setup.sh
+$(READY): pyproject.toml meson.build tools/setup.sh
 	@bash tools/setup.sh
 
 demo: $(READY) ## run the ironing scene; curve and picture go to results/

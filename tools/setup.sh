@@ -63,6 +63,7 @@ make_environment() {
   say "Installing into .venv: the Python packages that pyproject.toml names (build, dev, dependencies), then isomortar (compiles the kernel)"
   python -m pip install --quiet --upgrade 'pip>=25.1'
   python -m pip install --quiet --group build --group dev
+  rm -rf build/cp* # a build that is there would keep the options it was made with
   python -m pip install --quiet --no-build-isolation --editable .
 }
 
