@@ -1,8 +1,8 @@
 ! What Python sees of the sparse LU (see isomortar_sparse_factorisation). Compressed rows, 0-based; status code last.
 ! `sparse_factorise` and `sparse_solve` run without Python's lock: one call at a time for one handle.
 
-!> Order and analyse a pattern; `by_metis` 1: METIS, 0: AMD. `narrow` 1: indices of 32 bits, where the estimate of the factors is
-!> at most `narrow_limit` bytes; 0: of 64.
+!> Order and analyse a pattern; `by_metis` 1: METIS, 0: AMD. `narrow` 1: indices of 32 bits, where a factorisation is estimated at
+!> no more than `narrow_limit` bytes; 0: of 64.
 subroutine sparse_analyse(n, nnz, indptr, indices, by_metis, narrow_limit, handle, narrow, place, status)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_sparse_factorisation, only: analyse

@@ -36,7 +36,7 @@ contains
     integer(c_int64_t), contiguous, intent(in) :: indptr(:), indices(:)
     !> METIS's nested dissection; otherwise AMD.
     logical, intent(in) :: by_metis
-    !> Most bytes of the factors, as estimated, for indices of 32 bits.
+    !> Most bytes of a factorisation, as estimated, for indices of 32 bits.
     real(c_double), intent(in) :: narrow_limit
     integer(c_int64_t), intent(out) :: handle
     !> Whether indices of 32 bits are in use.

@@ -1,15 +1,16 @@
 !> LU factors of one sparse matrix by UMFPACK, with indices of 32 bits where the factors fit, else of 64.
 !>
-!> Narrow indices are a tenth to an eighth faster; they cap the factors at 2 GiB. The matrix A comes in compressed rows (0-based).
-!> UMFPACK reads these as the compressed columns of the transpose, factorises that, and solves with the transpose of what it
-!> factorised: A x = b.
+!> Narrow indices are a tenth to an eighth faster; they cap the memory of a factorisation (matrix, fronts and factors) at 2 GiB.
+!> The matrix A comes in compressed rows (0-based). UMFPACK reads these as the compressed columns of the transpose, factorises that,
+!> and solves with the transpose of what it factorised: A x = b.
 module isomortar_sparse_lu
   use, intrinsic :: iso_c_binding, only: c_double, c_int, c_int64_t, c_null_ptr, c_ptr
   use isomortar_sparse_umfpack, only: umfpack_defaults, umfpack_symbolic, umfpack_numeric, umfpack_solve, &
     umfpack_get_numeric, umfpack_di_free_symbolic, umfpack_dl_free_symbolic, umfpack_di_free_numeric, &
-    umfpack_dl_free_numeric, umfpack_ok, umfpack_at, strategy_symmetric, ordering_metis, control_last, control_dense_row, &
-    control_dense_col, control_pivot_tolerance, control_strategy, control_irstep, control_ordering, control_amd_dense, &
-    control_sym_pivot_tolerance, info_last, info_numeric_size_estimate, info_size_of_unit
+    umfpack_dl_free_numeric, umfpack_ok, umfpack_out_of_memory, umfpack_at, strategy_symmetric, ordering_metis, &
+    control_last, control_dense_row, control_dense_col, control_pivot_tolerance, control_strategy, control_irstep, &
+    control_ordering, control_amd_dense, control_sym_pivot_tolerance, info_last, info_variable_peak_estimate, &
+    info_size_of_unit
   implicit none
   private
 
@@ -38,7 +39,7 @@ contains
 
   !> Order and analyse a pattern. `code` is UMFPACK's.
   !>
-  !> Indices are narrow where the factors are estimated to take at most `narrow_limit` bytes.
+  !> Indices are narrow where the memory of a factorisation is estimated at no more than `narrow_limit` bytes.
   subroutine order(self, indptr, indices, ordering, narrow_limit, code)
     type(lu_t), intent(inout) :: self
     integer(c_int64_t), contiguous, intent(in) :: indptr(:), indices(:)
@@ -50,21 +51,53 @@ contains
     self%ordering = ordering
     self%unknowns = size(indptr) - 1
     if (size(indices, kind=c_int64_t) <= huge(1_c_int)) then
-      self%start = int(indptr, c_int)
-      self%column = int(indices, c_int)
-      associate (n => int(self%unknowns, c_int))
-        code = umfpack_symbolic(n, n, self%start, self%column, c_null_ptr, self%symbolic, settings(self, 0), info)
-      end associate
-      if (code == umfpack_ok .and. info(info_numeric_size_estimate) * info(info_size_of_unit) <= narrow_limit) return
+      call order_narrow(self, indptr, indices, info, code)
+      if (code == umfpack_ok .and. info(info_variable_peak_estimate) * info(info_size_of_unit) <= narrow_limit) return
       call forget(self)
     end if
-    self%wide_start = indptr
-    self%wide_column = indices
+    call order_wide(self, indptr, indices, info, code)
+    if (code /= umfpack_ok) call forget(self)
+  end subroutine order
+
+  !> With indices of 32 bits.
+  subroutine order_narrow(self, indptr, indices, info, code)
+    type(lu_t), intent(inout) :: self
+    integer(c_int64_t), contiguous, intent(in) :: indptr(:), indices(:)
+    real(c_double), intent(out) :: info(0:info_last)
+    integer(c_int64_t), intent(out) :: code
+    integer :: failure
+
+    info = 0
+    code = umfpack_out_of_memory
+    allocate (self%start(size(indptr)), stat=failure)
+    if (failure == 0) allocate (self%column(size(indices)), stat=failure)
+    if (failure /= 0) return
+    self%start(:) = int(indptr, c_int)
+    self%column(:) = int(indices, c_int)
+    associate (n => int(self%unknowns, c_int))
+      code = umfpack_symbolic(n, n, self%start, self%column, c_null_ptr, self%symbolic, settings(self, 0), info)
+    end associate
+  end subroutine order_narrow
+
+  !> With indices of 64 bits.
+  subroutine order_wide(self, indptr, indices, info, code)
+    type(lu_t), intent(inout) :: self
+    integer(c_int64_t), contiguous, intent(in) :: indptr(:), indices(:)
+    real(c_double), intent(out) :: info(0:info_last)
+    integer(c_int64_t), intent(out) :: code
+    integer :: failure
+
+    info = 0
+    code = umfpack_out_of_memory
+    allocate (self%wide_start(size(indptr)), stat=failure)
+    if (failure == 0) allocate (self%wide_column(size(indices)), stat=failure)
+    if (failure /= 0) return
+    self%wide_start(:) = indptr
+    self%wide_column(:) = indices
     associate (n => int(self%unknowns, c_int64_t))
       code = umfpack_symbolic(n, n, self%wide_start, self%wide_column, c_null_ptr, self%symbolic, settings(self, 0), info)
     end associate
-    if (code /= umfpack_ok) call forget(self)
-  end subroutine order
+  end subroutine order_wide
 
   !> Factorise a matrix of the pattern; the factors take the place of those before. `info` and `code` are UMFPACK's.
   recursive subroutine eliminate(self, values, info, code)
@@ -142,11 +175,13 @@ contains
     call forget_factors(self)
     if (allocated(self%start)) then
       call umfpack_di_free_symbolic(self%symbolic)
-      deallocate (self%start, self%column)
     else
       call umfpack_dl_free_symbolic(self%symbolic)
-      if (allocated(self%wide_start)) deallocate (self%wide_start, self%wide_column)
     end if
+    if (allocated(self%start)) deallocate (self%start)
+    if (allocated(self%column)) deallocate (self%column)
+    if (allocated(self%wide_start)) deallocate (self%wide_start)
+    if (allocated(self%wide_column)) deallocate (self%wide_column)
   end subroutine forget
 
   !> UMFPACK's settings for matrices of elements: nearly symmetric pattern, few rows that are really dense.

@@ -19,7 +19,7 @@ module isomortar_sparse_umfpack
     control_sym_pivot_tolerance = 15
 
   !> Places in the array of information.
-  integer, parameter, public :: info_size_of_unit = 3, info_numeric_size_estimate = 20, info_peak_memory = 41, &
+  integer, parameter, public :: info_size_of_unit = 3, info_variable_peak_estimate = 26, info_peak_memory = 41, &
     info_flops = 42, info_lnz = 43, info_unz = 44, info_rcond = 67
 
   !> Values of settings.

@@ -19,9 +19,9 @@ LongArray = NDArray[np.int64]
 # Status codes of fortran/base/status.f90 that the factorisation returns.
 _OK, _SINGULAR, _STALE_HANDLE, _OUT_OF_MEMORY = 0, 5, 6, 7
 
-#: Factors of at most so many bytes, as estimated, get indices of 32 bits, a tenth to an eighth faster: half of what these can address,
-#: as pivots off the diagonal add to the estimate.
-NARROW_LIMIT = 2.0**30
+#: A factorisation that is estimated to take at most so many bytes (matrix, fronts and factors) gets indices of 32 bits, a tenth to an
+#: eighth faster. These can address 2 GiB; what the estimate misses, `factorise` repeats with 64.
+NARROW_LIMIT = 0.9 * 2.0**31
 
 #: Orderings on offer: METIS's nested dissection wins on large solids, approximate minimum degree on small contact-heavy systems.
 Ordering = Literal["metis", "amd"]
@@ -55,9 +55,9 @@ class SparseLU:
     """LU factorisation of unsymmetric sparse matrices of one pattern.
 
     The pattern is ordered and analysed here, once; `factorise` and `solve` use the analysis again and again. The kernel keeps a copy
-    of the pattern, in 32-bit indices where the factors fit. Values are taken as they are, never copied, and must not change while
-    the object is in use. Different objects may work in different
-    threads at the same time (the kernel runs without Python's lock); calls on one object wait for each other.
+    of the pattern, in 32-bit indices where the factorisation is small enough for them. Values are taken as they are, never copied,
+    and must not change while the object is in use. Different objects may work in different threads at the same time (the kernel
+    runs without Python's lock); calls on one object wait for each other.
 
     Parameters
     ----------
@@ -96,11 +96,15 @@ class SparseLU:
         self._indptr, self._indices = indptr, indices
         self._values: FloatArray | None = None
         self._lock = threading.Lock()
-        self._handle, narrow, place, status = _kernel.sparse_analyse(indptr, indices, ordering == "metis", NARROW_LIMIT)
+        self._analyse(NARROW_LIMIT)
+
+    def _analyse(self, narrow_limit: float) -> None:
+        """Order and analyse the pattern, and own what comes of it."""
+        self._handle, narrow, place, status = _kernel.sparse_analyse(self._indptr, self._indices, self.ordering == "metis", narrow_limit)
         _check_status(status, place)
         self.index_bits = 32 if narrow else 64
-        # Not at exit: a thread may still be at work, and the memory goes with the process.
-        weakref.finalize(self, _kernel.sparse_release, self._handle).atexit = False
+        self._release = weakref.finalize(self, _kernel.sparse_release, self._handle)
+        self._release.atexit = False  # a thread may still be at work, and the memory goes with the process
 
     @property
     def flops(self) -> float:
@@ -141,7 +145,12 @@ class SparseLU:
         _check_finite(values, self._indptr)
         with self._lock:
             self._values = None
-            self.rcond, flops, peak_bytes, factor_entries, place, status = _kernel.sparse_factorise(self._handle, values, rcond_min)
+            found = _kernel.sparse_factorise(self._handle, values, rcond_min)
+            if found[-1] == _OUT_OF_MEMORY and self.index_bits == 32:
+                self._release()
+                self._analyse(0.0)
+                found = _kernel.sparse_factorise(self._handle, values, rcond_min)
+            self.rcond, flops, peak_bytes, factor_entries, place, status = found
             if status == _SINGULAR:
                 raise SingularSystemError(
                     f"the linear system is singular: reciprocal condition {self.rcond:.1e}, least determined is unknown {place}. "

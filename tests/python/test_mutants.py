@@ -265,13 +265,13 @@ STALE = """
 [[fault]]
 name = "stale handles are released"
 file = "sparse/factorisation.f90"
-old = "    slot = slot_of(handle)\\n    status = status_stale_handle\\n    if (slot == slots) return\\n    call umfpack_dl_free_numeric"
-new = "    slot = slot_of(handle)\\n    status = status_ok\\n    if (slot == slots) return\\n    call umfpack_dl_free_numeric"
+old = "    slot = slot_of(handle)\\n    status = status_stale_handle\\n    if (slot == slots) return\\n    call forget"
+new = "    slot = slot_of(handle)\\n    status = status_ok\\n    if (slot == slots) return\\n    call forget"
 why = "a handle that is none"
 
 [[fault]]
 name = "another dense limit"
-file = "sparse/factorisation.f90"
+file = "sparse/lu.f90"
 old = "dense_limit = 1.0e3_c_double"
 new = "dense_limit = 1.0e2_c_double"
 why = "no case of this folder sees it"

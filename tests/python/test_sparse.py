@@ -4,6 +4,7 @@ import gc
 import resource
 import sys
 import threading
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,7 +17,7 @@ from isomortar import _kernel, _sparse
 from isomortar._sparse import ORDERINGS, SparseLU
 from isomortar.errors import InputError, KernelError, SingularSystemError
 
-STALE_HANDLE = 6
+STALE_HANDLE, OUT_OF_MEMORY = 6, 7
 
 
 @pytest.fixture(autouse=True, scope="module", params=[32, 64], ids=["narrow", "wide"])
@@ -100,10 +101,32 @@ def test_either_width_gives_the_same_bits(monkeypatch):
     matrix = held(block_of_elements(4, 4, 4), np.arange(75))
     b = np.random.default_rng(6).standard_normal(matrix.shape[0])
     solutions = []
-    for limit in (0.0, 2.0**30):
+    for limit in (0.0, 2.0**31):
         monkeypatch.setattr(_sparse, "NARROW_LIMIT", limit)
         solutions.append(factorised(matrix).solve(b))
     np.testing.assert_array_equal(*solutions)
+
+
+def test_what_does_not_fit_narrow_indices_is_repeated_with_wide_ones(monkeypatch, index_bits):
+    matrix = held(block_of_elements(3, 3, 3), np.arange(48))
+    expected = factorised(matrix).solve(np.ones(matrix.shape[0]))
+    factorise, seen = _kernel.sparse_factorise, []
+
+    def full(handle, values, rcond_min):
+        seen.append(handle)
+        answer = factorise(handle, values, rcond_min)
+        return (*answer[:-1], OUT_OF_MEMORY) if len(seen) == 1 else answer
+
+    monkeypatch.setattr(_sparse, "_kernel", SimpleNamespace(**{**vars(_kernel), "sparse_factorise": full}))
+    indptr, indices, values = compressed(matrix)
+    lu = SparseLU(indptr, indices)
+    if index_bits == 64:
+        with pytest.raises(KernelError, match="memory ran out"):
+            lu.factorise(values)
+        return
+    np.testing.assert_array_equal(lu.factorise(values).solve(np.ones(len(indptr) - 1)), expected)
+    assert lu.index_bits == 64
+    assert _kernel.sparse_release(seen[0]) == STALE_HANDLE, "the first analysis is still held"
 
 
 def test_several_right_hand_sides_are_solved_one_by_one():

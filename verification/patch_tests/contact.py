@@ -184,9 +184,9 @@ def default_bounds(slave_order: int, master_order: int, tilt: float) -> dict[str
         ),
         "errors": Matches(
             "contact_patch_test",
-            reason="reference: this program's own errors, whose size theory gives but roughly; Newton's 1e-13 times the basis's condition, "
-            "4^p, is up to 1e-6 of them",
-            allowance=1e-6,
+            reason="reference: this program's own errors, as a rule more than a hundredth of their limit; Newton's 1e-13 times the basis's "
+            "condition",
+            allowance=1e-13 * 4.0 ** max(slave_order, master_order) / (0.01 * limit),
         ),
     }
 

@@ -172,6 +172,7 @@ class Equilibrium:
             if self._solid_entries is None:
                 self._solid_entries = entries([self.solid_source], len(self.supports.free))
             tried = self._orderings.get(len(sources))
+            self._system = None  # its factors go before others come
             self._system = LinearSystem(size, sources, self.ledger, self._solid_entries, tried)
             self._system_patterns = patterns
         return self._system

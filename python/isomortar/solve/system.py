@@ -128,10 +128,10 @@ class LinearSystem:
 
 
 def block_product(pattern: Pattern, values: FloatArray, vector: FloatArray) -> FloatArray:
-    """Product of a matrix of blocks with a field of control points that is zero at most of them, shape (rows of blocks, 3)."""
+    """Product of a matrix of blocks with a field of control points, cheap where that is zero at most of them; (rows of blocks, 3)."""
     field = vector.reshape(-1, 3)
+    rows = len(pattern.start) - 1
     met = np.flatnonzero(np.any(field != 0.0, axis=1)[pattern.column])
-    product = np.zeros((len(pattern.start) - 1, 3))
     row = np.searchsorted(pattern.start, met, side="right") - 1
-    np.add.at(product, row, np.einsum("bij,bj->bi", values[met], field[pattern.column[met]]))
-    return product
+    shares = np.einsum("bij,bj->ib", values[met], field[pattern.column[met]])
+    return np.stack([np.bincount(row, share, minlength=rows) for share in shares], axis=1)
