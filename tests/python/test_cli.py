@@ -130,7 +130,9 @@ def test_interrupted_run_resumes_to_the_same_numbers(tmp_path: Path) -> None:
 
 
 def test_ctrl_c_says_how_to_go_on(tmp_path: Path) -> None:
-    command = [sys.executable, "-m", "isomortar", "run", "iron", "--output", "iron.h5"]
+    # A shell starts background jobs with SIGINT ignored, and children inherit that.
+    heard = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); from isomortar.cli import main; main()"
+    command = [sys.executable, "-c", heard, "run", "iron", "--output", "iron.h5"]
     with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
         assert process.stderr is not None
         assert any(line.startswith("step  1/50") for line in process.stderr)
