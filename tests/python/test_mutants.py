@@ -12,12 +12,14 @@ from isomortar.errors import InputError, IsomortarError
 from isomortar.harness.collection import collect
 from isomortar.harness.measurement import Measurement
 from isomortar.harness.mutants import report
-from isomortar.harness.mutants.bench import Bench
+from isomortar.harness.mutants.bench import Bench, freeze
 from isomortar.harness.mutants.campaign import Attacked, Outcome
-from isomortar.harness.mutants.faults import LEFT_OUT, fault_at, read_planted, read_sources
+from isomortar.harness.mutants.faults import fault_at, read_planted
 from isomortar.harness.mutants.gate import Gate, Verdict
 from isomortar.harness.mutants.generate import draw
 from isomortar.harness.mutants.journal import Journal
+from isomortar.harness.mutants.layers import LAYERS
+from isomortar.harness.mutants.meaning import meaning
 from isomortar.harness.mutants.score import Classification, Score, Share, read_classified
 
 ROOT = Path(__file__).parents[2]
@@ -50,7 +52,7 @@ def attacked(number: int, killer: str | None = None, name: str = "") -> Attacked
 
 
 def score(*faults: Attacked, classified: dict[str, Classification] | None = None) -> Score:
-    return Score(Outcome(faults, {}, (), {"solid/a": 1.0}), classified or {})
+    return Score(Outcome(faults, {}, (), {"solid/a": 1.0}), classified or {}, 0.9)
 
 
 #: Kernels of an oracle.
@@ -82,14 +84,19 @@ def gate(cells) -> Gate:
     return Gate({cell.name: 5.0 if "dear" in cell.name else 0.1 for cell in cells}, cells, lambda *_: None, SOUND)
 
 
-def test_the_faults_planted_by_hand_fit_the_sources():
-    found = read_planted(ROOT / "verification/planted_faults.toml", read_sources(ROOT / "fortran"))
-    assert len(found) >= 25
+@pytest.mark.parametrize("layer", LAYERS.values(), ids=LAYERS)
+def test_the_faults_planted_by_hand_fit_the_sources(layer):
+    found = read_planted(ROOT / "verification/planted_faults.toml", layer.read(ROOT), layer.suffix)
+    assert len(found) >= 10
     assert len({fault.key for fault in found}) == len(found)
 
 
-def test_files_without_faults_exist():
-    assert all((ROOT / "fortran" / file).is_file() for file in LEFT_OUT)
+@pytest.mark.parametrize("layer", LAYERS.values(), ids=LAYERS)
+def test_files_without_faults_exist_and_no_folder_of_the_kernel_is_forgotten(layer):
+    folder = ROOT / layer.folder
+    assert all((folder / file).is_file() for file in layer.left_out)
+    if layer.name == "kernel":
+        assert set(layer.parts) == {path.name for path in folder.iterdir() if path.is_dir()}
 
 
 @pytest.mark.parametrize(
@@ -98,22 +105,23 @@ def test_files_without_faults_exist():
         ({"old": "twice = 2 * x - 1"}, "stands 2 times"),
         ({"old": "nothing"}, "stands 0 times"),
         ({"file": "base/kinds.f90"}, "no source"),
+        ({"file": "solid/twice.c"}, "no source"),
         ({"extra": "x"}, "needs name"),
     ],
 )
 def test_a_planted_fault_that_does_not_fit_is_an_error(tmp_path, changes, words):
     with pytest.raises(InputError, match=words):
-        read_planted(planted(tmp_path, **changes), SOURCES)
+        read_planted(planted(tmp_path, **changes), SOURCES, ".f90")
 
 
 def test_a_list_without_faults_is_an_error(tmp_path):
     (tmp_path / "planted.toml").write_text("fault = []\n")
     with pytest.raises(InputError, match="holds no"):
-        read_planted(tmp_path / "planted.toml", SOURCES)
+        read_planted(tmp_path / "planted.toml", SOURCES, ".f90")
 
 
 def test_a_planted_fault_is_applied_where_it_stands(tmp_path):
-    (fault,) = read_planted(planted(tmp_path), SOURCES)
+    (fault,) = read_planted(planted(tmp_path), SOURCES, ".f90")
     assert fault.applied(TEXT) == TEXT.replace("real :: x", "integer :: x")
     assert fault.place == "solid/twice.f90:3"
 
@@ -127,9 +135,10 @@ def test_like_lines_have_keys_of_their_own_that_lines_above_do_not_change():
 
 
 def test_drawn_faults_are_changes_of_statements_in_the_order_of_the_seed():
-    drawn = draw(SOURCES, 1)
-    assert [f.key for f in drawn] == [f.key for f in draw(SOURCES, 1)]
-    assert [f.key for f in drawn] != [f.key for f in draw(SOURCES, 2)]
+    kernel = LAYERS["kernel"]
+    drawn = draw(kernel, SOURCES, 1)
+    assert [f.key for f in drawn] == [f.key for f in draw(kernel, SOURCES, 1)]
+    assert [f.key for f in drawn] != [f.key for f in draw(kernel, SOURCES, 2)]
     assert {f.line for f in drawn} <= {2, 4, 5}
     assert any(f.new == "  twice = 2 * x + 1" and f.applied(TEXT).splitlines()[3] == f.new for f in drawn)
     assert all(f.applied(TEXT) != TEXT for f in drawn)
@@ -137,7 +146,7 @@ def test_drawn_faults_are_changes_of_statements_in_the_order_of_the_seed():
 
 def test_a_folder_without_sources_is_an_error(tmp_path):
     with pytest.raises(InputError, match="checkout"):
-        read_sources(tmp_path)
+        LAYERS["kernel"].read(tmp_path)
 
 
 def test_the_gate_stops_at_the_first_red_cell_and_asks_it_first_next_time(cells):
@@ -158,7 +167,7 @@ def test_whatever_does_not_pass_kills(cells, ending):
 
 
 def test_a_cell_that_crashes_without_a_fault_too_is_no_catch(cells):
-    with pytest.raises(IsomortarError, match="dear is red on the sound kernel too"):
+    with pytest.raises(IsomortarError, match="dear is red on the sound program too"):
         gate(cells).attack(Oracle("mutants_family/dear", "crashed", (FAULTY, SOUND)), FAULTY, "solid", (), math.inf)
 
 
@@ -206,12 +215,20 @@ def test_the_score_fails_closed():
     assert not score().passes
 
 
-def test_equivalent_survivors_are_counted_apart_and_not_for_the_verdict():
+def test_equivalent_survivors_are_counted_apart():
     one = attacked(1)
     counted = score(attacked(0, "solid/a"), one, classified={one.fault.key: Classification("equivalent", "why")})
     assert (counted.caught.part, counted.caught.whole) == (1, 2)
     assert (counted.caught_of_real.part, counted.caught_of_real.whole) == (1, 1)
-    assert not counted.passes
+    assert counted.passes
+    assert not score(attacked(0, "solid/a"), one, classified={one.fault.key: Classification("precision only", "why")}).passes
+
+
+def test_shares_are_told_by_folder():
+    one = attacked(1)
+    counted = score(attacked(0, "solid/a"), one, classified={one.fault.key: Classification("equivalent", "why")})
+    ((folder, (found, real)),) = counted.caught_by_folder.items()
+    assert (folder, found.part, found.whole, real.part, real.whole) == ("solid", 1, 2, 1, 1)
 
 
 @pytest.mark.parametrize(
@@ -240,11 +257,45 @@ def test_the_report_shows_survivors_and_asks_for_their_class(tmp_path):
 
 def test_a_process_that_died_because_the_run_ended_is_no_catch(cells, tmp_path):
     (tmp_path / "package").mkdir()
-    (tmp_path / "kernel.so").write_text("")
+    (tmp_path / "program").mkdir()
     bench = Bench(tmp_path / "package", tmp_path, tmp_path / "bench")
     bench.__exit__(None, None, None)
     with pytest.raises(IsomortarError, match="given up"):
-        gate(cells).attack(bench, tmp_path / "kernel.so", "solid", (), math.inf)
+        gate(cells).attack(bench, tmp_path / "program", "solid", (), math.inf)
+
+
+def test_what_is_not_executed_has_no_meaning():
+    text = '''"""One."""\nx: int = 1\ndef f(a: int, /, b: int = 2) -> int:\n    """Two."""\n    return a + b  # three\n'''
+    for same in (("One", "1"), ("Two", "2"), ("three", "3"), ("a: int", "a: str"), ("-> int", "-> str"), ("x: int", "x: str")):
+        assert meaning(text.replace(*same)) == meaning(text)
+    for other in (("a + b", "a - b"), ("= 1", "= 2"), ("b: int = 2", "b: int = 3")):
+        assert meaning(text.replace(*other)) != meaning(text)
+
+
+LAID_CASE = """
+from isomortar.geometry import quadrature
+from isomortar.harness import Bound, case
+
+@case(claim="What a file holds.", bounds={"held": Bound(at_most=1.0, reason="definition: so")})
+def held():
+    return {"held": getattr(quadrature, "HELD", 0.0)}
+"""
+
+
+def test_one_fault_after_the_other_is_laid_over_the_package_and_taken_away(tmp_path):
+    family = tmp_path / "cases" / "mutants_laid"
+    family.mkdir(parents=True)
+    (family / "mutants_laid_cases.py").write_text(LAID_CASE)
+    (cell,) = [cell for case in collect(family.parent) for cell in case.cells]
+    package, cases = freeze(family.parent, tmp_path / "frozen")
+    sound, programs = tmp_path / "sound", [tmp_path / "one", tmp_path / "two"]
+    sound.mkdir()
+    for program, angle in zip(programs, ("0.50", "0.25"), strict=True):
+        (program / "geometry").mkdir(parents=True)
+        (program / "geometry/quadrature.py").write_text(f"HELD = {angle}\n")
+    with Bench(package, cases, tmp_path / "bench") as bench:
+        found = [bench.measure(program, cell, 60.0).numbers for program in (sound, *programs, sound)]
+    assert [value["held"] for value in found] == [0.0, 0.5, 0.25, 0.0]
 
 
 KERNEL_CASE = """
@@ -287,9 +338,9 @@ def test_a_campaign_with_a_real_kernel(tmp_path, monkeypatch):
     command = ["mutants", "--sample", "0", "-j", "2", "--cases", str(tmp_path / "cases"), "--results", str(tmp_path / "results")]
     run = CliRunner().invoke(app, command)
     assert run.exit_code == 1, run.output
-    data = json.loads((tmp_path / "results/report.json").read_text())
+    data = json.loads((tmp_path / "results/kernel/report.json").read_text())
     fates = {fault["name"]: fault["killer"] for fault in data["faults"]}
     assert fates == {"stale handles are released": "mutants_real/stale", "another dense limit": None}
-    before = (tmp_path / "results/verdicts.jsonl").read_text()
+    before = (tmp_path / "results/kernel/verdicts.jsonl").read_text()
     CliRunner().invoke(app, command)
-    assert (tmp_path / "results/verdicts.jsonl").read_text() == before, "what is known was measured again"
+    assert (tmp_path / "results/kernel/verdicts.jsonl").read_text() == before, "what is known was measured again"

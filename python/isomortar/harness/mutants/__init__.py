@@ -1,1 +1,1 @@
-"""The harness's own proof: faults planted in the kernel's sources, one at a time, and what the gate makes of each."""
+"""The harness's own proof: faults planted in the sources, one at a time, and what the gate makes of each."""

@@ -1,11 +1,11 @@
-"""Where cells are measured on other kernels: a copy of the package, and a process that takes its kernel from there."""
+"""Where cells are measured on programs with a fault: a copy of the package, and a process that runs it."""
 
 from __future__ import annotations
 
+import compileall
 import importlib.util
 import shutil
 import sys
-from importlib.machinery import EXTENSION_SUFFIXES
 from pathlib import Path
 from types import TracebackType
 
@@ -23,44 +23,49 @@ import os, resource, runpy, sys
 resource.setrlimit(resource.RLIMIT_AS, ({memory}, {memory}))
 resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+sys.dont_write_bytecode = True  # two faults of one second and size would be taken for one
 sys.path.insert(0, {package!r})
 sys.path.extend({installed!r})
 runpy.run_module("isomortar.harness.worker", run_name="__main__")
 """
+_PACKAGE = Path(isomortar.__file__).parent.resolve()
 _HIDDEN = shutil.ignore_patterns("__pycache__")
 
 
 def freeze(cases: Path, folder: Path) -> tuple[Path, Path]:
-    """Copy the package with the extended-precision twin, and the cases: what is edited during a campaign does not touch it.
+    """Copy the package with the compiled kernels, and the cases: what is edited during a campaign does not touch it.
 
     Returns
     -------
     package, cases : Path
         The copies.
     """
-    twin = importlib.util.find_spec("isomortar._extended")
-    if twin is None or twin.origin is None:
-        raise IsomortarError("the extended-precision twin is not built: `make setup` builds it")
     shutil.rmtree(folder, ignore_errors=True)
-    package = Path(shutil.copytree(Path(isomortar.__file__).parent, folder / "isomortar", ignore=_HIDDEN))
-    shutil.copy2(twin.origin, package)
+    package = Path(shutil.copytree(_PACKAGE, folder / "isomortar", ignore=_HIDDEN))
+    for module in ("isomortar._kernel", "isomortar._extended"):
+        found = importlib.util.find_spec(module)
+        if found is None or found.origin is None:
+            raise IsomortarError(f"{module} is not built: `make setup` builds it")
+        shutil.copy2(found.origin, package)
+    compileall.compile_dir(package, quiet=2)
     return package, Path(shutil.copytree(cases, folder / "cases", ignore=_HIDDEN))
 
 
 class Bench:
-    """A place to measure cells on any kernel, one kernel at a time. A context manager.
+    """A place to measure cells on any program, one at a time. A context manager.
 
     Parameters
     ----------
     package, cases : Path
-        What `freeze` made. The package is copied once more, for this bench's kernels.
+        What `freeze` made. The package is copied once more, for this bench's programs.
     folder : Path
         Where to work.
     """
 
     def __init__(self, package: Path, cases: Path, folder: Path) -> None:
-        self._cases, self._folder = cases.resolve(), folder.resolve()
-        self._kernel: Path | None = None
+        self._frozen, self._cases, self._folder = package, cases.resolve(), folder.resolve()
+        self._program: Path | None = None
+        self._laid: list[Path] = []
         self._worker: Worker | None = None
         self._closed = False
         shutil.rmtree(folder, ignore_errors=True)
@@ -73,32 +78,45 @@ class Bench:
         self._closed = True
         self._end()
 
-    def measure(self, kernel: Path, cell: Cell, seconds: float) -> Measurement:
-        """Measure a cell on a kernel within a time.
+    def measure(self, program: Path, cell: Cell, seconds: float) -> Measurement:
+        """Measure a cell on a program, a folder of files that take the place of the package's, within a time.
 
         Raises
         ------
         IsomortarError
-            The bench was closed meanwhile: that its process died then says nothing about the kernel.
+            The bench was closed meanwhile: that its process died then says nothing about the program.
         """
-        if self._worker is None or kernel != self._kernel:
-            self._worker, self._kernel = self._started(kernel), kernel
-        path = cell.case.path
-        task = task_of(cell) | {"path": str(self._cases / path.parent.name / path.name), "seconds": seconds}
+        if self._worker is None or program != self._program:
+            self._worker, self._program = self._started(program), program
+        task = task_of(cell) | {"path": str(self._copy_of(cell.case.path)), "seconds": seconds}
         measurement = self._worker.measure(task)
         if self._closed:
             raise IsomortarError("the measurement was given up")
         return measurement
 
+    def _copy_of(self, path: Path) -> Path:
+        """The frozen copy of a case's file; a case of the package stands in the bench's own."""
+        if path.is_relative_to(_PACKAGE):
+            return self._folder / "isomortar" / path.relative_to(_PACKAGE)
+        return self._cases / path.parent.name / path.name
+
     def _end(self) -> None:
         if self._worker:
             self._worker.__exit__(None, None, None)
 
-    def _started(self, kernel: Path) -> Worker:
-        """A worker with a kernel; the one before is ended."""
+    def _started(self, program: Path) -> Worker:
+        """A worker with a program; the one before is ended, and its files are replaced by sound ones."""
         self._end()
-        part = Path(shutil.copy2(kernel, self._folder / "kernel.part"))
-        part.replace(self._folder / "isomortar" / f"_kernel{EXTENSION_SUFFIXES[0]}")
+        for file in self._laid:
+            self._lay(self._frozen, file)
+        self._laid = [path.relative_to(program) for path in program.rglob("*") if path.is_file()]
+        for file in self._laid:
+            self._lay(program, file)
         installed = [path for path in sys.path if path]
         start = _START.format(memory=_MEMORY, package=str(self._folder), installed=installed)
         return Worker((sys.executable, "-S", "-c", start))
+
+    def _lay(self, program: Path, file: Path) -> None:
+        """Put a file of a program into the package."""
+        part = Path(shutil.copy2(program / file, self._folder / "file.part"))
+        part.replace(self._folder / "isomortar" / file)

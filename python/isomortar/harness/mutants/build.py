@@ -1,4 +1,7 @@
-"""Kernels with a fault: a copy of the sources that is built once, and copied with its build for every fault."""
+"""Programs with a fault, each a folder of files that take the place of the package's own.
+
+A kernel with a fault is built from a copy of the sources that is built once, and copied with its build for every fault.
+"""
 
 from __future__ import annotations
 
@@ -9,9 +12,13 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from typing import Protocol
 
 from isomortar.errors import IsomortarError
 from isomortar.harness.mutants.faults import Fault
+from isomortar.harness.mutants.layers import Layer
+from isomortar.harness.mutants.meaning import meaning
+from isomortar.harness.store import kernel_hash, package_hash
 
 #: What of a checkout makes the kernel.
 _PARTS = ("meson.build", "meson.options", "fortran", "tools/f2py_wrap.py")
@@ -19,11 +26,28 @@ _PARTS = ("meson.build", "meson.options", "fortran", "tools/f2py_wrap.py")
 _SECONDS = 300
 
 
-class Workshop:
-    """Builds kernels with faults.
+class Workshop(Protocol):
+    """Makes programs with faults."""
 
-    Copies are cheap: ninja finds in a copy (times and all) nothing to do but what depends on the file that changed. Faults touch
-    neither the checkout nor the extended-precision twin: the twin that measures a faulty kernel has no fault.
+    #: Hash of the sources.
+    sources: str
+    #: Hash of all that a program is made of besides them.
+    rest: str
+    #: The program without a fault.
+    sound: Path
+
+    def build(self, fault: Fault) -> Path | None:
+        """The program with a fault, a folder; None where the compiler rejects it."""
+
+    def identity(self, program: Path) -> str:
+        """Hash of what a program does: two faults with one hash are one."""
+
+
+class KernelWorkshop:
+    """Kernels with faults, in double and in extended precision: a mistake in the shared sources is in both.
+
+    Copies are cheap: ninja finds in a copy (times and all) nothing to do but what depends on the file that changed. Faults do not touch
+    the checkout.
 
     Parameters
     ----------
@@ -34,9 +58,9 @@ class Workshop:
     """
 
     def __init__(self, project: Path, folder: Path) -> None:
-        self._kernels = folder / "kernels"
-        self._kernels.mkdir(parents=True, exist_ok=True)
-        self._sound = folder / "sound"
+        self._programs = folder / "programs"
+        self._programs.mkdir(parents=True, exist_ok=True)
+        self._sound = folder / "sources"
         shutil.rmtree(self._sound, ignore_errors=True)
         (self._sound / "python/isomortar").mkdir(parents=True)
         for part in _PARTS:
@@ -44,40 +68,88 @@ class Workshop:
             copy = shutil.copytree if (project / part).is_dir() else shutil.copy2
             copy(project / part, self._sound / part)
         self.sources = _hash_of_files(self._sound)
+        self.rest = package_hash()
         _run(["meson", "setup", "build", "--buildtype=release", "-Db_lto=false"], self._sound)  # linked in a second
-        targets = _run(["ninja", "-C", "build", "-t", "targets", "all"], self._sound)
-        self._target = next(t for t in (line.split(":")[0] for line in targets) if t.startswith("fortran/_kernel.") and t.endswith(".so"))
-        _run(["ninja", "-C", "build", self._target], self._sound)
-
-    @property
-    def sound(self) -> Path:
-        """The kernel without a fault."""
-        return self._sound / "build" / self._target
-
-    def content(self, fault: Fault) -> str:
-        """Hash of all that a faulty kernel is made from."""
-        change = "\0".join((self.sources, fault.file, str(fault.position), fault.old, fault.new))
-        return hashlib.sha256(change.encode()).hexdigest()
+        targets = [line.split(":")[0] for line in _run(["ninja", "-C", "build", "-t", "targets", "all"], self._sound)]
+        self._targets = [t for t in targets if t.startswith(("fortran/_kernel.", "fortran/_extended.")) and t.endswith(".so")]
+        self.sound = self._made(self._sound, folder / "sound")
 
     def build(self, fault: Fault) -> Path | None:
-        """The kernel with a fault; None where the compiler rejects it."""
-        kernel = self._kernels / f"{self.content(fault)[:20]}.so"
-        if kernel.exists():
-            return kernel
-        with tempfile.TemporaryDirectory(dir=self._kernels.parent) as place:
+        """The kernels with a fault, a folder; None where the compiler rejects it."""
+        program = self._programs / content(self, fault)[:20]
+        if program.exists():
+            return program
+        with tempfile.TemporaryDirectory(dir=self._programs.parent) as place:
             copy = Path(shutil.copytree(self._sound, Path(place) / "copy"))
             source = copy / "fortran" / fault.file
             source.write_text(fault.applied(source.read_text()))
             try:
-                _run(["ninja", "-C", "build", self._target], copy)
+                return self._made(copy, Path(place) / "program").replace(program)
             except IsomortarError:
                 return None
-            return (copy / "build" / self._target).replace(kernel)
+
+    def identity(self, program: Path) -> str:
+        """Hash of the compiled kernels."""
+        return _hash_of_files(program)
+
+    def _made(self, sources: Path, program: Path) -> Path:
+        """Build the kernels of some sources, and put them into a folder."""
+        _run(["ninja", "-C", "build", *self._targets], sources)
+        shutil.rmtree(program, ignore_errors=True)
+        program.mkdir()
+        for target in self._targets:
+            shutil.copy2(sources / "build" / target, program)
+        return program
 
 
-def hash_of(kernel: Path) -> str:
-    """Hash of a compiled kernel: two faults with one hash are one."""
-    return hashlib.sha256(kernel.read_bytes()).hexdigest()
+class PythonWorkshop:
+    """Packages with a changed Python file; the kernel is the one that is built.
+
+    Parameters
+    ----------
+    project : Path
+        The checkout.
+    folder : Path
+        Where to work.
+    layer : Layer
+        Where the sources stand.
+    """
+
+    def __init__(self, project: Path, folder: Path, layer: Layer) -> None:
+        self._programs, self._package = folder / "programs", project / layer.folder
+        self._files = layer.read(project)
+        self.sources, self.rest = package_hash(), kernel_hash()
+        self.sound = folder / "sound"
+        self.sound.mkdir(parents=True, exist_ok=True)
+
+    def build(self, fault: Fault) -> Path | None:
+        """The changed file, in a folder; None where it can not be compiled."""
+        text = fault.applied(self._files[fault.file])
+        try:
+            compile(text, fault.file, "exec")
+        except SyntaxError:
+            return None
+        program = self._programs / content(self, fault)[:20]
+        (program / fault.file).parent.mkdir(parents=True, exist_ok=True)
+        (program / fault.file).write_text(text)
+        return program
+
+    def identity(self, program: Path) -> str:
+        """Hash of what is executed of the files that are not as they were."""
+        changed = {path.relative_to(program).as_posix(): meaning(path.read_text()) for path in sorted(program.rglob("*.py"))}
+        parts = [f"{file}\0{text}" for file, text in changed.items() if text != meaning(self._files[file])]
+        return hashlib.sha256("\0".join([self.sources, *parts]).encode()).hexdigest()
+
+
+def workshop_of(layer: Layer, project: Path, folder: Path) -> Workshop:
+    """The workshop for faults in a layer."""
+    return KernelWorkshop(project, folder) if layer.name == "kernel" else PythonWorkshop(project, folder, layer)
+
+
+def content(workshop: Workshop, fault: Fault) -> str:
+    """Hash of all that a program with a fault is made from."""
+    change = "\0".join((workshop.sources, fault.file, str(fault.position), fault.old, fault.new))
+    return hashlib.sha256(change.encode()).hexdigest()
 
 
 def _hash_of_files(folder: Path) -> str:

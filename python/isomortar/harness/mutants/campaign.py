@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
+import shutil
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -14,18 +14,19 @@ from isomortar.errors import InputError
 from isomortar.harness.cases import TIMEOUTS, Cell
 from isomortar.harness.compare import Lookup, judge
 from isomortar.harness.mutants.bench import Bench, freeze
-from isomortar.harness.mutants.build import Workshop, hash_of
+from isomortar.harness.mutants.build import content, workshop_of
 from isomortar.harness.mutants.faults import Fault
 from isomortar.harness.mutants.gate import Gate, Verdict
 from isomortar.harness.mutants.journal import Journal
+from isomortar.harness.mutants.layers import Layer
 from isomortar.harness.mutants.pool import Pool
 from isomortar.harness.report import sentence
-from isomortar.harness.store import cell_key, package_hash
+from isomortar.harness.store import cell_key
 
 #: Tells what is being done, how much of it is done, and how much there is (0: not known).
 Progress = Callable[[str, int, int], None]
-#: What a faulty kernel is that does not count.
-_REJECTED, _SOUND, _TWICE = "rejected by the compiler", "same as the sound kernel", "same as another fault"
+#: What a faulty program is that does not count.
+_REJECTED, _SOUND, _TWICE = "rejected by the compiler", "same as the sound program", "same as another fault"
 
 
 @dataclass(frozen=True)
@@ -48,9 +49,9 @@ class Outcome:
     dropped : Counter
         How many faults were drawn and do not count, by reason.
     unused : tuple of str
-        Cells that are red on the sound kernel, in words; they can tell nothing.
+        Cells that are red on the sound program, in words; they can tell nothing.
     seconds : dict of cell name to seconds
-        The gate on the sound kernel, CPU seconds.
+        The gate on the sound program, CPU seconds.
     """
 
     attacked: tuple[Attacked, ...]
@@ -64,6 +65,8 @@ class Campaign:
 
     Parameters
     ----------
+    layer : Layer
+        Where faults are put.
     project : Path
         The checkout.
     cases : Path
@@ -80,15 +83,14 @@ class Campaign:
     """
 
     def __init__(
-        self, project: Path, cases: Path, cells: Sequence[Cell], lookup: Lookup, folder: Path, jobs: int, progress: Progress
+        self, layer: Layer, project: Path, cases: Path, cells: Sequence[Cell], lookup: Lookup, folder: Path, jobs: int, progress: Progress
     ) -> None:
         self._cells, self._lookup, self._progress = cells, lookup, progress
         self._builds, self._verdicts, self._sound = (Journal(folder / f"{name}.jsonl") for name in ("builds", "verdicts", "sound"))
-        progress("building the sound kernel", 0, 0)
-        self._workshop = Workshop(project, folder)
+        progress("building the sound program", 0, 0)
+        self._workshop = workshop_of(layer, project, folder)
         package, frozen = freeze(cases, folder / "frozen")
-        program = hashlib.sha256((package_hash() + hash_of(next(package.glob("_extended.*.so")))).encode()).hexdigest()
-        self._keys = {cell.name: cell_key(cell, program)[:20] for cell in cells}
+        self._keys = {cell.name: cell_key(cell, self._workshop.rest)[:20] for cell in cells}
         self._pool = Pool(package, frozen, folder, jobs)
 
     def __enter__(self) -> Campaign:
@@ -100,17 +102,17 @@ class Campaign:
     def run(self, planted: Sequence[Fault], drawn: Iterable[Fault], sample: int, most: float) -> Outcome:
         """Attack the planted faults with the whole gate, and the first `sample` of those drawn that are distinct.
 
-        The latter are given up when cells that take `most` CPU seconds on the sound kernel are green.
+        The latter are given up when cells that take `most` CPU seconds on the sound program are green.
 
         Raises
         ------
         InputError
-            A planted fault does not compile, or changes nothing; fewer faults than asked for; no cell is green on the sound kernel.
+            A planted fault does not compile, or changes nothing; fewer faults than asked for; no cell is green on the sound program.
         """
         seconds, unused = self._sound_seconds()
         gate = Gate(seconds, self._cells, self._lookup, self._workshop.sound)
         dropped: Counter[str] = Counter()
-        known = {hash_of(self._workshop.sound): _SOUND}
+        known = {self._workshop.identity(self._workshop.sound): _SOUND}
         hand = list(self._distinct(planted, len(planted), known, dropped))
         if dropped:
             names = {fault.name for fault in planted} - {fault.name for fault, _ in hand}
@@ -122,15 +124,15 @@ class Campaign:
         return Outcome(attacked, dropped, unused, seconds)
 
     def _sound_seconds(self) -> tuple[dict[str, float], tuple[str, ...]]:
-        """CPU seconds of the cells that are green on the sound kernel, and the others in words."""
-        kernel = self._workshop.sound
-        sound = hash_of(kernel)[:20]
+        """CPU seconds of the cells that are green on the sound program, and the others in words."""
+        program = self._workshop.sound
+        sound = self._workshop.identity(program)[:20]
 
         def measured(bench: Bench, cell: Cell) -> tuple[float, str]:
             key = f"{self._keys[cell.name]}-{sound}"
             known = self._sound.get(key)
             if known is None:
-                measurement = bench.measure(kernel, cell, TIMEOUTS[cell.tier])
+                measurement = bench.measure(program, cell, TIMEOUTS[cell.tier])
                 red = [sentence(check) for check in judge(cell, measurement, self._lookup) if check.state != "passed"]
                 known = {"cell": cell.name, "seconds": measurement.cpu_seconds, "red": next(iter(red), "")}
                 self._sound.put(key, known)
@@ -138,70 +140,70 @@ class Campaign:
 
         seconds, unused = {}, []
         for i, (cell, (taken, red)) in enumerate(self._pool.work(measured, self._cells)):
-            self._progress("the gate on the sound kernel", i + 1, len(self._cells))
+            self._progress("the gate on the sound program", i + 1, len(self._cells))
             if red:
                 unused.append(f"{cell.name}: {red}")
             else:
                 seconds[cell.name] = taken
         if not seconds:
-            raise InputError(f"no cell is green on the sound kernel: {unused[0]}", "gate")
+            raise InputError(f"no cell is green on the sound program: {unused[0]}", "gate")
         return seconds, tuple(unused)
 
     def _distinct(self, faults: Iterable[Fault], count: int, known: dict[str, str], dropped: Counter[str]) -> Iterator[tuple[Fault, str]]:
-        """The first `count` faults that compile to a kernel that is not `known`, each with its kernel's hash."""
+        """The first `count` faults that compile to a program that is not `known`, each with its identity."""
         found = 0
         if not count:
             return
-        for fault, kernel in self._pool.work(self._kernel_of, faults):
-            reason = _REJECTED if kernel is None else known.get(kernel)
-            if kernel is None or reason:
+        for fault, program in self._pool.work(self._program_of, faults):
+            reason = _REJECTED if program is None else known.get(program)
+            if program is None or reason:
                 dropped[str(reason)] += 1
                 continue
-            known[kernel] = _TWICE
+            known[program] = _TWICE
             found += 1
-            self._progress("building faulty kernels", found, count)
-            yield fault, kernel
+            self._progress("building faulty programs", found, count)
+            yield fault, program
             if found == count:
                 return
 
-    def _kernel_of(self, _: Bench, fault: Fault) -> str | None:
-        content = self._workshop.content(fault)
-        known = self._builds.get(content)
+    def _program_of(self, _: Bench, fault: Fault) -> str | None:
+        made_from = content(self._workshop, fault)
+        known = self._builds.get(made_from)
         if known is None:
             built = self._workshop.build(fault)
-            known = {"place": fault.place, "kernel": hash_of(built) if built else None}
-            self._builds.put(content, known)
-        return known["kernel"]
+            known = {"place": fault.place, "program": self._workshop.identity(built) if built else None}
+            self._builds.put(made_from, known)
+        return known["program"]
 
-    def _attacked(self, gate: Gate, kernels: Sequence[tuple[Fault, str]], most: float) -> Iterator[Attacked]:
-        """Attack kernels one by one."""
+    def _attacked(self, gate: Gate, programs: Sequence[tuple[Fault, str]], most: float) -> Iterator[Attacked]:
+        """Attack programs one by one."""
 
         def attack(bench: Bench, item: tuple[Fault, str]) -> Verdict:
-            fault, kernel = item
+            fault, program = item
             limit = math.inf if fault.name else most
-            verdict = self._remembered(kernel)
+            verdict = self._remembered(program)
             if verdict.killer is None and not gate.is_whole(verdict) and gate.cost(verdict.passed) < limit:
                 built = self._workshop.build(fault)
                 assert built is not None
                 verdict = gate.attack(bench, built, fault.folder, verdict.passed, limit)
-                self._remember(kernel, verdict)
-                built.unlink()
+                self._remember(program, verdict)
+                shutil.rmtree(built)
             gate.learn(fault.folder, verdict)
             return verdict
 
         survivors = 0
-        for i, ((fault, _), verdict) in enumerate(self._pool.work(attack, kernels)):
+        for i, ((fault, _), verdict) in enumerate(self._pool.work(attack, programs)):
             survivors += verdict.killer is None
-            self._progress(f"attacking faulty kernels, {survivors} survived", i + 1, len(kernels))
+            self._progress(f"attacking faulty programs, {survivors} survived", i + 1, len(programs))
             yield Attacked(fault, verdict, gate.is_whole(verdict))
 
-    def _remember(self, kernel: str, verdict: Verdict) -> None:
+    def _remember(self, program: str, verdict: Verdict) -> None:
         entry = {"killer": verdict.killer, "found": verdict.found, "passed": {name: self._keys[name] for name in verdict.passed}}
-        self._verdicts.put(kernel, entry | {"killer key": self._keys[verdict.killer] if verdict.killer else None})
+        self._verdicts.put(program, entry | {"killer key": self._keys[verdict.killer] if verdict.killer else None})
 
-    def _remembered(self, kernel: str) -> Verdict:
+    def _remembered(self, program: str) -> Verdict:
         """What earlier runs found with cells that are still the same."""
-        entry = self._verdicts.get(kernel) or {"killer": None, "passed": {}}
+        entry = self._verdicts.get(program) or {"killer": None, "passed": {}}
         passed = tuple(name for name, key in entry["passed"].items() if self._keys.get(name) == key)
         if entry["killer"] and self._keys.get(entry["killer"]) == entry["killer key"]:
             return Verdict(entry["killer"], entry["found"], passed)

@@ -1,4 +1,4 @@
-"""A fault: one change of one source file of the kernel; and the faults that are planted by hand."""
+"""A fault: one change of one source file; and the faults that are planted by hand."""
 
 from __future__ import annotations
 
@@ -9,17 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from isomortar.errors import InputError
+from isomortar.harness.mutants.layers import LAYERS
 
-#: Sources that no fault is put into, by the path below the sources' folder, and why.
-LEFT_OUT = {
-    "base/kinds.f90": "names of kinds",
-    "base/kinds_extended.f90": "of the extended-precision twin, which measures the kernel's errors and stays as it is",
-    "base/status.f90": "names of status codes: any numbers do",
-    "sparse/umfpack.f90": "declarations of a C library",
-    "api/difference.f90": "of the twin",
-    "api/extended_api.f90": "of the twin",
-    "api/precision_api.f90": "what a kernel says about itself",
-}
+_SUFFIXES = tuple(layer.suffix for layer in LAYERS.values())
 
 
 @dataclass(frozen=True)
@@ -37,7 +29,7 @@ class Fault:
 
     @property
     def folder(self) -> str:
-        """The layer of the kernel that it is in."""
+        """The folder of the sources that it is in."""
         return self.file.partition("/")[0]
 
     @property
@@ -57,22 +49,8 @@ def fault_at(file: str, text: str, position: int, old: str, new: str, name: str 
     return Fault(file, position, old, new, text[:position].count("\n") + 1, key, name, why)
 
 
-def read_sources(folder: Path) -> dict[str, str]:
-    """Text of every source that faults are put into, by its path below the folder.
-
-    Raises
-    ------
-    InputError
-        There is no such folder, or no Fortran in it.
-    """
-    found = {path.relative_to(folder).as_posix(): path.read_text() for path in sorted(folder.rglob("*.f90"))}
-    if not found:
-        raise InputError(f"there are no Fortran sources in {folder}: faults are planted in a checkout, from its folder", "sources")
-    return {file: text for file, text in found.items() if file not in LEFT_OUT}
-
-
-def read_planted(path: Path, sources: Mapping[str, str]) -> list[Fault]:
-    """The faults planted by hand: a TOML file of ``[[fault]]`` with name, file, old, new, why.
+def read_planted(path: Path, sources: Mapping[str, str], suffix: str) -> list[Fault]:
+    """The faults planted by hand in sources of one suffix: a TOML file of ``[[fault]]`` with name, file, old, new, why.
 
     Raises
     ------
@@ -85,16 +63,19 @@ def read_planted(path: Path, sources: Mapping[str, str]) -> list[Fault]:
         raise InputError(f"is no list of [[fault]]: {error}", str(path)) from None
     if not entries:
         raise InputError("holds no [[fault]]: a gate that meets no fault catches all of them", str(path))
-    planted = [_planted(entry, sources, f"{path}: {entry.get('name', f'fault {i + 1}')}") for i, entry in enumerate(entries)]
-    names = [fault.name for fault in planted]
+    wheres = [f"{path}: {entry.get('name', f'fault {i + 1}')}" for i, entry in enumerate(entries)]
+    for entry, where in zip(entries, wheres, strict=True):
+        if set(entry) != {"name", "file", "old", "new", "why"}:
+            raise InputError(f"has {', '.join(sorted(entry))}; needs name, file, old, new, why", where)
+        if Path(entry["file"]).suffix not in _SUFFIXES:
+            raise InputError(f"{entry['file']} is no source: {', '.join(_SUFFIXES)}", where)
+    names = [entry["name"] for entry in entries]
     if len(set(names)) < len(names):
         raise InputError(f"two faults have one name: {', '.join(sorted({n for n in names if names.count(n) > 1}))}", str(path))
-    return planted
+    return [_planted(entry, sources, where) for entry, where in zip(entries, wheres, strict=True) if entry["file"].endswith(suffix)]
 
 
 def _planted(entry: Mapping[str, str], sources: Mapping[str, str], where: str) -> Fault:
-    if set(entry) != {"name", "file", "old", "new", "why"}:
-        raise InputError(f"has {', '.join(sorted(entry))}; needs name, file, old, new, why", where)
     if entry["file"] not in sources:
         raise InputError(f"there is no source {entry['file']} that faults are put into", where)
     text, old = sources[entry["file"]], entry["old"].strip("\n")

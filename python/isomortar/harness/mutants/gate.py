@@ -1,4 +1,4 @@
-"""The gate as an attack on faulty kernels: the cells that promise most for their cost come first, the first red one ends it."""
+"""The gate as an attack on faulty programs: the cells that promise most for their cost come first, the first red one ends it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from isomortar.harness.measurement import Measurement
 from isomortar.harness.mutants.bench import Bench
 from isomortar.harness.report import sentence
 
-#: A cell has failed after this many times the CPU seconds that it takes on the sound kernel, and never before so many seconds.
+#: A cell has failed after this many times the CPU seconds that it takes on the sound program, and never before so many seconds.
 _PATIENCE, _LEAST_SECONDS = 20, 20.0
 #: CPU seconds of a cell besides its own: sending and judging.
 _OVERHEAD = 0.02
@@ -25,12 +25,12 @@ _ALIKE = 0.5
 
 @dataclass(frozen=True)
 class Verdict:
-    """What the gate found in a kernel.
+    """What the gate found in a program.
 
     Parameters
     ----------
     killer : str or None
-        The first red cell; None: the kernel survived.
+        The first red cell; None: the program survived.
     found : str
         What was red about it.
     passed : tuple of str
@@ -43,18 +43,18 @@ class Verdict:
 
 
 class Gate:
-    """The cells that judge kernels. What they found so far decides which come first.
+    """The cells that judge programs. What they found so far decides which come first.
 
     Parameters
     ----------
     seconds : mapping of cell name to seconds
-        CPU seconds on the sound kernel of the cells that are green there.
+        CPU seconds on the sound program of the cells that are green there.
     cells : sequence of Cell
         Those and others, which are not used.
     lookup : Lookup
         Finds references.
     sound : Path
-        The kernel without a fault.
+        The program without a fault.
     """
 
     def __init__(self, seconds: Mapping[str, float], cells: Sequence[Cell], lookup: Lookup, sound: Path) -> None:
@@ -77,31 +77,31 @@ class Gate:
                 counts.update((folder, name) for name in names)
                 counts.update((folder, self._case[name]) for name in names)
 
-    def attack(self, bench: Bench, kernel: Path, folder: str, passed: Collection[str], most: float) -> Verdict:
+    def attack(self, bench: Bench, program: Path, folder: str, passed: Collection[str], most: float) -> Verdict:
         """Measure and judge cells until one is red, none is left, or those that passed cost `most`.
 
-        `passed` are cells that the kernel passed before. `folder` is where in the sources the fault is.
+        `passed` are cells that the program passed before. `folder` is where in the sources the fault is.
 
         Raises
         ------
         IsomortarError
-            A cell ended without numbers, and does so on the sound kernel too: that is the machine's fault.
+            A cell ended without numbers, and does so on the sound program too: that is the machine's fault.
         """
         done = [name for name in passed if name in self._cells]
         while self.cost(done) < most and (left := self._cells.keys() - done):
             name = self._most_promising(left, done, folder)
-            measurement, red = self._red(bench, kernel, name)
+            measurement, red = self._red(bench, program, name)
             if red:
                 if measurement.ending != "measured" and self._red(bench, self._sound, name)[1]:
-                    raise IsomortarError(f"{name} is red on the sound kernel too, which it was not before: this machine is in trouble")
+                    raise IsomortarError(f"{name} is red on the sound program too, which it was not before: this machine is in trouble")
                 return Verdict(name, red, tuple(done))
             done.append(name)
         return Verdict(None, "", tuple(done))
 
-    def _red(self, bench: Bench, kernel: Path, name: str) -> tuple[Measurement, str]:
+    def _red(self, bench: Bench, program: Path, name: str) -> tuple[Measurement, str]:
         """Measure a cell, and what is red about it."""
         cell = self._cells[name]
-        measurement = bench.measure(kernel, cell, max(_PATIENCE * self._seconds[name], _LEAST_SECONDS))
+        measurement = bench.measure(program, cell, max(_PATIENCE * self._seconds[name], _LEAST_SECONDS))
         red = [check for check in judge(cell, measurement, self._lookup) if check.state != "passed"]
         return measurement, sentence(red[0]) if red else ""
 
@@ -110,7 +110,7 @@ class Gate:
         return verdict.killer is not None or self._cells.keys() <= set(verdict.passed)
 
     def cost(self, names: Collection[str]) -> float:
-        """CPU seconds of some cells on the sound kernel."""
+        """CPU seconds of some cells on the sound program."""
         return sum(self._seconds.get(name, 0.0) for name in names)
 
     def _most_promising(self, left: Collection[str], done: Sequence[str], folder: str) -> str:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from isomortar.harness.mutants.campaign import Attacked
-from isomortar.harness.mutants.score import CLASSES, LEAST_SHARE, Score
+from isomortar.harness.mutants.score import CLASSES, Score
 from isomortar.harness.report import template
 from isomortar.harness.store import write_whole
 
@@ -19,7 +19,7 @@ def write(path: Path, score: Score, settings: dict[str, Any]) -> None:
     when = datetime.now().astimezone().isoformat(timespec="minutes")
     page = template("mutants/report.html")
     entries = unclassified(score)
-    write_whole(path, page.render(score=score, settings=settings, when=when, least=LEAST_SHARE, classes=CLASSES, entries=entries))
+    write_whole(path, page.render(score=score, settings=settings, when=when, classes=CLASSES, entries=entries))
     write_whole(path.with_suffix(".json"), json.dumps(_as_data(score, settings, when), indent=1))
 
 
@@ -41,7 +41,9 @@ def _as_data(score: Score, settings: dict[str, Any], when: str) -> dict[str, Any
         "when": when,
         "settings": settings,
         "passes": score.passes,
+        "least share": score.least_share,
         "shares": {name: {**asdict(share), "interval": share.interval} for name, share in shares.items()},
+        "folders": {folder: [asdict(share) for share in shares] for folder, shares in score.caught_by_folder.items()},
         "dropped": score.outcome.dropped,
         "unused cells": score.outcome.unused,
         "seconds of the gate": sum(score.outcome.seconds.values()),

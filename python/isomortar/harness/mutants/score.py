@@ -15,8 +15,6 @@ from isomortar.harness.mutants.campaign import Attacked, Outcome
 
 #: What a survivor can be. An ``equivalent`` one computes the same; ``not caught`` is a gap of the gate.
 CLASSES = ("equivalent", "performance only", "precision only", "not caught")
-#: Share of the random faults that the gate must catch.
-LEAST_SHARE = 0.9
 
 
 @dataclass(frozen=True)
@@ -62,10 +60,12 @@ class Score:
     outcome : Outcome
     classified : dict of key to Classification
         What is known about survivors.
+    least_share : float
+        Of the random faults, without those classified as equivalent, that must be caught.
     """
 
-    def __init__(self, outcome: Outcome, classified: dict[str, Classification]) -> None:
-        self.outcome, self.classified = outcome, classified
+    def __init__(self, outcome: Outcome, classified: dict[str, Classification], least_share: float) -> None:
+        self.outcome, self.classified, self.least_share = outcome, classified, least_share
         self.planted = [a for a in outcome.attacked if a.fault.name]
         self.sample = [a for a in outcome.attacked if not a.fault.name]
 
@@ -85,6 +85,15 @@ class Score:
         return _caught([a for a in self.sample if self.kind(a) != "equivalent"])
 
     @property
+    def caught_by_folder(self) -> dict[str, tuple[Share, Share]]:
+        """Of the random faults in each folder of the sources: of all, and of those that are not classified as equivalent."""
+        found = {}
+        for folder in self.folders:
+            within = [a for a in self.sample if a.fault.folder == folder]
+            found[folder] = _caught(within), _caught([a for a in within if self.kind(a) != "equivalent"])
+        return found
+
+    @property
     def survivors(self) -> list[Attacked]:
         """Faults that no cell was red on; planted ones first."""
         return [a for a in self.outcome.attacked if a.verdict.killer is None]
@@ -97,7 +106,7 @@ class Score:
     @property
     def passes(self) -> bool:
         """Every planted fault is caught, and of a sample the share that must be."""
-        sampled = not self.sample or self.caught.value >= LEAST_SHARE
+        sampled = not self.sample or self.caught_of_real.value >= self.least_share
         return bool(self.outcome.attacked) and self.caught_planted.part == self.caught_planted.whole and sampled
 
     @property

@@ -1,0 +1,96 @@
+"""Where faults are put: the kernel's sources, and the Python between a scene file and the kernel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from isomortar.errors import InputError
+
+
+@dataclass(frozen=True)
+class Layer:
+    """Sources that faults are put into.
+
+    Parameters
+    ----------
+    name : str
+    folder : Path
+        Where the sources stand in a checkout.
+    suffix : str
+        Of their files.
+    parts : tuple of str
+        Folders below it that get faults.
+    left_out : dict of str to str
+        Files that get none, by the path below the folder, and why.
+    rules : str
+        The rules of universalmutator for the language.
+    ignored : tuple of str
+        Patterns of lines that compute nothing.
+    least_share : float
+        Share of the random faults, without those classified as equivalent, that must be caught.
+    """
+
+    name: str
+    folder: Path
+    suffix: str
+    parts: tuple[str, ...]
+    left_out: dict[str, str]
+    rules: str
+    ignored: tuple[str, ...]
+    least_share: float
+
+    def read(self, root: Path) -> dict[str, str]:
+        """Text of every source that faults are put into, by its path below the folder.
+
+        Raises
+        ------
+        InputError
+            No such sources in the checkout at `root`.
+        """
+        folder = root / self.folder
+        paths = sorted(path for part in self.parts for path in (folder / part).rglob(f"*{self.suffix}"))
+        found = {path.relative_to(folder).as_posix(): path.read_text() for path in paths}
+        if not found:
+            raise InputError(f"there are none in {folder}: faults are planted in a checkout, from its folder", "sources")
+        return {file: text for file, text in found.items() if file not in self.left_out}
+
+
+LAYERS = {
+    layer.name: layer
+    for layer in (
+        Layer(
+            name="kernel",
+            folder=Path("fortran"),
+            suffix=".f90",
+            parts=("api", "base", "contact", "nurbs", "solid", "sparse"),
+            left_out={
+                "base/kinds.f90": "names of kinds",
+                "base/kinds_extended.f90": "names of kinds",
+                "base/status.f90": "names of status codes: any numbers do",
+                "sparse/umfpack.f90": "declarations of a C library",
+                "api/difference.f90": "of the extended-precision twin alone",
+                "api/extended_api.f90": "of the extended-precision twin alone",
+                "api/precision_api.f90": "what a kernel says about itself",
+            },
+            rules="fortran.rules",
+            # Comments, ends of blocks, headings, declarations that give no value.
+            ignored=(
+                r"^\s*(!|&?\s*$)",
+                r"^\s*(use|implicit|private|public|module|end|contains|type|else|return|cycle|exit)\b",
+                r"::(?!.*=)",
+            ),
+            least_share=0.95,
+        ),
+        Layer(
+            name="python",
+            folder=Path("python/isomortar"),
+            suffix=".py",
+            parts=("geometry", "model", "results", "scene", "solve"),
+            left_out={"results/style.py": "colours and sizes of figures"},
+            rules="python.rules",
+            ignored=(r"^\s*(#|@|$)", r"^\s*(from|import|class)\b"),
+            least_share=0.85,
+        ),
+    )
+}

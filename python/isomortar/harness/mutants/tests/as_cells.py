@@ -1,0 +1,39 @@
+"""The project's tests as cells: of Python around the kernel they claim what no case does."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from isomortar.errors import InputError
+from isomortar.harness.cases import Bound, Cell, case
+
+#: What tests of the harness import: no fault is put there.
+_HARNESS = "isomortar.harness"
+
+
+@case(
+    claim="The tests of a file, or folder, pass.",
+    grid={"of": ["tests/python"]},
+    bounds={"status": Bound(at_most=0, reason="definition: pytest ends with status 0 when all that it ran passed, and something was run")},
+)
+def passed(of: str) -> dict[str, int]:
+    """Pytest's status, run in this process up to the first failure."""
+    import pytest  # not of the program
+
+    return {"status": int(pytest.main(["-q", "-x", "-p", "no:cacheprovider", of]))}
+
+
+def tests_as_cells(folder: Path) -> list[Cell]:
+    """A cell for each file of tests, but those of the harness.
+
+    Raises
+    ------
+    InputError
+        There are no tests in the folder.
+    """
+    helpers = tuple(sorted(path for path in folder.glob("*.py") if not path.name.startswith("test_")))
+    files = [path for path in sorted(folder.glob("test_*.py")) if _HARNESS not in path.read_text()]
+    if not files:
+        raise InputError(f"there are none in {folder}", "tests")
+    return [Cell(replace(passed, files=(path, *helpers)), {"of": path.as_posix()}) for path in files]
