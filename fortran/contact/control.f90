@@ -8,7 +8,7 @@ module isomortar_contact_control
   use isomortar_contact_projection, only: nearest_start, project, projection_inside, projection_lost, projection_outside, &
     sample_surface
   use isomortar_contact_slave, only: integrate_functions, slave_t
-  use isomortar_nurbs_surface, only: derivative_columns, surface_basis, surface_nodes
+  use isomortar_nurbs_surface, only: derivative_columns, shortest_way, surface_basis, surface_nodes
   implicit none
   private
 
@@ -82,6 +82,7 @@ contains
     projections%slips = projections%found .and. had
     do q = 1, size(slave%area)
       projections%slip(:, q) = merge(projections%xi(:, q) - origin(:, q), 0.0_wp, projections%slips(q))
+      if (.not. master%is_plane) projections%slip(:, q) = shortest_way(master%surface, projections%slip(:, q))
     end do
   end subroutine project_points
 

@@ -5,7 +5,7 @@ module isomortar_contact_kink
   use isomortar_base_algebra, only: cross, inverse2
   use isomortar_base_kinds, only: wp
   use isomortar_contact_kinematics, only: contact_point_t
-  use isomortar_nurbs_surface, only: derivative_columns, surface_basis, surface_nodes, surface_t
+  use isomortar_nurbs_surface, only: derivative_columns, step_across, surface_basis, surface_nodes, surface_t
   implicit none
   private
 
@@ -50,14 +50,18 @@ contains
     integer, intent(in) :: place(2)
     logical, intent(in) :: fixed(2)
     real(wp) :: normal(3)
-    integer :: nodes(product(surface%direction%order + 1)), i, j
-    real(wp) :: values(size(nodes), derivative_columns(1)), tangents(3, 2), face(3)
+    integer :: nodes(product(surface%direction%order + 1)), i, j, there(2)
+    real(wp) :: values(size(nodes), derivative_columns(1)), tangents(3, 2), face(3), at(2)
+    logical :: within
 
     normal = 0.0_wp
     do j = 0, merge(1, 0, fixed(2))
       do i = 0, merge(1, 0, fixed(1))
-        call surface_nodes(surface, place + [i, j], nodes)
-        call surface_basis(surface, place + [i, j], nodes, xi, 1, values)
+        there = place
+        at = xi
+        call step_across(surface, [i, j], there, at, within)
+        call surface_nodes(surface, there, nodes)
+        call surface_basis(surface, there, nodes, at, 1, values)
         tangents = matmul(positions(:, surface%point(nodes)), values(:, 2:3))
         face = surface%outward * cross(tangents(:, 1), tangents(:, 2))
         normal = normal + face / norm2(face)

@@ -7,8 +7,8 @@
 module isomortar_contact_projection
   use isomortar_base_kinds, only: wp
   use isomortar_nurbs_direction, only: element_at, is_kink
-  use isomortar_nurbs_surface, only: derivative_columns, surface_basis, surface_element_count, surface_element_of, &
-    surface_nodes, surface_t
+  use isomortar_nurbs_surface, only: derivative_columns, step_across, surface_basis, surface_element_count, &
+    surface_element_of, surface_nodes, surface_t
   implicit none
   private
 
@@ -86,8 +86,10 @@ contains
     integer :: a, line
 
     do a = 1, 2
+      if (pressing(a) == 0) cycle
       line = place(a) + min(pressing(a), 0)
-      if (pressing(a) == 0 .or. line == 0 .or. line == surface%direction(a)%elements) cycle
+      if (surface%closed(a) .and. line == 0) line = surface%direction(a)%elements
+      if (line == 0 .or. (line == surface%direction(a)%elements .and. .not. surface%closed(a))) cycle
       fixed(a) = is_kink(surface%direction(a), line)
       if (.not. fixed(a)) cycle
       place(a) = line
@@ -101,7 +103,8 @@ contains
     type(search_t), intent(in) :: here
     logical :: edge(2)
 
-    edge = (here%pressing < 0 .and. here%place == 1) .or. (here%pressing > 0 .and. here%place == surface%direction%elements)
+    edge = .not. surface%closed .and. &
+      ((here%pressing < 0 .and. here%place == 1) .or. (here%pressing > 0 .and. here%place == surface%direction%elements))
   end function on_edge
 
   !> Go on in the neighbour across the boundary (the diagonal one first) in which the distance falls further, or, where round-off
@@ -114,13 +117,14 @@ contains
     integer, parameter :: mask(2, 3) = reshape([1, 1, 1, 0, 0, 1], [2, 3])
     type(search_t) :: there
     integer :: attempt, step(2)
+    logical :: within
 
     moved = .false.
     do attempt = 1, 3
       step = mask(:, attempt) * merge(0, here%pressing, on_edge(surface, here))
       if (all(step == 0)) cycle
       there = here
-      there%place = here%place + step
+      call step_across(surface, step, there%place, there%xi, within)
       call search_element(surface, positions, x, there)
       moved = there%distance < here%distance ! where the search there does not settle, the point is lost and not on a line
       if (there%settled .and. all(there%pressing == 0)) moved = there%distance <= here%distance * same_distance

@@ -72,12 +72,13 @@ contains
     element = low
   end function element_at
 
-  !> Whether functions are only continuous from element to element + 1.
+  !> Whether functions are only continuous from element to element + 1. From the last one on, at a seam, they are: knots are open.
   pure logical function is_kink(self, element)
     type(direction_t), intent(in) :: self
     integer, intent(in) :: element
 
-    is_kink = self%first(element + 1) - self%first(element) >= self%order
+    is_kink = element == self%elements
+    if (.not. is_kink) is_kink = self%first(element + 1) - self%first(element) >= self%order
   end function is_kink
 
   !> The order + 1 functions of an element at u, and their derivatives: values(j, k) is the k-th derivative.

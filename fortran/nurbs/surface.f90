@@ -6,7 +6,7 @@ module isomortar_nurbs_surface
   implicit none
   private
 
-  public :: face_of, surface_basis, surface_element_count, surface_element_of, surface_nodes
+  public :: face_of, shortest_way, step_across, surface_basis, surface_element_count, surface_element_of, surface_nodes
 
   !> Column of each partial derivative (k, l) in a table of derivatives to order three.
   integer, parameter, public :: derivative_column(0:3, 0:3) = reshape( &
@@ -22,6 +22,8 @@ module isomortar_nurbs_surface
     real(wp), allocatable :: weight(:)
     !> Sign of a_1 x a_2 that points out of the body.
     real(wp) :: outward = 1.0_wp
+    !> Directions whose first and last row of control points are the same: there the last element meets the first one at a seam.
+    logical :: closed(2) = .false.
   end type surface_t
 
 contains
@@ -53,7 +55,49 @@ contains
         end associate
       end do
     end do
+    associate (count => self%direction%count)
+      self%closed(1) = all(self%point(1::count(1)) == self%point(count(1)::count(1)))
+      self%closed(2) = all(self%point(:count(1)) == self%point(size(self%point) - count(1) + 1:))
+    end associate
   end function face_of
+
+  !> Go to the element `step` (-1, 0 or 1 by direction) further on, past a seam too; `xi` is put on the line that is crossed.
+  !> Not `within`: past the edge of the patch.
+  pure subroutine step_across(self, step, place, xi, within)
+    type(surface_t), intent(in) :: self
+    integer, intent(in) :: step(2)
+    integer, intent(inout) :: place(2)
+    real(wp), intent(inout) :: xi(2)
+    logical, intent(out) :: within
+    integer :: a
+
+    within = .true.
+    do a = 1, 2
+      associate (last => self%direction(a)%elements)
+        place(a) = place(a) + step(a)
+        if (place(a) < 1 .or. place(a) > last) then
+          within = within .and. self%closed(a)
+          place(a) = merge(1, last, step(a) > 0)
+        end if
+        if (step(a) /= 0) xi(a) = self%direction(a)%boundary(place(a) - merge(1, 0, step(a) > 0))
+      end associate
+    end do
+  end subroutine step_across
+
+  !> A difference of coordinates, the shortest way round in closed directions.
+  pure function shortest_way(self, difference) result(way)
+    type(surface_t), intent(in) :: self
+    real(wp), intent(in) :: difference(2)
+    real(wp) :: way(2), period
+    integer :: a
+
+    way = difference
+    do a = 1, 2
+      if (.not. self%closed(a)) cycle
+      period = self%direction(a)%boundary(self%direction(a)%elements) - self%direction(a)%boundary(0)
+      way(a) = way(a) - period * anint(way(a) / period)
+    end do
+  end function shortest_way
 
   !> Number of surface elements.
   pure integer function surface_element_count(self)

@@ -27,10 +27,11 @@ PATCHES = {
 
 @dataclass(frozen=True)
 class Surface:
-    """A face with the kernel's view of it."""
+    """A face with the kernel's view of it; along `closed` (u, v or w) the last row of control points is the first one."""
 
     patch: Patch
     face: str
+    closed: str | None = None
 
     @property
     def ends(self) -> FloatArray:
@@ -55,7 +56,10 @@ class Surface:
     def project(self, targets: FloatArray, starts: FloatArray | None = None) -> Projections:
         """The kernel's projections: each target is a slave of one quadrature point; without starts from its coarse search."""
         n, own = len(targets), len(self.patch.weights)
-        arrays = patch_arrays(self.patch, np.arange(own, dtype=np.int32))
+        points = np.arange(own, dtype=np.int32)
+        if self.closed:
+            points[self.patch.face_points(self.closed + "1")] = points[self.patch.face_points(self.closed + "0")]
+        arrays = patch_arrays(self.patch, points)
         head = ["uvw".index(self.face[0]) + 1, int(self.face[1])]
         master = MasterArrays(np.concatenate([head, arrays.layout]).astype(np.int32), arrays.knots, arrays.point, arrays.weight)
         numbers = np.arange(n, dtype=np.int32)

@@ -1,0 +1,116 @@
+"""Closed masters: their seam is a line like the others, for feet, slips and whole scenes."""
+
+from __future__ import annotations
+
+import numpy as np
+from projection.closest_points import Surface
+
+from isomortar.geometry.patch import FloatArray
+from isomortar.geometry.primitives import ring
+from isomortar.geometry.refinement import mesh
+from isomortar.harness import Bound, case
+from isomortar.model.entities import Problem
+from isomortar.scene import Scene
+from isomortar.solve.simulation import Simulation
+
+INNER, OUTER, WIDTH = 0.3, 0.5, 0.4
+#: Parameter length of the ring: one unit a quarter.
+PERIOD = 4.0
+
+
+def face(kind: str, side: str) -> Surface:
+    """A face of a closed ring about the y-axis: `side` is v0, the inner one, or v1, the outer one."""
+    patch = mesh(ring((0.0, 0.0, 0.0), INNER, OUTER, WIDTH), (kind[0],) * 3, (int(kind[1:]), 1, 1), (8, 1, 2))  # type: ignore[arg-type]
+    return Surface(patch, side, closed="u")
+
+
+def targets(side: str, angle: FloatArray, seed: int) -> FloatArray:
+    """Points at angles from the seam, off the face on both of its sides."""
+    random = np.random.default_rng(seed)
+    radius = (INNER if side == "v0" else OUTER) + random.uniform(-0.05, 0.05, len(angle))
+    return np.column_stack([radius * np.sin(angle), random.uniform(-0.19, 0.19, len(angle)), radius * np.cos(angle)])
+
+
+@case(
+    claim="A foot beyond the seam of a closed ring is found, and slips over the seam are those over any other joint of the ring.",
+    tier="gate",
+    grid={"kind": ["N2", "N3", "L2"], "side": ["v0", "v1"]},
+    bounds={
+        "found": Bound(at_least=1.0, at_most=1.0, reason="definition: round the ring there is no edge"),
+        "distance": Bound(at_most=1e-14, reason="round-off: the quarters of the ring are the same, turned"),
+        "slip": Bound(at_most=1e-13, reason="round-off: of coordinates up to 4"),
+        "moved": Bound(at_least=0.05, reason="definition: every point has moved, half of them over the seam"),
+    },
+)
+def over_the_seam(kind: str, side: str) -> dict[str, float]:
+    """Points that move over the seam to and fro, beside the same ones over the next joint: share found, differences, least slip."""
+    master, quarter = face(kind, side), np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])
+    angle = np.linspace(-0.3, 0.3, 100)
+    before, after = targets(side, angle, 1), targets(side, -0.9 * angle - 0.1 * np.sign(angle), 1)
+    slips, distances, found = [], [], []
+    for turn in (np.eye(3), quarter):
+        start = master.project(before @ turn)
+        end = master.project(after @ turn, start.xi)
+        found += [start.found, end.found]
+        slips.append(end.slip)
+        distances.append(np.linalg.norm(master.points(end.xi) - after @ turn, axis=1))
+    return {
+        "found": float(np.mean(found)),
+        "distance": float(np.abs(distances[0] - distances[1]).max()),
+        "slip": float(np.abs(slips[0] - slips[1]).max()),
+        "moved": float(np.abs(slips[0][:, 1]).min()),
+    }
+
+
+#: A small wheel that rolls without sliding on a closed ring: inside it, and outside.
+_WHEEL = """
+format = 1
+bodies.wheel = {{ geometry = {{ kind = "ring", centre = [0, 0, {height}], inner = 0.1, outer = {wheel}, width = 0.2 }}, \
+mesh = {{ order = [2, 1, 1], elements = [16, 1, 1] }} }}
+bodies.ring = {{ geometry = {{ kind = "ring", centre = [0, 0, 0], inner = 0.5, outer = 0.75, width = 0.3 }}, \
+mesh = {{ order = [2, 1, 1], elements = [16, 1, 1] }} }}
+contacts.tread = {{ slave = "wheel.v1", master = "ring.{face}", friction = 0.3 }}
+supports.hub = {{ face = "wheel.v0", centre = [0, 0, {height}], axis = [0, 1, 0] }}
+supports.ring = {{ face = "ring.{other}", centre = [0, 0, 0], axis = [0, 1, 0] }}
+stages = [
+  {{ name = "press", steps = 2, motions.hub.translate = [0, 0, {press}] }},
+  {{ name = "roll", steps = {steps}, motions = {{ ring.rotate = {turn}, hub.rotate = {spin} }} }},
+]
+"""
+
+
+#: Load steps a turn: 10 degrees of the ring.
+STEPS = 36
+
+
+def wheel(inside: bool, turns: int) -> Problem:
+    """The wheel below the ring's highest point, where the seam is, or on it; both turn in their places, without sliding."""
+    inner, outer, radius, apart = 0.5, 0.75, 0.2, 0.002
+    height, press = (inner - radius - apart, 0.012) if inside else (outer + radius + apart, -0.012)
+    ratio = inner / radius if inside else -outer / radius
+    return Scene.from_toml(
+        _WHEEL.format(
+            height=height, wheel=radius, face="v0" if inside else "v1", other="v1" if inside else "v0", press=press,
+            steps=STEPS * turns, turn=360 * turns, spin=360 * turns * ratio,
+        )
+    ).problem()  # fmt: skip
+
+
+@case(
+    claim="A wheel rolls three turns round a closed ring, inside and outside: no point is lost, and each turn is like the one before.",
+    tier="nightly",
+    grid={"inside": [True, False]},
+    bounds={
+        "outside": Bound(at_most=0.0, reason="definition: the ring is wider than the wheel, and round it there is no edge"),
+        "press": Bound(at_most=1e-3, reason="definition: both meshes repeat each turn; what is left is the start of the friction"),
+    },
+)
+def rolling(inside: bool) -> dict[str, float]:
+    """Most points without a projection; difference of the last two turns' forces across the contact, relative to their mean."""
+    steps = list(Simulation(wheel(inside, 3)).run())
+    force = np.array([step.contacts[0].force_slave[2] for step in steps])
+    last, before = force[-STEPS:], force[-2 * STEPS : -STEPS]
+    return {
+        "outside": float(max(step.contacts[0].excluded for step in steps)),
+        "press": float(np.abs(last - before).max() / abs(last.mean())),
+    }
