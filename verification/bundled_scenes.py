@@ -54,7 +54,7 @@ def differences(ours: Problem, theirs: Problem) -> list[str]:
     for one, other in zip(ours.bodies, theirs.bodies, strict=True):
         allowed = BOUND + own_noise(other.patch)
         for what, error in {
-            "knots": max(np.abs(a.knots - b.knots).max() for a, b in zip(one.patch.directions, other.patch.directions, strict=True)),
+            "knots": np.max([np.abs(a.knots - b.knots).max() for a, b in zip(one.patch.directions, other.patch.directions, strict=True)]),
             "control points": np.abs(one.patch.control_points - other.patch.control_points).max() / size(other.patch),
             "weights": np.abs(one.patch.weights - other.patch.weights).max(),
         }.items():

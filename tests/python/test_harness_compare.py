@@ -250,21 +250,29 @@ def test_bounds_and_tier_may_depend_on_the_settings():
 
 
 def keeps_nan_out(tree: ast.AST) -> list[int]:
-    """Lines with Python's ``max`` or ``min`` of a value and a constant or the value so far: max(0.0, nan) is 0.0."""
+    """Lines with Python's ``max`` or ``min`` of a value and zero or the value so far, or of values as they come: max(0.0, nan) is 0.0."""
     lines = []
     for node in ast.walk(tree):
-        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in ("max", "min") and len(node.args) > 1:
-            parents = [n for n in ast.walk(tree) if isinstance(n, ast.Assign) and node in ast.walk(n)]
-            targets = {t.id for n in parents for t in n.targets if isinstance(t, ast.Name)}
-            again = any(isinstance(a, ast.Name) and a.id in targets for a in node.args)
-            if again or any(isinstance(a, ast.Constant) and a.value == 0.0 for a in node.args):
-                lines.append(node.lineno)
-    return lines
+        if not (isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in ("max", "min")) or node.keywords:
+            continue
+        if len(node.args) == 1:
+            as_they_come = isinstance(node.args[0], ast.GeneratorExp | ast.ListComp) or ast.unparse(node.args[0]).endswith(".values()")
+            lines += [node.lineno] * as_they_come
+            continue
+        parents = [n for n in ast.walk(tree) if isinstance(n, ast.Assign) and node in ast.walk(n)]
+        targets = {t.id for n in parents for t in n.targets if isinstance(t, ast.Name)}
+        again = any(isinstance(a, ast.Name) and a.id in targets for a in node.args)
+        if again or any(isinstance(a, ast.Constant) and a.value == 0.0 for a in node.args):
+            lines.append(node.lineno)
+    return sorted(lines)
 
 
 def test_no_case_keeps_nan_out_of_its_numbers() -> None:
     """``worst = max(worst, error)`` drops an error that is NaN; numpy.maximum hands it on."""
-    assert keeps_nan_out(ast.parse("worst = max(worst, f(x))\nn = max(4, m)\ny = {'e': max(0.0, z)}")) == [1, 3]
-    cases = Path(__file__).parents[2] / "verification"
-    found = {p.name: lines for p in cases.glob("*/*.py") if (lines := keeps_nan_out(ast.parse(p.read_text())))}
+    text = "worst = max(worst, f(x))\nn = max(4, m)\ny = {'e': max(0.0, z)}\nmax(f(o) for o in runs)\nmin(found.values())\nmax(sizes)"
+    assert keeps_nan_out(ast.parse(text)) == [1, 3, 4, 5]
+    root = Path(__file__).parents[2]
+    measuring = [*(root / "verification").glob("*/*.py"), *(root / "python/isomortar/harness/paper/findings").glob("*.py")]
+    measuring += [root / "verification/bundled_scenes.py", root / "python/isomortar/harness/paper/measures.py"]
+    found = {p.name: lines for p in measuring if (lines := keeps_nan_out(ast.parse(p.read_text())))}
     assert not found

@@ -14,13 +14,14 @@ from isomortar.harness.paper.outcome import Outcome, Outcomes
 from isomortar.harness.paper.page import Report
 from isomortar.harness.paper.settled import Settled, settled_curves
 from isomortar.harness.paper.statements import Evidence, NotMeasuredError, Statement, ratio, successive
+from isomortar.harness.paper.studies import METHODS
 
 STUDIES = {study.scene: study for study in chosen((), False)}
 IRON = STUDIES["iron"]
 PRESSED, DRAGGED = 10, 40
 
 
-def outcome(name: str, values, method="monolithic", failure="", **numbers) -> Outcome:
+def outcome(name: str, values, method="monolithic", failure="", lost=False, **numbers) -> Outcome:
     """A run of the dragging study whose force along x is `values` in the drag and zero before."""
     n = len(values)
     force = np.zeros((PRESSED + n, 3))
@@ -37,7 +38,7 @@ def outcome(name: str, values, method="monolithic", failure="", **numbers) -> Ou
         "augmentations": 1.0,
         "control_points": 770.0,
     }
-    return Outcome(IRON, IRON.run(name), method, Path("none.h5"), failure, plain | numbers)
+    return Outcome(IRON, IRON.run(name), method, Path("none.h5"), failure, lost, plain | numbers)
 
 
 STEPS = np.arange(1, DRAGGED + 1)
@@ -139,7 +140,7 @@ def test_a_statement_without_one_of_its_runs_is_not_measured():
     runs[2] = replace(runs[2], failure="load step 43 does not converge")
     judged = smoother().judge(Outcomes((IRON,), tuple(runs)))
     assert [v.state for v in judged.verdicts] == ["not measured", "holds"]
-    assert judged.state == "holds"  # by the method whose runs came to their end
+    assert judged.state == "partly measured"  # by one of the two methods
     runs = [replace(run, failure="load step 43 does not converge") if run.run.name == "N3" else run for run in runs]
     judged = smoother().judge(Outcomes((IRON,), tuple(runs)))
     assert judged.state == "not measured"
@@ -153,7 +154,65 @@ def test_numbers_that_are_not_finite_are_not_measured():
     assert "N3 / N2" in judged.verdicts[0].why
     runs = dragged(N2=0.4, N3=0.2, N4=0.1, N5=0.05)
     one = [outcome("N3", math.nan * STEPS, "paper") if (r.run.name, r.method) == ("N3", "paper") else r for r in runs]
-    assert smoother().judge(Outcomes((IRON,), tuple(one))).state == "not measured"  # its runs came to their end
+    assert smoother().judge(Outcomes((IRON,), tuple(one))).state == "partly measured"  # its runs came to their end
+
+
+def rises() -> Statement:
+    """Of Lagrange elements, of which some may fail."""
+    return Statement(
+        "4.4", "It rises.", ("iron-Lagrange",), lambda runs: successive(runs.series("iron-Lagrange"), measures.mean), "", "", at_least=1.0
+    )
+
+
+@pytest.mark.parametrize(("last", "state"), [(4.0, "partly measured"), (1.0, "does not hold")])
+def test_a_series_of_which_some_failed_does_not_hold_but_may_be_broken(last, state):
+    levels = dict(zip(IRON.series["Lagrange"], (1.0, 2.0, 3.0, last), strict=True))
+    runs = [outcome(name, np.full(DRAGGED, v), method) for name, v in levels.items() for method in ("monolithic", "paper")]
+    assert rises().judge(Outcomes((IRON,), tuple(runs))).state == ("holds" if last == 4.0 else state)
+    runs = [replace(run, failure="load step 43 does not converge") if run.run.name == "L2" else run for run in runs]
+    judged = rises().judge(Outcomes((IRON,), tuple(runs)))
+    assert judged.state == state
+    assert judged.verdicts[0].values.keys() == {"slave-L1 / L1", "slave-L2 / slave-L1"}
+    assert judged.verdicts[0].why == "without iron-L2, which failed: load step 43 does not converge"
+
+
+def test_what_holds_by_one_method_and_partly_by_the_other_is_partly_measured():
+    runs = [outcome(n, np.full(DRAGGED, 1.0 + k), m) for k, n in enumerate(IRON.series["Lagrange"]) for m in ("monolithic", "paper")]
+    runs[0] = replace(runs[0], failure="load step 43 does not converge")
+    judged = rises().judge(Outcomes((IRON,), tuple(runs)))
+    assert [v.state for v in judged.verdicts] == ["partly measured", "holds"]
+    assert judged.state == "partly measured"
+
+
+@pytest.mark.parametrize(
+    ("failure", "lost", "state"),
+    [
+        ("load step 43 does not converge", False, "holds"),
+        ("the process was ended by SIGKILL", True, "not measured"),
+        ("", False, "does not hold"),
+    ],
+)
+def test_only_a_run_that_does_not_converge_needs_a_treatment(failure, lost, state):
+    """A crash, a lack of time or of memory is the machine's, no finding of the paper."""
+    twist = STUDIES["twist"]
+    statement = next(s for s in STATEMENTS if "need a special treatment" in s.text)
+    short = {name: value[: 35 if failure else None] for name, value in outcome("N2", STEPS).numbers.items() if isinstance(value, list)}
+    runs = [Outcome(twist, twist.run(name), method, Path("none.h5"), failure, lost, short) for name in ("L1", "L2") for method in METHODS]
+    judged = statement.judge(Outcomes((twist,), tuple(runs)))
+    assert judged.state == state
+    report = Report(Outcomes((twist,), tuple(runs)), (judged,), 0, False, None, {})
+    assert report.complete is not lost
+
+
+@pytest.mark.parametrize("statement", STATEMENTS, ids=lambda s: s.text[:40])
+def test_no_statement_is_measured_on_what_a_machine_lost(statement):
+    """Whatever a statement does with runs that fail: one that crashed or ran out of time says nothing, so that none of it is judged."""
+    studies = tuple(STUDIES.values())
+    crashed = [
+        Outcome(study, run, method, Path("none.h5"), "the process was ended by SIGKILL", True, {})
+        for study in studies for run in study.runs for method in run.methods
+    ]  # fmt: skip
+    assert statement.judge(Outcomes(studies, tuple(crashed))).state == "not measured"
 
 
 def test_of_lagrange_elements_those_that_ended_count_if_there_are_two():
@@ -180,8 +239,9 @@ def report(*outcomes: Outcome, judgements=()) -> Report:
 
 
 def test_complete_is_a_report_without_a_failed_nurbs_run_or_a_gap_in_the_table():
-    lost = replace(outcome("L1", STEPS), failure="no")
-    assert report(outcome("N2", STEPS), lost).complete
-    assert not report(replace(outcome("N2", STEPS), failure="no"), lost).complete
+    failed = replace(outcome("L1", STEPS), failure="no")
+    assert report(outcome("N2", STEPS), failed).complete
+    assert not report(outcome("N2", STEPS), replace(failed, lost=True)).complete
+    assert not report(replace(outcome("N2", STEPS), failure="no"), failed).complete
     runs = [replace(run, failure="no") if run.run.name == "N3" else run for run in dragged(N2=0.4, N3=0.2, N4=0.1, N5=0.05)]
     assert not report(judgements=[smoother().judge(Outcomes((IRON,), tuple(runs)))]).complete

@@ -32,8 +32,9 @@ def planned(folder: Path, *changes: str):
 def test_a_failed_run_keeps_what_had_converged_and_is_shown(tmp_path):
     plan = planned(tmp_path, *IMPOSSIBLE)
     measurement = measure(plan[-1])
-    assert measurement.ending == "raised"
+    assert measurement.ending == "not converged"
     found = outcome(*plan, measurement)
+    assert not found.lost
     assert found.failure.startswith(f"load step {found.steps + 1} (stage 'press') does not converge")
     assert 1 <= found.steps < found.total_steps == 8
     assert len(found.curve) == found.steps
@@ -48,7 +49,7 @@ def test_a_failed_run_keeps_what_had_converged_and_is_shown(tmp_path):
 def test_a_run_of_which_nothing_converged_has_no_numbers(tmp_path):
     plan = planned(tmp_path)
     found = outcome(*plan, Measurement("timed out", message="no result after 1 s"))
-    assert (found.failure, found.steps, found.numbers) == ("no result after 1 s", 0, {})
+    assert (found.failure, found.steps, found.numbers, found.lost) == ("no result after 1 s", 0, {}, True)
 
 
 def test_what_is_computed_is_read_not_computed_again(tmp_path):

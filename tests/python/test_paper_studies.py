@@ -94,6 +94,9 @@ def test_every_statement_has_its_runs_a_limit_and_a_reason():
         assert (statement.at_most is None) != (statement.at_least is None), statement.text
         assert statement.reason.startswith(("“", "grey zones")), statement.text
         assert set(statement.methods) <= set(METHODS)
+        pairs = [(FULL[scene], entry) for scene, entry in (key.split("-", 1) for key in statement.needs)]
+        planned = [set(study.run(name).methods) for study, entry in pairs for name in study.names(entry)]
+        assert all(set(statement.methods) <= methods for methods in planned), f"judged by fewer methods than it says: {statement.text}"
     assert len({statement.text for statement in STATEMENTS}) == len(STATEMENTS)
 
 

@@ -93,7 +93,7 @@ def run(problem: Problem, support: int) -> Run:
 def deviation(coarse: dict[Moment, FloatArray], fine: dict[Moment, FloatArray]) -> float:
     """Largest distance at common load steps, relative to the largest norm of the fine run."""
     apart = [np.linalg.norm(coarse[moment] - fine[moment]) for moment in coarse.keys() & fine.keys()]
-    return float(max(apart) / max(np.linalg.norm(value) for value in fine.values()))
+    return float(np.max(apart) / np.max([np.linalg.norm(value) for value in fine.values()]))
 
 
 def moved_support(problem: Problem) -> int:

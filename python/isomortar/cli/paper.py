@@ -28,8 +28,8 @@ def paper(
     was killed goes on from its last load step when the command is repeated; what was run already is not run again. A run that
     fails is shown with its reason, the others go on.
 
-    Exit code 0 if every run of NURBS came to its end and every statement could be measured, whether it holds or not; Lagrange
-    elements that fail are results.
+    Exit code 0 if every run of NURBS came to its end and every statement could be measured, if partly, whether it holds or not. That
+    Lagrange elements do not converge is a result; a crash, or a lack of time or memory, is none and ends with exit code 1.
 
     For example:
 

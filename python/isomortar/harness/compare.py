@@ -104,9 +104,10 @@ def agree_all(measured: Mapping[str, Any], expected: Mapping[str, Any], toleranc
 def judge(cell: Cell, measurement: Measurement, lookup: Lookup) -> list[Check]:
     """A check for every bound of a cell, and for every number that has none."""
     claims = cell.case.bounds_of(cell.settings)
-    if measurement.ending != "measured":
-        state: State = "failed" if measurement.ending == "raised" else measurement.ending
-        line = measurement.message.strip().splitlines()[-1] if measurement.message.strip() else measurement.ending
+    ending = measurement.ending
+    if ending != "measured":
+        state: State = "failed" if ending == "raised" or ending == "not converged" else ending
+        line = measurement.message.strip().splitlines()[-1] if measurement.message.strip() else ending
         return [Check(name, state, np.nan, _limit(claim), line, claim.reason) for name, claim in claims.items()]
     checks = []
     for name, claim in claims.items():

@@ -15,11 +15,13 @@ from typing import Any, Literal
 import numpy as np
 
 from isomortar._process import give_back_memory
+from isomortar.errors import ConvergenceError
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness.cases import Cell, Curve, SkippedError
 from isomortar.harness.orders import Convergence
 
-Ending = Literal["measured", "skipped", "raised", "crashed", "timed out", "not measured"]
+#: ``not converged``: what a scene says of itself. All that is ``raised`` besides may be the machine's.
+Ending = Literal["measured", "skipped", "not converged", "raised", "crashed", "timed out", "not measured"]
 #: Up to here double precision holds every whole number.
 LARGEST_WHOLE = 2**53
 #: A measured value as it is stored: number, nested list, Convergence or Curve as a dict, None where there is none.
@@ -62,6 +64,8 @@ def measure(cell: Cell) -> Measurement:
         numbers = _named(cell.case.function(**cell.settings))
     except SkippedError as skipped:
         ending, message = "skipped", str(skipped)
+    except ConvergenceError:
+        ending, message = "not converged", traceback.format_exc()
     except Exception:  # whatever a case raises is a failure of that cell, not of the run
         ending, message = "raised", traceback.format_exc()
     seconds, cpu_seconds = time.perf_counter() - start, time.process_time() - cpu_start

@@ -42,8 +42,8 @@ class Store:
             return None
 
     def put(self, cell: Cell, measurement: Measurement) -> None:
-        """Keep a measurement. Crashes and timeouts are not kept: the next run tries again."""
-        if measurement.ending in ("measured", "skipped", "raised"):
+        """Keep what was measured, and that a scene does not converge. All else may be the machine's fault, or be there the next time."""
+        if measurement.ending in ("measured", "not converged"):
             plain = asdict(measurement)
             content = {"cell": cell.name, "program": program_hash(), "hash": _content_hash(plain), "measurement": plain}
             write_whole(self._path(cell), json.dumps(content, indent=1))

@@ -60,7 +60,7 @@ def negative_share(outcome: Outcome) -> float:
     Zero where there is none: ``max(0, -min p) / max p``.
     """
     pressure = outcome.array("pressure")
-    return max(0.0, -float(pressure.min())) / float(pressure.max())
+    return float(np.maximum(0.0, -pressure.min()) / pressure.max())
 
 
 def excess_variation(field: ArrayLike, reference: ArrayLike) -> float:

@@ -34,6 +34,9 @@ class Outcome:
         Its results file.
     failure : str
         Why it did not come to its end; empty: it did.
+    lost : bool
+        Whether that is not that it does not converge, but the machine's (a crash, no time, no memory, no disk) or a mistake of the
+        program: nothing follows from it.
     numbers : dict
         As of `isomortar.harness.paper.run.measured`, up to where it came; empty: no load step converged.
     """
@@ -43,6 +46,7 @@ class Outcome:
     method: Method
     path: Path
     failure: str
+    lost: bool
     numbers: Mapping[str, Any]
 
     @property
@@ -130,11 +134,11 @@ def outcome(study: Study, run: Run, method: Method, cell: Cell, measurement: Mea
     """How a run ended, with what its results file holds if it failed."""
     path = cells.results_file(Path(cell.settings["scene"]))
     if measurement.ending == "measured":
-        return Outcome(study, run, method, path, "", measurement.numbers)
+        return Outcome(study, run, method, path, "", False, measurement.numbers)
     numbers: dict[str, Stored]
     try:
         with Results(path) as results:
             numbers = {name: stored(value) for name, value in cells.measured(results).items()}
     except ResultsError:
         numbers = {}
-    return Outcome(study, run, method, path, measurement.reason, numbers)
+    return Outcome(study, run, method, path, measurement.reason, measurement.ending != "not converged", numbers)

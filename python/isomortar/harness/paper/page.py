@@ -53,8 +53,8 @@ class Report:
 
     @property
     def complete(self) -> bool:
-        """Whether every run of NURBS came to its end and every statement was measured."""
-        return all(o.run.lagrange for o in self.failed) and not self.counts["not measured"]
+        """Whether all runs came to their end (Lagrange elements: or to where they do not converge) and all statements were measured."""
+        return all(o.run.lagrange and not o.lost for o in self.failed) and not self.counts["not measured"]
 
 
 def write(folder: Path, report: Report) -> Path:
@@ -141,6 +141,7 @@ def _run(report: Report, outcome: Outcome) -> dict[str, Any]:
         "title": outcome.run.title,
         "command": outcome.study.command(outcome.run, outcome.method),
         "failure": outcome.failure or None,
+        "lost": outcome.lost,
         "load_steps": [outcome.steps, outcome.total_steps],
         "from_the_papers_method": gap_between_methods(report.outcomes, outcome),
         "from_the_over_refined_curve": report.off(outcome),

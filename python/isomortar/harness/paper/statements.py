@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Literal
 
@@ -12,9 +12,9 @@ from isomortar.errors import IsomortarError
 from isomortar.harness.paper.outcome import Outcome, Outcomes
 from isomortar.harness.paper.studies import METHODS, Method, Study
 
-State = Literal["holds", "does not hold", "not measured"]
-#: Worst first.
-STATES: tuple[State, ...] = ("does not hold", "not measured", "holds")
+State = Literal["holds", "partly measured", "does not hold", "not measured"]
+#: Worst first. ``partly measured``: what was measured is within the limit, by one of the methods or of some runs of a series only.
+STATES: tuple[State, ...] = ("does not hold", "not measured", "partly measured", "holds")
 #: Values by what they are of ("N3 / N2"); all of them are judged.
 Values = Mapping[str, float]
 
@@ -25,10 +25,11 @@ class NotMeasuredError(IsomortarError):
 
 @dataclass(frozen=True)
 class Evidence:
-    """The runs of all studies by one method, for the functions that measure."""
+    """The runs of all studies by one method, for the functions that measure; `left_out`: those that they had to do without."""
 
     outcomes: Outcomes
     method: Method
+    left_out: list[Outcome] = field(default_factory=list)
 
     def run(self, key: str) -> Outcome:
         """The run of a key such as ``twist-N3`` or ``iron-reference``.
@@ -40,7 +41,7 @@ class Evidence:
         """
         (found,) = self.all(key)
         if found.failure:
-            raise NotMeasuredError(f"{found.key} failed: {found.failure}")
+            raise NotMeasuredError(_reasons([found]))
         return found
 
     def series(self, key: str) -> list[Outcome]:
@@ -49,24 +50,38 @@ class Evidence:
         Raises
         ------
         NotMeasuredError
-            One of NURBS failed, or fewer than two are left.
+            One of NURBS failed, one of Lagrange elements for another reason than that it does not converge, or fewer than two are left.
         """
         found = self.all(key)
         ended = [o for o in found if not o.failure]
-        lost = [o for o in found if o.failure and (not o.run.lagrange or len(ended) < min(2, len(found)))]
-        if lost:
-            raise NotMeasuredError("; ".join(f"{o.key} failed: {o.failure}" for o in lost))
+        failed = [o for o in found if o.failure]
+        if len(ended) < min(2, len(found)) or not all(o.run.lagrange for o in failed):
+            raise NotMeasuredError(_reasons(failed))
+        self.left_out.extend(o for o in failed if o not in self.left_out)
         return ended
 
     def all(self, key: str) -> list[Outcome]:
-        """The runs that a key stands for, those that failed too."""
+        """The runs that a key stands for, those that do not converge too.
+
+        Raises
+        ------
+        NotMeasuredError
+            One failed for another reason.
+        """
+        found = self.planned(key)
+        if any(o.lost for o in found):
+            raise NotMeasuredError(_reasons([o for o in found if o.lost]))
+        return found
+
+    def planned(self, key: str) -> list[Outcome]:
+        """The runs that a key stands for, however they ended."""
         study, entry = _split(self.outcomes, key)
         return [found for name in study.names(entry) if (found := self.outcomes.named(study, name, self.method))]
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """What a statement says of the runs by one method; `why` it was not measured."""
+    """What a statement says of the runs by one method; `why` it was not measured, or not as a whole."""
 
     method: Method
     state: State
@@ -119,7 +134,7 @@ class Statement:
     def judge(self, outcomes: Outcomes) -> Judgement:
         """The verdict by each method that all of its runs were planned by."""
         by_method = [Evidence(outcomes, method) for method in self.methods]
-        return Judgement(self, tuple(self._verdict(e) for e in by_method if all(e.all(key) for key in self.needs)))
+        return Judgement(self, tuple(self._verdict(e) for e in by_method if all(e.planned(key) for key in self.needs)))
 
     def _verdict(self, evidence: Evidence) -> Verdict:
         try:
@@ -127,10 +142,16 @@ class Statement:
         except NotMeasuredError as error:
             return Verdict(evidence.method, "not measured", {}, str(error))
         broken = [name for name, value in values.items() if not math.isfinite(value)]
+        words = ", ".join(f"{o.key}, which failed: {o.failure}" for o in evidence.left_out)
+        without = f"without {words}" if words else ""
         if broken or not values:
-            return Verdict(evidence.method, "not measured", values, f"no finite value: {', '.join(broken) or 'none at all'}")
+            return Verdict(
+                evidence.method, "not measured", values, f"no finite value: {', '.join(broken) or 'none at all'} {without}".strip()
+            )
         low, high = (-math.inf if self.at_least is None else self.at_least), (math.inf if self.at_most is None else self.at_most)
-        return Verdict(evidence.method, "holds" if all(low <= v <= high for v in values.values()) else "does not hold", values)
+        kept = all(low <= v <= high for v in values.values())
+        state: State = "does not hold" if not kept else "partly measured" if without else "holds"
+        return Verdict(evidence.method, state, values, without)
 
 
 @dataclass(frozen=True)
@@ -142,9 +163,11 @@ class Judgement:
 
     @property
     def state(self) -> State:
-        """The worst of the verdicts by methods whose runs came to their end; a method whose runs did not is shown beside it."""
-        ended = [v.state for v in self.verdicts if v.state != "not measured" or v.values]
-        return min(ended, key=STATES.index, default="not measured")
+        """What all methods agree on; that it does not hold where one of them says so; else it is partly measured."""
+        found = {verdict.state for verdict in self.verdicts} or {"not measured"}
+        if "does not hold" in found:
+            return "does not hold"
+        return found.pop() if len(found) == 1 else "partly measured"
 
 
 def successive(runs: list[Outcome], measure: Callable[[Outcome], float]) -> dict[str, float]:
@@ -165,6 +188,10 @@ def each(runs: list[Outcome], measure: Callable[[Outcome], float]) -> dict[str, 
 
 def _ratio(value: float, other: float) -> float:
     return value / other if other else math.inf if value else math.nan
+
+
+def _reasons(failed: list[Outcome]) -> str:
+    return "; ".join(f"{o.key} failed: {o.failure}" for o in failed)
 
 
 def _split(outcomes: Outcomes, key: str) -> tuple[Study, str]:

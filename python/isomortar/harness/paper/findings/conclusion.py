@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from isomortar.harness.paper.findings.press import NON_NEGATIVE
 from isomortar.harness.paper.measures import negative_share
 from isomortar.harness.paper.statements import Evidence, Statement, Values
@@ -10,7 +12,7 @@ _STUDIES = ("press", "twist", "iron", "tire")
 
 
 def _negative(runs: Evidence) -> Values:
-    return {scene: max(negative_share(o) for o in runs.series(f"{scene}-N")) for scene in _STUDIES}
+    return {scene: float(np.max([negative_share(o) for o in runs.series(f"{scene}-N")])) for scene in _STUDIES}
 
 
 STATEMENTS = (

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from isomortar.harness.paper.fields import fields
 from isomortar.harness.paper.measures import cycles, mean, ripple, rms_second_difference
 from isomortar.harness.paper.outcome import Outcome
@@ -14,7 +16,7 @@ def _relative(outcome: Outcome) -> float:
 
 def _leading(outcome: Outcome) -> float:
     """Smallest place of the pressure's peak along the drag within the window, 0: trailing edge, 1: leading edge."""
-    return min(fields(outcome, int(step)).peak[0] for step in outcome.array("step")[outcome.window])
+    return float(np.min([fields(outcome, int(step)).peak[0] for step in outcome.array("step")[outcome.window]]))
 
 
 def _sideways(outcome: Outcome) -> float:

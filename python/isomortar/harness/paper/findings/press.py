@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from itertools import pairwise
 
+import numpy as np
+
 from isomortar.harness.paper.fields import Fields, fields
 from isomortar.harness.paper.measures import excess_variation, field_deviation, negative_share
 from isomortar.harness.paper.outcome import Outcome
@@ -40,7 +42,7 @@ def _traction_error(runs: Evidence, series: str, reference: str) -> Values:
 
 
 def _deterioration(runs: Evidence) -> Values:
-    worst = max(_traction_error(runs, "press-N", "press-reference").values())
+    worst = float(np.max(list(_traction_error(runs, "press-N", "press-reference").values())))
     return {name: error / worst for name, error in _traction_error(runs, "press-L>1", "press-L1-fine").items()}
 
 

@@ -23,20 +23,21 @@ def _midway(outcome: Outcome) -> Fields:
 
 
 def _similar(runs: Evidence) -> Values:
-    found = each(runs.series("tire-N"), ripple)
-    return {"largest / smallest": max(found.values()) / min(found.values())}
+    found = list(each(runs.series("tire-N"), ripple).values())
+    return {"largest / smallest": float(np.max(found) / np.min(found))}
 
 
 def _strongly(runs: Evidence, series: str) -> Values:
-    first, *_, last = runs.series(series)
-    return ratio(last, first, ripple)
+    first, *_, last = runs.all(series)
+    return ratio(runs.run(last.key), runs.run(first.key), ripple)
 
 
 def _closer(runs: Evidence) -> Values:
     """In the mean, with as many control points as the next order of NURBS against as many nodes."""
     truth = mean(runs.run("tire-reference"))
-    pairs = [(run, runs.all(f"tire-{run.run.name}-matched")) for run in runs.series("tire-L")]
-    return {f"{m.run.name} / {o.run.name}": abs(mean(m) - truth) / abs(mean(o) - truth) for o, (m,) in pairs if not m.failure}
+    matched = {run.run.name: run for run in runs.series("tire-matched")}
+    pairs = [(run, matched.get(f"{run.run.name}-matched")) for run in runs.series("tire-L")]
+    return {f"{m.run.name} / {o.run.name}": abs(mean(m) - truth) / abs(mean(o) - truth) for o, m in pairs if m}
 
 
 def _at_joints(outcome: Outcome) -> float:
