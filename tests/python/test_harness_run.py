@@ -1,5 +1,6 @@
 """A small folder of cases, run as the command, the pytest plugin and Dask run them; killed, resumed, blessed, reported."""
 
+import importlib.metadata
 import json
 import os
 import signal
@@ -131,6 +132,41 @@ def test_the_key_holds_what_the_numbers_depend_on(root):
     assert len(keys) == len(cells)
     (root / "helper.py").write_text("SCALE = 2\n")
     store._case_hash.cache_clear()
+    assert keys.isdisjoint({cell_key(cell) for cell in cells})
+
+
+@pytest.fixture
+def unhashed():
+    """Hashes are taken anew, in the test and after it."""
+    hashes = (store.package_hash, store.program_hash, store._case_hash)
+    for hashed in hashes:
+        hashed.cache_clear()
+    yield lambda: [hashed.cache_clear() for hashed in hashes]
+    for hashed in hashes:
+        hashed.cache_clear()
+
+
+@pytest.mark.parametrize("name", ["numpy", "scipy", "splinepy", "h5py"])
+def test_an_upgraded_library_is_measured_anew(root, monkeypatch, unhashed, name):
+    cells = select(collect(root), "gate")
+    keys = {cell_key(cell) for cell in cells}
+    real = importlib.metadata.version
+    monkeypatch.setattr("importlib.metadata.version", lambda of: real(of) + ".post1" * (of == name))
+    unhashed()
+    assert keys.isdisjoint({cell_key(cell) for cell in cells})
+
+
+def test_what_the_kernel_is_linked_with_counts(root, monkeypatch, unhashed):
+    names = " ".join(path.name for path in store.linked())
+    assert all(f"lib{name}." in names for name in ("umfpack", "openblas", "metis", "gfortran"))
+    library = root / "libumfpack.so"
+    library.write_text("5.7.9")
+    monkeypatch.setattr(store, "linked", lambda: [library])
+    unhashed()
+    cells = select(collect(root), "gate")
+    keys = {cell_key(cell) for cell in cells}
+    library.write_text("6.0.0")
+    unhashed()
     assert keys.isdisjoint({cell_key(cell) for cell in cells})
 
 
@@ -390,6 +426,17 @@ def test_dask_gives_the_same_bits(root):
     with distributed.LocalCluster(**options) as cluster, dask_cluster(cluster.scheduler_address) as submit:
         results = run(start(select(collect(root), "gate"), store, submit), finder(root.parent / "references"), store)
     assert {r.cell.name.partition("/")[2]: r.measurement.numbers for r in results} == {n: r.measurement.numbers for n, r in local.items()}
+
+
+def test_a_line_that_was_cut_short_does_not_take_the_next_one_with_it(root, tmp_path):
+    path = tmp_path / "history.jsonl"
+    results = list(measured(root).values())
+    history.append(path, results)
+    whole = path.read_text()
+    path.write_text(whole + whole[:70])
+    history.append(path, results)
+    runs = history.read(path)
+    assert [sorted(run.cells) for run in runs] == [sorted(result.cell.name for result in results)] * 2
 
 
 def test_history_marks_changes_and_not_noise():

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from isomortar.harness.runner import Result
-from isomortar.harness.store import program_hash
+from isomortar.harness.store import append_line, program_hash
 
 #: Runs before a point that it is compared with.
 _BEFORE = 8
@@ -37,10 +37,7 @@ def append(path: Path, results: Sequence[Result]) -> None:
         }
         for result in results
     }
-    line = json.dumps({"when": datetime.now(UTC).isoformat(timespec="seconds"), "program": program_hash()[:12], "cells": cells})
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with path.open("a") as file:
-        file.write(line + "\n")
+    append_line(path, {"when": datetime.now(UTC).isoformat(timespec="seconds"), "program": program_hash()[:12], "cells": cells})
 
 
 def read(path: Path, last: int = 60) -> list[Run]:

@@ -5,10 +5,13 @@ from __future__ import annotations
 import ast
 import functools
 import hashlib
+import importlib.metadata
 import importlib.util
 import json
 import os
+import platform
 import re
+import subprocess
 import threading
 from collections.abc import Iterable, Iterator
 from dataclasses import asdict
@@ -63,6 +66,14 @@ def write_whole(path: Path, text: str) -> None:
     part.replace(path)
 
 
+def append_line(path: Path, entry: dict[str, Any]) -> None:
+    """Add an entry to a file of JSON lines, on a line of its own also where the one before was cut short by a crash."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    torn = path.exists() and not path.read_bytes().endswith(b"\n")
+    with path.open("a") as file:
+        file.write("\n" * torn + json.dumps(entry) + "\n")
+
+
 def cell_key(cell: Cell, program: str | None = None) -> str:
     """Hash of all that a cell's numbers depend on: the program (None: this one), its case's files, its settings."""
     settings = json.dumps(cell.settings, sort_keys=True)
@@ -84,15 +95,28 @@ def kernel_hash() -> str:
 
 @functools.cache
 def program_hash() -> str:
-    """Hash of the kernel and of the package's own sources, bundled scenes included, without the harness."""
+    """Hash of the kernel, of the package's own sources, and of the libraries that both run with."""
     return _hash([kernel_hash().encode(), package_hash().encode()])
 
 
 @functools.cache
 def package_hash() -> str:
-    """Hash of the package's own sources, bundled scenes included, without the harness."""
+    """Hash of the package's own sources, bundled scenes included, without the harness, and of the libraries it runs with."""
     sources = sorted(p for p in _PACKAGE.rglob("*") if p.suffix in (".py", ".toml") and not any(p.is_relative_to(a) for a in _ASIDE))
-    return _hash(path.read_bytes() for path in sources)
+    return _hash([*(path.read_bytes() for path in sources), *(path.read_bytes() for path in linked()), json.dumps(versions()).encode()])
+
+
+def versions() -> dict[str, str]:
+    """Versions of Python and of the packages that this one requires (NumPy, SciPy, splinepy, ...)."""
+    required = [re.match(r"[\w.-]+", line) for line in importlib.metadata.requires("isomortar") or () if "extra ==" not in line]
+    names = sorted(found.group() for found in required if found)
+    return {"Python": platform.python_version(), **{name: importlib.metadata.version(name) for name in names}}
+
+
+def linked() -> list[Path]:
+    """The shared libraries that the kernel is linked with, directly or not: UMFPACK, OpenBLAS, METIS, the compiler's own."""
+    said = [subprocess.run(["ldd", str(path)], capture_output=True, text=True, check=True).stdout for path in _kernel_files()]
+    return sorted({Path(found) for found in re.findall(r"=> (/\S+)", "".join(said))})
 
 
 @functools.cache

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from isomortar.harness.bench.declaration import NOTE, Row
 from isomortar.harness.bench.processes import Outcome
-from isomortar.harness.store import program_hash
+from isomortar.harness.store import append_line, program_hash
 
 #: Runs that a trend shows.
 _SHOWN = 60
@@ -38,10 +38,7 @@ def append(path: Path, outcome: Outcome, when: datetime) -> None:
     """Add what a benchmark said to the history."""
     rows = {label(row): {name: value for name, value in row.items() if isinstance(value, float)} for row in outcome.rows}
     entry = {"when": when.isoformat(timespec="seconds"), "program": program_hash()[:12], "benchmark": outcome.benchmark.name, "rows": rows}
-    path.parent.mkdir(parents=True, exist_ok=True)
-    torn = path.exists() and not path.read_bytes().endswith(b"\n")
-    with path.open("a") as file:
-        file.write("\n" * torn + json.dumps(entry) + "\n")
+    append_line(path, entry)
 
 
 def read(path: Path, name: str) -> Trend:
