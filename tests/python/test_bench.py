@@ -13,7 +13,7 @@ import pytest
 
 from isomortar import cli
 from isomortar.errors import InputError
-from isomortar.harness.bench import Plot, Row, benchmark, cpu_seconds, history
+from isomortar.harness.bench import ASIDE, Plot, Row, benchmark, cpu_seconds, history
 from isomortar.harness.bench.collection import collect, select
 from isomortar.harness.bench.declaration import Benchmark
 from isomortar.harness.bench.page import slope
@@ -121,16 +121,19 @@ def test_names_select(cases: Path) -> None:
 
 
 def test_limits_are_met_missed_or_not_measured() -> None:
-    def states(*times: float | None) -> list[tuple[str, float]]:
+    def states(*times: float | str | None) -> list[tuple[str, float]]:
         rows = [{"kind": "N2", "unknowns": k, **({"note": "no"} if time is None else {"time": time})} for k, time in enumerate(times)]
         outcome = Outcome(declared([], limits={"time": (2.0, "why")}), tuple(rows), Cost())  # type: ignore[arg-type]
         return [(verdict.state, verdict.worst) for verdict in verdicts(outcome)]
 
     assert states(1.0, 2.0) == [("met", 2.0)]
     assert states(1.0, 2.5, None) == [("missed", 2.5)]
-    assert states(1.0, None) == [("met", 1.0)]
+    assert states(ASIDE, 1.0) == [("met", 1.0)]  # the program itself, beside the other
+    assert states(ASIDE, 1.0, None) == [("not compared", 1.0)]  # one of two others is not installed
+    assert states(ASIDE, None)[0][0] == states(None)[0][0] == "not compared"
+    assert states(ASIDE, 3.0, None) == [("missed", 3.0)]
     assert states(3.0, math.nan) == [("missed", 3.0)]
-    assert states(1.0, math.nan)[0][0] == states()[0][0] == states(None)[0][0] == "not measured"
+    assert states(1.0, math.nan)[0][0] == states()[0][0] == states(ASIDE)[0][0] == "not measured"
 
 
 def test_slope_is_the_power() -> None:

@@ -14,7 +14,7 @@ from performance.peers import calculix
 from performance.peers.programs import DEBIAN_PYTHON, has_module, timed
 
 import isomortar
-from isomortar.harness.bench import Row, benchmark
+from isomortar.harness.bench import ASIDE, Row, benchmark
 from isomortar.harness.bench.declaration import REPEATS
 from isomortar.model.numbering import Numbering
 from isomortar.scene import Scene
@@ -180,8 +180,8 @@ def block(quick: bool) -> Iterator[Row]:
         scene = Scene.load("block", linear)
         problem = description(scene)
         getfem = getfem_run(problem, repeats)
-        yield {**heading(scene, "GetFEM", "L1"), **getfem}
-        yield {**heading(scene, "CalculiX", "L1"), **calculix_run(problem, repeats)}
+        yield {**heading(scene, "GetFEM", "L1"), **getfem, "of GetFEM": ASIDE}
+        yield {**heading(scene, "CalculiX", "L1"), **calculix_run(problem, repeats), "of GetFEM": ASIDE}
         for kind, overrides in (("L1", linear), ("N2", (*N2, *linear))):
             row = compared(isomortar_run(overrides, repeats), getfem)
             yield {**heading(Scene.load("block", overrides), "isomortar", kind), **row}

@@ -86,6 +86,6 @@ def _print(outcome: Outcome) -> None:
         if NOTE in row:
             console.print(_line(row), markup=False, soft_wrap=True)
     for verdict in verdicts(outcome):
-        style = {"met": "green", "missed": "red", "not measured": "yellow"}[verdict.state]
+        style = {"met": "green", "missed": "red", "not compared": "yellow", "not measured": "yellow"}[verdict.state]
         said = f"{verdict.column} {verdict.state}: {text(verdict.worst)} ({verdict.row}), at most {verdict.at_most:g}: {verdict.why}"
         console.print(said, markup=False, style=style, soft_wrap=True)

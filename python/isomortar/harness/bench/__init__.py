@@ -3,6 +3,6 @@
 What a benchmark needs is here: ``from isomortar.harness.bench import Plot, Row, benchmark``.
 """
 
-from isomortar.harness.bench.declaration import Plot, Row, benchmark, cpu_seconds
+from isomortar.harness.bench.declaration import ASIDE, Plot, Row, benchmark, cpu_seconds
 
-__all__ = ["Plot", "Row", "benchmark", "cpu_seconds"]
+__all__ = ["ASIDE", "Plot", "Row", "benchmark", "cpu_seconds"]

@@ -32,6 +32,8 @@ Row = Mapping[str, float | int | str]
 
 #: The entry of a row that could not be measured.
 NOTE = "note"
+#: In place of a value where a column says nothing of a row: a program beside itself.
+ASIDE = "–"
 #: Work of fewer CPU seconds is measured `REPEATS` times.
 SHORT, REPEATS = 10.0, 3
 
@@ -118,7 +120,8 @@ def benchmark(
     plots : tuple of Plot
         Shown under the table.
     limits : mapping, optional
-        By column the most that a value should be, and why. Shown as met or missed; a missed limit is a finding and fails nothing.
+        By column the most that a value should be, and why. Shown as met, missed, or not compared where a row lacks the column, as beside a
+        program that is not installed; rows with `ASIDE` there do not count. A missed limit is a finding and fails nothing.
 
     Raises
     ------

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from isomortar.harness import report, svg
-from isomortar.harness.bench.declaration import NOTE, Benchmark, Plot, Row
+from isomortar.harness.bench.declaration import ASIDE, NOTE, Benchmark, Plot, Row
 from isomortar.harness.bench.history import Trend, label
 from isomortar.harness.bench.processes import Outcome
-from isomortar.harness.bench.verdicts import state, verdicts
+from isomortar.harness.bench.verdicts import STATES, state, verdicts
 from isomortar.harness.history import change_points
 from isomortar.harness.store import compiler, kernel_hash, program_hash
 
@@ -27,7 +27,7 @@ def page(run: Run, trends: Mapping[str, Trend]) -> str:
         run=run,
         sections=[_section(outcome, trends[outcome.benchmark.name]) for outcome in run.outcomes],
         failed=[outcome.benchmark.name for outcome in run.outcomes if outcome.failed],
-        counts=[(kind, sum(v.state == kind for v in judged)) for kind in ("met", "missed", "not measured")],
+        counts=[(kind, sum(v.state == kind for v in judged)) for kind in STATES],
         program=program_hash()[:12],
         kernel=kernel_hash()[:12],
         compiler=compiler(),
@@ -58,7 +58,7 @@ def _section(outcome: Outcome, trend: Trend) -> dict[str, Any]:
         "outcome": outcome,
         "benchmark": benchmark,
         "headings": headings(benchmark),
-        "numeric": [all(not isinstance(row.get(name, 0), str) for row in outcome.rows) for name in benchmark.columns],
+        "numeric": [all(row.get(name) == ASIDE or not isinstance(row.get(name, 0), str) for row in outcome.rows) for name in benchmark.columns],
         "rows": [
             {"cells": [_cell(row, name, benchmark, trend) for name in benchmark.columns], "note": row.get(NOTE)} for row in outcome.rows
         ],
@@ -74,7 +74,7 @@ def _cell(row: Row, name: str, benchmark: Benchmark, trend: Trend) -> dict[str, 
     if name not in row:
         return {"text": "", "state": "", "spark": ""}
     value = row[name]
-    found = state(value, benchmark.limits[name][0]) if name in benchmark.limits else ""
+    found = state(value, benchmark.limits[name][0]) if name in benchmark.limits and value != ASIDE else ""
     matters = isinstance(value, float) and (name in benchmark.limits or any(plot.y == name for plot in benchmark.plots))
     values = trend.values(label(row), name) if matters else []
     return {"text": text(value), "state": found, "spark": svg.sparkline(values, change_points(values))}

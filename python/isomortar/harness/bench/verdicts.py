@@ -5,13 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
-from isomortar.harness.bench.declaration import Row
+from isomortar.harness.bench.declaration import ASIDE, Row
 from isomortar.harness.bench.history import label
 from isomortar.harness.bench.processes import Outcome
 
-State = Literal["met", "missed", "not measured"]
+State = Literal["met", "missed", "not compared", "not measured"]
+#: Best first.
+STATES: tuple[State, ...] = get_args(State)
 
 
 @dataclass(frozen=True)
@@ -27,21 +29,22 @@ class Verdict:
 
 
 def state(value: object, at_most: float) -> State:
-    """How one value stands; what is no number was not measured."""
+    """How one value stands; where there is none nothing was compared, and what is no number was not measured."""
+    if value is None:
+        return "not compared"
     if not isinstance(value, int | float) or not math.isfinite(value):
         return "not measured"
     return "met" if value <= at_most else "missed"
 
 
 def verdicts(outcome: Outcome) -> list[Verdict]:
-    """How the limits stand. One missed row misses the limit; rows with a note are passed over, and others must have a number."""
+    """How the limits stand. One missed row misses the limit, one that lacks the column leaves it open, and so does one without a number."""
     return [_verdict(outcome.rows, column, *limit) for column, limit in outcome.benchmark.limits.items()]
 
 
 def _verdict(rows: Sequence[Row], column: str, at_most: float, why: str) -> Verdict:
-    spoken = [(state(row[column], at_most), row) for row in rows if column in row]
+    spoken = [(state(row.get(column), at_most), row) for row in rows if row.get(column) != ASIDE]
     states = {found for found, _ in spoken}
-    measured = [(float(row[column]), label(row)) for found, row in spoken if found != "not measured"]
-    worst, where = max(measured, default=(math.nan, ""))
-    total: State = "missed" if "missed" in states else "not measured" if "not measured" in states or not measured else "met"
-    return Verdict(column, at_most, why, total, worst, where)
+    worst, where = max(((float(row[column]), label(row)) for found, row in spoken if found in ("met", "missed")), default=(math.nan, ""))
+    found: State = next((kind for kind in ("missed", "not measured", "not compared", "met") if kind in states), "not measured")
+    return Verdict(column, at_most, why, found, worst, where)
