@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from rich.console import Console
 
 from isomortar import _twin
 from isomortar.errors import InputError, KernelError
@@ -117,6 +118,19 @@ def test_body_without_contact() -> None:
     report = check_tangent(Scene.from_toml(text).problem(), directions=1)
     assert report.passes, report
     assert set(errors(report)) == {"solid", "whole", "symmetry"}
+
+
+def test_a_contact_that_is_open_is_not_measured() -> None:
+    """Its tangent has no part at such a state: nothing is known of it, whatever the solid's is."""
+    report = check_tangent(curved("stages.0.motions.top.translate=[0,0,0.1]", "stages.1.motions.top.translate=[0,0,0]"), 2, directions=1)
+    assert all(row.passes for row in report.rows)
+    assert report.idle == ("interface",)
+    assert not report.passes
+    console = Console(width=200)
+    with console.capture() as said:
+        console.print(report)
+    assert "contact 'interface'" in said.get()
+    assert "NOT MEASURED" in said.get()
 
 
 def test_visited_states_are_apart_and_end_in_the_converged_one(visits: list[Visit]) -> None:

@@ -64,6 +64,7 @@ class TangentReport:
     """Errors of the tangent by part at `states` visited states of a load step.
 
     `active`, `stick`, `slip`: control points by state, of each visited state. Parts that a scene does not have are left out.
+    `idle`: contacts with no active control point at any of the states, whose tangent was not measured.
     """
 
     scene: str
@@ -71,12 +72,13 @@ class TangentReport:
     active: tuple[int, ...]
     stick: tuple[int, ...]
     slip: tuple[int, ...]
+    idle: tuple[str, ...]
     rows: tuple[PartError, ...]
 
     @property
     def passes(self) -> bool:
-        """Whether there are parts, and every one is within its bound."""
-        return bool(self.rows) and all(row.passes for row in self.rows)
+        """Whether there are parts, every one is within its bound, and none was left out because a contact is open."""
+        return bool(self.rows) and not self.idle and all(row.passes for row in self.rows)
 
     def __rich__(self) -> Table:
         counts = ", ".join(f"{a} ({t} stick, {s} slip)" for a, t, s in zip(self.active, self.stick, self.slip, strict=True))
@@ -86,6 +88,8 @@ class TangentReport:
         for row in self.rows:
             verdict = "[green]passes" if row.passes else "[red]FAILS"
             table.add_row(row.part, row.meaning, str(row.samples), f"{row.error:.1e}", f"{row.bound:.0e}", verdict)
+        for name in self.idle:
+            table.add_row(f"contact {name!r}", "open at all states: choose another load step", "0", "", "", "[red]NOT MEASURED")
         return table
 
 
@@ -136,13 +140,15 @@ def measure(problem: Problem, step: int, visits: Iterable[Visit], directions: in
     random = np.random.default_rng(seed)
     samples: list[Sample] = []
     states = []
+    idle = {pair.pair.contact.name for pair in equilibrium.pairs}
     for visit in visits:
         pairs = [PairState(pair, visit.positions, at) for pair, at in zip(equilibrium.pairs, visit.pairs, strict=True)]
         states.append(np.concatenate([np.zeros(0, np.int32)] + [pair.response.state for pair in pairs]))
+        idle -= {pair.pair.pair.contact.name for pair in pairs if np.any(_active(pair.response.state))}
         samples += _sample(equilibrium, visit, pairs, directions, random, length)
     active, stick, slip = (tuple(int(np.count_nonzero(kind(s))) for s in states) for kind in (_active, _sticks, _slips))
     rows = (_part_error(part, samples) for part in PARTS)
-    return TangentReport(problem.name, step, active, stick, slip, tuple(row for row in rows if row))
+    return TangentReport(problem.name, step, active, stick, slip, tuple(sorted(idle)), tuple(row for row in rows if row))
 
 
 def _active(state: IntArray) -> np.ndarray:
