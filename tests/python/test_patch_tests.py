@@ -36,10 +36,10 @@ def test_error_between_other_meshes_is_the_quadratures(tilt: float) -> None:
     assert fine < 0.5 * coarse
 
 
-def test_load_error_is_none_where_points_see_all_knots_and_falls_with_points() -> None:
-    assert contact["load_error"](2, 3, 4) < 1e-14
-    errors = [contact["load_error"](2, 4, points) for points in (4, 8, 16)]
-    assert errors[0] > 4 * errors[1] > 16 * errors[2] > 0.0
+def test_limit_is_none_where_points_see_all_knots_and_falls_with_points() -> None:
+    assert contact["pressure_limit"](3, 2, 3, 4) < 1e-13
+    limits = [contact["pressure_limit"](3, 2, 4, points) for points in (4, 8, 16)]
+    assert 0.1 > limits[0] > 4 * limits[1] > 16 * limits[2] > 0.0
 
 
 @pytest.mark.parametrize(("slave", "master"), [(1, 1), (2, 3), (4, 1)])
@@ -47,4 +47,4 @@ def test_pressure_misses_what_the_load_misses(slave: int, master: int) -> None:
     for points in (4, 6):
         limit = contact["pressure_limit"](slave, master, 4, points)
         found = contact["errors"](contact["problem"](slave, master, 0.0, points, 4)).field
-        assert 0.01 * limit < found < limit
+        assert 0.03 * limit < found < limit

@@ -19,12 +19,13 @@ TURN = TURN * np.sign(np.linalg.det(TURN))
 MIRROR = np.diag([-1.0, 1.0, 1.0])
 MASTERS = ("block", "plane")
 
-_REASON = "round-off: Newton stops at 1e-12 and converges quadratically; what is left grows with the condition of the system"
+_REASON = "round-off: forces are in balance to Newton's 1e-12"
+_SINGLE = f"{_REASON}; of the load of one control point, a tenth of the largest"
 BOUNDS = {
-    "forces": Bound(at_most=1e-10, reason=_REASON),
-    "moments": Bound(at_most=1e-10, reason=_REASON),
-    "pressures": Bound(at_most=1e-9, reason=f"{_REASON}, that of single control pressures the most"),
-    "tractions": Bound(at_most=1e-9, reason=f"{_REASON}, that of single control tractions the most"),
+    "forces": Bound(at_most=1e-12, reason=_REASON),
+    "moments": Bound(at_most=1e-12, reason=_REASON),
+    "pressures": Bound(at_most=1e-11, reason=_SINGLE),
+    "tractions": Bound(at_most=1e-11 / 0.3, reason=f"{_SINGLE}, and 0.3, the friction, of the pressures"),
     "states": Bound(at_most=0.0, reason="theory: the same control points stick and slip"),
 }
 

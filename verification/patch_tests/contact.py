@@ -146,26 +146,31 @@ def default_rule(slave_order: int) -> tuple[int, int]:
     return points, SLAVE_ELEMENTS + (2 if points % 2 else 1)
 
 
-def load_error(order: int, elements: int, points: int) -> float:
-    """Largest relative error of the load that a uniform pressure on the slave gives a master function, in one direction.
+def knots(order: int, elements: int) -> FloatArray:
+    """Of a direction of a face, over its length."""
+    return np.concatenate([np.zeros(order), np.linspace(0.0, 1.0, elements + 1), np.ones(order)])
 
-    Its integral by the slave's Gauss points over the exact one, both with SciPy's functions: the error of points that do not see knots.
-    """
-    knots = np.concatenate([np.zeros(order), np.linspace(0.0, 1.0, elements + 1), np.ones(order)])
-    places, weights = np.polynomial.legendre.leggauss(points)
-    where = ((np.arange(SLAVE_ELEMENTS)[:, None] + (places + 1) / 2) / SLAVE_ELEMENTS).ravel()
-    loads = np.tile(weights / (2 * SLAVE_ELEMENTS), SLAVE_ELEMENTS) @ BSpline.design_matrix(where, knots, order).toarray()
-    exact = (knots[order + 1 :] - knots[: -order - 1]) / (order + 1)
-    return float(np.abs(loads / exact - 1.0).max())
+
+def functions(order: int, elements: int, places: FloatArray) -> FloatArray:
+    """SciPy's functions of that direction, shape (places, functions)."""
+    return np.asarray(BSpline.design_matrix(places, knots(order, elements), order).toarray())
 
 
 def pressure_limit(slave_order: int, master_order: int, elements: int, points: int) -> float:
-    """Largest error of the pressure: what the master's load misses in both directions, and the condition of the basis, 2^p.
+    """Largest error of the pressure, from what the load of the master's functions misses in both directions.
 
-    The pressure changes so that both surfaces, moved by the missing load, agree again: the load error in terms of the functions of the
-    one and the other, of which those of the higher order p make up to 2^p of it.
+    The slave's Gauss points do not see the master's knots, so that a uniform pressure does not give every function the exact load. The
+    pressure, in the slave's functions, changes to put that right: by the errors' size times the norm of the loads' inverse.
     """
-    return 2 ** (1 + max(slave_order, master_order)) * load_error(master_order, elements, points)
+    places, weights = np.polynomial.legendre.leggauss(points)
+    where = ((np.arange(SLAVE_ELEMENTS)[:, None] + (places + 1) / 2) / SLAVE_ELEMENTS).ravel()
+    master = functions(master_order, elements, where) * np.tile(weights / (2 * SLAVE_ELEMENTS), SLAVE_ELEMENTS)[:, None]
+    ends = knots(master_order, elements)
+    exact = (ends[master_order + 1 :] - ends[: -master_order - 1]) / (master_order + 1)
+    missing = float(np.abs(master.sum(axis=0) / exact - 1.0).max())
+    loads = master.T @ functions(slave_order, SLAVE_ELEMENTS, where) / exact[:, None]
+    pressures = functions(slave_order, SLAVE_ELEMENTS, np.linspace(0.0, 1.0, 500)) @ np.linalg.pinv(loads)
+    return 2.0 * missing * float(np.abs(pressures).sum(axis=1).max())
 
 
 def kink(master_order: int) -> str:
@@ -180,13 +185,13 @@ def default_bounds(slave_order: int, master_order: int, tilt: float) -> dict[str
     limit = pressure_limit(slave_order, master_order, elements, points)
     return {
         "pressure": Bound(
-            at_most=limit, reason=f"quadrature: {kink(master_order)}; error of the master's load, times the basis's condition"
+            at_most=limit, reason=f"quadrature: {kink(master_order)}; error of the master's load, times the norm of the loads' inverse"
         ),
         "errors": Matches(
             "contact_patch_test",
-            reason="reference: this program's own errors, as a rule more than a hundredth of their limit; Newton's 1e-13 times the basis's "
+            reason="reference: this program's own errors, as a rule more than a twentieth of their limit; Newton's 1e-13 times the basis's "
             "condition",
-            allowance=1e-13 * 4.0 ** max(slave_order, master_order) / (0.01 * limit),
+            allowance=1e-13 * 4.0 ** max(slave_order, master_order) / (0.05 * limit),
         ),
     }
 
@@ -208,7 +213,9 @@ def fall_bounds(slave_order: int, master_order: int, tilt: float) -> dict[str, B
     """By Euler and Maclaurin a jump of derivative p costs (1 / points)^(p + 1), and between nothing and all of that by its place."""
     return {
         "curve": Shown(reason="quadrature: error against points; it falls unevenly, as knots come to lie nearer to points or not"),
-        "share": Bound(at_most=1.0, reason=f"quadrature: {kink(master_order)}; error of the master's load, times the basis's condition"),
+        "share": Bound(
+            at_most=1.0, reason=f"quadrature: {kink(master_order)}; error of the master's load, times the norm of the loads' inverse"
+        ),
         "order": Bound(
             at_least=float(master_order),
             reason="theory: order p + 1 at a jump of derivative p; its place between the points scatters it by less than one",
@@ -225,11 +232,14 @@ def fall_bounds(slave_order: int, master_order: int, tilt: float) -> dict[str, B
 def pressure_against_points(slave_order: int, master_order: int, tilt: float) -> dict[str, object]:
     """Errors of the pressure field for 4 to 24 points per slave element and direction, over their limits, and the order of their fall.
 
-    The numbers are even: none of the points lies on a master knot.
+    The numbers are even: none of the points lies on a master knot. Limits fall with the order of theory from the largest one: by chance the
+    loads are nearly exact with some numbers of points.
     """
     points, elements = [4, 6, 8, 12, 16, 24], SLAVE_ELEMENTS + 1
     found = [errors(problem(slave_order, master_order, tilt, n, elements)).field for n in points]
-    shares = [error / pressure_limit(slave_order, master_order, elements, n) for error, n in zip(found, points, strict=True)]
+    fall = np.array(points, float) ** -(master_order + 1)
+    largest = np.max([pressure_limit(slave_order, master_order, elements, n) for n in points] / fall)
+    shares = found / (largest * fall)
     return {
         "curve": Curve(points, found, "points per direction", "relative error of the pressure", log_x=True),
         "share": Curve(points, shares, "points per direction", "error over its limit", log_x=True),

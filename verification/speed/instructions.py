@@ -39,6 +39,7 @@ CORE = {"OPENBLAS_CORETYPE": "Haswell", "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_TH
 #: Share by which a count may differ.
 SHARE = 0.02
 
+
 def run() -> float:
     """Do the work; returns what the forces of the two supports leave over, relative to either's."""
     *_, last = islice(Simulation(Scene.load(SCENE, SETTINGS).problem()).run(), STEPS)

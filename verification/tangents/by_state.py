@@ -131,13 +131,23 @@ def every_state(state: str) -> dict[str, float]:
     return {row.part: row.error for row in measure(problem, STEP, [visit], directions=1, length=length).rows}
 
 
+def edge_bounds(edge: str) -> dict[str, Bound]:
+    """Where trials are placed they differ by twice `OFF`; over a knot line tractions turn that come from next to no slip."""
+    apart = Bound(
+        at_most=3 * OFF, reason="definition: trials are placed 1e-12 off the edge to either side; round-off of the control quantities"
+    )
+    if edge == "knot line":
+        apart = Bound(at_most=1e-6, reason="definition: a thousandth of the least jump, which is then none of a slope's")
+    return {
+        "apart": apart,
+        "jump": Bound(at_least=1e-3, reason="definition: a check of the two sides tells nothing where they have one tangent"),
+    }
+
+
 @case(
     claim="The two sides of an edge, at next to one state, have different tangents.",
     grid={"edge": ("open | closed", "stick | slip", "knot line")},
-    bounds={
-        "apart": Bound(at_most=1e-6, reason="definition: the states on the two sides are the same but for the edge"),
-        "jump": Bound(at_least=1e-3, reason="definition: a check of the two sides tells nothing where they have one tangent"),
-    },
+    bounds=edge_bounds,
 )
 def edges(edge: str) -> dict[str, float]:
     """Largest difference of the control tractions and pressures on the two sides; and of a part of the tangent along a random field."""

@@ -58,7 +58,9 @@ def _section(outcome: Outcome, trend: Trend) -> dict[str, Any]:
         "outcome": outcome,
         "benchmark": benchmark,
         "headings": headings(benchmark),
-        "numeric": [all(row.get(name) == ASIDE or not isinstance(row.get(name, 0), str) for row in outcome.rows) for name in benchmark.columns],
+        "numeric": [
+            all(row.get(name) == ASIDE or not isinstance(row.get(name, 0), str) for row in outcome.rows) for name in benchmark.columns
+        ],
         "rows": [
             {"cells": [_cell(row, name, benchmark, trend) for name in benchmark.columns], "note": row.get(NOTE)} for row in outcome.rows
         ],
