@@ -48,7 +48,7 @@ def limits(kind: str) -> dict[str, Bound | Shown]:
 
 
 @case(
-    claim="Near incompressibility costs Lagrange elements of order 2 and more a power of the element size; no element does worse than to stay "
+    claim="Near incompressibility costs Lagrange elements of order 2 and more a power of the element size; none does worse than to stay "
     "where it is.",
     tier="nightly",
     grid={"kind": ("N1", "N2", "N3", "N4", "L1", "L2", "L3", "L4")},

@@ -33,7 +33,7 @@ Row = Mapping[str, float | int | str]
 #: The entry of a row that could not be measured.
 NOTE = "note"
 #: In place of a value where a column says nothing of a row: a program beside itself.
-ASIDE = "–"
+ASIDE = "-"
 #: Work of fewer CPU seconds is measured `REPEATS` times.
 SHORT, REPEATS = 10.0, 3
 
