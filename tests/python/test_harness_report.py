@@ -43,6 +43,19 @@ def test_a_page_of_a_part_says_so(family):
     assert "<h1>All 3 cells pass</h1>" in Path("out/report.html").read_text()
 
 
+def test_cells_of_a_case_that_a_run_leaves_out_are_counted(family):
+    """A claim on all settings is measured at some of them only: a page of green cells must not pass for all of it."""
+    path = Path("cases") / family / "widely.py"
+    path.write_text(CASE.replace("grid={", "tier=lambda order: 'gate' if order < 2 else 'nightly', grid={"))
+    assert verify().exit_code == 0
+    page = Path("out/report.html").read_text()
+    assert "2 further cells of these cases are not in this run" in page
+    assert "1 of 1, 2 not in this run" in page
+    assert json.loads(Path("out/report.json").read_text())["left_out"] == [f"{family}/widely[order={k}]" for k in (2, 3)]
+    assert verify("--tier", "nightly").exit_code == 0
+    assert "not in this run" not in Path("out/report.html").read_text()
+
+
 @pytest.mark.usefixtures("family")
 def test_the_widest_limit_is_on_the_page():
     assert verify().exit_code == 0

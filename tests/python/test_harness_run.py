@@ -345,6 +345,8 @@ def test_over_refined_is_what_has_measured_its_uncertainty(root):
     assert CliRunner().invoke(app, command, catch_exceptions=False).exit_code == 0
     kept = Reference(Path("references/kept"))
     assert kept.record["class"] == "over-refined"
+    for cell in find(root, f"{family.name}/same").cells:
+        assert kept.get(cell, "value").kind == "self"  # compared with the run that made it, it shows change alone
     assert [float(kept._expected[f"kind={kind}/value"].uncertainty) for kind in ("N1", "N2")] == [2e-3, 2e-9]  # the stated 1e-9 at least
 
 

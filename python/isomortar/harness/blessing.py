@@ -17,7 +17,7 @@ from isomortar.harness import svg
 from isomortar.harness.cases import Case, Cell, Matches
 from isomortar.harness.compare import Lookup
 from isomortar.harness.measurement import curve_of
-from isomortar.harness.references import Reference, dataset_name, write_reference
+from isomortar.harness.references import Reference, dataset_name, made_by, write_reference
 from isomortar.harness.report import template
 from isomortar.harness.runner import Result
 from isomortar.harness.store import compiler, kernel_hash, program_hash, write_whole
@@ -145,7 +145,7 @@ def bless(
             "title": case.claim,
             "class": kind,
             "origin": f"This program: case {case.name}",
-            "made": f"isomortar bless {case.name}",
+            "made": made_by(case),
             "uncertainty": f"{max(shares.values()):g} of the largest value of each number"
             + ("" if kind == "self" else " or less, as measured"),
             "reason": reason,

@@ -14,6 +14,7 @@ from __future__ import annotations
 import hashlib
 import io
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Literal, get_args
 
@@ -22,7 +23,7 @@ import numpy as np
 import tomlkit
 
 from isomortar.errors import InputError
-from isomortar.harness.cases import Cell
+from isomortar.harness.cases import Case, Cell
 from isomortar.harness.compare import Expected, Lookup
 
 Kind = Literal["exact", "over-refined", "other code", "self"]
@@ -68,12 +69,18 @@ class Reference:
             self._expected[name] = Expected(values, uncertainty, str(self.record["class"]))
 
     def get(self, cell: Cell, number: str) -> Expected | None:
-        """The dataset of a cell and number; None: there is none."""
-        return self.dataset(dataset_name(cell, number))
+        """The dataset of a cell and number, of class ``self`` where a run of that case made it; None: there is none."""
+        found = self.dataset(dataset_name(cell, number))
+        return replace(found, kind="self") if found and self.record["made"] == made_by(cell.case) else found
 
     def dataset(self, name: str) -> Expected | None:
         """The dataset of a name; None: there is none."""
         return self._expected.get(name)
+
+
+def made_by(case: Case) -> str:
+    """What the record of a reference says that a run of this case made."""
+    return f"isomortar bless {case.name}"
 
 
 def dataset_name(cell: Cell, number: str) -> str:

@@ -61,6 +61,7 @@ def as_data(results: Sequence[Result], context: Context) -> dict[str, Any]:
         "kernel": kernel_hash(),
         "compiler": compiler(),
         "states": dict(Counter(result.state for result in results)),
+        "left_out": left_out(results),
         "cells": [
             {
                 "name": result.cell.name,
@@ -74,6 +75,13 @@ def as_data(results: Sequence[Result], context: Context) -> dict[str, Any]:
             for result in results
         ],
     }
+
+
+def left_out(results: Sequence[Result]) -> list[str]:
+    """Cells of the cases that a run measured, of which it left out others, as a higher tier: what is claimed speaks of them too."""
+    run = {result.cell.name for result in results}
+    cases = {result.cell.case.name: result.cell.case for result in results}
+    return [cell.name for case in cases.values() for cell in case.cells if cell.name not in run]
 
 
 def junit(results: Sequence[Result], context: Context) -> str:
@@ -120,6 +128,7 @@ def page(results: Sequence[Result], context: Context) -> str:
         context=context,
         counts=[(state, counts[state]) for state in STATES if counts[state]],
         total=len(results),
+        left_out=len(left_out(results)),
         bad=[(result, _bad(result)) for result in _worst_first(results) if result.state != "passed"],
         only_change=sum(any(check.reference == "self" for check in result.checks) for result in results),
         families=[_family(name, group, context) for name, group in _by_family(results)],
@@ -155,6 +164,7 @@ def _case(results: list[Result], context: Context) -> dict[str, Any]:
         "anchor": anchor(case.name),
         "passed": sum(r.state == "passed" for r in results),
         "total": len(results),
+        "whole": len(case.cells),
         "state": worst(r.state for r in results),
         "seconds": sum(r.measurement.seconds for r in results),
         "bounds": _bounds(results, names),
