@@ -23,13 +23,15 @@ FRICTION = 0.3
 )
 def cone(master: str, slip_sum: str) -> dict[str, float]:
     """Largest traction norm above mu p, largest negative pressure, over the largest pressure; slipping points at the end."""
-    outside = pull = 0.0
-    for result in Simulation(bowl(master, FRICTION, slip_sum=slip_sum)).run():
+    results = list(Simulation(bowl(master, FRICTION, slip_sum=slip_sum)).run())
+    shares = []
+    for result in results:
         pressure = result.state.contacts[0].pressure
-        size = float(pressure.max())
-        outside = float(np.maximum(outside, float((result.contacts[0].traction_norm - FRICTION * pressure).max()) / size))
-        pull = float(np.maximum(pull, -float(pressure.min()) / size))
-    return {"outside": outside, "pull": pull, "slipping": float(result.contacts[0].slip)}
+        shares.append(
+            [(result.contacts[0].traction_norm - FRICTION * pressure).max() / pressure.max(), (0.0 - pressure.min()) / pressure.max()]
+        )
+    outside, pull = np.maximum(0.0, np.max(shares, axis=0))
+    return {"outside": float(outside), "pull": float(pull), "slipping": float(results[-1].contacts[0].slip)}
 
 
 @case(
@@ -43,10 +45,10 @@ def cone(master: str, slip_sum: str) -> dict[str, float]:
 )
 def momentum_balance(friction: float) -> dict[str, float]:
     """Imbalance over the contact force, and over the contact force times one unit of length, about the width of the block."""
-    force = moment = 0.0
+    shares = []
     for result in Simulation(bowl("block", friction)).run():
         found = result.contacts[0]
-        size = float(np.linalg.norm(found.force_slave))
-        force = float(np.maximum(force, float(np.linalg.norm(found.force_slave + found.force_master)) / size))
-        moment = float(np.maximum(moment, float(np.linalg.norm(found.moment_slave + found.moment_master)) / size))
-    return {"force": force, "moment": moment}
+        left = found.force_slave + found.force_master, found.moment_slave + found.moment_master
+        shares.append(np.linalg.norm(left, axis=1) / np.linalg.norm(found.force_slave))
+    force, moment = np.max(shares, axis=0)
+    return {"force": float(force), "moment": float(moment)}

@@ -2,19 +2,34 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from reference_scenes import FIRST, RUNS, has_end, measure
 
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Matches, case
 from isomortar.harness.cases import Case, Claim, Tier
 
-#: Seconds each: nodal elements, splines, a beginning with sticking and slipping points on a deformable master, a closed ring.
-QUICK = ("press_L2_6", "press_N2_6", f"twist_N2{FIRST}14", f"tire_N2_32_q{FIRST}13")
+#: Seconds each, by group: nodal elements, splines of all orders, beginnings with sticking and slipping points on deformable masters, a
+#: closed ring.
+QUICK = {
+    "local": (
+        *("press_L2_6", "press_N2_6", "press_N3_6", "press_N4_6"),
+        *(f"{name}{FIRST}12" for name in ("twist_N3", "twist_N5", "iron_N2", "iron_N3")),
+        *(f"twist_N2{FIRST}14", f"tire_N2_32_q{FIRST}13"),
+    ),
+    "tight": ("press_L2", f"twist_N3{FIRST}8", f"tire_L2{FIRST}3", f"tire_N2{FIRST}3"),
+}
 
 _NEWTON = "round-off: Newton's 1e-11 and contact conditions to 1e-10 here; the rest is the reference's uncertainty"
 _TIGHT = "reference: another program at the same tolerances; Newton's 1e-11 is far below them"
 _PAPER = "reference: the paper's tolerance of 1 % leaves the path free by as much, at every load step"
 _POINTS = "theory: the same control points are in contact and slip, the same quadrature points lie beyond the master"
+
+
+def tier(group: str) -> Callable[[str], Tier]:
+    """Whole runs are minutes."""
+    return lambda scene: "gate" if scene in QUICK[group] else "nightly"
 
 
 def local_claims(scene: str) -> dict[str, Claim]:
@@ -24,15 +39,10 @@ def local_claims(scene: str) -> dict[str, Claim]:
     return {**same, "points": Matches("other_code_local", _POINTS)}
 
 
-def local_tier(scene: str) -> Tier:
-    """Whole runs are minutes."""
-    return "gate" if scene in QUICK else "nightly"
-
-
 @case(
     claim="Forces, moments, contact and positions are those of an independent program, at every load step, to the tolerance of both.",
-    tier=local_tier,
-    grid={"scene": tuple(dict.fromkeys((*QUICK, *RUNS["local"])))},
+    tier=tier("local"),
+    grid={"scene": tuple(dict.fromkeys((*QUICK["local"], *RUNS["local"])))},
     bounds=local_claims,
 )
 def local(scene: str) -> dict[str, FloatArray]:
@@ -48,8 +58,8 @@ def tight_claims(scene: str) -> dict[str, Claim]:
 
 @case(
     claim="With augmentations to 1e-8 and the paper's slip sum, results are those of an independent program.",
-    tier=lambda scene: "gate" if scene == "press_L2" else "nightly",
-    grid={"scene": tuple(RUNS["tight"])},
+    tier=tier("tight"),
+    grid={"scene": tuple(dict.fromkeys((*QUICK["tight"], *RUNS["tight"])))},
     bounds=tight_claims,
 )
 def tight(scene: str) -> dict[str, FloatArray]:
