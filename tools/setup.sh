@@ -65,6 +65,7 @@ make_environment() {
   python -m pip install --quiet --group build --group dev
   rm -rf build/cp* # a build that is there would keep the options it was made with
   python -m pip install --quiet --no-build-isolation --editable .
+  { echo "#!$PWD/.venv/bin/python" && cat tools/launch.py; } > .venv/bin/isomortar # in the place of pip's, which shows tracebacks
 }
 
 install_system_packages

@@ -7,6 +7,8 @@ from collections.abc import Callable
 from importlib.metadata import version
 from pathlib import Path
 
+from isomortar.errors import InputError, ResultsError
+from isomortar.results.files import claimed, is_marked
 from isomortar.results.reader import Results
 from isomortar.results.writer import ResultsWriter
 from isomortar.scene.scene import Scene
@@ -29,7 +31,8 @@ def run(
     resume : bool
         Go on after the last load step of the file; begin where there is no file; nothing is computed where all is there.
     overwrite : bool
-        Remove a file that is there, once the scene is known to be sound. Without `resume` or `overwrite` it is an error.
+        Begin anew in the place of a results file that is there, once the scene is known to be sound. Without `resume` or `overwrite`
+        it is an error, unless it holds no load step yet.
 
     Returns
     -------
@@ -39,28 +42,42 @@ def run(
     Raises
     ------
     InputError
-        The scene is wrong; no file has been touched.
+        The scene is wrong, or the results file exists; no file has been touched.
     ConvergenceError
         A load step could not be cut further. The steps before it are in the file.
     ResultsError
-        The results file exists, is damaged, belongs to another scene, or cannot be written.
+        Another run is writing the results file; or what is there is damaged, no results file, belongs to another scene, or cannot be
+        written.
     """
     path, problem = Path(output), scene.problem()
+    with claimed(path):
+        last = _last_step(path, resume, overwrite)
 
-    def open_writer() -> ResultsWriter:
-        if overwrite:
-            path.unlink(missing_ok=True)
-        return ResultsWriter(path, problem, scene.to_toml(), version("isomortar"), scene.record.states, resume)
+        def open_writer() -> ResultsWriter:
+            return ResultsWriter(path, problem, scene.to_toml(), version("isomortar"), scene.record.states, resume, not resume)
 
-    last = _last_step(path) if resume and path.exists() else None
-    for _ in Simulation(problem, _Recorder(open_writer, observer or Observer()), last).run():
-        pass
+        for _ in Simulation(problem, _Recorder(open_writer, observer or Observer()), last).run():
+            pass
     return Results(path)
 
 
-def _last_step(path: Path) -> StepResult | None:
+def _last_step(path: Path, resume: bool, overwrite: bool) -> StepResult | None:
+    """Where to go on; nothing is there, or may go, where the answer is None."""
+    if path.is_symlink():
+        raise ResultsError(f"{path} is a symbolic link: name the file that it leads to")
+    if not path.exists():
+        return None
+    if not path.is_file():
+        raise ResultsError(f"{path} is no ordinary file, but a folder or a device: name another results file")
+    if overwrite and is_marked(path):
+        return None
+    if overwrite:
+        raise ResultsError(f"{path} is no results file of isomortar, so it is not overwritten: remove it yourself, or name another file")
     with Results(path) as results:
-        return results.last_step()
+        last = results.last_step()
+    if last and not resume:
+        raise InputError(f"{path} exists already: go on with --resume, begin anew with --overwrite, or name another file with --output")
+    return last
 
 
 class _Recorder(Observer):

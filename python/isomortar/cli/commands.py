@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -11,14 +10,12 @@ import typer
 
 import isomortar
 from isomortar.cli.bench import bench
+from isomortar.cli.endings import FAILED
 from isomortar.cli.mutants import mutants
 from isomortar.cli.paper import paper
 from isomortar.cli.report import report
 from isomortar.cli.verification import bless, verify
-from isomortar.errors import ConvergenceError, InputError, IsomortarError
-
-#: Exit codes; 130 is what shells expect of a program that Ctrl-C ended.
-FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130
+from isomortar.errors import InputError
 
 app = typer.Typer(
     add_completion=False,
@@ -31,18 +28,6 @@ app = typer.Typer(
 SceneArgument = Annotated[str, typer.Argument(metavar="SCENE", help="A scene file (.toml), or a bundled scene by its name.")]
 Overrides = Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change one value of the scene; may be repeated.")]
 ResultsArgument = Annotated[Path, typer.Argument(metavar="RESULTS", help="Results file of `isomortar run`.")]
-
-
-def main() -> None:
-    """Run the command line; what the package raises on purpose becomes one sentence and an exit code."""
-    try:
-        app()
-    except IsomortarError as error:
-        print(f"isomortar: {error}", file=sys.stderr)
-        sys.exit(BAD_INPUT if isinstance(error, InputError) else FAILED)
-    except OSError as error:
-        print(f"isomortar: {error.strerror}: {error.filename}", file=sys.stderr)
-        sys.exit(FAILED)
 
 
 def _show_version(wanted: bool) -> None:
@@ -63,7 +48,7 @@ def isomortar_command(
     - `isomortar run press` computes one of them into results/press.h5
     - `isomortar plot results/press.h5` draws its curves and pictures
 
-    Exit codes: 0 done, 1 failed, 2 bad input, 130 interrupted. `isomortar COMMAND --help` says more.
+    Exit codes: 0 done, 1 failed, 2 bad input, 3 a fault of the program itself, 130 interrupted. `isomortar COMMAND --help` says more.
     """
 
 
@@ -99,16 +84,11 @@ def run(
         raise InputError("--resume and --overwrite exclude each other: go on with the results file, or begin anew")
     chosen = isomortar.Scene.load(scene, overrides or ())
     path = output or Path("results") / f"{chosen.name}.h5"
-    if path.exists() and not (resume or overwrite):
-        raise InputError(f"{path} exists already: go on with --resume, begin anew with --overwrite, or name another file with --output")
     with progress(chosen.problem(), quiet) as observer:
         try:
             isomortar.run(chosen, path, observer, resume=resume, overwrite=overwrite).close()
-        except KeyboardInterrupt:
-            observer.stopped(path, "; to go on, repeat the command with --resume")
-            raise typer.Exit(INTERRUPTED) from None
-        except ConvergenceError:
-            observer.stopped(path)
+        except BaseException as error:  # Ctrl-C and want of memory too
+            observer.stopped(path, interrupted=isinstance(error, KeyboardInterrupt))
             raise
     print(path)
 

@@ -57,12 +57,13 @@ class Progress(Observer):
         """Pass it on, also when quiet."""
         self._print(f"warning: {message}")
 
-    def stopped(self, path: Path, advice: str = "") -> None:
+    def stopped(self, path: Path, interrupted: bool) -> None:
         """Say what is left of a run that came to no end."""
-        if self._begin is None:
-            self._print("stopped before the first load step")
-        else:
+        if self._begin is not None:
+            advice = "; to go on, repeat the command with --resume" if interrupted else ""
             self._print(f"stopped with {self._done} of {self._total} load steps done; they are in {path}{advice}")
+        elif interrupted:
+            self._print("stopped before the first load step")
 
     def _print(self, line: str) -> None:
         self._console.print(line, markup=False, highlight=False, soft_wrap=True)

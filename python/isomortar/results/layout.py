@@ -2,6 +2,7 @@
 
 The program knows no units; `unit` names the dimension in terms of the scene's own length and force. ::
 
+    (first 512 bytes)            seal: digest of all bytes that follow
     /scene                       text of the scene file
     /problem/...                 definition of the computation, enough to rebuild every patch
     /curves/<quantity>           one row a recorded step
@@ -23,7 +24,7 @@ import h5py
 import numpy as np
 
 FORMAT = "isomortar results"
-FORMAT_VERSION = 1
+FORMAT_VERSION = 2
 
 
 @dataclass(frozen=True)

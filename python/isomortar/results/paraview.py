@@ -14,6 +14,7 @@ from xml.etree import ElementTree
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Problem
 from isomortar.results.fields import ContactSurface, body_points, contact_surfaces
+from isomortar.results.files import make_folder, writing
 from isomortar.results.reader import Results
 from isomortar.results.vtu import BezierGrid, bezier_grid, write_vtu
 
@@ -28,11 +29,16 @@ def export(results_path: str | os.PathLike[str], outdir: str | os.PathLike[str])
     -------
     Path
         The collection (.pvd) to open. Its data lie in a folder of the same name beside it.
+
+    Raises
+    ------
+    ResultsError
+        The results file is missing or damaged; or a file cannot be written.
     """
     with Results(results_path) as results:
         collection = Path(outdir) / f"{Path(results_path).stem}.pvd"
         folder = collection.with_suffix("")
-        folder.mkdir(parents=True, exist_ok=True)
+        make_folder(folder)
         root = ElementTree.Element("VTKFile", type="Collection", version="1.0", byte_order="LittleEndian")
         entries = ElementTree.SubElement(root, "Collection")
         for number in results.kept_states:
@@ -42,10 +48,12 @@ def export(results_path: str | os.PathLike[str], outdir: str | os.PathLike[str])
                 parts["contacts"] = [_contact(i, s) for i, s in enumerate(contact_surfaces(results.problem, step))]
             for part, (name, grids) in enumerate(parts.items()):
                 path = folder / f"{name}-{number:04d}.vtu"
-                write_vtu(path, grids)
+                with writing(path):
+                    write_vtu(path, grids)
                 place = path.relative_to(collection.parent).as_posix()
                 ElementTree.SubElement(entries, "DataSet", timestep=repr(step.time), part=str(part), name=name, file=place)
-        ElementTree.ElementTree(root).write(collection, encoding="utf-8", xml_declaration=True)
+        with writing(collection):
+            ElementTree.ElementTree(root).write(collection, encoding="utf-8", xml_declaration=True)
     return collection
 
 

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from isomortar.errors import ResultsError
 from isomortar.results.bodies import draw_bodies
 from isomortar.results.curves import Curve, draw_curve, draw_reactions, moving_supports
+from isomortar.results.files import make_folder, writing
 from isomortar.results.maps import draw_map
 from isomortar.results.reader import Results
 from isomortar.results.style import style
@@ -36,14 +37,14 @@ def plot(results_path: str | os.PathLike[str], outdir: str | os.PathLike[str], c
     Raises
     ------
     ResultsError
-        The results file is missing, damaged, or holds no load step yet.
+        The results file is missing, damaged, or holds no load step yet; or a figure cannot be written.
     """
     folder = Path(outdir)
     with Results(results_path) as results, style():
         step = results.last_step()
         if step is None:
             raise ResultsError(f"{results.path} holds no load step yet: nothing to draw")
-        folder.mkdir(parents=True, exist_ok=True)
+        make_folder(folder)
         paths = []
         for support in moving_supports(results):
             paths += _save(draw_reactions(results, support.name), folder / f"reactions-{support.name}", ("png", "pdf"))
@@ -58,5 +59,6 @@ def plot(results_path: str | os.PathLike[str], outdir: str | os.PathLike[str], c
 def _save(figure: Figure, stem: Path, formats: tuple[str, ...]) -> list[Path]:
     paths = [stem.with_name(f"{stem.name}.{kind}") for kind in formats]
     for path in paths:
-        figure.savefig(path, bbox_inches="tight", pad_inches=0.08)
+        with writing(path):
+            figure.savefig(path, bbox_inches="tight", pad_inches=0.08)
     return paths

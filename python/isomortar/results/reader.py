@@ -19,6 +19,7 @@ from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model.entities import Contact, Problem
 from isomortar.results import layout
 from isomortar.results.definition import read_problem
+from isomortar.results.files import is_marked, is_whole
 from isomortar.solve.record import AugmentationRecord, ContactResult, ContactState, IterationRecord, Reaction, State, StepResult
 
 Value = TypeVar("Value")
@@ -63,6 +64,10 @@ class Results:
         self.path = Path(path)
         if not self.path.is_file():
             raise ResultsError(f"{self.path} does not exist: run the scene first, or check the path")
+        try:
+            self._check_seal()
+        except OSError as error:
+            raise ResultsError(f"{self.path} cannot be read: {error.strerror or error}") from error
         try:
             self._file = h5py.File(self.path, "r")
         except OSError as error:
@@ -187,9 +192,18 @@ class Results:
     def _rows(self, path: str) -> NDArray[Any]:
         return self._read(lambda file: file[path][()])
 
+    def _check_seal(self) -> None:
+        """HDF5 must not see a damaged file: it may read wrong numbers from it, end the process, or never come back."""
+        if not is_marked(self.path):
+            raise ResultsError(f"{self.path} is no results file of isomortar, or one of an earlier version: run the scene again")
+        if not is_whole(self.path):
+            raise ResultsError(
+                f"{self.path} is damaged (a killed run does not damage it): restore a copy, or remove it and run the scene again"
+            )
+
     def _check_format(self, file: h5py.File) -> None:
         if file.attrs.get("format") != layout.FORMAT:
-            raise ResultsError(f"{self.path} is an HDF5 file, but not one with results of isomortar")
+            raise ResultsError(f"{self.path} is sealed as results of isomortar are, but holds something else")
         version = file.attrs["format_version"]
         if version != layout.FORMAT_VERSION:
             raise ResultsError(
@@ -206,8 +220,8 @@ class Results:
 
     def _damaged(self, error: Exception) -> ResultsError:
         return ResultsError(
-            f"{self.path} cannot be read ({error}): it is damaged or no results file (a killed run does not damage it). "
-            "Restore a copy, or remove it and run the scene again"
+            f"{self.path} cannot be read ({error}), though no byte of it has changed since it was written: another version may have "
+            "written it. Run the scene again"
         )
 
 

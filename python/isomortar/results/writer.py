@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import io
 import os
-import shutil
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Literal
 
@@ -16,6 +16,7 @@ from isomortar.errors import ResultsError
 from isomortar.model.entities import Problem
 from isomortar.results import layout
 from isomortar.results.definition import differences, write_problem
+from isomortar.results.files import SEAL_SIZE, read, replace, sealed
 from isomortar.results.reader import Results
 from isomortar.solve.record import AugmentationRecord, Observer, StepResult
 
@@ -26,11 +27,11 @@ LIBVER = ("v110", "v110")
 class ResultsWriter(Observer):
     """Observer that keeps a results file complete up to the last recorded step.
 
-    HDF5 has no transactions: a file killed while it is written may be lost as a whole. So each step is appended to
-    a copy beside the file, the copy is flushed to the disk and then takes the file's name, which is atomic: the name
-    always stands for a complete file. The price is one copy of the file a step: the bytes written grow with the square
-    of the number of steps. For 100 steps of 1000 control points that is 6 MB at the end and some 20 ms a step, far below the
-    cost of computing it; where it is not, `states="last"` keeps the file at the size of one state.
+    HDF5 has no transactions: a file killed while it is written may be lost as a whole; and where the disk is full, it ends the
+    process. So each step is appended to a copy in memory, which is sealed, written beside the file, flushed to the disk, and then
+    takes the file's name, which is atomic: the name always stands for a complete file. The price is one copy of the file a step:
+    the bytes written grow with the square of the number of steps. For 100 steps of 1000 control points that is 6 MB at the end and
+    some 20 ms a step, far below the cost of computing it; where it is not, `states="last"` keeps the file at the size of one state.
 
     Parameters
     ----------
@@ -45,12 +46,14 @@ class ResultsWriter(Observer):
     states : {"every", "last"}
         Keep the full state of every step, or of the newest only. Curves and log keep every step.
     resume : bool
-        Append to an existing file (or begin one if there is none). Otherwise the file must not exist yet.
+        Append to an existing file (or begin one if there is none).
+    overwrite : bool
+        Begin anew in the place of an existing file. Without `resume` and `overwrite` the file must not exist yet.
 
     Raises
     ------
     ResultsError
-        The file exists (`resume` false), is damaged, belongs to another scene, or cannot be written.
+        The file exists already, is damaged, belongs to another scene, or cannot be written.
     """
 
     def __init__(
@@ -61,11 +64,12 @@ class ResultsWriter(Observer):
         version: str,
         states: Literal["every", "last"] = "every",
         resume: bool = False,
+        overwrite: bool = False,
     ) -> None:
         self.path = Path(path)
         self._problem = problem
         self._states = states
-        if not self.path.exists():
+        if overwrite or not self.path.exists():
             self._begin(scene_text, version)
         elif resume:
             self._check_same_scene()
@@ -74,11 +78,11 @@ class ResultsWriter(Observer):
 
     def recorded(self, result: StepResult) -> None:
         """Append the step; on return it is on the disk."""
-        with self._replacing() as file:
+        with self._changed(read(self.path)) as file:
             self._append(file, result)
 
     def _begin(self, scene_text: str, version: str) -> None:
-        with self._replacing() as file:
+        with self._changed(b"") as file:
             file.attrs["format"] = layout.FORMAT
             file.attrs["format_version"] = layout.FORMAT_VERSION
             file.attrs["program_version"] = version
@@ -106,25 +110,12 @@ class ResultsWriter(Observer):
             )
 
     @contextmanager
-    def _replacing(self) -> Iterator[h5py.File]:
-        """A copy of the file, open for writing, that takes the file's place at the end."""
-        copy = self.path.with_name(f".{self.path.name}.new")
-        try:
-            self.path.parent.mkdir(parents=True, exist_ok=True)
-            if self.path.exists():
-                shutil.copyfile(self.path, copy)
-            else:
-                copy.unlink(missing_ok=True)
-            with h5py.File(copy, "a", libver=LIBVER) as file:
-                yield file
-            _flush(copy)
-            copy.replace(self.path)
-            _flush(self.path.parent)
-        except OSError as error:
-            raise ResultsError(f"{self.path} cannot be written ({error}); what it held before is still in it") from error
-        finally:
-            with suppress(OSError):
-                copy.unlink()
+    def _changed(self, content: bytes) -> Iterator[h5py.File]:
+        """A copy of a file's content in memory (of none: a fresh one), open for writing, that takes the file's place at the end."""
+        copy = io.BytesIO(content)
+        with h5py.File(copy, "a" if content else "w", libver=LIBVER, **({} if content else {"userblock_size": SEAL_SIZE})) as file:
+            yield file
+        replace(self.path, sealed(copy.getvalue()))
 
     def _append(self, file: h5py.File, result: StepResult) -> None:
         row = len(file["curves/step"])
@@ -210,12 +201,3 @@ def _make(file: h5py.Group, path: str, quantity: layout.Quantity, row: tuple[int
         fletcher32=quantity.dtype != layout.TEXT,
     )
     dataset.attrs["unit"], dataset.attrs["description"] = quantity.unit, quantity.description
-
-
-def _flush(path: Path) -> None:
-    """Have the operating system put the file (or directory) on the disk."""
-    descriptor = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)

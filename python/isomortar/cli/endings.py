@@ -1,0 +1,60 @@
+"""How a command ends: whatever is raised becomes one sentence on stderr, and an exit code."""
+
+from __future__ import annotations
+
+import sys
+import traceback
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from isomortar.errors import InputError, IsomortarError
+
+#: Exit codes; 130 is what shells expect of a program that Ctrl-C ended.
+FAILED, BAD_INPUT, OWN_FAULT, INTERRUPTED = 1, 2, 3, 130
+
+
+@contextmanager
+def told() -> Iterator[None]:
+    """End the process with a sentence, where the block does not end by itself."""
+    try:
+        try:
+            yield
+        finally:
+            sys.stdout.flush()  # here a full disk still has its sentence
+    except Exception as error:
+        code, sentence = _ending(error)
+    except KeyboardInterrupt:
+        code, sentence = INTERRUPTED, "interrupted"
+    else:
+        return
+    print(f"isomortar: {sentence}", file=sys.stderr)
+    sys.exit(code)
+
+
+def _ending(error: Exception) -> tuple[int, str]:
+    """Exit code and sentence."""
+    match error:
+        case InputError():
+            return BAD_INPUT, str(error)
+        case IsomortarError():
+            return FAILED, str(error)
+        case MemoryError():
+            return FAILED, "memory ran out: take fewer elements or a lower order, or a machine with more memory"
+        case OSError():
+            return FAILED, _of_the_system(error)
+        case ImportError():
+            return FAILED, f"the installation is not complete: {error}"
+    return OWN_FAULT, f"{_place(error)}. This is a fault of the program, not of your input: please report it with the scene and the command"
+
+
+def _of_the_system(error: OSError) -> str:
+    """What the system refused, and for which file where it says that."""
+    return (error.strerror or str(error)) + (f": {error.filename}" if error.filename else "")
+
+
+def _place(error: Exception) -> str:
+    """The error with the innermost line of the program that it went through."""
+    frames = [frame for frame in traceback.extract_tb(error.__traceback__) if "isomortar" in Path(frame.filename).parts]
+    where = f" ({Path(frames[-1].filename).name}, line {frames[-1].lineno})" if frames else ""
+    return f"{type(error).__name__}: {error}{where}"

@@ -1,0 +1,152 @@
+"""Files of results as the disk has them: sealed, so that damage is seen before HDF5 reads any of it, and held by one run at a time."""
+
+from __future__ import annotations
+
+import fcntl
+import hashlib
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from isomortar.errors import ResultsError
+
+#: A results file begins with so many bytes that HDF5 leaves to its user: the mark, and the digest of all that follows.
+SEAL_SIZE = 512
+_MARK = b"isomortar results file; SHA-256 of all bytes from 512 on: "
+
+
+def sealed(content: bytes) -> bytes:
+    """The content of a results file with the seal in its first bytes, which are free for it."""
+    return _seal(hashlib.sha256(memoryview(content)[SEAL_SIZE:]).hexdigest()) + content[SEAL_SIZE:]
+
+
+def is_marked(path: Path) -> bool:
+    """Whether a file begins as results files do, be it whole or damaged."""
+    with path.open("rb") as file:
+        return file.read(len(_MARK)) == _MARK
+
+
+def is_whole(path: Path) -> bool:
+    """Whether each byte of a file is the one that was written, by its seal."""
+    with path.open("rb") as file:
+        seal = file.read(SEAL_SIZE)
+        return seal == _seal(hashlib.file_digest(file, "sha256").hexdigest())
+
+
+def read(path: Path) -> bytes:
+    """The content of a results file.
+
+    Raises
+    ------
+    ResultsError
+        It is gone, damaged, or the system refuses it.
+    """
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise ResultsError(f"{path} cannot be read: {error.strerror or error}") from error
+    if sealed(content) != content:
+        raise ResultsError(f"{path} cannot be read: it is damaged, or was changed by something else")
+    return content
+
+
+def _seal(digest: str) -> bytes:
+    return (_MARK + digest.encode() + b"\n").ljust(SEAL_SIZE, b"\0")
+
+
+@contextmanager
+def writing(path: Path) -> Iterator[None]:
+    """What the system refuses while `path` is written becomes an error that names it; no part of a new file is left behind."""
+    new = not path.exists()
+    try:
+        yield
+    except OSError as error:
+        if new:
+            with suppress(OSError):
+                path.unlink()
+        raise ResultsError(f"{path} cannot be written: {error.strerror or error}") from error
+
+
+def make_folder(path: Path) -> None:
+    """Make a folder and those above it, where they are not there."""
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ResultsError(f"folder {path} cannot be made: {error.strerror or error}") from error
+
+
+def replace(path: Path, content: bytes) -> None:
+    """Put a whole file in the place of another, or of none: whatever happens meanwhile, the name stands for one of them.
+
+    Raises
+    ------
+    ResultsError
+        The system refused; the old file stands.
+    """
+    fresh = path.with_name(f".{path.name}.new")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with fresh.open("wb") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())
+        fresh.replace(path)
+        _flush_folder(path.parent)
+    except OSError as error:
+        kept = "; what it held before is still in it" if path.exists() else ""
+        raise ResultsError(f"{path} cannot be written: {error.strerror or error}{kept}") from error
+    finally:
+        with suppress(OSError):
+            fresh.unlink()
+
+
+@contextmanager
+def claimed(path: Path) -> Iterator[None]:
+    """Hold a results file against other runs; the system lets go of it when the process ends, however it ends.
+
+    The lock is on a file beside it, `.NAME.lock`, since the results file itself is replaced at every load step.
+
+    Raises
+    ------
+    ResultsError
+        Another run holds it, or the folder cannot be written.
+    """
+    lock = path.with_name(f".{path.name}.lock")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        descriptor = _locked(lock)
+    except BlockingIOError as error:
+        raise ResultsError(f"another run is writing {path}: let it end, or name another results file") from error
+    except OSError as error:
+        raise ResultsError(f"{path} cannot be written: {error.strerror or error}") from error
+    try:
+        yield
+    finally:
+        with suppress(OSError):
+            lock.unlink()
+        os.close(descriptor)
+
+
+def _locked(lock: Path) -> int:
+    """Descriptor of the lock file, with the lock on it; a file that its last holder removed meanwhile is not the one to hold."""
+    while True:
+        descriptor = os.open(lock, os.O_RDWR | os.O_CREAT, 0o666)
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            with suppress(FileNotFoundError):
+                if os.path.samestat(os.fstat(descriptor), lock.stat()):
+                    return descriptor
+        except BaseException:
+            os.close(descriptor)
+            raise
+        os.close(descriptor)
+
+
+def _flush_folder(folder: Path) -> None:
+    """Have the operating system put the folder's entries on the disk."""
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

@@ -1,0 +1,97 @@
+"""How commands end: a sentence and an exit code for whatever the environment does to them, and no traceback."""
+
+from __future__ import annotations
+
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from isomortar.cli.endings import told
+from isomortar.errors import ConvergenceError, InputError
+
+LAUNCH = Path(__file__).parents[2] / "tools" / "launch.py"
+# A shell starts background jobs with SIGINT ignored, and children inherit that.
+HEARS = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); print('ready', flush=True); "
+RUNS = HEARS + f"import runpy; runpy.run_path({str(LAUNCH)!r})"
+
+
+@pytest.mark.parametrize(
+    ("error", "code", "words"),
+    [
+        (InputError("is 3", "solver.max_cuts"), 2, ["solver.max_cuts: is 3"]),
+        (ConvergenceError("load step 4 does not converge"), 1, ["load step 4"]),
+        (OSError(28, "No space left on device"), 1, ["No space left on device"]),
+        (OSError(13, "Permission denied", "a.h5"), 1, ["Permission denied: a.h5"]),
+        (OSError("h5py's own"), 1, ["h5py's own"]),
+        (MemoryError("Unable to allocate 3 TiB"), 1, ["memory ran out"]),
+        (ImportError("libumfpack.so.5: cannot open"), 1, ["the installation is not complete", "libumfpack.so.5"]),
+        (ZeroDivisionError("division by zero"), 3, ["ZeroDivisionError: division by zero", "fault of the program", "report"]),
+        (KeyboardInterrupt(), 130, ["interrupted"]),
+    ],
+)
+def test_every_error_has_its_sentence_and_code(
+    error: BaseException, code: int, words: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as ended, told():
+        raise error
+    said = capsys.readouterr().err
+    assert ended.value.code == code
+    assert said.startswith("isomortar: ")
+    assert said.count("\n") == 1
+    assert all(word in said for word in words)
+    assert "None" not in said
+
+
+def test_what_ends_well_is_left_alone(capsys: pytest.CaptureFixture[str]) -> None:
+    with told():
+        pass
+    with pytest.raises(SystemExit) as ended, told():
+        sys.exit(1)
+    assert ended.value.code == 1
+    assert capsys.readouterr().err == ""
+
+
+def test_ctrl_c_while_the_program_loads(tmp_path: Path) -> None:
+    """At random moments of the first 0.4 s: from the first line of the program on, no traceback."""
+    chance = random.Random(3)
+    for words in [["run", "press", "--output", "run.h5"], ["schema"], ["bench", "--quick", "--cases", "nowhere"]] * 4:
+        with subprocess.Popen(
+            [sys.executable, "-c", RUNS, *words], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        ) as process:
+            assert process.stdout is not None
+            process.stdout.readline()
+            time.sleep(0.4 * chance.random())
+            process.send_signal(signal.SIGINT)
+            _, said = process.communicate(timeout=60)
+        assert "Traceback" not in said
+        assert process.returncode in (0, 1, 2, 130)
+
+
+def test_output_that_nobody_takes() -> None:
+    for words in (["scenes"], ["schema"], ["--help"], ["--version"]):
+        with Path("/dev/full").open("w") as full:
+            done = subprocess.run([sys.executable, "-m", "isomortar", *words], stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+        assert done.returncode == 1
+        assert "No space left on device" in done.stderr
+        assert "Traceback" not in done.stderr
+
+
+def test_a_working_copy_that_may_not_be_built(tmp_path: Path) -> None:
+    """Stands for another account: the import is refused by the system, or ends in the compiler's words."""
+    (tmp_path / "isomortar").mkdir()
+    for raised, words in (
+        ("PermissionError(13, 'Permission denied', 'build/log.txt')", ["Permission denied: build/log.txt", "pip install ."]),
+        ("ImportError('rebuilding failed')", ["rebuilding failed"]),
+    ):
+        (tmp_path / "isomortar" / "__init__.py").write_text(f"raise {raised}")
+        done = subprocess.run(
+            [sys.executable, "-S", LAUNCH], env={"PYTHONPATH": str(tmp_path)}, capture_output=True, text=True, check=False
+        )
+        assert done.returncode == 1
+        assert "Traceback" not in done.stderr
+        assert all(word in done.stderr for word in words)

@@ -1,0 +1,180 @@
+"""The place of a results file: held by one run at a time, never taken from another file, and a disk that takes no more."""
+
+from __future__ import annotations
+
+import os
+import resource
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+import isomortar
+from isomortar.errors import InputError, ResultsError
+from isomortar.results.files import claimed
+
+SMALL = ["bodies.block.mesh.elements=[3,3,2]", "stages.press.steps=3"]
+
+
+def command(*words: str, small: bool = True) -> list[str]:
+    overrides = [word for value in SMALL for word in ("--set", value)] if small else []
+    return [sys.executable, "-m", "isomortar", *words, *overrides]
+
+
+def ended(folder: Path, *words: str, small: bool = True, limit: Callable[[], None] | None = None) -> subprocess.CompletedProcess[str]:
+    process = subprocess.run(command(*words, small=small), cwd=folder, capture_output=True, text=True, check=False, preexec_fn=limit)
+    assert "Traceback" not in process.stderr
+    assert process.returncode >= 0, f"signal {-process.returncode}"
+    return process
+
+
+def recorded(path: Path) -> list[int]:
+    with isomortar.Results(path) as results:
+        return [int(step) for step in results.steps]
+
+
+@pytest.fixture
+def results(tmp_path: Path) -> Path:
+    """A results file of three load steps."""
+    path = tmp_path / "press.h5"
+    isomortar.run(isomortar.Scene.load("press", SMALL), path).close()
+    return path
+
+
+@pytest.mark.parametrize("option", [[], ["--resume"], ["--overwrite"]])
+def test_a_second_run_is_refused_while_the_first_one_writes(tmp_path: Path, option: list[str]) -> None:
+    slow = command("run", "iron", "--output", "run.h5", small=False)
+    with subprocess.Popen(slow, cwd=tmp_path, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as first:
+        assert first.stderr is not None
+        assert any(line.startswith("step  1/50") for line in first.stderr)
+        second = ended(tmp_path, "run", "iron", "--output", "run.h5", *option, small=False)
+        first.send_signal(signal.SIGKILL)
+        first.communicate()
+    assert second.returncode == 1
+    assert "another run is writing run.h5" in second.stderr
+    steps = recorded(tmp_path / "run.h5")
+    assert steps == list(range(1, len(steps) + 1))
+    with claimed(tmp_path / "run.h5"):  # what a killed process held is free
+        pass
+    assert not list(tmp_path.glob(".*.lock"))
+
+
+def test_of_runs_that_start_together_one_writes(tmp_path: Path) -> None:
+    runs = [subprocess.Popen(command("run", "press", "--output", "run.h5"), cwd=tmp_path, stderr=subprocess.PIPE, text=True) for _ in "123"]
+    said = [run.communicate()[1] for run in runs]
+    assert sorted(run.returncode for run in runs)[0] == 0
+    assert all("another run is writing" in text or "exists already" in text for run, text in zip(runs, said, strict=True) if run.returncode)
+    assert recorded(tmp_path / "run.h5") == [1, 2, 3]
+
+
+def test_a_lock_that_its_holder_removed_holds_nobody(tmp_path: Path) -> None:
+    path = tmp_path / "run.h5"
+    for _ in range(3):
+        with claimed(path), pytest.raises(ResultsError, match="another run is writing"), claimed(path):
+            pytest.fail("two hold it")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("option", [[], ["--resume"], ["--overwrite"]])
+@pytest.mark.parametrize("kind", ["scene", "link", "dangling link", "device", "foreign HDF5"])
+def test_nothing_but_results_is_replaced(results: Path, kind: str, option: list[str]) -> None:
+    place = results.with_name("place")
+    target = results.with_name("target.h5")
+    scene = isomortar.Scene.load("press").to_toml()
+    match kind:
+        case "scene":
+            place.write_text(scene)
+        case "link":
+            results.rename(target)
+            place.symlink_to(target)
+        case "dangling link":
+            place.symlink_to(target)
+        case "device":
+            place = Path(os.devnull)
+        case "foreign HDF5":
+            place.write_bytes(b"\x89HDF\r\n\x1a\n" + bytes(600))
+    before = [place.lstat().st_mode, place.lstat().st_ino, target.exists() and target.read_bytes(), place.is_file() and place.read_bytes()]
+    done = ended(results.parent, "run", "press", "--output", str(place), *option)
+    assert done.returncode == 1
+    assert str(place) in done.stderr
+    after = [place.lstat().st_mode, place.lstat().st_ino, target.exists() and target.read_bytes(), place.is_file() and place.read_bytes()]
+    assert after == before
+
+
+def test_results_are_replaced_on_demand_also_damaged_ones(results: Path) -> None:
+    scene = isomortar.Scene.load("press", [*SMALL, "stages.press.steps=1"])
+    with pytest.raises(InputError, match="exists already"):
+        isomortar.run(scene, results)
+    isomortar.run(scene, results, overwrite=True).close()
+    assert recorded(results) == [1]
+    results.write_bytes(results.read_bytes()[:-100])
+    with pytest.raises(ResultsError, match="damaged"):
+        isomortar.run(scene, results, resume=True)
+    isomortar.run(scene, results, overwrite=True).close()
+    assert recorded(results) == [1]
+
+
+class StopsAtOnce(isomortar.Observer):
+    """Ends a run before its first load step."""
+
+    def iteration(self, step: int, time: float, augmentation: int, record: object) -> None:
+        raise KeyboardInterrupt
+
+
+def test_a_file_without_a_step_is_in_nobodys_way(tmp_path: Path) -> None:
+    path, scene = tmp_path / "run.h5", isomortar.Scene.load("press", SMALL)
+    with pytest.raises(KeyboardInterrupt):
+        isomortar.run(scene, path, StopsAtOnce())
+    assert recorded(path) == []
+    isomortar.run(isomortar.Scene.load("press", [*SMALL, "contacts.floor.friction=0.1"]), path).close()
+    assert recorded(path) == [1, 2, 3]
+
+
+def test_a_scene_that_is_refused_leaves_results_and_no_lock(results: Path) -> None:
+    before = results.read_bytes()
+    done = ended(results.parent, "run", "press", "--output", "press.h5", "--overwrite", "--set", "bodies.block.geometry.top=-0.5")
+    assert done.returncode == 2
+    assert results.read_bytes() == before
+    assert list(results.parent.iterdir()) == [results]
+
+
+@pytest.mark.parametrize("kilobytes", [1, 40, 60, 80, 100])
+def test_a_full_disk_has_its_sentence(tmp_path: Path, kilobytes: int) -> None:
+    """Stands for a full disk: a limit on the size of a file, which fails the same calls. HDF5 ended the process when its own failed."""
+    limit = 1024 * kilobytes
+    done = ended(tmp_path, "run", "press", "--output", "run.h5", limit=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
+    assert done.returncode == 1
+    assert "isomortar: run.h5 cannot be written: File too large" in done.stderr
+    assert "None" not in done.stderr
+    assert [path.name for path in tmp_path.iterdir()] in ([], ["run.h5"])
+    if (tmp_path / "run.h5").exists():
+        assert "what it held before is still in it" in done.stderr
+        steps = recorded(tmp_path / "run.h5")
+        assert ended(tmp_path, "run", "press", "--output", "run.h5", "--resume").returncode == 0
+        assert recorded(tmp_path / "run.h5") == [1, 2, 3]
+        assert steps == [1, 2, 3][: len(steps)]
+
+
+@pytest.mark.parametrize("what", ["plot", "export"])
+def test_a_full_disk_has_its_sentence_where_figures_are_written(results: Path, what: str) -> None:
+    done = ended(results.parent, what, "press.h5", small=False, limit=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000)))
+    assert done.returncode == 1
+    assert "cannot be written: File too large" in done.stderr
+    assert f"press-{'plots' if what == 'plot' else 'paraview'}/" in done.stderr
+    assert not [path for path in results.parent.rglob("*") if path.is_file() and path.stat().st_size == 2000]
+
+
+def test_reading_goes_on_while_a_run_writes(tmp_path: Path) -> None:
+    slow = command("run", "iron", "--output", "run.h5", small=False)
+    with subprocess.Popen(slow, cwd=tmp_path, stderr=subprocess.DEVNULL) as run:
+        until = time.monotonic() + 60
+        seen = 0
+        while seen < 2 and time.monotonic() < until:
+            if (tmp_path / "run.h5").exists():
+                seen = len(recorded(tmp_path / "run.h5"))
+        run.kill()
+    assert seen >= 2
