@@ -66,6 +66,13 @@ class Curve:
     log_y: bool = True
 
 
+@dataclass(frozen=True)
+class Words:
+    """What was said, beside the numbers: to be shown, and nothing can be claimed of it."""
+
+    text: str
+
+
 def _check_reason(reason: str) -> None:
     ground, colon, text = reason.partition(":")
     if ground not in GROUNDS or not colon or not text.strip():

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness.cases import Bound, Cell, Claim, Curve, Matches, Order, Shown
-from isomortar.harness.measurement import Measurement, Stored, convergence_of, curve_of, real_numbers
+from isomortar.harness.measurement import Measurement, Stored, convergence_of, curve_of, real_numbers, words_of
 from isomortar.harness.orders import OrderEstimate, estimate_order
 
 #: Best first. Only ``passed`` passes.
@@ -124,6 +124,11 @@ def judge(cell: Cell, measurement: Measurement, lookup: Lookup) -> list[Check]:
 def _check(cell: Cell, name: str, claim: Claim, value: Stored, lookup: Lookup) -> Check:
     if isinstance(claim, Order):
         return _check_order(name, claim, value)
+    said = words_of(value)
+    if said is not None:
+        shown = isinstance(claim, Shown)
+        found = said.text if shown else "words, not numbers"
+        return Check(name, "passed" if shown else "failed", np.nan, _limit(claim), found, claim.reason)
     curve = curve_of(value)
     if curve is None and isinstance(value, dict):
         return Check(name, "failed", np.nan, _limit(claim), "a convergence sequence: its claim must be an Order", claim.reason)

@@ -17,14 +17,14 @@ import numpy as np
 from isomortar._process import give_back_memory
 from isomortar.errors import ConvergenceError
 from isomortar.geometry.patch import FloatArray
-from isomortar.harness.cases import Cell, Curve, SkippedError
+from isomortar.harness.cases import Cell, Curve, SkippedError, Words
 from isomortar.harness.orders import Convergence
 
 #: ``not converged``: what a scene says of itself. All that is ``raised`` besides may be the machine's.
 Ending = Literal["measured", "skipped", "not converged", "raised", "crashed", "timed out", "not measured"]
 #: Up to here double precision holds every whole number.
 LARGEST_WHOLE = 2**53
-#: A measured value as it is stored: number, nested list, Convergence or Curve as a dict, None where there is none.
+#: A measured value as it is stored: number, nested list, Convergence, Curve or Words as a dict, None where there is none.
 Stored = float | list[Any] | dict[str, Any] | None
 
 
@@ -103,6 +103,8 @@ def stored(value: Any) -> Stored:
         return {"type": "convergence", "sizes": _numbers(value.sizes), "errors": _numbers(value.errors), "others": others}
     if isinstance(value, Curve):
         return {"type": "curve", **asdict(value), "x": _numbers(value.x), "y": _numbers(value.y)}
+    if isinstance(value, Words):
+        return {"type": "words", "text": value.text}
     return _numbers(value)
 
 
@@ -144,4 +146,11 @@ def curve_of(value: Stored) -> Curve | None:
     """The curve that was stored, or None if it was something else."""
     if isinstance(value, dict) and value.get("type") == "curve":
         return Curve(**{name: entry for name, entry in value.items() if name != "type"})
+    return None
+
+
+def words_of(value: Stored) -> Words | None:
+    """The words that were stored, or None if it was something else."""
+    if isinstance(value, dict) and value.get("type") == "words":
+        return Words(value["text"])
     return None

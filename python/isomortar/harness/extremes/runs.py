@@ -1,0 +1,115 @@
+"""Runs of the program as a user starts them: a scene file, and a process of its own with limits of time and memory."""
+
+from __future__ import annotations
+
+import functools
+import os
+import resource
+import subprocess
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import h5py
+import numpy as np
+
+from isomortar.geometry.patch import FloatArray
+
+#: What one run may take: seconds, and bytes of address space.
+SECONDS, MEMORY = 60.0, 4 << 30
+#: Whatever kernel this process has found, the program that it starts finds too.
+_START = "import sys; sys.path[:] = {path!r}; sys.argv[0] = 'isomortar'; from isomortar.cli import main; main()"
+_ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "COLUMNS": "1000"}
+
+_program: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Run:
+    """What became of a run.
+
+    Parameters
+    ----------
+    code : int or None
+        Exit status; below zero: ended by that signal; None: it came to no end.
+    said : str
+        What it said on its standard error.
+    held : dict of str to ndarray
+        Numbers that its results file holds, by their path: ``curves/supports/top/force`` has shape (steps, 3).
+    steps : int or None
+        Load steps that the file holds; None: there is no results file.
+    """
+
+    code: int | None
+    said: str = ""
+    held: dict[str, FloatArray] = field(default_factory=dict)
+    steps: int | None = None
+
+    def force(self, support: str) -> FloatArray:
+        """Forces that a support exerts, shape (steps, 3)."""
+        return self.held[f"curves/supports/{support}/force"]
+
+    def moment(self, support: str) -> FloatArray:
+        """Moments that a support exerts, shape (steps, 3)."""
+        return self.held[f"curves/supports/{support}/moment"]
+
+
+@contextmanager
+def program(command: Sequence[str]) -> Iterator[None]:
+    """Let runs be those of another program, such as ``isomortar`` of another environment, for the block that follows."""
+    global _program
+    before, _program = _program, tuple(command)
+    try:
+        yield
+    finally:
+        _program = before
+
+
+def run(scene: str, seconds: float = SECONDS, memory: int = MEMORY) -> Run:
+    """Run the text of a scene file; what was run in this process before is not run again."""
+    return _run(scene, _program or _this_program(), seconds, memory)
+
+
+def _this_program() -> tuple[str, ...]:
+    flags = ("-S",) if sys.flags.no_site else ()
+    return (sys.executable, *flags, "-c", _START.format(path=sys.path))
+
+
+@functools.lru_cache(maxsize=256)
+def _run(scene: str, command: tuple[str, ...], seconds: float, memory: int) -> Run:
+    with TemporaryDirectory() as folder:
+        (Path(folder) / "scene.toml").write_text(scene, encoding="utf-8")
+        try:
+            done = subprocess.run(
+                [*command, "run", "scene.toml", "--output", "results.h5", "--quiet"],
+                cwd=folder,
+                env=_ONE_THREAD | {name: value for name, value in os.environ.items() if name not in _ONE_THREAD},
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.PIPE,
+                timeout=seconds,
+                preexec_fn=functools.partial(resource.setrlimit, resource.RLIMIT_AS, (memory, memory)),
+                check=False,
+            )
+        except subprocess.TimeoutExpired:
+            return Run(None, f"no end after {seconds:g} s")
+        held = _read(Path(folder) / "results.h5")
+        steps = None if held is None else len(held["curves/step"])
+        return Run(done.returncode, done.stderr.decode(errors="replace"), held or {}, steps)
+
+
+def _read(path: Path) -> dict[str, FloatArray] | None:
+    """All numbers of a results file, of whatever version of the program; None where there is no file."""
+    if not path.exists():
+        return None
+    held: dict[str, FloatArray] = {}
+
+    def keep(name: str, item: h5py.Group | h5py.Dataset) -> None:
+        if isinstance(item, h5py.Dataset) and item.dtype.kind in "iuf" and name.startswith(("curves/", "states/")):
+            held[name] = np.asarray(item[()], dtype=float)
+
+    with h5py.File(path) as file:
+        file.visititems(keep)
+    return held

@@ -1,0 +1,133 @@
+"""Meshes at the edges of what they can be: orders, aspect ratios, knot spans, weights."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from extreme_scenes import Data, changed, column, column_pressure, press_of, ran, worst
+
+from isomortar.harness import case
+from isomortar.harness.extremes import Run, digits, endings, judge
+
+_TIGHT = {"solver.newton_tolerance": 1e-12, "solver.complementarity_tolerance": 1e-11}
+_STRETCHES = (0.9, 0.8)
+
+
+def uniform(done: Run) -> float:
+    """Digits of a column's force, and of the pressure at every quadrature point."""
+    right = np.array([column_pressure(stretch) for stretch in _STRETCHES])
+    pressure = done.held["curves/contacts/f/pressure_field"]
+    return worst(digits(press_of()(done), right), digits(pressure, np.stack([right, right], axis=1)))
+
+
+def patched(knots: list[float], order: int, weights: Any = None) -> Data:
+    """The column as an explicit patch with the same knots along every direction; `weights`: of the control points, first axis fastest."""
+    data = column()
+    points = np.array([np.mean(knots[i + 1 : i + 1 + order]) for i in range(len(knots) - order - 1)])
+    grid = np.stack(np.meshgrid(points, points, points, indexing="ij"), axis=-1).reshape((-1, 3), order="F")
+    patch: Data = {"order": [order] * 3, "knots": [list(knots)] * 3, "control_points": grid.tolist()}
+    if weights is not None:
+        patch["weights"] = np.asarray(weights, float).tolist()
+    data["bodies"]["b"] = {"patch": patch}
+    return changed(data, _TIGHT)
+
+
+@case(
+    claim="Thin and tall bodies of every order carry a uniform pressure.",
+    tier=lambda order, aspect: "gate" if (order, aspect) in ((10, 1.0), (2, 1e-4), (2, 1e4)) else "nightly",
+    grid={"order": (1, 2, 3, 4, 6, 10), "aspect": (1e-8, 1e-6, 1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6)},
+    bounds=lambda order, aspect: endings(order <= 4 and 1e-4 <= aspect <= 1e4),
+)
+def aspect_ratio(order: int, aspect: float) -> dict[str, Any]:
+    """Closed form: a column of `aspect` times its width in height; force, and pressure at every point."""
+    elements = 2 if order < 6 else 1
+    data = changed(column((1.0, 1.0, aspect)), {"bodies.b.mesh": {"order": [order] * 3, "elements": [elements] * 3}, **_TIGHT})
+    return judge(ran(data), uniform, needed=6.0, causes=["order", "memory", "aspect", "thin", "round-off"])
+
+
+@case(
+    claim="A thin cantilever bends as a beam, or the program says that it can not tell.",
+    tier="nightly",
+    grid={"order": (3, 4), "thickness": (1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 1e-6, 1e-8)},
+    bounds=lambda thickness, **_: endings(thickness >= 1e-3),
+)
+def bending(order: int, thickness: float) -> dict[str, Any]:
+    """Limit: Euler's beam, 3 E I w / L^3 with w the thickness; shear and rotation change the force by the thickness' square.
+
+    Poisson's ratio is zero; the deflection of a cubic beam is a cubic, which these orders hold.
+    """
+    data: Data = {
+        "format": 1,
+        "materials": {"m": {"young": 10.0, "poisson": 0.0}},
+        "bodies": {
+            "b": {
+                "geometry": {"kind": "box", "lower": [0, 0, 0], "upper": [1, 1, thickness]},
+                "mesh": {"order": [order, 1, order], "elements": [4, 1, 1]},
+            }
+        },
+        "supports": {"root": {"face": "b.u0"}, "tip": {"face": "b.u1", "components": ["z"]}},
+        "stages": [{"name": "bend", "steps": 1, "motions": {"tip": {"translate": [0, 0, thickness]}}}],
+    }
+    right = 3.0 * 10.0 * thickness**3 / 12.0 * thickness
+    return judge(ran(data), lambda done: digits([done.force("tip")[-1, 2]], [right]), needed=2.0, causes=["round-off", "thin", "condition"])
+
+
+@case(
+    claim="Knot spans may differ by many decades in one body.",
+    tier="nightly",
+    grid={"span": (0.25, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-10, 1e-12, 1e-14)},
+    bounds=lambda span: endings(span >= 1e-6),
+)
+def knot_spans(span: float) -> dict[str, Any]:
+    """Closed form: the column, of order 2, with a first knot span of this length along every direction."""
+    return judge(ran(patched([0, 0, 0, span, 0.5, 1, 1, 1], 2)), uniform, needed=6.0, causes=["knot", "span", "round-off"])
+
+
+@case(
+    claim="Weights may differ, or the program says that its quadrature does not do for them.",
+    tier="nightly",
+    grid={"contrast": (1.0, 2.0, 5.0, 10.0, 30.0, 100.0, 1e3, 1e4, 1e6, 1e8, 1e12)},
+    bounds=lambda contrast: endings(contrast <= 5.0),
+)
+def weights(contrast: float) -> dict[str, Any]:
+    """Closed form: the column, of order 2, with a seeded mixture of weights between 1 and the contrast.
+
+    Of the force a hundredth may be off, of the pressure at single points a tenth. Control points stand where those of a polynomial
+    column do: the parametrisation is rational, the body is the same.
+    """
+    knots = [0.0, 0.0, 0.0, 0.5, 1.0, 1.0, 1.0]
+    share = np.random.default_rng(13).random(64)
+    share[:2] = 0.0, 1.0
+    right = np.array([column_pressure(stretch) for stretch in _STRETCHES])
+    return judge(
+        ran(patched(knots, 2, contrast**share)),
+        lambda done: worst(digits(press_of()(done), right), 1.0 + uniform(done)),
+        needed=2.0,
+        causes=["weights", "quadrature"],
+    )
+
+
+@case(
+    claim="A factor of all weights changes no result.",
+    tier="nightly",
+    grid={"factor": (1e-300, 1e-100, 1e-9, 1.0, 1e9, 1e100, 1e300)},
+    bounds=lambda factor: endings(1e-100 <= factor <= 1e100),
+)
+def common_weight(factor: float) -> dict[str, Any]:
+    """Symmetry: functions do not change; closed form of the column."""
+    run = ran(patched([0.0, 0.0, 0.0, 0.5, 1.0, 1.0, 1.0], 2, np.full(64, factor)))
+    return judge(run, uniform, needed=8.0, causes=["weights"])
+
+
+@case(
+    claim="A factor of all knots changes no result.",
+    tier="nightly",
+    grid={"factor": (1e-300, 1e-150, 1e-75, 1e-9, 1.0, 1e9, 1e75, 1e150, 1e300)},
+    bounds=lambda factor: endings(1e-75 <= factor <= 1e75),
+)
+def common_knots(factor: float) -> dict[str, Any]:
+    """Symmetry: functions do not change; closed form of the column."""
+    data = patched([0.0, 0.0, 0.0, 0.5, 1.0, 1.0, 1.0], 2)
+    data["bodies"]["b"]["patch"]["knots"] = [[factor * knot for knot in (0.0, 0.0, 0.0, 0.5, 1.0, 1.0, 1.0)]] * 3
+    return judge(ran(data), uniform, needed=8.0, causes=["knots"])
