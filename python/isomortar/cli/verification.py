@@ -66,6 +66,7 @@ def verify(
     from isomortar.harness import report as reports
     from isomortar.harness.cases import TIERS
     from isomortar.harness.collection import collect
+    from isomortar.harness.extremes import page as extremes
     from isomortar.harness.references import finder
     from isomortar.harness.runner import not_measured, select
 
@@ -86,6 +87,8 @@ def verify(
     counts = Counter(result.state for result in measured)
     print(", ".join(f"{count} {state}" for state, count in counts.items()))
     print(page)
+    if extremes.write(page.with_name("extremes.html"), measured):
+        print(page.with_name("extremes.html"))
     if set(counts) != {"passed"}:
         raise typer.Exit(FAILED)
 
