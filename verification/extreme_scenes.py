@@ -36,9 +36,9 @@ def changed(data: Data, changes: Data) -> Data:
     return data
 
 
-def ran(data: Data, **limits: float) -> Run:
+def ran(data: Data, **limits: int) -> Run:
     """The run of a scene given as data."""
-    return run(dump(data), **limits)  # type: ignore[arg-type]
+    return run(dump(data), **limits)
 
 
 def column(size: tuple[float, float, float] = (1.0, 1.0, 1.0), press: float = 0.2, young: float = YOUNG, poisson: float = POISSON) -> Data:

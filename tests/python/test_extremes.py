@@ -39,7 +39,8 @@ ENDINGS = {
     "stopped without a word": ("sys.exit(1)", Ending.WRONG),
     "traceback": ("raise ValueError('poisson')", Ending.WRONG),
     "crash": ("say('poisson'); os.kill(os.getpid(), signal.SIGSEGV)", Ending.WRONG),
-    "hang": ("say('poisson'); time.sleep(60)", Ending.WRONG),
+    "waits for ever": ("say('poisson'); time.sleep(60)", Ending.WRONG),
+    "computes for ever": ("say('poisson')\nwhile True: pass", Ending.WRONG),
     "out of memory": ("bytearray(1 << 34)", Ending.WRONG),
     "another exit code": ("say('isomortar: poisson'); sys.exit(3)", Ending.WRONG),
 }
@@ -55,7 +56,7 @@ def test_every_ending_is_told(name, tmp_path):
     script = tmp_path / "program.py"
     script.write_text(textwrap.dedent(_PREAMBLE) + words)
     with program([sys.executable, str(script)]):
-        measured = judge(run(f"# {name}", seconds=2.0 if name == "hang" else 20.0), _found, needed=6.0, causes=["poisson"])
+        measured = judge(run(f"# {name}", seconds=1 if "for ever" in name else 20), _found, needed=6.0, causes=["poisson"])
     assert Ending(measured["ending"]) is ending, measured["words"]
     assert bool(measured["words"].text) == (ending is not Ending.RIGHT)
 

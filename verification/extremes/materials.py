@@ -11,13 +11,13 @@ from isomortar.harness import case
 from isomortar.harness.extremes import digits, endings, judge
 
 _TIGHT = {"solver.newton_tolerance": 1e-12, "solver.complementarity_tolerance": 1e-11}
-_POISSONS = (-0.999999, -0.99, -0.5, 0.0, 0.3, 0.49, 0.499, 0.4999, 0.49999, 0.499999, 0.4999999, 0.499999999, 0.4999999999999)
+_POISSONS = (-0.999999, -0.99, 0.0, 0.49, 0.4999, 0.49999, 0.499999, 0.4999999, 0.499999999, 0.4999999999999)
 
 
 @case(
     claim="Poisson's ratio may come close to one half, and to minus one, where the state is homogeneous.",
     tier=lambda poisson, order: "gate" if (poisson, order) == (-0.99, 2) else "nightly",
-    grid={"poisson": _POISSONS, "order": (1, 2, 3, 4)},
+    grid={"poisson": _POISSONS, "order": (1, 2, 4)},
     bounds=lambda poisson, **_: endings(-0.99 <= poisson <= 0.499999),
 )
 def poisson(poisson: float, order: int) -> dict[str, Any]:
@@ -30,7 +30,7 @@ def poisson(poisson: float, order: int) -> dict[str, Any]:
 @case(
     claim="Where near-incompressible elements lock, the program says so.",
     tier=lambda poisson, order: "gate" if (poisson, order) == (0.3, 3) else "nightly",
-    grid={"poisson": (0.3, 0.49, 0.499, 0.4999, 0.49999, 0.499999), "order": (1, 2, 3, 4)},
+    grid={"poisson": (0.3, 0.49, 0.499, 0.4999, 0.499999), "order": (1, 2, 3)},
     bounds=lambda poisson, order: endings(order > 1 and poisson <= 0.49),
 )
 def locking(poisson: float, order: int) -> dict[str, Any]:
@@ -46,10 +46,10 @@ def locking(poisson: float, order: int) -> dict[str, Any]:
     claim="A slave may be stiffer or softer than its master, and finer or coarser.",
     tier=lambda ratio, meshes: "gate" if (ratio, meshes) in ((1e-3, "1:1"), (1e3, "1:1")) else "nightly",
     grid={
-        "ratio": (1e-12, 1e-10, 1e-8, 1e-6, 1e-3, 1.0, 1e3, 1e4, 1e6, 1e8, 1e10, 1e12),
-        "meshes": ("1:8", "1:2", "1:1", "2:1", "8:1"),
+        "ratio": (1e-12, 1e-8, 1e-6, 1e-3, 1.0, 1e3, 1e4, 1e6, 1e8, 1e12),
+        "meshes": ("1:8", "1:1", "2:1", "8:1"),
     },
-    bounds=lambda ratio, meshes: endings(1e-8 <= ratio <= 1e4 and meshes in ("1:2", "1:1", "2:1")),
+    bounds=lambda ratio, meshes: endings(1e-8 <= ratio <= 1e4 and meshes in ("1:1", "2:1")),
 )
 def stiffness(ratio: float, meshes: str) -> dict[str, Any]:
     """Closed form: two columns that can not widen carry the same force; elements of slave to master along x and y.

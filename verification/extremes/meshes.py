@@ -35,21 +35,33 @@ def patched(knots: list[float], order: int, weights: Any = None) -> Data:
 
 @case(
     claim="Thin and tall bodies of every order carry a uniform pressure.",
-    tier=lambda order, aspect: "gate" if (order, aspect) in ((10, 1.0), (2, 1e-4), (2, 1e4)) else "nightly",
-    grid={"order": (1, 2, 3, 4, 6, 10), "aspect": (1e-8, 1e-6, 1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6)},
+    tier=lambda order, aspect: "gate" if (order, aspect) in ((2, 1e-4), (2, 1e4)) else "nightly",
+    grid={"order": (1, 2, 4, 7), "aspect": (1e-8, 1e-6, 1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6)},
     bounds=lambda order, aspect: endings(order <= 4 and 1e-4 <= aspect <= 1e4),
 )
 def aspect_ratio(order: int, aspect: float) -> dict[str, Any]:
     """Closed form: a column of `aspect` times its width in height; force, and pressure at every point."""
-    elements = 2 if order < 6 else 1
+    elements = 2 if order < 5 else 1
     data = changed(column((1.0, 1.0, aspect)), {"bodies.b.mesh": {"order": [order] * 3, "elements": [elements] * 3}, **_TIGHT})
     return judge(ran(data), uniform, needed=6.0, causes=["order", "memory", "aspect", "thin", "round-off"])
 
 
 @case(
+    claim="Orders go to ten.",
+    tier="nightly",
+    grid={"order": (1, 2, 3, 4, 5, 6, 7, 8, 9, 10)},
+    bounds=endings(right=True),
+)
+def order(order: int) -> dict[str, Any]:
+    """Closed form: a column of one element; force, and pressure at every point."""
+    data = changed(column(), {"bodies.b.mesh": {"order": [order] * 3, "elements": [1, 1, 1]}, **_TIGHT})
+    return judge(ran(data, seconds=60), uniform, needed=6.0)
+
+
+@case(
     claim="A thin cantilever bends as a beam, or the program says that it can not tell.",
     tier="nightly",
-    grid={"order": (3, 4), "thickness": (1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 1e-6, 1e-8)},
+    grid={"order": (3, 4), "thickness": (1e-2, 1e-3, 3e-4, 1e-4, 1e-5, 1e-6, 1e-8)},
     bounds=lambda thickness, **_: endings(thickness >= 1e-3),
 )
 def bending(order: int, thickness: float) -> dict[str, Any]:

@@ -52,8 +52,8 @@ def shifted_bowl(distance: float, size: float, friction: float = 0.3) -> Data:
     claim="The units of length and of force change no result.",
     tier=lambda length, stress: "gate" if (length, stress) in ((1e-75, 1.0), (1.0, 1e140)) else "nightly",
     grid={
-        "length": (1e-150, 1e-75, 1e-30, 1e-9, 1.0, 1e9, 1e30, 1e75, 1e150),
-        "stress": (1e-200, 1e-140, 1e-30, 1.0, 1e30, 1e140, 1e200),
+        "length": (1e-150, 1e-75, 1e-9, 1.0, 1e9, 1e75, 1e150),
+        "stress": (1e-200, 1e-140, 1.0, 1e140, 1e200),
     },
     bounds=lambda length, stress: endings(2 * abs(np.log10(length)) + abs(np.log10(stress)) <= 150.0),
 )
@@ -71,7 +71,7 @@ def units(length: float, stress: float) -> dict[str, Any]:
 @case(
     claim="Where in space a scene stands changes no result.",
     tier=lambda distance, size: "gate" if (distance, size) == (1e2, 1e-6) else "nightly",
-    grid={"distance": (0.0, 1e2, 1e4, 1e5, 1e6, 1e8, 1e10, 1e12, 1e16), "size": (1e-6, 1.0, 1e6)},
+    grid={"distance": (0.0, 1e2, 1e4, 1e5, 1e6, 1e8, 1e10, 1e12, 1e16), "size": (1e-6, 1.0)},
     bounds=lambda distance, **_: endings(distance <= 1e6),
 )
 def origin(distance: float, size: float) -> dict[str, Any]:
@@ -89,7 +89,7 @@ def origin(distance: float, size: float) -> dict[str, Any]:
 @case(
     claim="The penalty, a parameter of complementarity, changes no result of the monolithic method.",
     tier=lambda penalty, friction: "gate" if (penalty, friction) in ((1e-1, 0.3), (1e11, 10.0)) else "nightly",
-    grid={"penalty": (1e-1, 1e1, 1e3, 1e5, 1e7, 1e9, 1e11), "friction": (0.0, 1e-6, 0.3, 1.0, 10.0)},
+    grid={"penalty": (1e-1, 1e1, 1e3, 1e5, 1e8, 1e11), "friction": (0.0, 1e-6, 0.3, 10.0)},
     bounds=lambda penalty, **_: endings(10.0 <= penalty <= 1e3),
 )
 def penalty(penalty: float, friction: float) -> dict[str, Any]:
@@ -107,7 +107,7 @@ def penalty(penalty: float, friction: float) -> dict[str, Any]:
 @case(
     claim="Augmentations end at the same solution from any penalty, or say that they do not.",
     tier=lambda penalty: "gate" if penalty in (0.1, 100.0) else "nightly",
-    grid={"penalty": (1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0, 1e3, 1e5, 1e7, 1e9)},
+    grid={"penalty": (1e-3, 0.1, 1.0, 10.0, 100.0, 1e3, 1e5, 1e9)},
     bounds=lambda penalty: endings(10.0 <= penalty <= 1e3),
 )
 def augmentation_penalty(penalty: float) -> dict[str, Any]:
@@ -121,7 +121,7 @@ def augmentation_penalty(penalty: float) -> dict[str, Any]:
 @case(
     claim="A result is as good as the tolerance that was asked for, until round-off is in the way.",
     tier=lambda tolerance: "gate" if tolerance == 1e-12 else "nightly",
-    grid={"tolerance": (10.0, 1.0, 0.1, 1e-2, 1e-4, 1e-6, 1e-9, 1e-12, 1e-13, 1e-14, 1e-15, 1e-16, 1e-20)},
+    grid={"tolerance": (10.0, 1.0, 0.1, 1e-2, 1e-4, 1e-6, 1e-9, 1e-12, 1e-14, 1e-16, 1e-20)},
     bounds=lambda tolerance: endings(1e-12 <= tolerance <= 1e-2),
 )
 def newton_tolerance(tolerance: float) -> dict[str, Any]:
@@ -136,7 +136,7 @@ def newton_tolerance(tolerance: float) -> dict[str, Any]:
 @case(
     claim="A load step that has no solution ends, however often it may be cut.",
     tier=lambda cuts: "gate" if cuts == 8 else "nightly",
-    grid={"cuts": (0, 8, 30, 52, 53, 54, 60, 1000, 10**9)},
+    grid={"cuts": (0, 8, 30, 54, 1000)},
     bounds=endings(right=False),
 )
 def cuts(cuts: int) -> dict[str, Any]:
@@ -161,5 +161,5 @@ def load_steps(steps: int) -> dict[str, Any]:
     data["stages"] = data["stages"][:1]
     measure = press_of()
     right = measure(ran(changed(data, {"stages.0.steps": 4})))[-1]
-    run = ran(changed(data, {"stages.0.steps": steps}), seconds=300.0)
+    run = ran(changed(data, {"stages.0.steps": steps}), seconds=300)
     return judge(run, lambda done: digits([measure(done)[-1]], [right]), needed=8.0)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import os
 import resource
+import signal
 import subprocess
 import sys
 from collections.abc import Iterator, Sequence
@@ -18,8 +19,8 @@ import numpy as np
 
 from isomortar.geometry.patch import FloatArray
 
-#: What one run may take: seconds, and bytes of address space.
-SECONDS, MEMORY = 60.0, 4 << 30
+#: What one run may take: seconds of the processor (of the clock a few times that, as the machine may be busy), bytes of address space.
+SECONDS, PATIENCE, MEMORY = 30, 10, 4 << 30
 #: Whatever kernel this process has found, the program that it starts finds too.
 _START = "import sys; sys.path[:] = {path!r}; sys.argv[0] = 'isomortar'; from isomortar.cli import main; main()"
 _ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "COLUMNS": "1000"}
@@ -34,7 +35,7 @@ class Run:
     Parameters
     ----------
     code : int or None
-        Exit status; below zero: ended by that signal; None: it came to no end.
+        Exit status; below zero: ended by that signal; None: it came to no end in its time.
     said : str
         What it said on its standard error.
     held : dict of str to ndarray
@@ -68,7 +69,7 @@ def program(command: Sequence[str]) -> Iterator[None]:
         _program = before
 
 
-def run(scene: str, seconds: float = SECONDS, memory: int = MEMORY) -> Run:
+def run(scene: str, seconds: int = SECONDS, memory: int = MEMORY) -> Run:
     """Run the text of a scene file; what was run in this process before is not run again."""
     return _run(scene, _program or _this_program(), seconds, memory)
 
@@ -79,7 +80,7 @@ def _this_program() -> tuple[str, ...]:
 
 
 @functools.lru_cache(maxsize=256)
-def _run(scene: str, command: tuple[str, ...], seconds: float, memory: int) -> Run:
+def _run(scene: str, command: tuple[str, ...], seconds: int, memory: int) -> Run:
     with TemporaryDirectory() as folder:
         (Path(folder) / "scene.toml").write_text(scene, encoding="utf-8")
         try:
@@ -89,15 +90,23 @@ def _run(scene: str, command: tuple[str, ...], seconds: float, memory: int) -> R
                 env=_ONE_THREAD | {name: value for name, value in os.environ.items() if name not in _ONE_THREAD},
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.PIPE,
-                timeout=seconds,
-                preexec_fn=functools.partial(resource.setrlimit, resource.RLIMIT_AS, (memory, memory)),
+                timeout=PATIENCE * seconds,
+                preexec_fn=functools.partial(_limit, seconds, memory),
                 check=False,
             )
         except subprocess.TimeoutExpired:
-            return Run(None, f"no end after {seconds:g} s")
+            return Run(None, f"no end after {PATIENCE * seconds} s")
+        if done.returncode == -signal.SIGXCPU:
+            return Run(None, f"no end after {seconds} s of the processor")
         held = _read(Path(folder) / "results.h5")
         steps = None if held is None else len(held["curves/step"])
         return Run(done.returncode, done.stderr.decode(errors="replace"), held or {}, steps)
+
+
+def _limit(seconds: int, memory: int) -> None:
+    """In the process that is to be limited. Past its soft limit of time it is sent a signal."""
+    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 5))
+    resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
 
 
 def _read(path: Path) -> dict[str, FloatArray] | None:
