@@ -10,6 +10,10 @@ from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model.entities import Problem, Stage, Support, unit
 from isomortar.model.numbering import Numbering
 
+#: Degrees that a support turns in one load increment at the most: an increment knows where control points go, and of half a turn or more
+#: not which way.
+LARGEST_TURN = 36.0
+
 
 def progress(stages: Sequence[Stage], time: float) -> FloatArray:
     """Share of each stage that has passed at a load time (in load steps), shape (stages,)."""
@@ -35,6 +39,11 @@ class Supports:
         The others.
     equation : ndarray of int32, shape (3 * control points,)
         Equation number of each unknown; -1: prescribed.
+    points : list of ndarray of int
+        Control points of each support.
+    shares : list of ndarray, shapes (control points of the support, 3)
+        What each support bears of the forces at its control points: nothing of a component that it leaves free, equal parts of one that
+        several supports prescribe.
     """
 
     def __init__(self, problem: Problem, numbering: Numbering) -> None:
@@ -45,15 +54,28 @@ class Supports:
         ]
         unknowns = [self._unknowns(k) for k in range(len(problem.supports))]
         self.prescribed = np.unique(np.concatenate(unknowns)) if unknowns else np.zeros(0, dtype=np.int64)
+        holders = np.zeros(3 * numbering.count)
+        for of_support in unknowns:
+            holders[of_support] += 1.0
+        self.shares: list[FloatArray] = [
+            np.isin(range(3), s.components) / np.maximum(holders.reshape(-1, 3)[points], 1.0)
+            for s, points in zip(problem.supports, self.points, strict=True)
+        ]
         mask = np.ones(3 * numbering.count, dtype=bool)
         mask[self.prescribed] = False
         self.free = np.flatnonzero(mask)
         self.equation = np.full(3 * numbering.count, -1, dtype=np.int32)
         self.equation[self.free] = np.arange(len(self.free), dtype=np.int32)
 
-    def _unknowns(self, k: int) -> FloatArray:
+    def _unknowns(self, k: int) -> IntArray:
         components = np.asarray(self._problem.supports[k].components)
         return (3 * self.points[k].astype(np.int64)[:, None] + components).ravel()
+
+    def longest_increment(self, step: int) -> float:
+        """The largest share of a recorded load step in which no support turns by more than LARGEST_TURN: one over a whole number."""
+        stage = int(np.searchsorted(np.cumsum([stage.steps for stage in self._problem.stages]), step))
+        turns = [abs(support.motions[stage].rotate) / self._problem.stages[stage].steps for support in self._problem.supports]
+        return 1.0 / max(1, int(np.ceil(max(turns, default=0.0) / LARGEST_TURN)))
 
     def centre(self, support: Support, time: float) -> FloatArray:
         """The moving centre c + u(t) of a support, shape (3,)."""

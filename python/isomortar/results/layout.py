@@ -60,7 +60,7 @@ STEP = {
     "newton_order": _real("1", "observed order of Newton's method, median over the step's Newton loops; NaN: too few tangents"),
     "substeps": _count("load increments that the step was made of"),
     "cuts": _count("how often a load increment was cut"),
-    "next_increment": _real("load step", "load increment that the step-size control tries next"),
+    "next_increment": _real("load step", "load increment that the step-size control tries next, over the longest one that turns allow"),
 }
 
 #: Named as in `Reaction`.

@@ -134,6 +134,8 @@ class Equilibrium:
         SingularSystemError
             Naming a body that nothing holds, or redundant contact constraints.
         """
+        if not len(right):  # every position is prescribed
+            return right
         system = self._system_for(sources, len(right))
         try:
             system.factorise(values)

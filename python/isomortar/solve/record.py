@@ -118,7 +118,8 @@ class StepResult:
     substeps, cuts : int
         Load increments that the step was made of, and how often an increment was cut.
     next_increment : float
-        Load increment that the step-size control would try next (part of the restart state).
+        Load increment that the step-size control would try next, as a share of the longest one that the supports' turns allow (part of
+        the restart state).
     timings : dict
         Seconds by phase within the step: solid, projection, contact, factor, solve, other.
     counters : dict

@@ -80,13 +80,14 @@ class Simulation:
         log: list[AugmentationRecord] = []
         orders: list[float] = []
         cuts = substeps = 0
+        longest = self.equilibrium.supports.longest_increment(step)
         while time < step:
-            increment = min(self._increment, step - time)
+            increment = min(self._increment * longest, step - time)
             target = float(step) if increment > step - time - 1e-12 else time + increment
             try:
                 parts = self._advance(state, time, target, step)
             except _REASONS_TO_CUT as error:
-                self._cut(step, target, increment, error)
+                self._cut(step, target, increment, longest, error)
                 cuts += 1
                 continue
             time, substeps = target, substeps + len(parts)
@@ -94,7 +95,7 @@ class Simulation:
             for part in parts:
                 log += part.augmentations
                 orders += [order for order in part.orders if np.isfinite(order)]
-            self._grow(increment, parts)
+            self._grow(increment / longest, parts)
         return self._result(step, state, parts[-1].balance, tuple(log), orders, substeps, cuts)
 
     def _advance(self, state: State, time: float, target: float, step: int) -> list[Increment]:
@@ -122,7 +123,7 @@ class Simulation:
         return worst
 
     def _grow(self, increment: float, parts: Sequence[Increment]) -> None:
-        """The next load increment: longer after few linear solves, shorter after many tangents, a recorded step at the most."""
+        """The next load increment, a share of the longest: longer after few linear solves, shorter after many tangents."""
         if max(part.iterations for part in parts) <= EASY_ITERATIONS:
             self._increment = min(1.0, 2.0 * increment)
         elif max(part.tangents for part in parts) >= HARD_TANGENTS:
@@ -130,15 +131,15 @@ class Simulation:
         else:
             self._increment = min(1.0, max(increment, self._increment))
 
-    def _cut(self, step: int, time: float, increment: float, error: Exception) -> None:
+    def _cut(self, step: int, time: float, increment: float, longest: float, error: Exception) -> None:
         """Halve the load increment, or give up with a sentence that says where and why."""
-        self._increment = 0.5 * increment
+        self._increment = 0.5 * increment / longest
         if self._increment < 0.5**self.problem.settings.max_cuts:
             raise ConvergenceError(
                 f"load step {step} (stage {self._stage_of(step)!r}) does not converge at load time {time:.6g}, even with an increment of "
                 f"1/{round(1 / increment)} step: {error}"
             ) from error
-        self._observer.cut(step, time, self._increment, str(error))
+        self._observer.cut(step, time, 0.5 * increment, str(error))
 
     def _stage_of(self, step: int) -> str:
         ends = np.cumsum([stage.steps for stage in self.problem.stages])
@@ -149,11 +150,12 @@ class Simulation:
         return State(balance.positions, tuple(contacts))
 
     def _reactions(self, time: float, positions: FloatArray, total: FloatArray) -> tuple[Reaction, ...]:
-        """Forces that the supports exert: the residual at their control points."""
+        """Forces that the supports exert: their shares of the residual at the components that they prescribe."""
         reactions = []
-        for support, points in zip(self.problem.supports, self.equilibrium.supports.points, strict=True):
-            centre = self.equilibrium.supports.centre(support, time)
-            reactions.append(Reaction(total[points].sum(axis=0), moment(positions[points] - centre, total[points]), centre))
+        supports = self.equilibrium.supports
+        for support, points, share in zip(self.problem.supports, supports.points, supports.shares, strict=True):
+            centre, forces = supports.centre(support, time), share * total[points]
+            reactions.append(Reaction(forces.sum(axis=0), moment(positions[points] - centre, forces), centre))
         return tuple(reactions)
 
     def _result(
