@@ -91,18 +91,18 @@ end subroutine control_quantities
 !> Control pressures, tractions, states and their slopes of the augmented law (isomortar_contact_augmentation).
 !> `field_slip` is the field of control slips at the quadrature points, with `summed` only.
 subroutine augmented_multipliers(nodes, basis, area, point, nlocal, nelements, nquad, nslave, weight, square, gap, control_slip, &
-    metric, point_metric, summed, penalties, friction, pressure_k, traction_k, slip_margin, forgiving, held, pressure, traction, &
-    state, pressure_slope, traction_slope, field_slip)
+    metric, point_metric, summed, penalties, friction, pressure_k, traction_k, slip_margin, forgiving, held, bears, free, &
+    pressure, traction, state, pressure_slope, traction_slope, field_slip)
   use iso_c_binding, only: c_double, c_int
   use isomortar_api_unpack, only: unpack_slave
   use isomortar_contact_augmentation, only: law_t, respond, response_t
   use isomortar_contact_control, only: control_t
   implicit none
   integer(c_int), intent(in) :: nlocal, nelements, nquad, nslave
-  integer(c_int), intent(in) :: nodes(nlocal, nelements), point(nslave), summed, forgiving, held(nslave)
+  integer(c_int), intent(in) :: nodes(nlocal, nelements), point(nslave), summed, forgiving, held(nslave), bears(nslave)
   real(c_double), intent(in) :: basis(nlocal, nquad), area(nquad), weight(nslave), square(nslave), gap(nslave)
   real(c_double), intent(in) :: control_slip(2, nslave), metric(3, nslave), point_metric(3, nquad), penalties(2), friction
-  real(c_double), intent(in) :: pressure_k(nslave), traction_k(2, nslave), slip_margin
+  real(c_double), intent(in) :: pressure_k(nslave), traction_k(2, nslave), slip_margin, free(2, 2, nslave)
   real(c_double), intent(out) :: pressure(nslave), traction(2, nslave), pressure_slope(nslave), traction_slope(2, 6, nslave)
   real(c_double), intent(out) :: field_slip(2, nquad)
   integer(c_int), intent(out) :: state(nslave)
@@ -116,7 +116,8 @@ subroutine augmented_multipliers(nodes, basis, area, point, nlocal, nelements, n
   control%slip = control_slip
   control%metric = metric
   control%point_metric = point_metric
-  law = law_t(penalties(1), penalties(2), friction, pressure_k, traction_k, slip_margin, forgiving /= 0, held /= 0)
+  law = law_t(penalties(1), penalties(2), friction, pressure_k, traction_k, slip_margin, forgiving /= 0, held /= 0, &
+    bears /= 0, free)
   call respond(unpack_slave(nodes, basis, area, point), control, law, summed /= 0, response, field_slip)
   pressure = response%multipliers%pressure
   traction = response%multipliers%traction

@@ -25,6 +25,10 @@ module isomortar_contact_augmentation
     logical :: forgiving = .false.
     !> Control points that stick whatever their trial; none where not allocated.
     logical, allocatable :: held(:)
+    !> Control points that supports do not hold along the normal; the others bear nothing.
+    logical, allocatable :: bears(:)
+    !> Projection of covariant tractions that leaves nothing along what supports hold, shape (2, 2, I).
+    real(wp), allocatable :: free(:, :, :)
   end type law_t
 
   !> What the law makes of the control quantities.
@@ -33,7 +37,7 @@ module isomortar_contact_augmentation
     integer, allocatable :: state(:)
     !> d pressure by <R^I g>, shape (I).
     real(wp), allocatable :: pressure_slope(:)
-    !> d traction by pressure, trial traction (2) and metric (3), shape (2, 6, I).
+    !> d traction by pressure, trial traction before its projection (2) and metric (3), shape (2, 6, I).
     real(wp), allocatable :: traction_slope(:, :, :)
   end type response_t
 
@@ -77,7 +81,7 @@ contains
     pressure = 0.0_wp
     active = .false.
     do i = 1, size(pressure)
-      if (control%weight(i) <= least_weight * maxval(control%weight)) cycle
+      if (control%weight(i) <= least_weight * maxval(control%weight) .or. .not. law%bears(i)) cycle
       pressure(i) = law%pressure(i) + law%normal_penalty * control%gap(i) / control%weight(i)
       active(i) = pressure(i) > 0.0_wp
       if (.not. active(i)) pressure(i) = 0.0_wp
@@ -109,8 +113,9 @@ contains
       else
         trial = matmul(metric_matrix(metric), control%slip(:, i))
       end if
-      trial = law%traction(:, i) + law%tangential_penalty / control%weight(i) * trial
+      trial = matmul(law%free(:, :, i), law%traction(:, i) + law%tangential_penalty / control%weight(i) * trial)
       call apply_friction(law, i, trial, metric, response)
+      response%traction_slope(:, 2:3, i) = matmul(response%traction_slope(:, 2:3, i), law%free(:, :, i))
     end do
   end subroutine augmented_multipliers
 

@@ -97,6 +97,8 @@ class Control:
 class Law:
     """Augmented penalty law: penalties (normal, tangential), friction, current multipliers, the paper's slip sum or the local one.
 
+    What supports hold: control points with `bears` 0 bear nothing, and `free`, shape (n, 2, 2), projects the covariant tractions of the
+    others (component, traction) so that nothing is left along it.
     Trials above (1 - `slip_margin`) mu p slip; `held` control points (1) stick whatever their trial; `forgiving` takes the current
     traction for the radial part of the slip derivative (formulation.md Section 6).
     """
@@ -106,6 +108,8 @@ class Law:
     pressure: FloatArray
     traction: FloatArray
     summed: bool
+    bears: IntArray
+    free: FloatArray
     held: IntArray
     slip_margin: float = 0.0
     forgiving: bool = False
@@ -253,10 +257,12 @@ def augmented_multipliers(slave: SlaveArrays, control: Control, law: Law) -> Res
     n = len(slave.point)
     _checked("pressure", law.pressure, np.float64, n)
     _checked("traction", law.traction, np.float64, n, 2)
+    _checked("bears", law.bears, np.int32, n)
+    _checked("free", law.free, np.float64, n, 2, 2)
     pressure, traction, state, pressure_slope, traction_slope, field_slip = _kernel.augmented_multipliers(
         slave.nodes.T, slave.basis.T, slave.area, slave.point, control.weight, control.square, control.gap, control.slip.T,
         control.metric.T, control.point_metric.T, int(law.summed), law.penalties, law.friction, law.pressure, law.traction.T,
-        law.slip_margin, int(law.forgiving), law.held,
+        law.slip_margin, int(law.forgiving), law.held, law.bears, law.free.T,
     )  # fmt: skip
     return Response(pressure, traction.T, state, pressure_slope, traction_slope.T, field_slip.T)
 

@@ -1,12 +1,19 @@
-"""Motions of supports: turns against SciPy's rotations."""
+"""Supports: turns against SciPy's rotations, what they have moved, and what they hold of a contact face."""
+
+from dataclasses import replace
 
 import numpy as np
+import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from isomortar.model.entities import unit
-from isomortar.model.supports import rotation
+from isomortar.model.entities import Motion, Problem, RigidPlane, unit
+from isomortar.model.held import Held, held_by
+from isomortar.model.numbering import Numbering
+from isomortar.model.pairs import Pair
+from isomortar.model.supports import Supports, rotation
+from isomortar.scene import Scene
 
 coordinates = st.floats(-1.0, 1.0)
 
@@ -24,3 +31,73 @@ def test_small_turns_keep_their_digits():
     # about a skew axis the product of its components comes with 1 - cos, 5e-19 here, of which a difference from one keeps nothing
     turned = rotation(unit((1.0, 1.0, 0.0)), 1e-9)
     np.testing.assert_allclose(turned[0, 1], 0.25e-18, rtol=1e-12)
+
+
+#: A cube of eight control points; "side" holds four of them, two of these on the contact face.
+CUBE = """
+format = 1
+bodies.cube = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }, mesh = { order = [1, 1, 1] } }
+contacts.base = { slave = "cube.w0", plane = { point = [0, 0, 0] }, friction = 0.5 }
+supports.top.face = "cube.w1"
+supports.side.face = "cube.u0"
+stages = [{ name = "one", steps = 2 }, { name = "two", steps = 3 }]
+"""
+
+
+def cube(components: tuple[int, ...], *motions: Motion) -> Problem:
+    """The cube whose side is held in some components, and moved."""
+    problem = Scene.from_toml(CUBE).problem()
+    sides = [replace(s, components=components, motions=motions or s.motions) for s in problem.supports if s.name == "side"]
+    return replace(problem, supports=tuple(sides))
+
+
+def held(problem: Problem, time: float) -> tuple[Held, np.ndarray]:
+    """What the side holds of the contact face, and which of its control points the side has."""
+    numbering = Numbering(problem)
+    supports, pair = Supports(problem, numbering), Pair(problem.contacts[0], problem, numbering)
+    return held_by(supports, pair, numbering.reference, time), np.isin(pair.slave.point, supports.points[0])
+
+
+@given(
+    st.tuples(coordinates, coordinates, coordinates).filter(lambda v: np.linalg.norm(v) > 1e-2),
+    st.sets(st.sampled_from((0, 1, 2)), min_size=1),
+    st.sampled_from((0.0, 1.0)),
+)
+def test_what_is_left_of_the_multipliers_moves_what_is_free(normal, components, axis_parallel):
+    # the forces that the multipliers of a point exert on its free components: none may vanish, and as many are left as there are components
+    normal = np.eye(3)[np.argmax(np.abs(normal))] if axis_parallel else unit(normal)
+    tangent = unit(tuple(np.cross(normal, [0.36, -0.48, 0.8])))
+    problem = cube(tuple(sorted(components)))
+    plane = RigidPlane((0.0, 0.0, 0.0), tuple(normal), tuple(tangent))
+    problem = replace(problem, contacts=(replace(problem.contacts[0], master=plane),))
+    found, on_side = held(problem, 1.0)
+    free = [c for c in range(3) if c not in components]
+    across = np.column_stack([tangent, np.cross(normal, tangent)])
+    for bears, kept, mine in zip(found.bears, found.free, on_side, strict=True):
+        forces = np.column_stack([normal, across @ kept]) * bears
+        np.testing.assert_allclose(kept @ kept, kept, atol=1e-12)
+        if not mine:
+            assert np.linalg.matrix_rank(forces, tol=1e-9) == 3
+        elif bears:
+            assert np.linalg.matrix_rank(forces, tol=1e-9) == len(free) == np.linalg.matrix_rank(forces[free], tol=1e-9)
+        else:
+            assert np.linalg.norm(normal[free]) < 1e-5
+
+
+@pytest.mark.parametrize(("motion", "components"), [(Motion((0.1, 0.0, 0.0)), {0}), (Motion(rotate=3.0), {0, 1}), (Motion(), set())])
+def test_a_component_has_moved_once_its_stage_has_begun(motion, components):
+    problem = cube((0, 1, 2), Motion(), motion)
+    supports = Supports(problem, Numbering(problem))
+    assert not supports.moved(2.0).any()
+    moved = supports.moved(2.5)
+    assert set(np.flatnonzero(moved.any(axis=0))) == components
+    assert np.count_nonzero(moved) == 4 * len(components)
+
+
+def test_a_side_that_pushes_along_the_plane_leaves_friction():
+    still, on_side = held(cube((0,), Motion(), Motion((0.3, 0.0, 0.0))), 2.0)
+    np.testing.assert_array_equal(still.free[on_side], np.tile(np.diag([0.0, 1.0]), (2, 1, 1)))
+    np.testing.assert_array_equal(still.pushed, 0.0)
+    pushing, _ = held(cube((0,), Motion(), Motion((0.3, 0.0, 0.0))), 3.0)
+    np.testing.assert_array_equal(pushing.free, np.tile(np.eye(2), (4, 1, 1)))
+    np.testing.assert_array_equal(pushing.pushed[on_side], [[1.0, 0.0], [1.0, 0.0]])

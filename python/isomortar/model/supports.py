@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model.entities import Problem, Stage, Support, unit
 from isomortar.model.numbering import Numbering
+
+BoolArray = NDArray[np.bool_]
 
 #: Degrees that a support turns in one load increment at the most: an increment knows where control points go, and of half a turn or more
 #: not which way.
@@ -39,6 +42,8 @@ class Supports:
         The others.
     equation : ndarray of int32, shape (3 * control points,)
         Equation number of each unknown; -1: prescribed.
+    held : ndarray of bool, shape (control points, 3)
+        Components that are prescribed.
     points : list of ndarray of int
         Control points of each support.
     shares : list of ndarray, shapes (control points of the support, 3)
@@ -64,6 +69,7 @@ class Supports:
         mask = np.ones(3 * numbering.count, dtype=bool)
         mask[self.prescribed] = False
         self.free = np.flatnonzero(mask)
+        self.held = ~mask.reshape(-1, 3)
         self.equation = np.full(3 * numbering.count, -1, dtype=np.int32)
         self.equation[self.free] = np.arange(len(self.free), dtype=np.int32)
 
@@ -76,6 +82,18 @@ class Supports:
         stage = int(np.searchsorted(np.cumsum([stage.steps for stage in self._problem.stages]), step))
         turns = [abs(support.motions[stage].rotate) / self._problem.stages[stage].steps for support in self._problem.supports]
         return 1.0 / max(1, int(np.ceil(max(turns, default=0.0) / LARGEST_TURN)))
+
+    def moved(self, time: float) -> BoolArray:
+        """Prescribed components that their supports have moved, or move, by a load time, shape (control points, 3)."""
+        moved = np.zeros_like(self.held)
+        begun = int(np.count_nonzero(progress(self._problem.stages, time) > 0.0))
+        for support, points in zip(self._problem.supports, self.points, strict=True):
+            turns = any(motion.rotate for motion in support.motions[:begun])
+            for component in support.components:
+                across = abs(unit(support.axis)[component]) < 1.0
+                shifts = any(motion.translate[component] for motion in support.motions[:begun])
+                moved[points, component] |= shifts or (turns and across)
+        return moved
 
     def centre(self, support: Support, time: float) -> FloatArray:
         """The moving centre c + u(t) of a support, shape (3,)."""

@@ -11,7 +11,9 @@ from isomortar import _bindings
 from isomortar._bindings import ROW_KINDS, Control, Law, Pattern, Projections, Response
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import SolverSettings
+from isomortar.model.held import held_by, nothing_held
 from isomortar.model.pairs import Pair
+from isomortar.model.supports import Supports
 from isomortar.solve.reach import ContactPatterns, Reach
 from isomortar.solve.record import ContactResult, ContactState
 from isomortar.solve.timing import Ledger
@@ -62,6 +64,7 @@ class PairMechanics:
         self.reach = Reach(pair, self.summed, settings.method == "uzawa")
         n = len(pair.slave.point)
         self.diagonal = Pattern(np.arange(n + 1, dtype=np.int32), np.arange(n, dtype=np.int32))
+        self.held = nothing_held(pair)
         self._ledger = ledger
         self._kinds = ROW_KINDS["frictionless" if self.friction <= 0 else ("paper" if self.summed else "local")]
 
@@ -69,6 +72,11 @@ class PairMechanics:
     def penalty_area(self) -> float:
         """Area that the penalties are divided by (formulation.md Section 5)."""
         return self.pair.contact.reference_area or self.pair.area
+
+    def begin(self, supports: Supports, start: FloatArray, time: float) -> None:
+        """Begin a load increment from positions `start` to a load time."""
+        self.reach.begin_step()
+        self.held = held_by(supports, self.pair, start, time)
 
     def initial(self, positions: FloatArray) -> ContactState:
         """State before the first load step: no tractions; slips count from where the reference configuration projects."""
@@ -95,7 +103,13 @@ class PairMechanics:
 
     def law(self, penalties: FloatArray, pressure: FloatArray, traction: FloatArray) -> Law:
         """The augmented law with given penalties (normal, tangential) and multipliers."""
-        return Law(penalties, self.friction, pressure, traction, self.summed, np.zeros(len(pressure), dtype=np.int32))
+        sticks = np.zeros(len(pressure), dtype=np.int32)
+        return Law(penalties, self.friction, pressure, traction, self.summed, self.held.bears, self.held.free, sticks)
+
+    def sliding(self, start: ContactState) -> FloatArray:
+        """Tractions of the last converged state, with those of sliding where supports push; shape (slave control points, 2)."""
+        pushed = np.any(self.held.pushed != 0.0, axis=1)
+        return np.where(pushed[:, None], self.friction * start.pressure[:, None] * self.held.pushed, start.traction)
 
     def respond(self, kinematics: Kinematics, law: Law) -> Response:
         """Multipliers and states of the law."""

@@ -53,7 +53,7 @@ class Method(ABC):
         """Increment of the prescribed positions, and the largest diagonal entry of the solid tangent at the start."""
         equilibrium = self._equilibrium
         for pair in equilibrium.pairs:
-            pair.reach.begin_step()
+            pair.begin(equilibrium.supports, start.positions, time)
         with equilibrium.ledger.phase("solid"):
             stiffness = equilibrium.solid.stiffness(start.positions)
         return equilibrium.supports.increment(start.positions, time), stiffness

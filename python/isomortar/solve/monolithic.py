@@ -102,8 +102,9 @@ class Monolithic(Method):
         )
 
     def _first(self, start: State, stiffness: float) -> Iterate:
-        """The converged state of the last increment as the first iterate."""
-        multipliers = [(contact.pressure, contact.traction) for contact in start.contacts]
+        """The converged state of the last increment as the first iterate; what supports push along a plane slides."""
+        pairs = zip(self._equilibrium.pairs, start.contacts, strict=True)
+        multipliers = [(contact.pressure, pair.sliding(contact)) for pair, contact in pairs]
         margin = SLIP_MARGIN if "margin" in self._settings.measures else 0.0
         return self._evaluate(start.positions, multipliers, start, stiffness, margin)
 

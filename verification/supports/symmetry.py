@@ -1,0 +1,79 @@
+"""Friction beside supports on adjoining faces: halves and quarters of symmetric bodies against the whole ones."""
+
+from __future__ import annotations
+
+import numpy as np
+from small_scenes import TIGHT
+
+from isomortar.geometry.patch import FloatArray, Patch
+from isomortar.geometry.primitives import box
+from isomortar.geometry.refinement import mesh
+from isomortar.harness import Bound, case
+from isomortar.model.entities import Body, Contact, Face, Material, Motion, Problem, RigidPlane, SolverSettings, Stage, Support
+from isomortar.solve.record import StepResult
+from isomortar.solve.simulation import Simulation
+
+#: Half lengths of the whole block, its height, and elements along the half lengths.
+HALF, HEIGHT, ELEMENTS = (0.5, 0.4), 0.5, (3, 2)
+#: Softer penalties than the default: each augmentation then takes fewer tangents.
+SOFTLY = {"penalty_normal": 20.0, "penalty_tangential": 2.0, "augmentation_tolerance": 1e-11, "max_augmentations": 400}
+#: The plane's first coordinate: along an edge of the block, and along none.
+PLANES = {"along an edge": (1.0, 0.0, 0.0), "oblique": (0.8, 0.6, 0.0)}
+#: Symmetry planes, by the direction across them, and the motion of the second stage.
+PARTS = {"quarter": ((0, 1), (0.0, 0.0, -0.02)), "half": ((0,), (0.0, 0.1, 0.0))}
+_SOLVER = {"monolithic": "Newton's method stops at 1e-12", "uzawa": "augmentations end at relative changes of 1e-11 that halve each time"}
+
+
+def block(symmetric: tuple[int, ...]) -> Patch:
+    """The block, cut in the directions `symmetric`; the whole one has a C0 line where it is cut."""
+    lower = [0.0 if k in symmetric else -HALF[k] for k in range(2)]
+    halves = [1 if k in symmetric else 2 for k in range(2)]
+    coarse = mesh(box((lower[0], lower[1], 0.0), (*HALF, HEIGHT)), ("N",) * 3, (1, 1, 1), (halves[0], halves[1], 1))
+    return mesh(coarse, ("N",) * 3, (2, 2, 2), (halves[0] * ELEMENTS[0], halves[1] * ELEMENTS[1], 2))
+
+
+def solved(symmetric: tuple[int, ...], push: tuple[float, float, float], plane: str, method: str) -> list[StepResult]:
+    """The block pressed on a rigid plane, then pushed."""
+    still = (Motion(), Motion())
+    planes = [Support(f"symmetry {'xy'[k]}", Face("block", f"{'uv'[k]}0"), still, components=(k,)) for k in symmetric]
+    settings = {**TIGHT, "method": method, **(SOFTLY if method == "uzawa" else {})}
+    problem = Problem(
+        name="symmetric-block",
+        bodies=(Body("block", block(symmetric), Material(), (4, 4, 4)),),
+        contacts=(Contact("base", Face("block", "w0"), RigidPlane((0, 0, 0), (0, 0, 1), PLANES[plane]), 0.2, (6, 6)),),
+        supports=(Support("top", Face("block", "w1"), (Motion((0.0, 0.0, -0.04)), Motion(push))), *planes),
+        stages=(Stage("press", 2), Stage("push", 2)),
+        settings=SolverSettings(**settings),  # type: ignore[arg-type]
+    )
+    return list(Simulation(problem).run())
+
+
+def at_the_same_places(whole: FloatArray, part: FloatArray) -> FloatArray:
+    """Numbers of the whole block's control points, by where they stand, for those of a part of it."""
+    return np.array([np.argmin(np.linalg.norm(whole - point, axis=1)) for point in part])
+
+
+@case(
+    claim="With friction, a half or a quarter of a symmetric body on a rigid plane is that of the whole body.",
+    tier="gate",
+    grid={"part": tuple(PARTS), "plane": tuple(PLANES), "method": ("monolithic", "uzawa")},
+    bounds=lambda part, plane, method: {  # noqa: ARG005
+        "force": Bound(at_most=1e-9, reason=f"theory: the same equations by symmetry; {_SOLVER[method]}"),
+        "positions": Bound(at_most=1e-9, reason=f"theory: the same equations by symmetry; {_SOLVER[method]}"),
+        "mixed": Bound(at_least=1.0, reason="definition: points stick and slip at once in some load step"),
+    },
+)
+def part_of_whole(part: str, plane: str, method: str) -> dict[str, float]:
+    """Relative error of the pressing and pushing force, largest distance of control points, and load steps with stick and slip."""
+    symmetric, push = PARTS[part]
+    parts, wholes = solved(symmetric, push, plane, method), solved((), push, plane, method)
+    force = positions = 0.0
+    for mine, all_ in zip(parts, wholes, strict=True):
+        expected = all_.reactions[0].force / 2 ** len(symmetric)
+        along = [k for k in range(3) if k not in symmetric]
+        force = float(np.maximum(force, np.linalg.norm((mine.reactions[0].force - expected)[along]) / np.linalg.norm(expected)))
+    places = at_the_same_places(block(()).control_points, block(symmetric).control_points)
+    for mine, all_ in zip(parts, wholes, strict=True):
+        positions = float(np.maximum(positions, np.abs(mine.state.positions - all_.state.positions[places]).max()))
+    mixed = [0 < result.contacts[0].slip < result.contacts[0].active for result in parts]
+    return {"force": force, "positions": positions, "mixed": float(sum(mixed))}
