@@ -24,11 +24,11 @@ PARTS = {"quarter": ((0, 1), (0.0, 0.0, -0.02)), "half": ((0,), (0.0, 0.1, 0.0))
 _SOLVER = {"monolithic": "Newton's method stops at 1e-12", "uzawa": "augmentations end at relative changes of 1e-11 that halve each time"}
 
 
-def block(symmetric: tuple[int, ...]) -> Patch:
-    """The block, cut in the directions `symmetric`; the whole one has a C0 line where it is cut."""
-    lower = [0.0 if k in symmetric else -HALF[k] for k in range(2)]
+def block(symmetric: tuple[int, ...], half: tuple[float, float] = HALF, heights: tuple[float, float] = (0.0, HEIGHT)) -> Patch:
+    """A block, cut in the directions `symmetric`; the whole one has a C0 line where it is cut."""
+    lower = [0.0 if k in symmetric else -half[k] for k in range(2)]
     halves = [1 if k in symmetric else 2 for k in range(2)]
-    coarse = mesh(box((lower[0], lower[1], 0.0), (*HALF, HEIGHT)), ("N",) * 3, (1, 1, 1), (halves[0], halves[1], 1))
+    coarse = mesh(box((lower[0], lower[1], heights[0]), (*half, heights[1])), ("N",) * 3, (1, 1, 1), (halves[0], halves[1], 1))
     return mesh(coarse, ("N",) * 3, (2, 2, 2), (halves[0] * ELEMENTS[0], halves[1] * ELEMENTS[1], 2))
 
 
@@ -77,3 +77,37 @@ def part_of_whole(part: str, plane: str, method: str) -> dict[str, float]:
         positions = float(np.maximum(positions, np.abs(mine.state.positions - all_.state.positions[places]).max()))
     mixed = [0 < result.contacts[0].slip < result.contacts[0].active for result in parts]
     return {"force": force, "positions": positions, "mixed": float(sum(mixed))}
+
+
+def pair(symmetric: tuple[int, ...]) -> list[StepResult]:
+    """The block pressed on a wider one that deforms, both cut by the same planes."""
+    blocks = {"upper": block(symmetric), "lower": block(symmetric, (0.9, 0.8), (-HEIGHT, 0.0))}
+    planes = [Support(f"{name} {'xy'[k]}", Face(name, f"{'uv'[k]}0"), (Motion(),), components=(k,)) for k in symmetric for name in blocks]
+    ends = (Support("top", Face("upper", "w1"), (Motion((0.0, 0.0, -0.04)),)), Support("floor", Face("lower", "w0"), (Motion(),)))
+    problem = Problem(
+        name="symmetric-blocks",
+        bodies=tuple(Body(name, patch, Material(), (4, 4, 4)) for name, patch in blocks.items()),
+        contacts=(Contact("base", Face("upper", "w0"), Face("lower", "w1"), 0.2, (6, 6)),),
+        supports=(*ends, *planes),
+        stages=(Stage("press", 2),),
+        settings=SolverSettings(newton_tolerance=1e-11, complementarity_tolerance=1e-11),
+    )
+    return list(Simulation(problem).run())
+
+
+@case(
+    claim="With friction, a quarter of two symmetric bodies that deform is that of the whole ones.",
+    tier="gate",
+    bounds={
+        "force": Bound(
+            at_most=1e-6, reason="discretisation: halves of functions see a skew metric, of second order, that whole ones cancel"
+        ),
+        "mixed": Bound(at_least=1.0, reason="definition: points stick and slip at once in some load step"),
+    },
+)
+def part_of_pair() -> dict[str, float]:
+    """Relative error of the pressing force, and load steps with stick and slip."""
+    parts, wholes = pair((0, 1)), pair(())
+    apart = [4.0 * mine.reactions[0].force[2] / whole.reactions[0].force[2] - 1.0 for mine, whole in zip(parts, wholes, strict=True)]
+    mixed = [0 < result.contacts[0].slip < result.contacts[0].active for result in parts]
+    return {"force": float(np.abs(apart).max()), "mixed": float(sum(mixed))}

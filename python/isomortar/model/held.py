@@ -3,6 +3,9 @@
 On a rigid plane there are as many multipliers as components of the slave control points. For each component that is prescribed one is
 redundant: the support takes its force. It is the pressure where the normal is held, else the traction along what is held. A support that
 has moved along the plane is another matter: there slip is prescribed, and the traction is that of sliding.
+
+A master that deforms keeps its multipliers, but where it is held like the slave: on a symmetry plane of both, and in plane strain. There
+the traction across the edge of the master's face is zero.
 """
 
 from __future__ import annotations
@@ -14,7 +17,7 @@ import numpy as np
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model.entities import RigidPlane, unit
 from isomortar.model.pairs import Pair
-from isomortar.model.supports import Supports
+from isomortar.model.supports import BoolArray, Supports
 
 #: Share of a unit vector below which it has no component in a direction.
 _NOTHING = 1e-6
@@ -48,21 +51,43 @@ def nothing_held(pair: Pair) -> Held:
 def held_by(supports: Supports, pair: Pair, start: FloatArray, time: float) -> Held:
     """What supports hold of a pair in the increment from positions `start` to a load time."""
     held = nothing_held(pair)
-    if not isinstance(pair.contact.master, RigidPlane):
-        return held
+    if isinstance(pair.contact.master, RigidPlane):
+        _beside_plane(held, supports, pair, supports.increment(start, time), supports.moved(time))
+    else:
+        _beside_surface(held, pair, start, supports.held & ~supports.moved(time))
+    return held
+
+
+def _beside_plane(held: Held, supports: Supports, pair: Pair, increment: FloatArray, moved: BoolArray) -> None:
+    """A rigid plane: what is held is the direction of its coordinates, or the normal."""
+    assert isinstance(pair.contact.master, RigidPlane)
     tangents, normal = _axes(pair.contact.master)
-    prescribed, moved = (mask[pair.slave.point] for mask in (supports.held, supports.moved(time)))
-    increments = supports.increment(start, time)[pair.slave.point] @ tangents
-    for i in np.flatnonzero(prescribed.any(axis=1)):
-        if np.linalg.norm(normal[~prescribed[i]]) < _NOTHING:
+    point = pair.slave.point
+    for i in np.flatnonzero(supports.held[point].any(axis=1)):
+        prescribed = supports.held[point[i]]
+        if np.linalg.norm(normal[~prescribed]) < _NOTHING:
             held.bears[i] = 0
             continue
-        directions, sizes, _ = np.linalg.svd(tangents[prescribed[i] & ~moved[i]].T, full_matrices=False)
+        directions, sizes, _ = np.linalg.svd(tangents[prescribed & ~moved[point[i]]].T, full_matrices=False)
         taken = directions[:, sizes > _NOTHING]
         held.free[i] -= taken @ taken.T
-        along = held.free[i] @ increments[i]
+        along = held.free[i] @ (increment[point[i]] @ tangents)
         held.pushed[i] = along / (np.linalg.norm(along) or 1.0)
-    return held
+
+
+def _beside_surface(held: Held, pair: Pair, start: FloatArray, still: BoolArray) -> None:
+    """A master that deforms: what is held is the coordinate across an edge in whose plane, or slice, supports hold both sides."""
+    point = pair.slave.point
+    size = np.ptp(start, axis=0).max()
+    slice_ = np.all(still[pair.master_face], axis=0)
+    for coordinate, edge in pair.master_edges:
+        for component in np.flatnonzero(np.all(still[edge], axis=0)):
+            place = start[edge, component]
+            if np.ptp(place) > _NOTHING * size:
+                continue
+            same = slice_[component] | (np.abs(start[point, component] - place[0]) <= _NOTHING * size)
+            held.free[still[point, component] & same, :, coordinate] = 0.0
+            held.free[still[point, component] & same, coordinate, :] = 0.0
 
 
 def _axes(plane: RigidPlane) -> tuple[FloatArray, FloatArray]:

@@ -29,6 +29,10 @@ class Pair:
         Control points of each slave element.
     master_reach : csr_array or None, shape (master elements, control points)
         Control points of each master element; None for a rigid plane.
+    master_face : ndarray of int
+        Control points of the master's face; none of a rigid plane.
+    master_edges : list of (int, ndarray of int)
+        For each edge of that face the surface coordinate that runs across it, and its control points.
     neighbours : Pattern
         Slave control points that share an element.
     """
@@ -56,6 +60,8 @@ class Pair:
         self.elements_of_point = sparse.csr_array(members.T)
         self.slave_reach = incidence(self.slave.point[self.slave.nodes], numbering.count)
         self.master_reach = None
+        self.master_face: IntArray = np.zeros(0, dtype=np.int32)
+        self.master_edges: list[tuple[int, IntArray]] = []
         self.master_elements = (0, 0)
         if not isinstance(contact.master, RigidPlane):
             body = problem.body(contact.master.body)
@@ -63,6 +69,9 @@ class Pair:
             self.master_reach = incidence(reached, numbering.count)
             directions = body.patch.face_directions(contact.master.face)
             self.master_elements = (directions[0].elements, directions[1].elements)
+            grid = numbering.points[body.name][body.patch.face_points(contact.master.face)].reshape(directions[1].count, -1)
+            self.master_face = grid.ravel()
+            self.master_edges = [(0, grid[:, 0]), (0, grid[:, -1]), (1, grid[0]), (1, grid[-1])]
         self.neighbour_matrix = sparse.csr_array(self.elements_of_point @ self.elements_of_point.T)
         self.neighbours: Pattern = pattern_of(self.neighbour_matrix)
 
