@@ -61,17 +61,18 @@ contains
     t = a(1, 1) + a(2, 2) + a(3, 3)
   end function trace
 
-  !> ln(1 + y) without losing the digits of a small y (Kahan's correction of the rounded sum).
+  !> ln(1 + y) without losing the digits of a small y (Kahan's correction of the rounded sum), in every mode of rounding.
   elemental function log1p(y) result(r)
     real(wp), intent(in) :: y
     real(wp) :: r
-    real(wp) :: sum
+    real(wp) :: sum, added
 
     sum = 1.0_wp + y
-    if (abs(y) <= 0.5_wp * epsilon(y)) then
-      r = y
+    added = sum - 1.0_wp
+    if (abs(added) > 0.0_wp) then
+      r = log(sum) * (y / added)
     else
-      r = log(sum) * (y / (sum - 1.0_wp))
+      r = y
     end if
   end function log1p
 

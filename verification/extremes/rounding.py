@@ -61,7 +61,7 @@ def agreeing(found: tuple[FloatArray, FloatArray], right: tuple[FloatArray, Floa
 
 @case(
     claim="The way in which the processor rounds changes no digit that counts.",
-    tier=lambda scene, mode: "gate" if (scene, mode) == ("coarse-bowl", "upward") else "nightly",
+    tier=lambda scene, mode: "gate" if (scene, mode) == ("coarse-press", "downward") else "nightly",
     grid={"scene": ("coarse-press", "coarse-bowl"), "mode": tuple(MODES)[1:]},
     bounds=_BOUNDS,
 )
