@@ -90,6 +90,7 @@ def run(
         except BaseException as error:  # Ctrl-C and want of memory too
             observer.stopped(path, interrupted=isinstance(error, KeyboardInterrupt))
             raise
+        observer.finished()
     print(path)
 
 

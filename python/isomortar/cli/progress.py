@@ -33,6 +33,8 @@ class Progress(Observer):
         self._stages = [stage.name for stage in problem.stages for _ in range(stage.steps)]
         self._total, self._first, self._done = problem.total_steps, 1, 0
         self._begin: float | None = None
+        self._warnings = set[str]()
+        self._reason = ""
 
     def started(self, total_steps: int, first_step: int) -> None:
         """Say how much there is to do."""
@@ -51,11 +53,24 @@ class Progress(Observer):
 
     def cut(self, step: int, time: float, increment: float, reason: str) -> None:
         """Say what failed and what is tried next."""
-        self._say(f"step {step}: load increment to {time:.6g} failed, cut to 1/{round(1 / increment)} step: {reason}")
+        why = "for the same reason" if reason == self._reason else reason
+        self._reason = reason
+        self._say(f"step {step}: load increment to {time:.6g} failed, cut to 1/{round(1 / increment)} step: {why}")
 
     def warned(self, message: str) -> None:
-        """Pass it on, also when quiet."""
-        self._print(f"warning: {message}")
+        """Pass it on, once, also when quiet."""
+        if message not in self._warnings:
+            self._warnings.add(message)
+            self._print(f"warning: {message}")
+
+    def finished(self) -> None:
+        """Say that all is done, and how many warnings there were to read."""
+        count = len(self._warnings)
+        line = f"{self._total} load steps done, {count} warning{'' if count == 1 else 's'}"
+        if count:
+            self._print(f"{line}: read {'it' if count == 1 else 'them'}")
+        else:
+            self._say(line)
 
     def stopped(self, path: Path, interrupted: bool) -> None:
         """Say what is left of a run that came to no end."""

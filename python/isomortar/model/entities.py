@@ -50,6 +50,11 @@ class Body:
     quadrature: tuple[int, int, int]
     closed: Literal["u", "v", "w"] | None = None
 
+    @property
+    def size(self) -> float:
+        """Largest extent of its control points along a coordinate."""
+        return float(np.ptp(self.patch.control_points, axis=0).max())
+
 
 @dataclass(frozen=True)
 class Face:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -10,6 +11,11 @@ from isomortar.errors import InputError
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.geometry.refinement import surface_samples
 from isomortar.model.entities import Body, Contact, Face, Problem, Support
+from isomortar.model.memory import memory_needed, memory_of_machine
+from isomortar.scene.contacts import check_contacts
+
+#: Sizes of bodies, and forces (Young's modulus times the square of the size), whose squares and cubes are normal numbers.
+SIZES, FORCES = (1e-76, 1e76), (1e-153, 1e153)
 
 
 def check(problem: Problem) -> None:
@@ -18,12 +24,44 @@ def check(problem: Problem) -> None:
     Raises
     ------
     InputError
-        A body that nothing holds; supports that contradict each other.
+        Units that no number holds; more memory than there is; a body that nothing holds; supports that contradict each other;
+        contacts that cannot be meant.
     """
+    for body in problem.bodies:
+        _check_units(body)
+    _check_memory(problem)
+    check_contacts(problem)
     _check_held(problem)
     for one, other in combinations(problem.supports, 2):
         if one.place.body == other.place.body:
             _check_agreement(problem.body(one.place.body), one, other)
+
+
+def _check_units(body: Body) -> None:
+    size, young = body.size, body.material.young
+    if not SIZES[0] <= size <= SIZES[1]:
+        raise InputError(
+            f"body {body.name!r} is {size:.3g} long; allowed: {SIZES[0]:g} to {SIZES[1]:g}; take another unit of length",
+            f"bodies.{body.name}",
+        )
+    if not FORCES[0] <= young * size * size <= FORCES[1]:
+        raise InputError(
+            f"body {body.name!r}: Young's modulus {young:.3g} times the square of its size {size:.3g} is a force of "
+            f"{young * size * size:.3g}; allowed: {FORCES[0]:g} to {FORCES[1]:g}; take other units",
+            f"bodies.{body.name}.material",
+        )
+
+
+def _check_memory(problem: Problem) -> None:
+    """The estimate is good within a factor of two: refused is what cannot fit even then."""
+    needed, there = memory_needed(problem), memory_of_machine()
+    if needed > 2.0 * there:
+        largest = max(problem.bodies, key=lambda body: memory_needed(replace(problem, bodies=(body,))))
+        raise InputError(
+            f"tangent and factors would take about {needed / 1e9:.3g} GB of memory, and there are {there / 1e9:.3g} GB; "
+            "take fewer elements or a lower order",
+            f"bodies.{largest.name}.mesh",
+        )
 
 
 def _check_held(problem: Problem) -> None:

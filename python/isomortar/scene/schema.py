@@ -27,6 +27,10 @@ from isomortar.scene.types import (
     Table,
 )
 
+#: Residuals and distances that are left stand for an error of the result: above this share none is worth having.
+Tolerance = Annotated[Positive, Field(le=1e-3)]
+Penalty = Annotated[Real, Field(ge=1e-12, le=1e12)]
+
 _PAPER = Material()
 _SOLVER = SolverSettings()
 
@@ -175,7 +179,7 @@ class ContactTable(Table):
     """BODY.FACE of the deformable master."""
     plane: PlaneTable | None = None
     """Rigid master plane, instead of master."""
-    friction: Annotated[Real, Field(ge=0)] = 0.3
+    friction: Annotated[Real, Field(ge=0, le=1e100)] = 0.3
     """Coefficient of friction; 0 switches friction off."""
     quadrature: PerSurfaceDirection[GaussPoints] | None = None
     """Gauss points per slave contact element; default by family and order (Table 1 of the paper; above order 5: order + 2)."""
@@ -228,7 +232,7 @@ class StageTable(Table):
 
     name: Name
     """Shown in progress and results."""
-    steps: Count
+    steps: Annotated[Count, Field(le=1_000_000)]
     """Equal load steps, each of them recorded."""
     motions: dict[str, MotionTable] = Field({})
     """By name of support; supports without a motion stay where they are."""
@@ -241,31 +245,31 @@ class SolverTable(Table):
     """Multipliers as unknowns of one Newton loop per load step (monolithic), or penalties corrected by augmentations (uzawa)."""
     slip_sum: Literal["local", "paper"] = _SOLVER.slip_sum
     """Trial traction from the control point's own slip (local), or summed over active neighbours (paper)."""
-    penalty_normal: Positive = _SOLVER.penalty_normal
+    penalty_normal: Penalty = _SOLVER.penalty_normal
     """Base penalty for the gap, times the largest diagonal entry of the solid tangent over the reference area."""
-    penalty_tangential: Positive = _SOLVER.penalty_tangential
+    penalty_tangential: Penalty = _SOLVER.penalty_tangential
     """Base penalty for slip, in the same unit; keep it near a tenth of the normal one."""
-    penalty_growth: Annotated[Real, Field(ge=1)] = _SOLVER.penalty_growth
+    penalty_growth: Annotated[Real, Field(ge=1, le=1e6)] = _SOLVER.penalty_growth
     """Factor on the penalties per augmentation within a load step; 1: they stay."""
-    penalty_growth_max: Annotated[Real, Field(ge=1)] = _SOLVER.penalty_growth_max
+    penalty_growth_max: Annotated[Real, Field(ge=1, le=1e12)] = _SOLVER.penalty_growth_max
     """Limit of that growth over the base."""
-    augmentation_tolerance: Positive = _SOLVER.augmentation_tolerance
+    augmentation_tolerance: Annotated[Positive, Field(le=0.1)] = _SOLVER.augmentation_tolerance
     """Relative change of the multipliers below which augmentations have converged."""
     augmentation_norm: Literal["separate", "paper"] = _SOLVER.augmentation_norm
     """Pressures and tractions tested each in their norm (separate), or in the paper's single norm, which mixes units."""
-    newton_tolerance: Positive = _SOLVER.newton_tolerance
+    newton_tolerance: Tolerance = _SOLVER.newton_tolerance
     """Residual over the internal force below which Newton's method has converged."""
-    complementarity_tolerance: Positive = _SOLVER.complementarity_tolerance
+    complementarity_tolerance: Tolerance = _SOLVER.complementarity_tolerance
     """Monolithic: relative distance of pressures and tractions from the contact conditions."""
     max_augmentations: Count = _SOLVER.max_augmentations
     """Augmentations after which a load step is cut."""
     max_iterations: Count = _SOLVER.max_iterations
     """Tangents of a Newton loop after which a load step is cut."""
-    max_cuts: Annotated[int, Field(strict=True, ge=0)] = _SOLVER.max_cuts
-    """How often a load step may be halved before the run ends."""
+    max_cuts: Annotated[int, Field(strict=True, ge=0, le=30)] = _SOLVER.max_cuts
+    """How often a load step may be halved before the run ends; 30 times is to a billionth."""
     measures: tuple[Measure, ...] = _SOLVER.measures
     """What helps Newton's method on the way; leave one out to see what it does."""
-    path_tolerance: Positive | None = _SOLVER.path_tolerance
+    path_tolerance: Annotated[Positive, Field(le=1)] | None = _SOLVER.path_tolerance
     """Error of the multipliers that a load increment may make, estimated by halving it; absent: the load steps as given."""
 
     def settings(self) -> SolverSettings:

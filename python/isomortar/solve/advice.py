@@ -43,6 +43,7 @@ class StepAdvice:
 
     def __init__(self, problem: Problem) -> None:
         self._names = [contact.name for contact in problem.contacts]
+        self._closed = set[str]()
         self._given: set[tuple[str, str]] = set()
         self._excluded: list[int] | None = None
 
@@ -51,6 +52,8 @@ class StepAdvice:
         before = self._excluded or [result.excluded for result in results]
         self._excluded = [result.excluded for result in results]
         for name, result, pressure, excluded in zip(self._names, results, pressures, before, strict=True):
+            if result.active:
+                self._closed.add(name)
             if result.active and result.excluded > excluded and self._first(name, "leaving"):
                 yield (
                     f"contact {name!r}, load step {step}: {result.excluded - excluded} slave quadrature points have left the master; what "
@@ -62,6 +65,12 @@ class StepAdvice:
                     f"contact {name!r}, load step {step}: control pressures reach {largest:.3g} where the pressure field reaches "
                     f"{field:.3g}; single coefficients oscillate (conditioning of the basis): look at the field, not at them"
                 )
+
+    def at_the_end(self) -> Iterator[str]:
+        """Warnings that the whole run gives rise to."""
+        for name in self._names:
+            if name not in self._closed:
+                yield f"contact {name!r} was open at the end of every load step: check faces, places and motions"
 
     def _first(self, name: str, kind: str) -> bool:
         if (name, kind) in self._given:

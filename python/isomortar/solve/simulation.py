@@ -11,6 +11,7 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Problem
 from isomortar.solve.advice import StepAdvice, advice_on_problem
 from isomortar.solve.contact import moment
+from isomortar.solve.doubts import doubts
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.method import Increment, Method
 from isomortar.solve.monolithic import Monolithic
@@ -63,16 +64,23 @@ class Simulation:
             A load increment did not converge and could not be cut further. Steps yielded before stand.
         """
         self._observer.started(self.problem.total_steps, self._step + 1)
-        for warning in advice_on_problem(self.problem, self.equilibrium.pairs):
-            self._observer.warned(warning)
+        fresh = self._step == 0
+        if fresh:
+            self._warn(doubts(self.problem, self.state))
+        self._warn(advice_on_problem(self.problem, self.equilibrium.pairs))
         advice = StepAdvice(self.problem)
         while self._step < self.problem.total_steps:
             result = self._advance_step(self._step + 1)
             self._step, self.state = result.step, result.state
             self._observer.recorded(result)
-            for warning in advice.after_step(result.step, result.contacts, [contact.pressure for contact in self.state.contacts]):
-                self._observer.warned(warning)
+            self._warn(advice.after_step(result.step, result.contacts, [contact.pressure for contact in self.state.contacts]))
             yield result
+        if fresh:  # what was closed before a resume is not known
+            self._warn(advice.at_the_end())
+
+    def _warn(self, warnings: Iterator[str]) -> None:
+        for warning in warnings:
+            self._observer.warned(warning)
 
     def _advance_step(self, step: int) -> StepResult:
         """One recorded load step, in as many increments as it takes."""

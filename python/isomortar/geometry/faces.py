@@ -1,0 +1,70 @@
+"""Faces of a patch as cells small enough to be taken for flat: where they are, how large, and which way is out of the body."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import splinepy
+
+from isomortar.geometry.patch import Direction, FloatArray, Patch
+
+#: Cells in a direction, at least: round a ring they then are off it by a five-hundredth of its radius.
+CELLS = 48
+
+
+@dataclass(frozen=True)
+class Cells:
+    """Cells of a face.
+
+    Parameters
+    ----------
+    centres, normals : ndarray, shape (n, 3)
+        Normals are of unit length, out of the body; zero for cells without an area.
+    areas : ndarray, shape (n,)
+    thickness : ndarray, shape (n,)
+        Distance of each centre from that of its counterpart on the opposite face.
+    """
+
+    centres: FloatArray
+    normals: FloatArray
+    areas: FloatArray
+    thickness: FloatArray
+
+
+def cells(patch: Patch, face: str) -> Cells:
+    """The cells of a face, whichever handedness its patch has."""
+    grid, opposite = _grid(patch, face), _grid(patch, face[0] + "10"[int(face[1])])
+    across = np.cross(grid[1:, 1:] - grid[:-1, :-1], grid[1:, :-1] - grid[:-1, 1:]).reshape(-1, 3)
+    inward = _centres(opposite) - _centres(grid)
+    if np.einsum("ij,ij->", across, inward) > 0.0:
+        across = -across
+    length = np.linalg.norm(across, axis=1)
+    normals = across / np.where(length > 0.0, length, 1.0)[:, None]
+    return Cells(_centres(grid), normals, 0.5 * length, np.linalg.norm(inward, axis=1))
+
+
+def _centres(grid: FloatArray) -> FloatArray:
+    return 0.25 * (grid[1:, 1:] + grid[:-1, :-1] + grid[1:, :-1] + grid[:-1, 1:]).reshape(-1, 3)
+
+
+def _grid(patch: Patch, face: str) -> FloatArray:
+    """Points on a face in rows: corners of its cells, shape (m1, m2, 3)."""
+    first, second = patch.face_directions(face)
+    numbers = patch.face_points(face)
+    points, weights = patch.control_points[numbers], patch.weights[numbers]
+    if "L" in (first.family, second.family):  # Lagrange nodes lie on the face, and so nearly do control points beside them
+        return points.reshape(first.count, second.count, 3, order="F")
+    surface = splinepy.NURBS(
+        degrees=[first.order, second.order], knot_vectors=[first.knots, second.knots], control_points=points, weights=weights
+    )
+    u, v = (_parameters(direction) for direction in (first, second))
+    queries = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
+    return np.asarray(surface.evaluate(queries)).reshape(len(u), len(v), 3)
+
+
+def _parameters(direction: Direction) -> FloatArray:
+    """Element boundaries, and what divides the elements into cells."""
+    parts = -(-CELLS // direction.elements)
+    start = direction.boundaries[:-1, None] + np.diff(direction.boundaries)[:, None] * (np.arange(parts) / parts)
+    return np.append(start, direction.boundaries[-1])

@@ -1,0 +1,86 @@
+"""What memory a problem will take, before any of it is taken: entries of the tangent, and of its factors by nested dissection."""
+
+from __future__ import annotations
+
+import re
+import resource
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from isomortar.geometry.patch import Direction, Patch
+from isomortar.model.entities import Problem
+
+#: Bytes of each 3x3 block of the tangent: its values, the compressed matrix, the places that gather it, and what sorts them meanwhile
+#: (measured: 850 to 1000 at orders 4 and 5).
+BLOCK_BYTES = 900.0
+#: Bytes of each entry of the factors, fronts included (measured: 11 to 24).
+FACTOR_BYTES = 16.0
+#: What the machine could give at once, or all of what a control group may have.
+_LIMIT = re.compile(r"(?:MemAvailable: +|^)([0-9]+)")
+
+
+def memory_needed(problem: Problem) -> float:
+    """Bytes that tangents and factors of the bodies will take, within a factor of two; contact comes on top."""
+    return sum(BLOCK_BYTES * blocks(body.patch) + FACTOR_BYTES * factor_entries(body.patch) for body in problem.bodies)
+
+
+def memory_of_machine() -> float:
+    """Bytes that a process may take: of what the machine has free, its group's limit, and its own; infinite where none is told."""
+    own, _ = resource.getrlimit(resource.RLIMIT_AS)
+    limits = [float(own) if own != resource.RLIM_INFINITY else np.inf]
+    for path, unit in (("/proc/meminfo", 1024.0), ("/sys/fs/cgroup/memory.max", 1.0)):
+        with suppress(OSError):
+            limits += [unit * float(number) for number in _LIMIT.findall(Path(path).read_text(encoding="utf-8"))]
+    return min(limits)
+
+
+def blocks(patch: Patch) -> int:
+    """Pairs of control points that share an element."""
+    return int(np.prod([float(_neighbours(direction).sum()) for direction in patch.directions]))
+
+
+def _neighbours(direction: Direction) -> np.ndarray:
+    """For each control point along a direction, how many share an element with it."""
+    starts = _first_points(direction)
+    points = np.arange(direction.count)
+    first = np.searchsorted(starts + direction.order, points)
+    last = np.searchsorted(starts, points, side="right") - 1
+    return starts[last] + direction.order - starts[first] + 1
+
+
+def _first_points(direction: Direction) -> np.ndarray:
+    """First control point of each element."""
+    if direction.family == "L":
+        return np.arange(direction.elements) * direction.order
+    return np.flatnonzero(np.diff(direction.knots) > 0) - direction.order
+
+
+def factor_entries(patch: Patch) -> float:
+    """Entries of both factors, were the unknowns eliminated by nested dissection of the grid of control points."""
+    widths = tuple(1 if d.family == "L" else d.order for d in patch.directions)
+
+    @cache
+    def entries(size: tuple[int, ...], cut: tuple[int, ...]) -> float:
+        """Of a box of the grid with so many of its two sides in each direction cut off by separators."""
+        sides = sum(cut[k] * widths[k] * np.prod(size) / size[k] for k in range(3))
+        axis = int(np.argmax([n / w for n, w in zip(size, widths, strict=True)]))
+        left = size[axis] - widths[axis]
+        if left < 2 * max(widths[axis], 1):
+            return _front(float(np.prod(size)), sides)
+        halves = 0.0
+        for half, ends in ((left // 2, (cut[axis] + 1) / 2), (left - left // 2, (cut[axis] + 1) / 2)):
+            part = tuple(half if k == axis else n for k, n in enumerate(size))
+            halves += entries(part, tuple(ends if k == axis else c for k, c in enumerate(cut)))
+        separator = np.prod(size) / size[axis] * widths[axis]
+        return halves + _front(separator, sides)
+
+    return entries(patch.shape, (0, 0, 0))
+
+
+def _front(points: float, border: float) -> float:
+    """Entries of the factors in a dense front of so many points, with those that it borders on."""
+    own, other = 3.0 * points, 3.0 * border
+    return own * own + 2.0 * own * other

@@ -1,0 +1,95 @@
+"""How the two sides of a contact stand to each other before anything moves: facing, apart, or in each other."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import KDTree
+
+from isomortar.geometry.faces import Cells, cells
+from isomortar.geometry.patch import FloatArray
+from isomortar.model.entities import Body, Contact, Face, Problem, RigidPlane
+
+#: Faces whose outward normals include more than about 96 degrees face each other.
+FACING = -0.1
+#: Normals of a face that are compared each with each.
+SOME = 400
+
+
+@dataclass(frozen=True)
+class Stance:
+    """A contact pair in the reference configuration, by cells of its faces.
+
+    Parameters
+    ----------
+    slave_area, master_area : float
+        Areas of the faces; a plane has an infinite one.
+    cosine : float
+        Smallest cosine between outward normals of slave and master, wherever they are: -1 where parts of them face each other.
+    depth : float
+        By how much parts of the slave that face the master are inside it at most; 0 where they are not.
+    gap : float
+        Smallest distance between slave and master; 0 where they touch or overlap.
+    thickness : float
+        What the slave would have to pass through: the thinner body, there.
+    behind : bool
+        The middle of the slave's body lies behind a plane.
+    """
+
+    slave_area: float
+    master_area: float
+    cosine: float
+    depth: float
+    gap: float
+    thickness: float
+    behind: bool
+
+
+def stance(problem: Problem, contact: Contact) -> Stance:
+    """How a pair stands."""
+    body = problem.body(contact.slave.body)
+    slave = cells(body.patch, contact.slave.face)
+    if isinstance(contact.master, RigidPlane):
+        return _on_plane(body, slave, contact.master)
+    return _on_face(slave, _cells_of(problem, contact.master))
+
+
+def _cells_of(problem: Problem, face: Face) -> Cells:
+    return cells(problem.body(face.body).patch, face.face)
+
+
+def _on_plane(body: Body, slave: Cells, plane: RigidPlane) -> Stance:
+    normal = np.asarray(plane.normal)
+    heights = (body.patch.control_points - plane.point) @ normal
+    thickness = np.full(len(slave.areas), np.ptp(heights))
+    cosines = slave.normals @ normal
+    above = (slave.centres - plane.point) @ normal
+    depth, thick = _deepest(cosines, above, thickness)
+    gap = max(float(above.min()), 0.0)
+    return Stance(float(slave.areas.sum()), np.inf, float(cosines.min()), depth, gap, thick, bool(heights.max() + heights.min() < 0.0))
+
+
+def _on_face(slave: Cells, master: Cells) -> Stance:
+    distances, nearest = KDTree(master.centres).query(slave.centres)
+    normals, arms = master.normals[nearest], slave.centres - master.centres[nearest]
+    cosines = np.einsum("ij,ij->i", slave.normals, normals)
+    heights = np.einsum("ij,ij->i", arms, normals)
+    beside = np.linalg.norm(arms - heights[:, None] * normals, axis=1) > np.sqrt(2.0 * master.areas[nearest])
+    thickness = np.minimum(slave.thickness, master.thickness[nearest])
+    depth, thick = _deepest(cosines, np.where(beside, np.inf, heights), thickness)
+    cosine = float((_some(slave.normals) @ _some(master.normals).T).min())
+    gap = 0.0 if depth > 0.0 else max(float((distances - np.sqrt(2.0 * master.areas[nearest])).min()), 0.0)
+    return Stance(float(slave.areas.sum()), float(master.areas.sum()), cosine, depth, gap, thick, False)
+
+
+def _some(normals: FloatArray) -> FloatArray:
+    """Some hundreds of normals, spread over the face."""
+    return normals[:: max(1, len(normals) // SOME)]
+
+
+def _deepest(cosines: FloatArray, heights: FloatArray, thickness: FloatArray) -> tuple[float, float]:
+    """Largest depth of cells that face the master, and the thickness there."""
+    depths = np.where(cosines < FACING, -heights, -np.inf)
+    deepest = int(np.argmax(depths))
+    return max(float(depths[deepest]), 0.0), float(thickness[deepest])

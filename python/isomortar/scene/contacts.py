@@ -1,0 +1,74 @@
+"""Can a contact be meant? What cannot is refused before any work, with the key to change; what is doubtful only is a warning later."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+from isomortar.errors import InputError
+from isomortar.model.entities import Contact, Face, Problem, RigidPlane
+from isomortar.model.stance import Stance, stance
+
+#: Least area of a contact face, over the square of its body's size: what is below is a line or a point.
+LEAST_AREA = 1e-12
+#: Faces look the same way where all normals of the slave are within 60 degrees of the master's.
+SAME_WAY = 0.5
+#: Bodies that overlap by this share of the thinner one have passed through each other.
+PASSED = 0.9
+
+
+def check_contacts(problem: Problem) -> None:
+    """Refuse contacts that cannot be meant.
+
+    Raises
+    ------
+    InputError
+        Faces without an area, that look away from each other, or have passed through each other; the same contact twice.
+    """
+    for contact in problem.contacts:
+        found = stance(problem, contact)
+        _check_area(problem, contact, found)
+        _check_stance(problem, contact, found)
+    for one, other in combinations(problem.contacts, 2):
+        if (one.slave, one.master) == (other.slave, other.master):
+            raise InputError(
+                f"is between the same faces as contact {one.name!r}: their pressures could be shared in any way; remove one of them",
+                f"contacts.{other.name}",
+            )
+
+
+def _check_area(problem: Problem, contact: Contact, found: Stance) -> None:
+    for side, place, area in (("slave", contact.slave, found.slave_area), ("master", contact.master, found.master_area)):
+        if isinstance(place, Face) and not area > LEAST_AREA * problem.body(place.body).size ** 2:
+            raise InputError(
+                f"is {place.body}.{place.face}, a face of area {area:.3g}: its control points fall onto a line or a point; "
+                "name another face",
+                f"contacts.{contact.name}.{side}",
+            )
+
+
+def _check_stance(problem: Problem, contact: Contact, found: Stance) -> None:
+    slave = f"{contact.slave.body}.{contact.slave.face}"
+    looks_away = found.cosine > SAME_WAY
+    if isinstance(contact.master, RigidPlane):
+        field = f"contacts.{contact.name}.plane.normal"
+        turned = ", ".join(f"{-n or 0.0:g}" for n in contact.master.normal)
+        cure = f"the normal points out of the plane, towards the body: turn it round, [{turned}]"
+        if looks_away and found.behind:
+            raise InputError(f"body {contact.slave.body!r} lies behind the plane, and {slave} looks away from it; {cure}", field)
+        if found.depth > PASSED * found.thickness:
+            raise InputError(f"{slave} is {found.depth:.3g} behind the plane, its body {found.thickness:.3g} thick; {cure}", field)
+    elif found.depth > PASSED * found.thickness:
+        raise InputError(
+            f"{slave} is up to {found.depth:.3g} inside {contact.master.body!r}, where the thinner of the two bodies is "
+            f"{found.thickness:.3g} thick: they have passed through each other; move one of them, or name the faces that meet",
+            f"contacts.{contact.name}.master",
+        )
+    if looks_away and not _turns(problem):
+        raise InputError(
+            f"{slave} looks away from its master, and nothing in the scene turns it; name the face that looks at the master",
+            f"contacts.{contact.name}.slave",
+        )
+
+
+def _turns(problem: Problem) -> bool:
+    return any(motion.rotate for support in problem.supports for motion in support.motions)

@@ -1,0 +1,115 @@
+"""What is doubtful of a scene before its first load step: it runs, but most often something else was meant."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
+
+import numpy as np
+
+from isomortar.model.entities import Body, Contact, Face, Problem, RigidPlane, Support
+from isomortar.model.memory import memory_needed, memory_of_machine
+from isomortar.model.stance import stance
+from isomortar.solve.record import State
+
+#: An overlap of less than this share of the thinner body may be round-off of the geometry; what is more is told.
+TOLD_OVERLAP = 0.02
+#: Share of the memory that is there above which a scene is told to be near it; the estimate is good within a factor of two.
+NEAR = 0.5
+#: Faces whose sizes (square roots of their areas) differ by more were given in different units, most likely.
+SIZE_RATIO = 100.0
+#: Bulk over shear modulus above which elements of order 1 lock; a tenfold of it for every order more (docs/method.md).
+LOCKING = 10.0
+
+
+def doubts(problem: Problem, state: State) -> Iterator[str]:
+    """Sentences on what is doubtful.
+
+    Parameters
+    ----------
+    problem : Problem
+    state : State
+        The reference configuration, projected.
+    """
+    needed, there = memory_needed(problem), memory_of_machine()
+    if needed > NEAR * there:
+        yield f"tangent and factors may take {needed / 1e9:.2g} GB of memory, within a factor of two, and there are {there / 1e9:.2g} GB"
+    for body in problem.bodies:
+        yield from _locking(body)
+    for support in problem.supports:
+        yield from _far_steps(problem, support)
+    for contact, contact_state in zip(problem.contacts, state.contacts, strict=True):
+        yield from _of_contact(problem, contact, beside=not np.any(contact_state.projected))
+    for one, other in combinations(problem.contacts, 2):
+        if (one.slave, one.master) == (other.master, other.slave):
+            yield (
+                f"contacts {one.name!r} and {other.name!r} are the same one, both ways: every point is held twice, and how they share the "
+                "pressure is left open. Remove one of them"
+            )
+
+
+def _locking(body: Body) -> Iterator[str]:
+    order = min(direction.order for direction in body.patch.directions)
+    ratio, limit = body.material.bulk / body.material.shear, LOCKING * 10.0 ** (order - 1)
+    if ratio > limit:
+        needed = order + int(np.ceil(np.log10(ratio / limit)))
+        yield (
+            f"body {body.name!r}: with Poisson's ratio {body.material.poisson:g} elements of order {order} lock, and forces come out "
+            f"far too large. Take order {needed} or more in all directions, or a Poisson's ratio that is lower"
+        )
+
+
+def _far_steps(problem: Problem, support: Support) -> Iterator[str]:
+    size = problem.body(support.place.body).size
+    for stage, motion in zip(problem.stages, support.motions, strict=True):
+        step = float(np.linalg.norm(motion.translate)) / stage.steps
+        if step > size:
+            yield (
+                f"support {support.name!r} moves by {step:.3g} in each load step of stage {stage.name!r}, and its body is {size:.3g} long. "
+                "Take more load steps; or are the units not the same?"
+            )
+
+
+def _of_contact(problem: Problem, contact: Contact, beside: bool) -> Iterator[str]:
+    found, travel = stance(problem, contact), _travel(problem)
+    ratio = np.sqrt(found.slave_area / found.master_area)
+    if found.depth > TOLD_OVERLAP * found.thickness:
+        yield (
+            f"contact {contact.name!r}: the bodies overlap by {found.depth:.3g} at the start (the thinner is {found.thickness:.3g} thick); "
+            "the first load step pushes them apart. If no shrink fit is meant, move one of them"
+        )
+    elif beside:
+        yield (
+            f"contact {contact.name!r}: the slave face {contact.slave.body}.{contact.slave.face} is wholly beside its master at the start; "
+            "it meets only what motions bring before it. Check places and faces"
+        )
+    elif found.gap > 2.0 * travel:
+        yield (
+            f"contact {contact.name!r} is {found.gap:.3g} apart at the start, and all supports together travel {travel:.3g}: "
+            "it cannot close. Check places, motions and units"
+        )
+    if not 1.0 / SIZE_RATIO <= ratio <= SIZE_RATIO and isinstance(contact.master, Face):
+        yield (
+            f"contact {contact.name!r}: the slave face is {ratio:.3g} times as large as the master face. Are the bodies given "
+            "in the same unit of length?"
+        )
+    holders = [_holder(problem, place) for place in (contact.slave, contact.master)]
+    if all(holders):
+        yield f"contact {contact.name!r} can move nothing: its slave face is held by {holders[0]}, and its master is {holders[1]}"
+
+
+def _travel(problem: Problem) -> float:
+    """No prescribed point goes farther than this, over all stages."""
+    travel = 0.0
+    for support in problem.supports:
+        arms = problem.body(support.place.body).patch.control_points - np.asarray(support.centre)
+        reach = float(np.linalg.norm(arms, axis=1).max())
+        travel += sum(float(np.linalg.norm(m.translate)) + abs(np.radians(m.rotate)) * reach for m in support.motions)
+    return travel
+
+
+def _holder(problem: Problem, place: Face | RigidPlane) -> str:
+    """What prescribes all components of just that face, as words; empty: nothing."""
+    if isinstance(place, RigidPlane):
+        return "a rigid plane"
+    return next((f"support {s.name!r}" for s in problem.supports if s.place == place and len(s.components) == 3), "")

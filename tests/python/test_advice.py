@@ -1,0 +1,131 @@
+"""Warnings: scenes that run, but in which most likely something else was meant; each once, counted, and none for sound scenes."""
+
+from __future__ import annotations
+
+import io
+import sys
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+import isomortar
+from isomortar import cli
+from isomortar.cli.progress import Progress
+from isomortar.scene import Scene
+from isomortar.scene.source import bundled_scenes
+from isomortar.solve.doubts import doubts
+from isomortar.solve.simulation import Simulation
+from test_scene_contacts import PAIR, PRESS, RINGS, TYRE, UNUSUAL
+
+
+def material(poisson: float, family: str, order: int) -> list[str]:
+    return [f"bodies.block.mesh.order={order}", f"bodies.block.mesh.family={family}", f"materials.rubber.poisson={poisson}"]
+
+
+def warnings(text: str, overrides: list[str] | None = None) -> list[str]:
+    problem = Scene.from_toml(text, overrides=overrides or ()).problem()
+    return list(doubts(problem, Simulation(problem).state))
+
+
+# Scene, what is replaced, by what, and words of the one warning.
+DOUBTFUL = {
+    "overlap": (PRESS, "point = [0, 0, 0]", "point = [0, 0, 0.3]", "overlap by 0.3 at the start"),
+    "overlap of bodies": (PAIR, "-0.4, 0.0]", "-0.4, -0.2]", "overlap by 0.2 at the start"),
+    "wholly beside": (*UNUSUAL["slave beside its master"], "upper.w0 is wholly beside its master"),
+    "cannot close": (PRESS, "point = [0, 0, 0]", "point = [0, 0, -0.5]", "0.5 apart at the start, and all supports together travel 0.1"),
+    "bodies cannot close": (PAIR, "-0.4, 0.0], upper = [0.4, 0.4, 0.6]", "-0.4, 0.9], upper = [0.4, 0.4, 1.6]", "it cannot close"),
+    "other unit of length": (
+        PAIR,
+        "[-1, -1, -1], upper = [1, 1, 0]",
+        "[-1000, -1000, -1000], upper = [1000, 1000, 0]",
+        "same unit of length",
+    ),
+    "other unit of motions": (PRESS, "[0, 0, -0.1]", "[0, 0, -100]", "moves by 100 in each load step"),
+    "held on both sides": (*UNUSUAL["support on the contact face"], "can move nothing: its slave face is held by support 'bottom'"),
+    "both ways": (*UNUSUAL["both ways"], "are the same one, both ways"),
+}
+
+
+@pytest.mark.parametrize("case", DOUBTFUL)
+def test_what_is_doubtful_is_told_once(case: str) -> None:
+    scene, old, new, words = DOUBTFUL[case]
+    assert old in scene
+    said = warnings(scene.replace(old, new))
+    assert len(said) == 1
+    assert words in said[0]
+
+
+@pytest.mark.parametrize(
+    ("family", "order", "sound", "locks"),
+    [("L", 1, 0.45, 0.46), ("N", 2, 0.494, 0.496), ("L", 2, 0.494, 0.496), ("N", 3, 0.499, 0.4999), ("N", 5, 0.49999, 0.499999)],
+)
+def test_locking_is_told_by_order_and_ratio(family: str, order: int, sound: float, locks: float) -> None:
+    scene = PRESS.replace("[bodies.block]", "[materials.rubber]\n[bodies.block]")
+    assert warnings(scene, material(sound, family, order)) == []
+    (said,) = warnings(scene, material(locks, family, order))
+    assert f"Poisson's ratio {locks:g} elements of order {order} lock" in said
+
+
+@pytest.mark.parametrize("text", [PRESS, PAIR, TYRE, PRESS.replace("point = [0, 0, 0]", "point = [0, 0, -0.05]")])
+def test_sound_scenes_have_none(text: str) -> None:
+    assert warnings(text) == []
+
+
+@pytest.mark.parametrize("name", bundled_scenes())
+def test_bundled_scenes_have_none(name: str) -> None:
+    problem = Scene.load(name).problem()
+    assert list(doubts(problem, Simulation(problem).state)) == []
+
+
+def test_a_shrink_fit_runs_with_a_word() -> None:
+    said = warnings(RINGS)
+    assert len(said) == 1
+    assert "overlap by 0.02" in said[0]
+
+
+class Listens(isomortar.Observer):
+    """Keeps the warnings."""
+
+    def __init__(self) -> None:
+        self.said: list[str] = []
+
+    def warned(self, message: str) -> None:
+        self.said.append(message)
+
+
+@pytest.mark.parametrize(("motion", "never"), [("[0, 0, -0.1]", False), ("[0, 0, 0.1]", True)])
+def test_a_contact_that_never_closes_is_told_at_the_end(motion: str, never: bool) -> None:
+    observer = Listens()
+    scene = PRESS.replace("[0, 0, -0.1]", motion).replace("steps = 1", "steps = 2")
+    for _ in Simulation(Scene.from_toml(scene).problem(), observer).run():
+        assert observer.said == []
+    assert observer.said == (["contact 'floor' was open at the end of every load step: check faces, places and motions"] if never else [])
+
+
+def test_the_same_line_is_printed_once_and_warnings_are_counted() -> None:
+    text = io.StringIO()
+    progress = Progress(Scene.load("press").problem(), Console(file=text, width=80), quiet=False)
+    for message in ("one", "two", "one"):
+        progress.warned(message)
+    for cuts in range(1, 10):
+        progress.cut(3, 2.5, 0.5**cuts, "the load is too large")
+    progress.finished()
+    shown = text.getvalue()
+    assert shown.count("warning: one") == 1
+    assert shown.count("the load is too large") == 1
+    assert shown.count("for the same reason") == 8
+    assert "5 load steps done, 2 warnings: read them" in shown
+
+
+@pytest.mark.parametrize(("motion", "line"), [("[0, 0, -0.1]", "1 load steps done, 0 warnings"), ("[0, 0, 0.1]", "1 warning: read it")])
+def test_a_run_ends_with_the_number_of_warnings(
+    motion: str, line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("scene.toml").write_text(PRESS.replace("[0, 0, -0.1]", motion))
+    monkeypatch.setattr(sys, "argv", ["isomortar", "run", "scene.toml"])
+    with pytest.raises(SystemExit) as ended:
+        cli.main()
+    assert not ended.value.code
+    assert capsys.readouterr().err.splitlines()[-1].endswith(line)
