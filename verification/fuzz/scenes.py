@@ -1,0 +1,178 @@
+"""Fuzzed scenes through the command line: an end that is right, a refusal, a stop with its cause, and nothing else."""
+
+from __future__ import annotations
+
+import copy
+import tomllib
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from fuzz.child import Ending, Wrong, ending_of, program, tally, tried
+from fuzz.mutation import mutated, numbers
+
+from isomortar import Results
+from isomortar.geometry.patch import FloatArray
+from isomortar.harness import Bound, case
+from isomortar.model.entities import RigidPlane
+from isomortar.results import layout
+from isomortar.scene.source import dump
+
+#: Powers of a quarter by which the units of the twin differ: exact, also under a root.
+LENGTH, MODULUS = 4.0**-7, 4.0**9
+#: Powers of the unit of length in the keys that hold one.
+LENGTHS = {
+    "lower": 1, "upper": 1, "centre": 1, "half_width": 1, "bottom": 1, "rise": 1, "top": 1, "inner": 1, "outer": 1, "width": 1, "point": 1,
+    "translate": 1, "control_points": 1, "reference_area": 2,
+}  # fmt: skip
+#: Numbers within this range have twins, in the other units, that are as far from under- and overflow.
+ORDINARY = 1e12
+#: Share by which forces, and contact conditions, may be off beyond the scene's own tolerances; and what that is of a tolerance.
+ROUND_OFF, OF_TOLERANCE = 1e-9, 1e2
+#: The loosest tolerance at which anything can be said of the numbers.
+LOOSEST = 1e-4
+
+
+def judged(number: int, folder: Path) -> Ending:
+    """Run the scene of a number, look at what it left, and at a run of it in other units or another order."""
+    text = mutated(number)
+    ending = _run(text, folder, "scene")
+    if ending.kind != "right":
+        return ending
+    with Results(folder / "scene.h5") as results:
+        _look(results)
+        twin = _twin(tomllib.loads(text.decode()), number)
+        if twin is not None and _tolerance(results) <= LOOSEST:
+            data, length, modulus = twin
+            other = _run(dump(data).encode(), folder, "twin")
+            if other.kind != "right":
+                raise Wrong(f"runs, but not in other units or another order: {other.said}")
+            with Results(folder / "twin.h5") as twins:
+                _compare(results, twins, length, modulus)
+    return ending
+
+
+def _run(text: bytes, folder: Path, name: str) -> Ending:
+    scene, output = folder / f"{name}.toml", folder / f"{name}.h5"
+    scene.write_bytes(text)
+    return ending_of(*program("run", str(scene), "--quiet", "--output", str(output), folder=folder))
+
+
+def _tolerance(results: Results) -> float:
+    settings = results.problem.settings
+    own = settings.complementarity_tolerance if settings.method == "monolithic" else settings.augmentation_tolerance
+    return max(own, settings.newton_tolerance)
+
+
+def _look(results: Results) -> None:
+    """What holds for every scene: numbers, balance of forces, contact conditions."""
+    problem = results.problem
+    if results.steps.tolist() != list(range(1, problem.total_steps + 1)):
+        raise Wrong(f"exit code 0 with load steps {results.steps}")
+    forces = [results.curve("force", support=s.name) for s in problem.supports]
+    for contact in problem.contacts:
+        values = {name: results.curve(name, contact=contact.name) for name in layout.CONTACT}
+        for name, value in values.items():
+            _finite(f"{contact.name}.{name}", value)
+        if isinstance(contact.master, RigidPlane):
+            forces.append(-values["force_slave"])
+        elif not _close(values["force_slave"], -values["force_master"], ROUND_OFF):
+            raise Wrong(f"forces on both sides of {contact.name} differ: {values['force_slave'][-1]}, {values['force_master'][-1]}")
+        _look_at_contact(results, contact.name, contact.friction)
+    for force in forces:
+        _finite("a force", force)
+    whole = np.abs(forces).sum(axis=(0, 2))
+    left = np.abs(np.sum(forces, axis=0)).max(axis=1)
+    allowed = ROUND_OFF + OF_TOLERANCE * results.problem.settings.newton_tolerance
+    if not np.all(left <= allowed * whole + _nothing(results)):
+        raise Wrong(f"supports and planes leave {left.max():.3e} of {whole.max():.3e}")
+    for number in results.kept_states:
+        _finite("positions", results.step(int(number)).state.positions)
+
+
+def _look_at_contact(results: Results, name: str, friction: float) -> None:
+    history = results.contact(name)
+    for part in ("pressure", "traction", "gap", "traction_norm"):
+        _finite(f"{name}.{part}", getattr(history, part))
+    if not np.all(history.pressure >= 0):
+        raise Wrong(f"negative pressure in {name}: {history.pressure.min():g}")
+    allowed = ROUND_OFF + OF_TOLERANCE * _tolerance(results)
+    if not np.all(history.traction_norm <= friction * history.pressure * (1 + allowed) + allowed * history.pressure.max()):
+        raise Wrong(f"the cone is left in {name}")
+    size = max(float(np.ptp(body.patch.control_points, axis=0).max()) for body in results.problem.bodies)
+    if results.problem.settings.method == "monolithic" and not np.all(history.gap <= allowed * size):
+        raise Wrong(f"{name} penetrates by {history.gap.max():g}, of bodies of size {size:g}")
+
+
+def _finite(name: str, values: Any) -> None:
+    if not np.isfinite(values).all():
+        raise Wrong(f"exit code 0, and {name} is not finite")
+
+
+def _nothing(results: Results) -> float:
+    """A force that is round-off of the stiffest body."""
+    return max(1e-13 * b.material.young * float(np.ptp(b.patch.control_points, axis=0).max()) ** 2 for b in results.problem.bodies)
+
+
+def _close(one: FloatArray, other: FloatArray, share: float, nothing: float = 0.0) -> bool:
+    return bool(np.all(np.abs(one - other) <= share * max(np.abs(one).max(initial=0.0), np.abs(other).max(initial=0.0)) + nothing))
+
+
+def _twin(data: Any, number: int) -> tuple[Any, float, float] | None:
+    """The scene in other units, or with its tables in another order; the factors of length and modulus. None: nothing to learn."""
+    if any(abs(table[key]) > ORDINARY or 0 < abs(table[key]) < 1 / ORDINARY for table, key in numbers(data)):
+        return None
+    if number % 2:
+        reverse = ("bodies", "contacts", "supports")
+        return {key: dict(reversed(value.items())) if key in reverse else value for key, value in data.items()}, 1.0, 1.0
+    twin = copy.deepcopy(data)
+    materials = twin.setdefault("materials", {})
+    for material in materials.values() if materials else (materials.setdefault("only", {}),):
+        material["young"] = material.get("young", 10.0) * MODULUS
+    _scale(twin, 0)
+    for contact in twin.get("contacts", {}).values():
+        if "tangent" not in contact.get("plane", {"tangent": ()}):
+            contact["plane"].setdefault("point", [0.0, 0.0, 0.0])
+    return twin, LENGTH, MODULUS
+
+
+def _scale(data: Any, power: int) -> None:
+    """Multiply every length below by the factor of length."""
+    entries: Iterable[Any] = data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list) else ()
+    for key, value in entries:
+        own = LENGTHS.get(key, 0) if isinstance(key, str) and not isinstance(value, dict) else power
+        if isinstance(value, dict | list):
+            _scale(value, own)
+        elif own and isinstance(value, float):
+            data[key] = value * LENGTH**own
+
+
+def _compare(results: Results, twin: Results, length: float, modulus: float) -> None:
+    share = 1e-7 + OF_TOLERANCE * _tolerance(results)
+    for support in results.problem.supports:
+        one, other = results.curve("force", support=support.name), twin.curve("force", support=support.name) / (modulus * length**2)
+        if not _close(one, other, share, 100 * _nothing(results)):
+            raise Wrong(f"force of {support.name} is {one[-1]}, but {other[-1]} in other units or another order")
+
+
+def endings(first: int, count: int) -> Iterator[tuple[int, Ending]]:
+    """How the scenes of some numbers end."""
+    for number in range(first, first + count):
+        yield number, tried(lambda folder, number=number: judged(number, folder))  # type: ignore[misc]
+
+
+@case(
+    claim="Fuzzed scenes end right, refused, or stopped with a sentence: no traceback, signal, hang, no numbers that are none, forces in "
+    "balance, contact conditions met, the same in other units and with tables in another order.",
+    tier=lambda count: "gate" if count < 100 else "nightly",
+    grid={"count": (20, 400)},
+    bounds={
+        "right": Bound(at_least=0.15, at_most=1.0, reason="definition: enough of the scenes run to be looked at"),
+        "refused": Bound(at_least=0.15, at_most=1.0, reason="definition: enough of the scenes make no sense"),
+        "stopped": Bound(at_most=0.5, reason="definition: not all of them at their limits"),
+    },
+)
+def scenes(count: int) -> dict[str, float]:
+    """Shares of the endings; one that is wrong is an error that names its number."""
+    return tally(endings(0, count), "python verification/fuzz_at_length.py scenes")
