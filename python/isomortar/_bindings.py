@@ -1,143 +1,35 @@
-"""The only importer of the compiled kernel: checks arrays, turns status codes into exceptions.
+"""The only importer of the compiled kernel but `_sparse`: checks arguments, turns status codes into exceptions.
 
-Arrays have the point index first here (``positions`` is (n, 3)); the kernel sees the same memory with it last.
-Control points, elements and unknowns count from 0.
+Arrays are laid out as `_arrays` says.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any, NoReturn
+import math
+from typing import NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
 
+from isomortar import _arguments as check
+from isomortar._arguments import FloatArray, IntArray
+from isomortar._arrays import Control, Law, MasterArrays, PatchArrays, Pattern, Projections, Response, SlaveArrays
 from isomortar._compiled import kernel as _kernel
 from isomortar.errors import FoldedElementError, InputError, KernelError, LostProjectionError
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int32]
 LongArray = NDArray[np.int64]
+
+# With the arrays, which those who call take from here.
+__all__ = [
+    "ROW_KINDS", "Control", "FloatArray", "IntArray", "Law", "LongArray", "MasterArrays", "PatchArrays", "Pattern", "Projections",
+    "Response", "SlaveArrays", "add_body", "add_values", "augmented_multipliers", "condense_multipliers", "contact_blocks",
+    "contact_forces", "control_quantities", "find_places", "multiplier_rows", "project_points", "slave_tables", "surface_functions",
+]  # fmt: skip
 
 #: Kinds of constraint rows with friction, without, and with the paper's slip sum (isomortar_contact_blocks).
 ROW_KINDS = {"frictionless": 1, "local": 8, "paper": 10}
-#: Largest number of Gauss points per direction: more is taken for a mistake.
-MAX_GAUSS = 64
-
-
-@dataclass(frozen=True)
-class PatchArrays:
-    """A volume patch, flat: families, orders and counts; knots one after the other; global control points; weights."""
-
-    layout: IntArray
-    knots: FloatArray
-    point: IntArray
-    weight: FloatArray
-
-
-@dataclass(frozen=True)
-class MasterArrays:
-    """A master, flat: axis and end of a face and the layout of its patch, or axis 0 and a plane's vectors in `knots`."""
-
-    kind: IntArray
-    knots: FloatArray
-    point: IntArray
-    weight: FloatArray
-
-
-@dataclass(frozen=True)
-class SlaveArrays:
-    """A slave side: control points of each element, functions at the quadrature points, areas, global control points.
-
-    Shapes (elements, local), (points, local), (points,), (slave control points,).
-    """
-
-    nodes: IntArray
-    basis: FloatArray
-    area: FloatArray
-    point: IntArray
-
-
-@dataclass(frozen=True)
-class Pattern:
-    """Compressed rows of 3x3 blocks."""
-
-    start: IntArray
-    column: IntArray
-
-
-@dataclass(frozen=True)
-class Projections:
-    """Slave quadrature points on the master: coordinates, element, whether found, slip increment and whether it counts.
-
-    `fixed`: 1 for coordinates that stay while the point moves, on lines across which the master is only continuous, shape (points, 2).
-    """
-
-    xi: FloatArray
-    element: IntArray
-    fixed: IntArray
-    found: IntArray
-    slip: FloatArray
-    slips: IntArray
-
-
-@dataclass(frozen=True)
-class Control:
-    """Control quantities of every slave control point: <R>, <R R>, <R g>, <R slip>, <R R a_ab>; a_ab at the points."""
-
-    weight: FloatArray
-    square: FloatArray
-    gap: FloatArray
-    slip: FloatArray
-    metric: FloatArray
-    point_metric: FloatArray
-
-
-@dataclass(frozen=True)
-class Law:
-    """Augmented penalty law: penalties (normal, tangential), friction, current multipliers, the paper's slip sum or the local one.
-
-    What supports hold: control points with `bears` 0 bear nothing, and `free`, shape (n, 2, 2), projects the covariant tractions of the
-    others (component, traction) so that nothing is left along it.
-    Trials above (1 - `slip_margin`) mu p slip; `held` control points (1) stick whatever their trial; `forgiving` takes the current
-    traction for the radial part of the slip derivative (formulation.md Section 6).
-    """
-
-    penalties: FloatArray
-    friction: float
-    pressure: FloatArray
-    traction: FloatArray
-    summed: bool
-    bears: IntArray
-    free: FloatArray
-    held: IntArray
-    slip_margin: float = 0.0
-    forgiving: bool = False
-
-
-@dataclass(frozen=True)
-class Response:
-    """Control pressures and tractions, states (0 open, 1 stick, 2 slip), and their slopes."""
-
-    pressure: FloatArray
-    traction: FloatArray
-    state: IntArray
-    pressure_slope: FloatArray
-    traction_slope: FloatArray
-    field_slip: FloatArray
-
-
-def _checked(name: str, array: NDArray[Any], dtype: type, *shape: int) -> NDArray[Any]:
-    """The array, if it has the type, the shape and the memory order that the kernel reads without a copy."""
-    if array.dtype != dtype or array.shape != shape or not array.flags.c_contiguous:
-        raise InputError(f"is {array.dtype}{array.shape}; the kernel needs contiguous {np.dtype(dtype).name}{shape}", name)
-    return array
-
-
-def _finite(name: str, array: FloatArray) -> FloatArray:
-    if not np.isfinite(array).all():
-        raise InputError("holds a value that is not finite", name)
-    return array
+#: What stands for a tangent where none is wanted.
+_NO_START, _NO_COLUMN, _NO_BLOCKS = np.zeros(1, np.int32), np.zeros(1, np.int32), np.zeros((1, 3, 3))
 
 
 def _raise(status: int, place: int) -> NoReturn:
@@ -149,6 +41,75 @@ def _raise(status: int, place: int) -> NoReturn:
     }
     kind, sentence = sentences.get(status, (KernelError, f"the kernel returned status {status} at {place}"))
     raise kind(sentence, place)
+
+
+def _check_bodies(positions: FloatArray, slave: SlaveArrays, master: MasterArrays) -> None:
+    check.finite("positions", check.array("positions", positions, np.float64, None, 3))
+    check.below("slave.point", slave.highest, len(positions), "control point")
+    check.below("master.point", master.highest, len(positions), "control point")
+
+
+def _check_projections(projections: Projections, slave: SlaveArrays, master: MasterArrays) -> None:
+    check.array("projections.found", projections.found, np.int32, len(slave.area))
+    low, high = projections.range
+    if master.elements is not None and not (low.min() >= 0 and np.all(high < master.elements)):
+        raise InputError(f"names elements {low} to {high}; the master has {master.elements}", "projections.element")
+
+
+def _check_control(control: Control, slave: SlaveArrays) -> None:
+    n = len(slave.point)
+    for name, value, shape in (
+        ("weight", control.weight, (n,)),
+        ("square", control.square, (n,)),
+        ("gap", control.gap, (n,)),
+        ("slip", control.slip, (n, 2)),
+        ("metric", control.metric, (n, 3)),
+        ("point_metric", control.point_metric, (len(slave.area), 3)),
+    ):
+        check.array(f"control.{name}", value, np.float64, *shape)
+
+
+def _check_law(law: Law, slave: SlaveArrays) -> None:
+    n = len(slave.point)
+    check.array("law.penalties", law.penalties, np.float64, 2)
+    check.array("law.pressure", law.pressure, np.float64, n)
+    check.array("law.traction", law.traction, np.float64, n, 2)
+    check.array("law.bears", law.bears, np.int32, n)
+    check.array("law.free", law.free, np.float64, n, 2, 2)
+    check.array("law.held", law.held, np.int32, n)
+    check.real("law.friction", law.friction, lambda value: value >= 0, "a number not below 0")
+    check.real("law.slip_margin", law.slip_margin, lambda value: 0 <= value <= 1, "a number from 0 to 1")
+
+
+def _check_response(response: Response, slave: SlaveArrays) -> None:
+    n = len(slave.point)
+    check.array("response.state", response.state, np.int32, n)
+    for name, value, shape in (
+        ("pressure", response.pressure, (n,)),
+        ("traction", response.traction, (n, 2)),
+        ("pressure_slope", response.pressure_slope, (n,)),
+        ("traction_slope", response.traction_slope, (n, 6, 2)),
+        ("field_slip", response.field_slip, (len(slave.area), 2)),
+    ):
+        check.array(f"response.{name}", value, np.float64, *shape)
+
+
+def _check_pattern(name: str, pattern: Pattern, rows: int, columns: int) -> None:
+    """Refuse a pattern with another number of rows, or columns beyond theirs."""
+    check.array(f"{name}.start", pattern.start, np.int32, rows + 1)
+    check.below(f"{name}.column", pattern.highest, columns, "column")
+
+
+def _check_rows(pattern: Pattern, rows: FloatArray, slave_points: int, control_points: int) -> None:
+    _check_pattern("row_pattern", pattern, slave_points, control_points)
+    kinds = check.array("rows", rows, np.float64, len(pattern.column), None, 3).shape[1]
+    if kinds not in ROW_KINDS.values():
+        raise InputError(f"has {kinds} kinds; allowed: {', '.join(map(str, ROW_KINDS.values()))}", "rows")
+
+
+def _check_face(axis: int, side: int) -> None:
+    check.whole("axis", axis, 1, 3)
+    check.whole("side", side, 0, 1)
 
 
 def add_body(
@@ -174,19 +135,20 @@ def add_body(
     FoldedElementError
         J <= 0, with the number of the element.
     """
-    n = len(reference)
-    _finite("positions", _checked("positions", positions, np.float64, n, 3))
-    _checked("forces", forces, np.float64, n, 3)
-    if pattern is None or tangent is None:
-        pattern = Pattern(np.zeros(1, np.int32), np.zeros(1, np.int32))
-        tangent = np.zeros((1, 3, 3))
-        with_tangent = 0
-    else:
-        _checked("tangent", tangent, np.float64, len(pattern.column), 3, 3)
-        with_tangent = 1
+    n = len(check.finite("reference", check.array("reference", reference, np.float64, None, 3)))
+    check.finite("positions", check.array("positions", positions, np.float64, n, 3))
+    check.array("forces", forces, np.float64, n, 3)
+    check.below("patch.point", patch.highest, n, "control point")
+    rule = check.gauss("gauss", gauss, 3)
+    check.real("bulk", bulk, lambda value: value > 0, "a number above 0")
+    check.real("shear", shear, lambda value: value > 0, "a number above 0")
+    start, column, values = _NO_START, _NO_COLUMN, _NO_BLOCKS
+    if pattern is not None and tangent is not None:
+        _check_pattern("pattern", pattern, n, n)
+        start, column, values = pattern.start, pattern.column, check.array("tangent", tangent, np.float64, len(pattern.column), 3, 3)
     jacobian, status, place = _kernel.add_body(
-        patch.layout, patch.knots, patch.point, patch.weight, np.asarray(gauss, np.int32), bulk, shear, positions.T, reference.T,
-        forces.T, with_tangent, pattern.start, pattern.column, tangent.T,
+        patch.layout, patch.knots, patch.point, patch.weight, rule, bulk, shear, positions.T, reference.T,
+        forces.T, int(values is not _NO_BLOCKS), start, column, values.T,
     )  # fmt: skip
     if status:
         _raise(status, place - 1)
@@ -203,8 +165,10 @@ def surface_functions(patch: PatchArrays, axis: int, side: int, xi: FloatArray) 
     functions : ndarray, shape (points, 10, local)
         Values and partial derivatives: 1, u, v, uu, uv, vv, uuu, uuv, uvv, vvv.
     """
-    orders = patch.layout[3:6]
-    local = int(np.prod(orders + 1)) // int(orders[axis - 1] + 1)
+    _check_face(axis, side)
+    first, second, *_ = patch.face(axis)
+    local = first * second
+    check.finite("xi", check.array("xi", xi, np.float64, None, 2))
     nodes, functions = _kernel.surface_functions(patch.layout, patch.knots, patch.point, patch.weight, axis, side, xi.T, local)
     return np.ascontiguousarray(nodes.T), np.ascontiguousarray(functions.T)
 
@@ -213,9 +177,16 @@ def slave_tables(
     patch: PatchArrays, axis: int, side: int, gauss: tuple[int, int], reference: FloatArray, local: int, elements: int
 ) -> tuple[IntArray, FloatArray, FloatArray]:
     """Functions and reference areas at the quadrature points of a face; nodes are numbered within the face."""
-    points = elements * gauss[0] * gauss[1]
+    _check_face(axis, side)
+    first, second, *by_direction = patch.face(axis)
+    check.whole("local", local, first * second, first * second)
+    check.whole("elements", elements, math.prod(by_direction), math.prod(by_direction))
+    check.finite("reference", check.array("reference", reference, np.float64, None, 3))
+    check.below("patch.point", patch.highest, len(reference), "control point")
+    rule = check.gauss("gauss", gauss, 2)
+    points = elements * int(rule[0]) * int(rule[1])
     nodes, basis, area = _kernel.slave_tables(
-        patch.layout, patch.knots, patch.point, patch.weight, axis, side, np.asarray(gauss, np.int32), reference.T, local, elements, points
+        patch.layout, patch.knots, patch.point, patch.weight, axis, side, rule, reference.T, local, elements, points
     )
     return np.ascontiguousarray(nodes.T), np.ascontiguousarray(basis.T), area
 
@@ -231,8 +202,9 @@ def project_points(slave: SlaveArrays, master: MasterArrays, positions: FloatArr
         With the number of the quadrature point.
     """
     q = len(slave.area)
-    _checked("origin", origin, np.float64, q, 2)
-    _checked("had", had, np.int32, q)
+    _check_bodies(positions, slave, master)
+    check.finite("origin", check.array("origin", origin, np.float64, q, 2))
+    check.array("had", had, np.int32, q)
     xi = origin.copy()
     element, fixed, found, slip, slips, status, place = _kernel.project_points(
         slave.nodes.T, slave.basis.T, slave.area, slave.point, master.kind, master.knots, master.point, master.weight, positions.T,
@@ -245,6 +217,8 @@ def project_points(slave: SlaveArrays, master: MasterArrays, positions: FloatArr
 
 def control_quantities(slave: SlaveArrays, master: MasterArrays, positions: FloatArray, projections: Projections) -> Control:
     """Integrate the control quantities of every slave control point."""
+    _check_bodies(positions, slave, master)
+    _check_projections(projections, slave, master)
     weight, square, gap, slip, metric, point_metric = _kernel.control_quantities(
         slave.nodes.T, slave.basis.T, slave.area, slave.point, master.kind, master.knots, master.point, master.weight, positions.T,
         projections.xi.T, projections.element.T, projections.fixed.T, projections.found, projections.slip.T,
@@ -254,11 +228,8 @@ def control_quantities(slave: SlaveArrays, master: MasterArrays, positions: Floa
 
 def augmented_multipliers(slave: SlaveArrays, control: Control, law: Law) -> Response:
     """Control pressures, tractions and states of the law, with their slopes."""
-    n = len(slave.point)
-    _checked("pressure", law.pressure, np.float64, n)
-    _checked("traction", law.traction, np.float64, n, 2)
-    _checked("bears", law.bears, np.int32, n)
-    _checked("free", law.free, np.float64, n, 2, 2)
+    _check_control(control, slave)
+    _check_law(law, slave)
     pressure, traction, state, pressure_slope, traction_slope, field_slip = _kernel.augmented_multipliers(
         slave.nodes.T, slave.basis.T, slave.area, slave.point, control.weight, control.square, control.gap, control.slip.T,
         control.metric.T, control.point_metric.T, int(law.summed), law.penalties, law.friction, law.pressure, law.traction.T,
@@ -277,7 +248,11 @@ def contact_forces(
     forces: FloatArray,
 ) -> None:
     """Add the contact forces on slave and master control points."""
-    _checked("forces", forces, np.float64, len(positions), 3)
+    _check_bodies(positions, slave, master)
+    _check_projections(projections, slave, master)
+    _check_response(response, slave)
+    check.real("friction", friction, lambda value: value >= 0, "a number not below 0")
+    check.array("forces", forces, np.float64, len(positions), 3)
     _kernel.contact_forces(
         slave.nodes.T, slave.basis.T, slave.area, slave.point, master.kind, master.knots, master.point, master.weight, positions.T,
         projections.xi.T, projections.element.T, projections.fixed.T, projections.found, int(friction > 0), response.pressure,
@@ -298,8 +273,13 @@ def contact_blocks(
     tangent: FloatArray,
 ) -> None:
     """Add constraint rows, shape (blocks, kinds, 3), and the geometric tangent, shape (blocks, 3, 3)."""
-    _checked("rows", rows, np.float64, len(row_pattern.column), rows.shape[1], 3)
-    _checked("tangent", tangent, np.float64, len(pattern.column), 3, 3)
+    _check_bodies(positions, slave, master)
+    _check_projections(projections, slave, master)
+    _check_response(response, slave)
+    check.real("friction", friction, lambda value: value >= 0, "a number not below 0")
+    _check_rows(row_pattern, rows, len(slave.point), len(positions))
+    _check_pattern("pattern", pattern, len(positions), len(positions))
+    check.array("tangent", tangent, np.float64, len(pattern.column), 3, 3)
     _kernel.contact_blocks(
         slave.nodes.T, slave.basis.T, slave.area, slave.point, master.kind, master.knots, master.point, master.weight, positions.T,
         projections.xi.T, projections.element.T, projections.fixed.T, projections.found, projections.slips, int(friction > 0),
@@ -319,6 +299,13 @@ def multiplier_rows(
     wide: Pattern,
 ) -> tuple[FloatArray, FloatArray]:
     """Derivatives by the positions of p, t_1, t_2, shape (blocks of `wide`, 3, 3), and of the trial tractions, (blocks, 2, 3)."""
+    points, columns = len(slave.point), max(row_pattern.highest, wide.highest) + 1
+    _check_control(control, slave)
+    _check_law(law, slave)
+    _check_response(response, slave)
+    _check_rows(row_pattern, rows, points, columns)
+    _check_pattern("neighbours", neighbours, points, points)
+    _check_pattern("wide", wide, points, columns)
     changes, trial = _kernel.multiplier_rows(
         slave.nodes.T, slave.basis.T, slave.area, slave.point, control.weight, control.square, control.slip.T, control.metric.T,
         control.point_metric.T, int(law.summed), law.penalties, law.friction, response.state, response.pressure_slope,
@@ -332,6 +319,12 @@ def condense_multipliers(
     state: IntArray, row_pattern: Pattern, rows: FloatArray, wide: Pattern, changes: FloatArray, pattern: Pattern, tangent: FloatArray
 ) -> None:
     """Add the product of constraint rows and derivatives of the multipliers to a tangent."""
+    points, columns = len(check.array("state", state, np.int32, None)), len(pattern.start) - 1
+    _check_rows(row_pattern, rows, points, columns)
+    _check_pattern("wide", wide, points, columns)
+    check.array("changes", changes, np.float64, len(wide.column), 3, 3)
+    _check_pattern("pattern", pattern, columns, columns)
+    check.array("tangent", tangent, np.float64, len(pattern.column), 3, 3)
     _kernel.condense_multipliers(
         state, row_pattern.start, row_pattern.column, rows.T, wide.start, wide.column, changes.T, pattern.start, pattern.column, tangent.T
     )
@@ -347,6 +340,14 @@ def find_places(
     KernelError
         The system lacks an entry of the source.
     """
+    rows, columns = 3 * (len(pattern.start) - 1), 3 * (pattern.highest + 1)
+    unknowns = len(check.array("system_start", system_start, np.int64, None)) - 1
+    check.array("system_column", system_column, np.int64, None)
+    check.compressed("system_start", system_start, len(system_column))
+    check.within("system_column", system_column, 0, unknowns - 1)
+    check.within("row_of", check.array("row_of", row_of, np.int32, rows), -1, unknowns - 1)
+    check.within("column_of", check.array("column_of", column_of, np.int32, None), -1, unknowns - 1)
+    check.below("pattern.column", columns - 1, len(column_of), "unknown")
     places, missing = _kernel.find_places(pattern.start, pattern.column, row_of, column_of, int(transposed), system_start, system_column)
     if missing:
         raise KernelError("the pattern of the linear system lacks an entry of one of its sources")
@@ -355,4 +356,8 @@ def find_places(
 
 def add_values(places: LongArray, source: FloatArray, values: FloatArray) -> None:
     """values[places - 1] += source, where places > 0."""
+    check.array("places", places, np.int64, len(places), 3, 3)
+    check.array("source", source, np.float64, len(places), 3, 3)
+    check.array("values", values, np.float64, None)
+    check.within("places", places, 0, len(values))
     _kernel.add_values(places.reshape(-1), source.reshape(-1), values)

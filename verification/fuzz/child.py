@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import importlib
 import json
 import os
 import resource
@@ -16,6 +17,12 @@ from collections import Counter
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
+
+from isomortar.cli.commands import main
+
+#: What the program loads when it needs it: here once, and not in every child.
+for name in ("cli.progress", "driver", "results.pictures", "results.paraview"):
+    importlib.import_module(f"isomortar.{name}")
 
 #: Endings that are none of the program's mistakes.
 FINE = ("right", "refused", "stopped")
@@ -57,7 +64,7 @@ def tried(action: Callable[[Path], Ending]) -> Ending:
 
 def _act(action: Callable[[Path], Ending], folder: Path, writer: int) -> None:
     """In the child: act, tell the ending, and be gone without what a process does at its end."""
-    resource.setrlimit(resource.RLIMIT_CPU, (CPU_SECONDS, CPU_SECONDS))
+    resource.setrlimit(resource.RLIMIT_CPU, (CPU_SECONDS, CPU_SECONDS + 5))
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     silence = os.open(os.devnull, os.O_RDWR)
@@ -94,8 +101,6 @@ def program(*words: str, folder: Path) -> tuple[int, str]:
     Exception
         What a person would see as a traceback.
     """
-    from isomortar.cli.commands import main
-
     said = folder / "stderr"
     sys.argv = ["isomortar", *words]
     code = 0

@@ -18,7 +18,7 @@ Place = tuple[Any, Any]
 #: What would only make a sound scene long is kept small; beyond these sizes the program must refuse, or it is a moderate number.
 MOST = {"steps": (3, None), "max_iterations": (60, None), "max_augmentations": (60, None), "elements": (4, 2000), "order": (3, 11)}
 EXTREMES: tuple[Any, ...] = (
-    *(0, -1, 1, 64, 65, 100_000, 2**31, 2**53 + 1, 2**63 - 1, -(2**63), 10**30),
+    *(0, -1, 1, 64, 65, 10_000_000, 2**31, 2**53 + 1, 2**63 - 1, -(2**63), 10**30),
     *(0.0, -0.0, 0.5, -1.0, 0.4999999, 1e-12, 1e6, 1e12, 1e20, 1e-160, 1e156, 5e-324, 1e-300, 1e300, -1e300),
     *(float("nan"), float("inf"), float("-inf")),
 )

@@ -1,0 +1,123 @@
+"""Checks of what is handed to the kernel, which itself believes what it is told: each raises an error that names the argument."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from isomortar.errors import InputError
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int32]
+
+#: Largest orders by family of the layout of a patch: 1 NURBS, 2 Lagrange.
+MAX_ORDERS = {1: 10, 2: 4}
+#: Largest number of Gauss points per direction: more is taken for a mistake.
+MAX_GAUSS = 64
+
+
+def array(name: str, value: Any, dtype: type, *shape: int | None) -> NDArray[Any]:
+    """The array, if it has the type, the shape (None: any length) and the memory order that the kernel reads without a copy."""
+    if not isinstance(value, np.ndarray):
+        raise InputError(f"is of type {type(value).__name__}; the kernel needs an array of {np.dtype(dtype).name}", name)
+    fits = len(value.shape) == len(shape) and all(n is None or n == m for n, m in zip(shape, value.shape, strict=True))
+    if value.dtype != dtype or not fits or not value.flags.c_contiguous:
+        wanted = ", ".join("any" if n is None else str(n) for n in shape)
+        raise InputError(f"is {value.dtype}{value.shape}; the kernel needs contiguous {np.dtype(dtype).name}({wanted})", name)
+    return value
+
+
+def finite(name: str, value: FloatArray) -> FloatArray:
+    """The array, if all of it is finite."""
+    if not np.isfinite(value).all():
+        raise InputError("holds a value that is not finite", name)
+    return value
+
+
+def within(name: str, value: NDArray[Any], low: int, high: int) -> None:
+    """Refuse an array of integers with one outside of `low` to `high`."""
+    if value.size and not low <= value.min() <= value.max() <= high:
+        raise InputError(f"holds {value.min()} to {value.max()}; allowed: {low} to {high}", name)
+
+
+def whole(name: str, value: Any, low: int, high: int) -> int:
+    """The whole number, if it is one from `low` to `high`."""
+    if isinstance(value, bool | np.bool_) or not isinstance(value, int | np.integer) or not low <= value <= high:
+        raise InputError(f"is {value!r:.60}; allowed: a whole number from {low} to {high}", name)
+    return int(value)
+
+
+def real(name: str, value: Any, allowed: Callable[[float], bool], sentence: str) -> float:
+    """The number, if it is finite and allowed; `sentence` says what is."""
+    known = isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
+    if not known or not abs(value) <= np.finfo(np.float64).max or not allowed(float(value)):
+        raise InputError(f"is {value!r:.60}; allowed: {sentence}", name)
+    return float(value)
+
+
+def gauss(name: str, value: Any, directions: int) -> IntArray:
+    """Numbers of Gauss points by direction, as the kernel reads them."""
+    if not isinstance(value, tuple | list | np.ndarray) or len(value) != directions:
+        raise InputError(f"is {value!r:.60}; allowed: {directions} numbers of points", name)
+    return np.array([whole(name, points, 1, MAX_GAUSS) for points in value], dtype=np.int32)
+
+
+def patch(layout: Any, knots: Any, point: Any, weight: Any) -> None:
+    """Refuse the flat arrays of a patch (`PatchArrays`) that do not fit together."""
+    array("layout", layout, np.int32, 9)
+    families, orders, counts = layout[:3].tolist(), layout[3:6].tolist(), layout[6:].tolist()
+    array("knots", knots, np.float64, None)
+    first = 0
+    for family, order, count in zip(families, orders, counts, strict=True):
+        whole("layout", family, 1, 2)
+        whole("layout", order, 1, MAX_ORDERS[family])
+        if count <= order or (family == 2 and (count - 1) % order):
+            raise InputError(f"has {count} control points for order {order} along a direction", "layout")
+        last = first + (count + order + 1 if family == 1 else (count - 1) // order + 1)
+        _knots(knots[first:last], last - first, order if family == 1 else 0)
+        first = last
+    array("knots", knots, np.float64, first)
+    points = int(np.prod(counts, dtype=np.int64))
+    array("point", point, np.int32, points)
+    within("point", point, 0, np.iinfo(np.int32).max)
+    array("weight", weight, np.float64, points)
+    if not (finite("weight", weight) > 0).all():
+        raise InputError("holds a weight that is not positive", "weight")
+
+
+def _knots(knots: FloatArray, count: int, order: int) -> None:
+    """Refuse a direction's knots where they do not rise, or not from an end repeated order + 1 times to the other; 0: boundaries."""
+    rise = np.diff(finite("knots", knots))
+    if len(knots) != count or (rise < 0).any() or not knots[-1] > knots[0]:
+        raise InputError("must rise, as many for each direction as its layout asks for", "knots")
+    ends = (rise[:order] == 0).all() and (rise[count - 1 - order :] == 0).all()
+    if not ends or (order == 0 and not (rise > 0).all()):
+        raise InputError("must rise strictly (Lagrange), or begin and end with order + 1 equal values (NURBS)", "knots")
+
+
+def rows(start: Any, column: Any) -> None:
+    """Refuse compressed rows of blocks that do not rise from 0 to the number of blocks, or with negative columns."""
+    array("start", start, np.int32, None)
+    array("column", column, np.int32, None)
+    compressed("start", start, len(column))
+    within("column", column, 0, np.iinfo(np.int32).max)
+
+
+def compressed(name: str, start: NDArray[Any], entries: int) -> None:
+    """Refuse where the rows of something compressed begin, if that does not rise from 0 to the number of entries."""
+    if not len(start) or start[0] != 0 or start[-1] != entries or (np.diff(start) < 0).any():
+        raise InputError(f"must rise from 0 to the number of entries, {entries}", name)
+
+
+def highest(*arrays: NDArray[Any]) -> int:
+    """The largest of some arrays of integers; -1 of none."""
+    return max((int(entries.max()) for entries in arrays if entries.size), default=-1)
+
+
+def below(name: str, number: int, count: int, what: str) -> None:
+    """Refuse an argument that names more than there is: control points, columns."""
+    if number >= count:
+        raise InputError(f"names {what} {number}; there are {count}", name)

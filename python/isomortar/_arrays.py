@@ -1,0 +1,199 @@
+"""The arrays that the kernel reads, checked where they are made.
+
+Arrays have the point index first here (``positions`` is (n, 3)); the kernel sees the same memory with it last.
+Control points, elements and unknowns count from 0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from isomortar import _arguments as check
+from isomortar._arguments import FloatArray, IntArray
+from isomortar.errors import InputError
+
+
+@dataclass(frozen=True)
+class PatchArrays:
+    """A volume patch, flat: families, orders and counts; knots one after the other; global control points; weights."""
+
+    layout: IntArray
+    knots: FloatArray
+    point: IntArray
+    weight: FloatArray
+
+    def __post_init__(self) -> None:
+        check.patch(self.layout, self.knots, self.point, self.weight)
+
+    @cached_property
+    def highest(self) -> int:
+        """Largest number of a control point."""
+        return check.highest(self.point)
+
+    @cached_property
+    def elements(self) -> tuple[int, int, int]:
+        """Elements (non-empty knot spans) by direction."""
+        family, order, count = self.layout.reshape(3, 3)
+        lengths = np.where(family == 1, count + order + 1, (count - 1) // order + 1)
+        u, v, w = (len(np.unique(part)) - 1 for part in np.split(self.knots, np.cumsum(lengths[:2])))
+        return u, v, w
+
+    def face(self, axis: int) -> tuple[int, int, int, int]:
+        """Functions of an element and elements by direction of the faces across an axis (1 to 3)."""
+        first, second = axis % 3, (axis + 1) % 3
+        return int(self.layout[3 + first]) + 1, int(self.layout[3 + second]) + 1, self.elements[first], self.elements[second]
+
+
+@dataclass(frozen=True)
+class MasterArrays:
+    """A master, flat: axis and end of a face and the layout of its patch, or axis 0 and a plane's vectors in `knots`."""
+
+    kind: IntArray
+    knots: FloatArray
+    point: IntArray
+    weight: FloatArray
+
+    def __post_init__(self) -> None:
+        check.array("kind", self.kind, np.int32, 11)
+        check.whole("kind", self.kind[0], 0, 3)
+        if self.kind[0]:
+            check.whole("kind", self.kind[1], 0, 1)
+            check.patch(self.kind[2:], self.knots, self.point, self.weight)
+        else:
+            check.finite("knots", check.array("knots", self.knots, np.float64, 9))
+            check.array("point", self.point, np.int32, None)
+            check.array("weight", self.weight, np.float64, len(self.point))
+
+    @cached_property
+    def highest(self) -> int:
+        """Largest number of a control point; -1: a plane has none."""
+        return check.highest(self.point) if self.kind[0] else -1
+
+    @cached_property
+    def elements(self) -> tuple[int, int] | None:
+        """Elements by direction of the surface; None: a plane."""
+        if not self.kind[0]:
+            return None
+        return PatchArrays(self.kind[2:], self.knots, self.point, self.weight).face(int(self.kind[0]))[2:]
+
+
+@dataclass(frozen=True)
+class SlaveArrays:
+    """A slave side: control points of each element, functions at the quadrature points, areas, global control points.
+
+    Shapes (elements, local), (points, local), (points,), (slave control points,).
+    """
+
+    nodes: IntArray
+    basis: FloatArray
+    area: FloatArray
+    point: IntArray
+
+    def __post_init__(self) -> None:
+        elements, local = check.array("nodes", self.nodes, np.int32, None, None).shape
+        points = len(check.finite("area", check.array("area", self.area, np.float64, None)))
+        check.finite("basis", check.array("basis", self.basis, np.float64, points, local))
+        check.array("point", self.point, np.int32, None)
+        check.within("nodes", self.nodes, 0, len(self.point) - 1)
+        check.within("point", self.point, 0, np.iinfo(np.int32).max)
+        if not elements or points % elements:
+            raise InputError(f"has {points} quadrature points for {elements} elements; allowed: as many in each element", "area")
+
+    @cached_property
+    def highest(self) -> int:
+        """Largest number of a control point."""
+        return check.highest(self.point)
+
+
+@dataclass(frozen=True)
+class Pattern:
+    """Compressed rows of 3x3 blocks."""
+
+    start: IntArray
+    column: IntArray
+
+    def __post_init__(self) -> None:
+        check.rows(self.start, self.column)
+
+    @cached_property
+    def highest(self) -> int:
+        """Largest number of a column."""
+        return check.highest(self.column)
+
+
+@dataclass(frozen=True)
+class Projections:
+    """Slave quadrature points on the master: coordinates, element, whether found, slip increment and whether it counts.
+
+    `fixed`: 1 for coordinates that stay while the point moves, on lines across which the master is only continuous, shape (points, 2).
+    """
+
+    xi: FloatArray
+    element: IntArray
+    fixed: IntArray
+    found: IntArray
+    slip: FloatArray
+    slips: IntArray
+
+    def __post_init__(self) -> None:
+        points = len(check.array("found", self.found, np.int32, None))
+        check.array("xi", self.xi, np.float64, points, 2)
+        check.array("element", self.element, np.int32, points, 2)
+        check.array("fixed", self.fixed, np.int32, points, 2)
+        check.array("slip", self.slip, np.float64, points, 2)
+        check.array("slips", self.slips, np.int32, points)
+
+    @cached_property
+    def range(self) -> tuple[IntArray, IntArray]:
+        """Lowest and highest element, by direction, of the points that were found."""
+        found = self.element[self.found != 0]
+        return found.min(axis=0, initial=0), found.max(axis=0, initial=-1)
+
+
+@dataclass(frozen=True)
+class Control:
+    """Control quantities of every slave control point: <R>, <R R>, <R g>, <R slip>, <R R a_ab>; a_ab at the points."""
+
+    weight: FloatArray
+    square: FloatArray
+    gap: FloatArray
+    slip: FloatArray
+    metric: FloatArray
+    point_metric: FloatArray
+
+
+@dataclass(frozen=True)
+class Law:
+    """Augmented penalty law: penalties (normal, tangential), friction, current multipliers, the paper's slip sum or the local one.
+
+    What supports hold: control points with `bears` 0 bear nothing, and `free`, shape (n, 2, 2), projects the covariant tractions of the
+    others (component, traction) so that nothing is left along it.
+    Trials above (1 - `slip_margin`) mu p slip; `held` control points (1) stick whatever their trial; `forgiving` takes the current
+    traction for the radial part of the slip derivative (formulation.md Section 6).
+    """
+
+    penalties: FloatArray
+    friction: float
+    pressure: FloatArray
+    traction: FloatArray
+    summed: bool
+    bears: IntArray
+    free: FloatArray
+    held: IntArray
+    slip_margin: float = 0.0
+    forgiving: bool = False
+
+
+@dataclass(frozen=True)
+class Response:
+    """Control pressures and tractions, states (0 open, 1 stick, 2 slip), and their slopes."""
+
+    pressure: FloatArray
+    traction: FloatArray
+    state: IntArray
+    pressure_slope: FloatArray
+    traction_slope: FloatArray
+    field_slip: FloatArray
