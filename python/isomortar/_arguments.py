@@ -21,12 +21,12 @@ MAX_GAUSS = 64
 
 def array(name: str, value: Any, dtype: type, *shape: int | None) -> NDArray[Any]:
     """The array, if it has the type, the shape (None: any length) and the memory order that the kernel reads without a copy."""
+    wanted = f"contiguous {np.dtype(dtype).name}({', '.join('any' if n is None else str(n) for n in shape)})"
     if not isinstance(value, np.ndarray):
-        raise InputError(f"is of type {type(value).__name__}; the kernel needs an array of {np.dtype(dtype).name}", name)
+        raise InputError(f"is {type(value).__name__}; the kernel needs {wanted}", name)
     fits = len(value.shape) == len(shape) and all(n is None or n == m for n, m in zip(shape, value.shape, strict=True))
     if value.dtype != dtype or not fits or not value.flags.c_contiguous:
-        wanted = ", ".join("any" if n is None else str(n) for n in shape)
-        raise InputError(f"is {value.dtype}{value.shape}; the kernel needs contiguous {np.dtype(dtype).name}({wanted})", name)
+        raise InputError(f"is {value.dtype}{value.shape}; the kernel needs {wanted}", name)
     return value
 
 
@@ -56,6 +56,13 @@ def real(name: str, value: Any, allowed: Callable[[float], bool], sentence: str)
     if not known or not abs(value) <= np.finfo(np.float64).max or not allowed(float(value)):
         raise InputError(f"is {value!r:.60}; allowed: {sentence}", name)
     return float(value)
+
+
+def flag(name: str, value: Any) -> int:
+    """1 or 0 for a truth value."""
+    if not isinstance(value, bool | np.bool_):
+        raise InputError(f"is {value!r:.60}; allowed: True, False", name)
+    return int(value)
 
 
 def gauss(name: str, value: Any, directions: int) -> IntArray:

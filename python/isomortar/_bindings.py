@@ -78,6 +78,8 @@ def _check_law(law: Law, slave: SlaveArrays) -> None:
     check.array("law.free", law.free, np.float64, n, 2, 2)
     check.array("law.held", law.held, np.int32, n)
     check.real("law.friction", law.friction, lambda value: value >= 0, "a number not below 0")
+    check.flag("law.summed", law.summed)
+    check.flag("law.forgiving", law.forgiving)
     check.real("law.slip_margin", law.slip_margin, lambda value: 0 <= value <= 1, "a number from 0 to 1")
 
 
@@ -348,7 +350,9 @@ def find_places(
     check.within("row_of", check.array("row_of", row_of, np.int32, rows), -1, unknowns - 1)
     check.within("column_of", check.array("column_of", column_of, np.int32, None), -1, unknowns - 1)
     check.below("pattern.column", columns - 1, len(column_of), "unknown")
-    places, missing = _kernel.find_places(pattern.start, pattern.column, row_of, column_of, int(transposed), system_start, system_column)
+    places, missing = _kernel.find_places(
+        pattern.start, pattern.column, row_of, column_of, check.flag("transposed", transposed), system_start, system_column
+    )
     if missing:
         raise KernelError("the pattern of the linear system lacks an entry of one of its sources")
     return places.T
@@ -356,7 +360,7 @@ def find_places(
 
 def add_values(places: LongArray, source: FloatArray, values: FloatArray) -> None:
     """values[places - 1] += source, where places > 0."""
-    check.array("places", places, np.int64, len(places), 3, 3)
+    check.array("places", places, np.int64, None, 3, 3)
     check.array("source", source, np.float64, len(places), 3, 3)
     check.array("values", values, np.float64, None)
     check.within("places", places, 0, len(values))

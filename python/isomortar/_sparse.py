@@ -10,6 +10,7 @@ from typing import Literal, Self, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from isomortar import _arguments as check
 from isomortar._compiled import kernel as _kernel
 from isomortar.errors import InputError, KernelError, SingularSystemError
 
@@ -23,6 +24,8 @@ _OK, _SINGULAR, _STALE_HANDLE, _OUT_OF_MEMORY = 0, 5, 6, 7
 #: eighth faster. These can address 2 GiB; what the estimate misses, `factorise` repeats with 64.
 NARROW_LIMIT = 0.9 * 2.0**31
 
+#: Most steps of iterative refinement that anyone can want: more is taken for a mistake.
+MAX_REFINEMENT = 1000
 #: Orderings on offer: METIS's nested dissection wins on large solids, approximate minimum degree on small contact-heavy systems.
 Ordering = Literal["metis", "amd"]
 ORDERINGS: tuple[Ordering, ...] = get_args(Ordering)
@@ -141,7 +144,8 @@ class SparseLU:
         InputError
             Wrong type or shape of `values`.
         """
-        _check_array("values", values, np.float64, self._indices.shape)
+        check.array("values", values, np.float64, len(self._indices))
+        check.real("rcond_min", rcond_min, lambda value: 0 <= value < 1, "a number from 0 to below 1")
         _check_finite(values, self._indptr)
         with self._lock:
             self._values = None
@@ -182,13 +186,15 @@ class SparseLU:
         KernelError
             Nothing is factorised, an entry of `b` is not finite (`place`: its row), or UMFPACK failed.
         InputError
-            Wrong shape of `b`, or `refine` negative.
+            Wrong type or shape of `b`, or `refine` negative.
         """
-        b = np.asarray(b, dtype=np.float64)
+        b = np.asarray(b)
+        if b.dtype.kind not in "iuf":
+            raise InputError(f"is of type {b.dtype}; allowed: real numbers", "b")
+        b = b.astype(np.float64, copy=False)
         if b.ndim not in (1, 2) or len(b) != self.unknowns:
             raise InputError(f"has shape {b.shape}; allowed: ({self.unknowns},) or ({self.unknowns}, k)", "b")
-        if refine < 0:
-            raise InputError(f"is {refine}; allowed: 0 or more steps", "refine")
+        check.whole("refine", refine, 0, MAX_REFINEMENT)
         columns = b.reshape(self.unknowns, -1)
         finite = np.isfinite(columns).all(axis=1)
         if not finite.all():
@@ -202,24 +208,14 @@ class SparseLU:
         return np.asarray(x).reshape(b.shape)
 
 
-def _check_array(name: str, array: np.ndarray, dtype: type, shape: tuple[int, ...] | None = None) -> None:
-    """Refuse an array that the kernel would have to copy or convert."""
-    if not isinstance(array, np.ndarray) or array.dtype != dtype or array.ndim != 1 or not array.flags.c_contiguous:
-        found = f"{array.dtype} of shape {array.shape}" if isinstance(array, np.ndarray) else type(array).__name__
-        raise InputError(f"is {found}; allowed: one contiguous row of {np.dtype(dtype)}", name)
-    if shape is not None and array.shape != shape:
-        raise InputError(f"has shape {array.shape}; the pattern needs {shape}", name)
-
-
 def _check_pattern(indptr: LongArray, indices: LongArray) -> None:
     """Refuse what is not a square pattern in compressed rows with sorted columns."""
-    _check_array("indptr", indptr, np.int64)
-    _check_array("indices", indices, np.int64)
+    check.array("indptr", indptr, np.int64, None)
+    check.array("indices", indices, np.int64, None)
     n = len(indptr) - 1
     if n < 1:
         raise InputError("has no rows; a matrix needs one at least", "indptr")
-    if indptr[0] != 0 or indptr[-1] != len(indices) or np.any(np.diff(indptr) < 0):
-        raise InputError(f"must rise from 0 to the number of entries, {len(indices)}", "indptr")
+    check.compressed("indptr", indptr, len(indices))
     if len(indices) and not 0 <= indices.min() <= indices.max() < n:
         raise InputError(f"has columns outside 0 to {n - 1}", "indices")
     rising = np.diff(indices, append=n) > 0

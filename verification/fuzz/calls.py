@@ -1,0 +1,179 @@
+"""Fuzzed calls of the kernel: wrong sizes, layouts, types, ranges and numbers end in an exception that names the argument."""
+
+from __future__ import annotations
+
+import copy
+import functools
+import random
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from dataclasses import fields, is_dataclass, replace
+from pathlib import Path
+from typing import Any
+from unittest.mock import patch
+
+import numpy as np
+from fuzz.child import Ending, Wrong, tally, tried
+
+from isomortar import _bindings
+from isomortar._sparse import SparseLU
+from isomortar.errors import InputError, IsomortarError
+from isomortar.harness import Bound, case
+from isomortar.scene import Scene
+from isomortar.solve.simulation import Simulation
+
+#: Every routine of the kernel's interface; those of the sparse LU at the end.
+ROUTINES = (
+    *("add_body", "surface_functions", "slave_tables", "project_points", "control_quantities", "augmented_multipliers"),
+    *("contact_forces", "contact_blocks", "multiplier_rows", "condense_multipliers", "find_places", "add_values"),
+    *("analyse", "factorise", "solve"),
+)
+#: A tiny scene that calls them all but `surface_functions`: condensed multipliers are Uzawa's, the paper's slip sum has neighbours.
+SCENE, SETTINGS = (
+    "press",
+    (
+        *("bodies.block.mesh.elements=[2,2,1]", "bodies.block.mesh.order=[2,2,1]", "stages.press.steps=1", "solver.method='uzawa'"),
+        *("stages.press.motions.top.translate=[0.01,0,-0.2]", "solver.slip_sum='paper'"),
+    ),
+)
+_INTEGERS = (-1, 0, 1, 2, 7, 63, 65, 1000, 2**31 - 1, -(2**31), 2**40)
+_REALS = (0.0, -1.0, 1.0, 1e300, -1e300, 5e-324, float("nan"), float("inf"), float("-inf"))
+_STRANGERS: tuple[Any, ...] = (None, "x", [], (), {}, 2.5, True, 1j, -1, 0, 10**30, float("nan"), float("inf"), 1e300)
+
+
+@functools.cache
+def sound() -> dict[str, tuple[Callable[..., Any], dict[str, Any]]]:
+    """Each routine with arguments as a run gives them, those of its last call."""
+    heard: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {}
+    with ExitStack() as stack:
+        for name in ROUTINES[:-3]:
+            stack.enter_context(patch.object(_bindings, name, _listener(name, heard)))
+        last = list(Simulation(Scene.load(SCENE, SETTINGS).problem()).run())[-1]
+        assert last.contacts[0].active > 0
+    face = heard["slave_tables"][1]
+    points = np.random.default_rng(1).random((5, 2))
+    heard["surface_functions"] = _bindings.surface_functions, {"patch": face["patch"], "axis": 3, "side": 0, "xi": points}
+    heard |= _sparse()
+    assert heard.keys() == {*ROUTINES}
+    return heard
+
+
+def _listener(name: str, heard: dict[str, tuple[Callable[..., Any], dict[str, Any]]]) -> Callable[..., Any]:
+    routine = getattr(_bindings, name)
+    names = routine.__code__.co_varnames[: routine.__code__.co_argcount]
+
+    def call(*given: Any) -> Any:
+        heard[name] = routine, copy.deepcopy(dict(zip(names, given, strict=False)))
+        return routine(*given)
+
+    return call
+
+
+def _sparse() -> dict[str, tuple[Callable[..., Any], dict[str, Any]]]:
+    start, column = np.array([0, 2, 4, 5], dtype=np.int64), np.array([0, 1, 0, 1, 2], dtype=np.int64)
+    values = np.array([2.0, 1.0, 1.0, 3.0, 4.0])
+
+    def analyse(indptr: Any, indices: Any, ordering: Any) -> Any:
+        return SparseLU(indptr, indices, ordering=ordering).factorise(values).solve(np.ones(3))
+
+    def factorise(values: Any, rcond_min: Any) -> Any:
+        return SparseLU(start, column).factorise(values, rcond_min=rcond_min).solve(np.ones(3))
+
+    def solve(b: Any, refine: Any) -> Any:
+        return SparseLU(start, column).factorise(values).solve(b, refine=refine)
+
+    return {
+        "analyse": (analyse, {"indptr": start, "indices": column, "ordering": "amd"}),
+        "factorise": (factorise, {"values": values, "rcond_min": 1e-13}),
+        "solve": (solve, {"b": np.ones((3, 2)), "refine": 2}),
+    }
+
+
+def called(number: int, _: Path) -> Ending:
+    """Call a routine with one of its arguments changed, or a field of one."""
+    chance = random.Random(number)
+    routine, arguments = copy.deepcopy(sound()[ROUTINES[number % len(ROUTINES)]])
+    name = chance.choice(list(arguments))
+    place = name
+    try:
+        if is_dataclass(arguments[name]):
+            part = chance.choice(fields(arguments[name])).name
+            place = f"{name}.{part}"
+            arguments[name] = replace(arguments[name], **{part: _changed(getattr(arguments[name], part), chance)})
+        else:
+            arguments[name] = _changed(arguments[name], chance)
+        routine(**arguments)
+    except InputError as error:
+        if not error.field:
+            raise Wrong(f"{routine.__name__}, {place}: names no argument: {error}") from error
+        return Ending("refused", f"{routine.__name__}, {place}: {error}")
+    except IsomortarError as error:
+        return Ending("stopped", f"{routine.__name__}, {place}: {error}")
+    except Exception as error:
+        raise Wrong(f"{routine.__name__}, {place}: {type(error).__name__}: {error}") from error
+    return Ending("right", f"{routine.__name__}, {place}")
+
+
+def _changed(value: Any, chance: random.Random) -> Any:
+    if isinstance(value, np.ndarray) and chance.random() < 0.9:
+        return chance.choice((_retyped, _reshaped, _resized, _rearranged, _other_entry, _other_entry, _other_entry, _shuffled))(
+            value, chance
+        )
+    return chance.choice(_STRANGERS)
+
+
+def _retyped(value: Any, chance: random.Random) -> Any:
+    return value.astype(chance.choice((np.float32, np.float64, np.int16, np.int32, np.int64, np.uint64, np.complex128, bool, object, "S3")))
+
+
+def _reshaped(value: Any, chance: random.Random) -> Any:
+    return chance.choice((value.ravel(), value[None], value[..., None], np.swapaxes(value, 0, -1), value.reshape(-1, 1)))
+
+
+def _resized(value: Any, chance: random.Random) -> Any:
+    axis, more = chance.randrange(value.ndim), np.zeros(value.shape, value.dtype)
+    fewer = np.ascontiguousarray(np.take(value, range(chance.randrange(value.shape[axis] + 1)), axis=axis))
+    return chance.choice((fewer, np.concatenate([value, more], axis=axis), np.concatenate([value, value[:1]])))
+
+
+def _rearranged(value: Any, chance: random.Random) -> Any:
+    doubled = np.repeat(value, 2, axis=-1)
+    return chance.choice((np.asfortranarray(value), doubled[..., ::2], value[::-1], value.byteswap().view(value.dtype.newbyteorder())))
+
+
+def _other_entry(value: Any, chance: random.Random) -> Any:
+    if value.size:
+        numbers: tuple[Any, ...] = _INTEGERS if value.dtype.kind == "i" else _REALS
+        limits = np.iinfo(value.dtype) if value.dtype.kind == "i" else np.finfo(value.dtype)
+        number = chance.choice(numbers)
+        value.flat[chance.randrange(value.size)] = np.clip(number, limits.min, limits.max) if value.dtype.kind == "i" else number
+    return value
+
+
+def _shuffled(value: Any, chance: random.Random) -> Any:
+    order = list(range(len(value)))
+    chance.shuffle(order)
+    return np.ascontiguousarray(value[order])
+
+
+def endings(first: int, count: int) -> Iterator[tuple[int, Ending]]:
+    """How the calls of some numbers end."""
+    sound()
+    for number in range(first, first + count):
+        yield number, tried(functools.partial(called, number))
+
+
+@case(
+    claim="Calls of the kernel with a wrong size, rank, layout or type, with numbers that are none or too large, with places that do not "
+    "exist end in an exception that names the argument: no signal, no exception of another kind.",
+    tier=lambda count: "gate" if count < 1000 else "nightly",
+    grid={"count": (150, 6000)},
+    bounds={
+        "right": Bound(at_least=0.05, at_most=0.7, reason="definition: some changes are sound, such as other knots"),
+        "refused": Bound(at_least=0.3, at_most=1.0, reason="definition: most changes make no sense"),
+        "stopped": Bound(at_most=0.2, reason="definition: a matrix or positions that are none"),
+    },
+)
+def calls(count: int) -> dict[str, float]:
+    """Shares of the endings; one that is wrong is an error that names its number."""
+    return tally(endings(0, count), "python verification/fuzz_at_length.py calls")
