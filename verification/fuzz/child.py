@@ -18,10 +18,10 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from isomortar.cli.commands import main
+from isomortar.cli import main
 
 #: What the program loads when it needs it: here once, and not in every child.
-for name in ("cli.progress", "driver", "results.pictures", "results.paraview"):
+for name in ("cli.commands", "cli.progress", "driver", "results.pictures", "results.paraview"):
     importlib.import_module(f"isomortar.{name}")
 
 #: Endings that are none of the program's mistakes.

@@ -144,7 +144,7 @@ def _scale(data: Any, power: int) -> None:
         own = LENGTHS.get(key, 0) if isinstance(key, str) and not isinstance(value, dict) else power
         if isinstance(value, dict | list):
             _scale(value, own)
-        elif own and isinstance(value, float):
+        elif own and isinstance(value, int | float):
             data[key] = value * LENGTH**own
 
 
