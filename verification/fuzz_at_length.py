@@ -17,10 +17,10 @@ from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from multiprocessing import get_context
 
-from fuzz import calls, scenes
+from fuzz import calls, files, scenes
 from fuzz.child import FINE, Ending
 
-KINDS = {"calls": calls.endings, "scenes": scenes.endings}
+KINDS = {"calls": calls.endings, "files": files.endings, "scenes": scenes.endings}
 #: Cases that one process takes at a time.
 SHARE = 20
 

@@ -1,0 +1,141 @@
+"""The tools that watch a kernel at work: how it is built for each, how its process is started, and what was seen."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import xml.etree.ElementTree as Xml
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib.machinery import EXTENSION_SUFFIXES
+from pathlib import Path
+
+PROJECT = Path(__file__).resolve().parents[2]
+#: What of a checkout makes the kernel.
+_PARTS = ("meson.build", "meson.options", "fortran", "tools/f2py_wrap.py")
+_KERNEL = f"_kernel{EXTENSION_SUFFIXES[0]}"
+#: Seconds after which a build or a watched process has failed.
+_BUILD, _WORK = 600, 1500
+#: valgrind knows no AVX-512. One thread: the runtime of OpenMP is not the kernel's.
+_ENVIRONMENT = {"OPENBLAS_CORETYPE": "Haswell", "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+
+
+@dataclass(frozen=True)
+class Tool:
+    """A tool: options of the build, words before the command, variables of the environment, what a report looks like.
+
+    `{log}` in words and variables is where reports go; a report of memcheck counts where a frame of it is the kernel's.
+    """
+
+    build: tuple[str, ...]
+    words: tuple[str, ...] = ()
+    variables: tuple[tuple[str, str], ...] = ()
+    report: str = ""
+
+
+def _library(name: str) -> str:
+    return subprocess.run(["gcc", f"-print-file-name={name}"], capture_output=True, text=True, check=True).stdout.strip()
+
+
+TOOLS = {
+    "bounds": Tool(("--buildtype=debug",), report=r"Fortran runtime error: .*"),
+    "address": Tool(
+        ("--buildtype=debugoptimized", "-Db_sanitize=address,undefined", "-Db_lundef=false"),
+        variables=(
+            ("LD_PRELOAD", "libasan.so libubsan.so"),
+            ("ASAN_OPTIONS", "detect_leaks=0:log_path={log}"),  # Python leaves memory to the system at its end
+            ("UBSAN_OPTIONS", "print_stacktrace=1:log_path={log}"),
+        ),
+        report=r"ERROR: AddressSanitizer.*|runtime error: .*",
+    ),
+    "memcheck": Tool(
+        ("--buildtype=debugoptimized",),
+        words=("valgrind", "--tool=memcheck", "--xml=yes", "--xml-file={log}.xml", "--num-callers=30", "--undef-value-errors=yes"),
+        variables=(("PYTHONMALLOC", "malloc"),),
+    ),
+}
+
+
+def is_missing(name: str) -> str:
+    """The program that a tool lacks here; empty where it is all there."""
+    needed = {"memcheck": "valgrind"}.get(name, "gcc")
+    if shutil.which(needed) is None:
+        return needed
+    return "" if name != "address" or Path(_library("libasan.so")).is_absolute() else "libasan.so"
+
+
+def sources(folder: Path) -> Path:
+    """A copy of what makes the kernel."""
+    (folder / "python/isomortar").mkdir(parents=True)
+    for part in _PARTS:
+        (folder / part).parent.mkdir(exist_ok=True)
+        copy = shutil.copytree if (PROJECT / part).is_dir() else shutil.copy2
+        copy(PROJECT / part, folder / part)
+    return folder
+
+
+def build(tool: Tool, folder: Path) -> Path:
+    """The kernel for a tool, from the sources in a folder; built again where they changed."""
+    if not (folder / "build").exists():
+        _run(["meson", "setup", "build", "-Db_lto=false", *tool.build], folder)
+    _run(["ninja", "-C", "build", f"fortran/{_KERNEL}"], folder)
+    return folder / "build/fortran" / _KERNEL
+
+
+def watched(tool: Tool, kernel: Path, package: Path, work: Path, words: Sequence[str]) -> tuple[list[str], int]:
+    """Run a program on a kernel under a tool: the reports, and the exit code.
+
+    `package` holds a copy of the package, which takes the kernel; `work` is the program.
+    """
+    shutil.copy2(kernel, package / "isomortar" / _KERNEL)
+    log = package / "reports"
+    for old in package.glob("reports*"):
+        old.unlink()
+    # With `-S`: the import hook of an editable install would come first.
+    start = f"import runpy, sys; sys.path[:0] = [{str(package)!r}]; sys.path += {[p for p in sys.path if p]!r}; "
+    start += f"sys.argv = {[str(work), *words]!r}; runpy.run_path({str(work)!r}, run_name='__main__')"
+    variables = {name: _preloaded(value) if name == "LD_PRELOAD" else value.format(log=log) for name, value in tool.variables}
+    command = [*(word.format(log=log) for word in tool.words), sys.executable, "-S", "-X", "faulthandler", "-c", start]
+    done = subprocess.run(
+        command, cwd=package, env=os.environ | _ENVIRONMENT | variables, capture_output=True, text=True, errors="replace", timeout=_WORK
+    )
+    said = [done.stdout, done.stderr, *(path.read_text(errors="replace") for path in package.glob("reports*") if path.suffix != ".xml")]
+    reports = [found for text in said for found in re.findall(tool.report, text)] if tool.report else []
+    reports += [report for path in package.glob("reports*.xml") for report in _of_kernel(path)]
+    if done.returncode and not reports:
+        raise RuntimeError(f"{' '.join(tool.words[:1] or ['the program'])} ended with {done.returncode}: {_words_of(done.stderr)}")
+    return reports, done.returncode
+
+
+def _words_of(text: str) -> str:
+    """The last lines without gfortran's warnings of copies of arrays, and without Python's list of modules."""
+    return "\n".join(
+        [line for line in text.splitlines() if not re.match(r"At line|Fortran runtime warning|Extension modules|$", line)][-30:]
+    )
+
+
+def _preloaded(libraries: str) -> str:
+    return " ".join(_library(name) for name in libraries.split())
+
+
+def _of_kernel(path: Path) -> list[str]:
+    """What memcheck found with the kernel at work: its own frames, or what it called."""
+    reports = []
+    for error in Xml.parse(path).getroot().iter("error"):
+        frames = list(error.find("stack").iter("frame"))  # type: ignore[union-attr]
+        if any(Path(frame.findtext("obj", "")).name == _KERNEL for frame in frames):
+            where = " < ".join(
+                f"{frame.findtext('fn', '?')} ({frame.findtext('file', '?')}:{frame.findtext('line', '?')})" for frame in frames[:6]
+            )
+            reports.append(f"{error.findtext('kind')}: {where}")
+    return reports
+
+
+def _run(command: list[str], folder: Path) -> None:
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ.get('PATH', os.defpath)}"
+    done = subprocess.run(command, cwd=folder, env=os.environ | {"PATH": path}, capture_output=True, text=True, timeout=_BUILD)
+    if done.returncode:
+        raise RuntimeError(f"{' '.join(command)} failed: {done.stdout[-2000:]}{done.stderr[-2000:]}")
