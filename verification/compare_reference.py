@@ -178,8 +178,11 @@ def main() -> None:
     parser.add_argument("--folder", type=Path, help="keep the converted scenes here")
     options = parser.parse_args()
     settings = [f"solver.{key}={value}" for key, value in SETTINGS[options.like].items()] + options.set
+    scenes = [source for source in options.sources if not source.name.endswith(".result.json")]
+    if not scenes:
+        parser.error("these are results: name the scenes that they are of, NAME.json")
     failures = 0
-    for source in (s for s in options.sources if not s.name.endswith(".result.json")):
+    for source in scenes:
         start = perf_counter()
         with TemporaryDirectory() as temporary:
             try:

@@ -12,11 +12,12 @@ import numpy as np
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "verification"))
-from compare_reference import Comparison, compare
+from compare_reference import Comparison, compare, main
 from convert_reference import convert
 
 from isomortar.scene import Scene
 from isomortar.solve.simulation import Simulation
+
 
 BLOCK = {
     "kind": ["L", "L", "L"],
@@ -115,3 +116,11 @@ def test_shapes_that_differ_are_faults() -> None:
     comparison = Comparison(steps=1)
     comparison.add("force", 1, np.zeros(2), np.zeros(3), 1.0)
     assert not comparison.holds(1.0)
+
+
+def test_results_without_their_scenes_are_no_comparison(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """A pattern that matches results alone must not end as if all held."""
+    monkeypatch.setattr(sys, "argv", ["compare_reference.py", str(tmp_path / "block.result.json")])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert ended.value.code == 2

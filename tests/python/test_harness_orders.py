@@ -7,7 +7,7 @@ from isomortar.harness.orders import Convergence, estimate_order
 
 H = np.array([0.5, 0.25, 0.125, 0.0625, 0.03125])
 #: An error budget without other errors.
-ALONE = {"quadrature": 0.0}
+ALONE = {"quadrature": 1e-14}
 
 
 @pytest.mark.parametrize("order", [1, 2, 3, 4, 6])
@@ -98,6 +98,8 @@ def test_errors_that_do_not_fall(errors):
         (H, H**2, {"penalty": np.nan}, 2),
         (H, H**2, {"penalty": -1e-9}, 2),
         (H, H**2, {"penalty": [0, 0]}, 2),
+        (H, H**2, {"quadrature": 0.0}, 2),  # nothing was tightened
+        (H, H**2, {"augmentation": 0 * H, "quadrature": 1e-14}, 2),
         (H, H**2, ALONE, 0),
         (H, H**2, ALONE, np.nan),
         (H, ["a"] * 5, ALONE, 2),

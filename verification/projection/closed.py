@@ -111,6 +111,6 @@ def rolling(inside: bool) -> dict[str, float]:
     force = np.array([step.contacts[0].force_slave[2] for step in steps])
     last, before = force[-STEPS:], force[-2 * STEPS : -STEPS]
     return {
-        "outside": float(max(step.contacts[0].excluded for step in steps)),
+        "outside": float(np.max([step.contacts[0].excluded for step in steps])),
         "press": float(np.abs(last - before).max() / abs(last.mean())),
     }

@@ -38,7 +38,7 @@ class Convergence:
     others : dict
         Error budget, not empty: for each other source (``"quadrature"``, ``"augmentation"``, ``"load step"``, ``"penalty"``,
         ``"reference"``, ...) its share of the error on each mesh, shape (n,), or one number for all: the change of the
-        result when that source alone is tightened.
+        result when that source alone is tightened, not zero on all of them.
     """
 
     sizes: ArrayLike
@@ -105,6 +105,8 @@ def _fault(convergence: Convergence, expected: float) -> str:
     for name, values in others.items():
         if values.shape not in ((), errors.shape) or not (np.isfinite(values) & (values >= 0)).all():
             return f"the {name} error must be one number, or one a mesh, finite and not negative"
+        if not (values > 0).any():
+            return f"the {name} error is zero: a result that does not change at all was not measured with less of it"
     if not (np.isfinite(expected) and expected > 0):
         return f"the expected order is {expected}; it must be positive"
     return ""
