@@ -18,7 +18,6 @@ from convert_reference import convert
 from isomortar.scene import Scene
 from isomortar.solve.simulation import Simulation
 
-
 BLOCK = {
     "kind": ["L", "L", "L"],
     "degrees": [1, 1, 1],
