@@ -7,6 +7,7 @@ import numpy as np
 from isomortar.harness import Bound, case
 from isomortar.scene import Scene
 from isomortar.solve.equilibrium import Equilibrium
+from isomortar.solve.simulation import Simulation
 from isomortar.solve.timing import Ledger
 
 #: A square slave of 4 x 4 elements, two columns of which lie over a flat master whose parameters are lengths over 1 and 1.5.
@@ -49,3 +50,39 @@ def edge() -> dict[str, float]:
         "slip": float(np.abs(after.control.slip.sum(axis=0) - [0.5 * STEP, 0.0]).max()),
         "new slip": float(np.abs(after.projections.slip[new]).max()),
     }
+
+
+#: A bowl pressed near the corner of its master, then moved over the corner and off.
+_CORNER = """
+format = 1
+bodies.slave.geometry = { kind = "bowl", half_width = 0.3, bottom = 0.0, rise = 0.05, top = 0.4 }
+bodies.slave.mesh = { order = [2, 2, 1], elements = [4, 4, 1] }
+bodies.master.geometry = { kind = "box", lower = [-0.6, -0.6, -0.5], upper = [0.6, 0.6, 0] }
+bodies.master.mesh = { order = [3, 3, 1], elements = [4, 4, 1] }
+contacts.interface = { slave = "slave.w0", master = "master.w1", friction = FRICTION }
+supports.top.face = "slave.w1"
+supports.base.face = "master.w0"
+stages = [
+    { name = "press", steps = 1, motions.top.translate = [0, 0, -0.03] },
+    { name = "slide", steps = 10, motions.top.translate = [1.2, 1.2, 0] },
+]
+"""
+
+
+@case(
+    claim="A slave that leaves its master over a corner is followed to the last point, and is free of forces then.",
+    tier="gate",
+    grid={"friction": (0.0, 0.3)},
+    bounds={
+        "force": Bound(at_most=1e-8, reason="round-off: Newton's method stops at 1e-9 of the stiffness; nothing is left in contact"),
+        "left": Bound(at_least=1.0, at_most=1.0, reason="definition: the last points have left the master"),
+        "alone": Bound(at_least=1.0, reason="definition: in some load step most control points are off the master, and some bear"),
+    },
+)
+def over_a_corner(friction: float) -> dict[str, float]:
+    """Force at the end over the largest one, share of points off the master, and load steps with a contact on few points."""
+    results = list(Simulation(Scene.from_toml(_CORNER.replace("FRICTION", str(friction))).problem()).run())
+    forces = [float(np.linalg.norm(result.reactions[0].force)) for result in results]
+    points = 16 * 6 * 6
+    alone = [result.contacts[0].excluded > points / 2 and result.contacts[0].active > 0 for result in results]
+    return {"force": forces[-1] / max(forces), "left": results[-1].contacts[0].excluded / points, "alone": float(sum(alone))}

@@ -30,7 +30,8 @@ class Held:
     Attributes
     ----------
     bears : ndarray of int32, shape (slave control points,)
-        0 where supports hold the normal, which leaves nothing to the pressure; else 1.
+        0 where supports hold the normal, which leaves nothing to the pressure as long as the neighbours keep the control point out of
+        the master; else 1.
     free : ndarray, shape (slave control points, 2, 2)
         Symmetric projections of covariant tractions that leave nothing along what is held.
     pushed : ndarray, shape (slave control points, 2)
@@ -65,9 +66,7 @@ def _beside_plane(held: Held, supports: Supports, pair: Pair, increment: FloatAr
     point = pair.slave.point
     for i in np.flatnonzero(supports.held[point].any(axis=1)):
         prescribed = supports.held[point[i]]
-        if np.linalg.norm(normal[~prescribed]) < _NOTHING:
-            held.bears[i] = 0
-            continue
+        held.bears[i] = int(np.linalg.norm(normal[~prescribed]) >= _NOTHING)
         directions, sizes, _ = np.linalg.svd(tangents[prescribed & ~moved[point[i]]].T, full_matrices=False)
         taken = directions[:, sizes > _NOTHING]
         held.free[i] -= taken @ taken.T

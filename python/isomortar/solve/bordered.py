@@ -18,6 +18,7 @@ from isomortar._bindings import Law, Pattern, Response
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.solve.contact import Blocks, PairMechanics, median
 from isomortar.solve.equilibrium import Balance, Equilibrium
+from isomortar.solve.singular import Multipliers
 from isomortar.solve.system import Source, block_product
 
 
@@ -104,7 +105,9 @@ def solve_bordered(
         values += more_values
         size += int(np.count_nonzero(border.equation >= 0))
     right = _right_hand_side(equilibrium, balance, targets, borders, sources, values, prescribed, size)
-    correction = _correction(equilibrium, equilibrium.solve(sources, values, right), targets, borders)
+    multipliers = [Multipliers(b.pair, b.equation, k) for b, k in zip(borders, balance.kinematics, strict=True) if b is not None]
+    solution = equilibrium.solve(sources, values, right, balance.positions, multipliers)
+    correction = _correction(equilibrium, solution, targets, borders)
     if prescribed is not None:
         correction.positions[...] += prescribed
     return correction, borders
@@ -143,7 +146,8 @@ def _border(equilibrium: Equilibrium, k: int, balance: Balance, law: Law, target
     equation[reached, :components] = first + np.arange(count, dtype=np.int32).reshape(-1, components)
     control = balance.kinematics[k].control
     lengths = np.concatenate([[1.0], pair.tangent_lengths(control)])
-    weight = np.where(control.weight > 0, control.weight, median(control.weight))
+    present = control.weight > 0
+    weight = np.where(present, control.weight, median(control.weight[present]))
     return Border(pair, blocks, equation.ravel(), weight[:, None] / lengths, float(law.penalties[0]) * lengths, target)
 
 

@@ -106,6 +106,13 @@ class PairMechanics:
         sticks = np.zeros(len(pressure), dtype=np.int32)
         return Law(penalties, self.friction, pressure, traction, self.summed, self.held.bears, self.held.free, sticks)
 
+    def bear(self, kinematics: Kinematics, depth: float) -> bool:
+        """Let control points that supports hold along the normal bear if their control gap is above `depth`; whether there are any."""
+        alone = (self.held.bears == 0) & (kinematics.control.weight > 0)
+        sunk = alone & (kinematics.control.gap > depth * kinematics.control.weight)
+        self.held.bears[sunk] = 1
+        return bool(sunk.any())
+
     def sliding(self, start: ContactState) -> FloatArray:
         """Tractions of the last converged state, with those of sliding where supports push; shape (slave control points, 2)."""
         pushed = np.any(self.held.pushed != 0.0, axis=1)

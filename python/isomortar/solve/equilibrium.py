@@ -19,6 +19,7 @@ from isomortar.model.solid import Solid
 from isomortar.model.supports import Supports
 from isomortar.solve.contact import Kinematics, PairMechanics
 from isomortar.solve.record import State
+from isomortar.solve.singular import Multipliers, explain
 from isomortar.solve.system import LinearSystem, Source, block_product, entries
 from isomortar.solve.timing import Ledger
 
@@ -117,7 +118,7 @@ class Equilibrium:
             for source, block in zip(sources, values, strict=True):
                 right += block_product(source.pattern, block, prescribed)
         correction = prescribed.copy()
-        correction.ravel()[self.supports.free] -= self.solve(sources, values, right.ravel()[self.supports.free])
+        correction.ravel()[self.supports.free] -= self.solve(sources, values, right.ravel()[self.supports.free], balance.positions)
         return correction
 
     def kept_correction(self, balance: Balance) -> FloatArray:
@@ -126,13 +127,20 @@ class Equilibrium:
         correction.ravel()[self.supports.free] = -self.solve_again(balance.total.ravel()[self.supports.free])
         return correction
 
-    def solve(self, sources: list[Source], values: list[FloatArray], right: FloatArray) -> FloatArray:
+    def solve(
+        self,
+        sources: list[Source],
+        values: list[FloatArray],
+        right: FloatArray,
+        positions: FloatArray,
+        multipliers: Sequence[Multipliers] = (),
+    ) -> FloatArray:
         """Solve the system of the given sources; the first is the solid's. Free unknowns come first, multipliers after them.
 
         Raises
         ------
         SingularSystemError
-            Naming a body that nothing holds, or redundant contact constraints.
+            Naming a body that nothing holds, contact conditions that repeat each other, or where digits are lost.
         """
         if not len(right):  # every position is prescribed
             return right
@@ -140,7 +148,7 @@ class Equilibrium:
         try:
             system.factorise(values)
         except SingularSystemError as error:
-            raise self._name_singularity(error.place, system.rcond) from error
+            raise explain(system.rcond, system.near_null(), self.supports.free, positions, self.numbering, multipliers) from error
         self._orderings[len(sources)] = (system.ordering,)
         return system.solve(right)
 
@@ -148,20 +156,6 @@ class Equilibrium:
         """Solve with the factors of the last `solve`."""
         assert self._system is not None, "nothing was solved before"
         return self._system.solve(right)
-
-    def _name_singularity(self, place: int, rcond: float) -> SingularSystemError:
-        """The error that says what leaves equation `place` without a pivot."""
-        free = self.supports.free
-        said = f"the tangent is singular (reciprocal condition {rcond:.1e})"
-        if 0 <= place < len(free):
-            point = int(free[place]) // 3
-            body = self.numbering.body_of(point)
-            return SingularSystemError(
-                f"{said}: body {body!r} can move freely at control point {point}; hold it by a support, or bring it into contact", point
-            )
-        return SingularSystemError(
-            f"{said}: contact constraints are redundant (a slave finer and stiffer than its master, or supports on a slave face)", place
-        )
 
     def _system_for(self, sources: list[Source], size: int) -> LinearSystem:
         """The linear system of these sources: the last one, as long as all patterns stand."""

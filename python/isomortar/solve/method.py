@@ -10,6 +10,9 @@ from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.newton import KEPT_FACTORS
 from isomortar.solve.record import AugmentationRecord, Observer, State
 
+#: Depth inside its master, as a share of the bodies' size, from which a control point that supports hold along the normal bears on it.
+SUNK = 1e-6
+
 
 @dataclass(frozen=True)
 class Increment:
@@ -48,6 +51,11 @@ class Method(ABC):
         ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError
             The increment has to be cut.
         """
+
+    def _bear(self, balance: Balance) -> bool:
+        """Whether control points that supports hold along the normal have ended inside their master, and now bear on it."""
+        depth = SUNK * self._equilibrium.numbering.size
+        return any(pair.bear(k, depth) for pair, k in zip(self._equilibrium.pairs, balance.kinematics, strict=True))
 
     def _begin(self, start: State, time: float) -> tuple[FloatArray, float]:
         """Increment of the prescribed positions, and the largest diagonal entry of the solid tangent at the start."""

@@ -77,7 +77,10 @@ class Monolithic(Method):
             log.append(record)
             self._observer.iteration(step, time, 1, record)
             if self._converged(iterate) and not (moves and iteration == 0):
-                return self._increment(iterate, log, stiffness)
+                if not self._bear(iterate.balance):
+                    return self._increment(iterate, log, stiffness)
+                multipliers = [(law.pressure, law.traction) for law in iterate.laws]
+                iterate, keep = self._evaluate(iterate.balance.positions, multipliers, start, stiffness), False
             last, following = iterate, self._by_kept_factors(iterate, start, stiffness, borders) if keep else None
             if following is not None:
                 iterate, notes = following, (KEPT_FACTORS,)

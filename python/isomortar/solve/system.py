@@ -11,13 +11,15 @@ from scipy import sparse
 from isomortar import _bindings
 from isomortar._bindings import Pattern
 from isomortar._sparse import Ordering, SparseLU
-from isomortar.errors import SingularSystemError
+from isomortar.errors import KernelError, SingularSystemError
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.solve.timing import Ledger
 
 #: Systems with fewer unknowns than the first are ordered by minimum degree, with more than the second by nested dissection. In between
 #: either can take up to twice as long as the other: there the first matrix is factorised both ways.
 UNDOUBTED = (1000, 5000)
+#: What the diagonal of a singular matrix gets to be factorised, as a share of its largest entry.
+SHIFT = 1e-11
 
 
 def orderings(size: int) -> tuple[Ordering, ...]:
@@ -121,6 +123,26 @@ class LinearSystem:
             solution = self._rivals[0].solve(right, refine=0)
         self._ledger.counts["solves"] += 1
         return solution
+
+    def near_null(self) -> FloatArray:
+        """A direction that the assembled matrix maps to next to nothing, of length one; not a number if there is no telling.
+
+        Inverse iteration on a matrix next to it: the one itself has no factors.
+        """
+        matrix = self.matrix()
+        size = matrix.shape[0]
+        beside = sparse.csr_array(matrix + SHIFT * float(np.abs(self.values).max()) * sparse.eye_array(size))
+        beside.sort_indices()
+        direction = np.random.default_rng(0).standard_normal(size)
+        try:
+            factors = SparseLU(beside.indptr.astype(np.int64), beside.indices.astype(np.int64), ordering=self.ordering)
+            factors.factorise(beside.data, rcond_min=0.0)
+            for _ in range(3):
+                direction = factors.solve(direction)
+                direction /= np.linalg.norm(direction)
+        except KernelError:
+            return np.full(size, np.nan)
+        return direction
 
     def matrix(self) -> sparse.csr_array:
         """The assembled matrix."""

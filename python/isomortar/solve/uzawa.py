@@ -42,7 +42,7 @@ class Uzawa(Method):
             record = AugmentationRecord(augmentation, normal, tangential, changes[0], changes[1], tuple(log))
             records.append(record)
             self._observer.augmented(step, time, record)
-            if max(changes) <= self._settings.augmentation_tolerance:
+            if max(changes) <= self._settings.augmentation_tolerance and not self._bear(balance):
                 return Increment(balance, tuple(records), tuple(orders))
             growth = min(growth * self._settings.penalty_growth, max(self._settings.penalty_growth_max, 1.0))
             laws = [

@@ -1,0 +1,109 @@
+"""What a singular tangent leaves free: a body that moves, contact conditions that repeat each other, or digits that are lost."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from isomortar.errors import SingularSystemError
+from isomortar.geometry.patch import FloatArray, IntArray
+from isomortar.model.numbering import Numbering
+from isomortar.solve.contact import Kinematics, PairMechanics
+
+#: A body moves rigidly where what is left of its motion after the closest rigid one is at most this share of it.
+_RIGID = 1e-3
+#: Below this share of the largest entry of a direction an equation takes no part in it.
+_PART = 0.1
+
+
+@dataclass(frozen=True)
+class Multipliers:
+    """A pair with the equations of its multipliers, shape (3 * slave control points,), -1: none; and its kinematics."""
+
+    pair: PairMechanics
+    equation: IntArray
+    kinematics: Kinematics
+
+
+def explain(
+    rcond: float, null: FloatArray, free: NDArray[np.intp], positions: FloatArray, numbering: Numbering, contacts: Sequence[Multipliers]
+) -> SingularSystemError:
+    """The error that says what a singular tangent leaves free.
+
+    Parameters
+    ----------
+    rcond : float
+        Reciprocal condition of the tangent.
+    null : ndarray
+        A direction, by equations, that the tangent maps to next to nothing.
+    free : ndarray of int
+        Unknowns of the first equations; those of multipliers follow.
+    positions : ndarray, shape (control points, 3)
+    """
+    said = f"the tangent is singular (reciprocal condition {rcond:.1e})"
+    if not np.isfinite(null).all():
+        return SingularSystemError(f"{said}, and nothing can be said of what it leaves free")
+    shares = [_of_pair(contact, null) for contact in contacts]
+    motion = np.zeros(positions.size)
+    motion[free] = null[: len(free)]
+    moved = motion.reshape(-1, 3)
+    if shares and max(float(np.abs(share).max()) for share in shares) > np.abs(moved).max():
+        largest = int(np.argmax([np.abs(share).max() for share in shares]))
+        return _repeated(said, contacts[largest], shares[largest])
+    return _moving(said, moved, positions, numbering)
+
+
+def _of_pair(contact: Multipliers, null: FloatArray) -> FloatArray:
+    """Entries of a direction for the multipliers of a pair, largest by slave control point, shape (slave control points,)."""
+    values = np.zeros(len(contact.equation))
+    values[contact.equation >= 0] = null[contact.equation[contact.equation >= 0]]
+    return np.abs(values).reshape(-1, 3).max(axis=1)
+
+
+def _repeated(said: str, contact: Multipliers, share: FloatArray) -> SingularSystemError:
+    """Contact conditions without effect: too few points on the master, or too few unknowns that they bear on."""
+    pair = contact.pair.pair
+    worst = int(np.argmax(share))
+    among = np.flatnonzero(share > _PART * share[worst])
+    found = contact.kinematics.projections.found.reshape(len(pair.slave.nodes), -1) > 0
+    elements = np.isin(pair.slave.nodes, among).any(axis=1)
+    there, total = int(np.count_nonzero(found[elements])), found[elements].size
+    where = f"contact {pair.contact.name!r}: the conditions of {len(among)} slave control points, the first of them {int(among[0])}"
+    if 2 * there < total:
+        reason = (
+            f"rest on {there} of the {total} quadrature points around them; the others have left the master. Use a larger master, or end "
+            "the motion earlier"
+        )
+    else:
+        reason = (
+            "repeat each other; the slave may be finer and stiffer than its master (swap the two, or refine the master), or both may be "
+            "held by supports there (hold fewer components)"
+        )
+    return SingularSystemError(f"{said}. {where}, {reason}", worst)
+
+
+def _moving(said: str, moved: FloatArray, positions: FloatArray, numbering: Numbering) -> SingularSystemError:
+    """A body that moves without forces: as a rigid one, or by a field that round-off lets pass."""
+    point = int(np.argmax(np.linalg.norm(moved, axis=1)))
+    body = numbering.body_of(point)
+    own = np.unique(numbering.points[body])
+    arms = positions[own] - positions[own].mean(axis=0)
+    size = float(np.abs(arms).max())
+    turns = [np.cross(axis, arms / size) for axis in np.eye(3)]
+    rigid = np.column_stack([np.tile(axis, len(own)) for axis in np.eye(3)] + [turn.ravel() for turn in turns])
+    motion = moved[own].ravel()
+    amounts = np.linalg.lstsq(rigid, motion, rcond=None)[0]
+    if np.linalg.norm(motion - rigid @ amounts) <= _RIGID * np.linalg.norm(motion):
+        turning = np.linalg.norm(amounts[3:]) > _PART * np.linalg.norm(amounts)
+        axis = amounts[3:] if turning else amounts[:3]
+        along = ", ".join(f"{value:g}" for value in np.round(axis / axis[np.argmax(np.abs(axis))], 2) + 0.0)
+        how = f"turn about an axis along ({along})" if turning else f"move along ({along})"
+        return SingularSystemError(f"{said}: body {body!r} can {how} freely; hold it by a support, or bring it into contact", point)
+    return SingularSystemError(
+        f"{said}: body {body!r} is held, but next to nothing resists a deformation that is largest at control point {point}. Look there "
+        "for elements, weights or moduli too different for double precision, and for a body that buckles",
+        point,
+    )

@@ -1,0 +1,78 @@
+"""A tangent without an inverse: the error says what is left free, and it is the true cause."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from isomortar.errors import ConvergenceError
+from isomortar.scene import Scene
+from isomortar.solve.equilibrium import Equilibrium
+from isomortar.solve.simulation import Simulation
+from isomortar.solve.singular import Multipliers, explain
+from isomortar.solve.timing import Ledger
+
+BLOCK = """
+format = 1
+bodies.block = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 0.8, 0.4] }, mesh = { order = [2, 2, 1], elements = [2, 2, 1] } }
+contacts.base = { slave = "block.w0", plane = { point = [0, 0, 0] }, friction = 0.0 }
+solver.max_cuts = 1
+stages = [{ name = "press", steps = 1, motions.top.translate = [0, 0, -0.02] }]
+"""
+
+
+def error(text: str, *overrides: str) -> str:
+    with pytest.raises(ConvergenceError) as caught:
+        list(Simulation(Scene.from_toml(text, overrides=overrides).problem()).run())
+    return str(caught.value)
+
+
+def explained(directions: list[int], multipliers: list[int], found: int = 1) -> str:
+    """What is said of a direction that moves some unknowns of the held block, and of one that changes multipliers of its contact.
+
+    `found` is 0 where all quadrature points have left the master.
+    """
+    equilibrium = Equilibrium(Scene.from_toml(BLOCK + 'supports.top.face = "block.w1"').problem(), Ledger())
+    state, pair, free = equilibrium.initial_state(), equilibrium.pairs[0], equilibrium.supports.free
+    kinematics = pair.kinematics(state.positions, state.contacts[0])
+    projections = replace(kinematics.projections, found=np.full_like(kinematics.projections.found, found))
+    equation = np.full(3 * len(pair.pair.slave.point), -1)
+    equation[::3] = len(free) + np.arange(len(equation[::3]))
+    null = np.zeros(len(free) + len(equation[::3]))
+    null[directions] = 1.0
+    null[len(free) + np.array(multipliers, dtype=int)] = 2.0
+    contact = Multipliers(pair, equation, replace(kinematics, projections=projections))
+    return str(explain(0.0, null, free, state.positions, equilibrium.numbering, [contact]))
+
+
+def test_body_that_slides_is_said_to_move() -> None:
+    assert "body 'block' can move along (1, 0, 0) freely" in error(BLOCK + 'supports.top = { face = "block.w1", components = ["y", "z"] }')
+
+
+def test_body_that_turns_is_said_to_turn() -> None:
+    assert "body 'block' can turn about an axis along (" in error(BLOCK + 'supports.top = { face = "block.w1", components = ["z"] }')
+
+
+def test_held_body_is_not_said_to_move() -> None:
+    said = explained([4], [])
+    assert "body 'block' is held, but" in said
+    assert "freely" not in said
+
+
+def test_repeated_conditions_name_their_contact() -> None:
+    said = explained([], [3, 5])
+    assert "contact 'base': the conditions of 2 slave control points, the first of them 3, repeat each other" in said
+
+
+def test_conditions_whose_points_have_left_the_master_say_so() -> None:
+    said = explained([], [3, 5], found=0)
+    assert "contact 'base': the conditions of 2 slave control points, the first of them 3, rest on 0 of the" in said
+
+
+def test_no_direction_says_nothing() -> None:
+    null = np.full(3, np.nan)
+    equilibrium = Equilibrium(Scene.from_toml(BLOCK + 'supports.top.face = "block.w1"').problem(), Ledger())
+    said = str(explain(0.0, null, np.arange(3), equilibrium.numbering.reference, equilibrium.numbering, []))
+    assert "nothing can be said" in said
