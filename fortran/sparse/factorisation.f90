@@ -41,7 +41,7 @@ contains
     integer(c_int64_t), intent(out) :: handle
     !> Whether indices of 32 bits are in use.
     logical, intent(out) :: narrow
-    !> UMFPACK's return code when that is the failure; else -1.
+    !> UMFPACK's return code when that is the failure, the number of slots when all are taken; else -1.
     integer(c_int64_t), intent(out) :: place
     integer, intent(out) :: status
 
@@ -52,7 +52,10 @@ contains
     place = -1
     status = status_out_of_memory
     slot = free_slot()
-    if (slot == slots) return
+    if (slot == slots) then
+      place = slots
+      return
+    end if
 
     call order(table(slot)%lu, indptr, indices, merge(ordering_metis, ordering_amd, by_metis), narrow_limit, code)
     narrow = allocated(table(slot)%lu%start)

@@ -18,7 +18,9 @@ FloatArray = NDArray[np.float64]
 LongArray = NDArray[np.int64]
 
 # Status codes of fortran/base/status.f90 that the factorisation returns.
-_OK, _SINGULAR, _STALE_HANDLE, _OUT_OF_MEMORY = 0, 5, 6, 7
+_OK, _SINGULAR, _STALE_HANDLE, _OUT_OF_MEMORY, _LIBRARY = 0, 5, 6, 7, 8
+#: UMFPACK's code where METIS or AMD gave up, which they do for want of memory.
+_ORDERING_FAILED = -18
 
 #: A factorisation that is estimated to take at most so many bytes (matrix, fronts and factors) gets indices of 32 bits, a tenth to an
 #: eighth faster. These can address 2 GiB; what the estimate misses, `factorise` repeats with 64.
@@ -236,7 +238,13 @@ def _check_finite(values: FloatArray, indptr: LongArray) -> None:
 def _check_status(status: int, place: int) -> None:
     """Raise the sentence of a status code; what is singular has its own above."""
     if status == _OUT_OF_MEMORY:
-        raise KernelError("memory ran out in the sparse LU, or too many factorisations are alive at once")
+        raise KernelError(
+            f"too many factorisations are alive: the kernel holds {place} of them; let some go"
+            if place >= 0
+            else "memory ran out in the sparse LU: take fewer elements or a lower order"
+        )
+    if status == _LIBRARY and place == _ORDERING_FAILED:
+        raise KernelError("the sparse LU could not order the unknowns: most likely memory ran out; take fewer elements or a lower order")
     if status == _STALE_HANDLE:
         raise KernelError("the factorisation was released before, or never made")
     if status != _OK:

@@ -18,6 +18,26 @@ from isomortar.solve.doubts import doubts
 from isomortar.solve.simulation import Simulation
 from test_scene_contacts import PAIR, PRESS, RINGS, TYRE, UNUSUAL
 
+SLIT = """
+format = 1
+[bodies.ring.patch]
+order = [2, 1, 1]
+knots = [[0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4], [0, 0, 1, 1], [0, 0, 1, 1]]
+control_points = [
+  POINTS
+]
+weights = [WEIGHTS]
+[supports.hub]
+face = "ring.v0"
+[[stages]]
+name = "turn"
+steps = 1
+motions.hub.rotate = 10
+"""
+_RING = Scene.from_toml(TYRE.replace("mesh = { elements = [16, 1, 1] }", "mesh.order = [2, 1, 1]")).problem().bodies[0].patch
+SLIT = SLIT.replace("POINTS", ", ".join(str(point.tolist()) for point in _RING.control_points))
+SLIT = SLIT.replace("WEIGHTS", ", ".join(map(str, _RING.weights.tolist())))
+
 
 def material(poisson: float, family: str, order: int) -> list[str]:
     return [f"bodies.block.mesh.order={order}", f"bodies.block.mesh.family={family}", f"materials.rubber.poisson={poisson}"]
@@ -43,6 +63,15 @@ DOUBTFUL = {
     ),
     "other unit of motions": (PRESS, "[0, 0, -0.1]", "[0, 0, -100]", "moves by 100 in each load step"),
     "held on both sides": (*UNUSUAL["support on the contact face"], "can move nothing: its slave face is held by support 'bottom'"),
+    "friction in per cent": (PRESS, "[supports.top]", "friction = 30\n[supports.top]", "Was it meant in per cent, 0.3?"),
+    "motion of what is not held": (
+        PRESS,
+        'face = "block.w1"',
+        'face = "block.w1"\ncomponents = ["x", "y"]',
+        "is to move along z in stage 'press', but prescribes only x, y",
+    ),
+    "nothing moves": (PRESS, "[0, 0, -0.1]", "[0, 0, 0]", "no support moves in any stage"),
+    "ring that is not closed": (SLIT, "", "", "faces u0 and u1 lie on each other, but are not joined"),
     "both ways": (*UNUSUAL["both ways"], "are the same one, both ways"),
 }
 
@@ -100,7 +129,9 @@ def test_a_contact_that_never_closes_is_told_at_the_end(motion: str, never: bool
     scene = PRESS.replace("[0, 0, -0.1]", motion).replace("steps = 1", "steps = 2")
     for _ in Simulation(Scene.from_toml(scene).problem(), observer).run():
         assert observer.said == []
-    assert observer.said == (["contact 'floor' was open at the end of every load step: check faces, places and motions"] if never else [])
+    assert observer.said == (
+        ["contact 'floor' never closed: it was open at the end of every load step; check faces, places and motions"] if never else []
+    )
 
 
 def test_the_same_line_is_printed_once_and_warnings_are_counted() -> None:

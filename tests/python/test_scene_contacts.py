@@ -111,7 +111,7 @@ WRONG = {
         "[0, 0, 1] }\n[supports",
         "[0, 0, -1] }\n[supports",
         "contacts.road.plane.normal",
-        "its body 2 thick",
+        "its body is 2 thick",
     ),
     "wrong face on a plane": (PRESS, '"block.w0"', '"block.w1"', "contacts.floor", ""),
     "wrong slave face": (PAIR, '"upper.w0"', '"upper.w1"', "contacts.pair.slave", "upper.w1 looks away from its master"),

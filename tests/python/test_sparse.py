@@ -14,7 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from isomortar import _kernel, _sparse
-from isomortar._sparse import ORDERINGS, SparseLU
+from isomortar._sparse import ORDERINGS, SparseLU, _check_status
 from isomortar.errors import InputError, KernelError, SingularSystemError
 
 STALE_HANDLE, OUT_OF_MEMORY = 6, 7
@@ -330,6 +330,14 @@ def test_stale_handles_return_a_status():
         assert _kernel.sparse_factorise(stale, values, 0.0)[-1] == STALE_HANDLE
         assert _kernel.sparse_solve(stale, values, np.ones((5, 1), order="F"), 0)[-1] == STALE_HANDLE
     assert _kernel.sparse_release(again) == 0
+
+
+def test_want_of_memory_is_told_whoever_of_the_library_meets_it() -> None:
+    for status, code in ((7, -1), (8, -18)):
+        with pytest.raises(KernelError, match="memory ran out"):
+            _check_status(status, code)
+    with pytest.raises(KernelError, match="failed with its code -911"):
+        _check_status(8, -911)
 
 
 def test_slots_run_out_with_a_sentence_and_come_back():

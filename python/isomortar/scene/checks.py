@@ -46,7 +46,7 @@ def _check_units(body: Body) -> None:
         )
     if not FORCES[0] <= young * size * size <= FORCES[1]:
         raise InputError(
-            f"body {body.name!r}: Young's modulus {young:.3g} times the square of its size {size:.3g} is a force of "
+            f"body {body.name!r}: young = {young:.3g} times the square of its size, {size:.3g}, is a force of "
             f"{young * size * size:.3g}; allowed: {FORCES[0]:g} to {FORCES[1]:g}; take other units",
             f"bodies.{body.name}.material",
         )

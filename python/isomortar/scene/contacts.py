@@ -56,10 +56,10 @@ def _check_stance(problem: Problem, contact: Contact, found: Stance) -> None:
         if looks_away and found.behind:
             raise InputError(f"body {contact.slave.body!r} lies behind the plane, and {slave} looks away from it; {cure}", field)
         if found.depth > PASSED * found.thickness:
-            raise InputError(f"{slave} is {found.depth:.3g} behind the plane, its body {found.thickness:.3g} thick; {cure}", field)
+            raise InputError(f"{slave} overlaps the plane by {found.depth:.3g}, and its body is {found.thickness:.3g} thick; {cure}", field)
     elif found.depth > PASSED * found.thickness:
         raise InputError(
-            f"{slave} is up to {found.depth:.3g} inside {contact.master.body!r}, where the thinner of the two bodies is "
+            f"{slave} overlaps {contact.master.body!r} by up to {found.depth:.3g}, where the thinner of the two bodies is "
             f"{found.thickness:.3g} thick: they have passed through each other; move one of them, or name the faces that meet",
             f"contacts.{contact.name}.master",
         )

@@ -70,7 +70,7 @@ class StepAdvice:
         """Warnings that the whole run gives rise to."""
         for name in self._names:
             if name not in self._closed:
-                yield f"contact {name!r} was open at the end of every load step: check faces, places and motions"
+                yield f"contact {name!r} never closed: it was open at the end of every load step; check faces, places and motions"
 
     def _first(self, name: str, kind: str) -> bool:
         if (name, kind) in self._given:

@@ -9,7 +9,7 @@ import numpy as np
 
 from isomortar.model.entities import Body, Contact, Face, Problem, RigidPlane, Support
 from isomortar.model.memory import memory_needed, memory_of_machine
-from isomortar.model.stance import stance
+from isomortar.model.stance import Stance, stance
 from isomortar.solve.record import State
 
 #: An overlap of less than this share of the thinner body may be round-off of the geometry; what is more is told.
@@ -18,6 +18,8 @@ TOLD_OVERLAP = 0.02
 NEAR = 0.5
 #: Faces whose sizes (square roots of their areas) differ by more were given in different units, most likely.
 SIZE_RATIO = 100.0
+#: Coefficients of friction above this one were meant in per cent, or to make things stick.
+HIGH_FRICTION = 10.0
 #: Bulk over shear modulus above which elements of order 1 lock; a tenfold of it for every order more (docs/method.md).
 LOCKING = 10.0
 
@@ -36,10 +38,17 @@ def doubts(problem: Problem, state: State) -> Iterator[str]:
         yield f"tangent and factors may take {needed / 1e9:.2g} GB of memory, within a factor of two, and there are {there / 1e9:.2g} GB"
     for body in problem.bodies:
         yield from _locking(body)
+        yield from _seam(body)
     for support in problem.supports:
         yield from _far_steps(problem, support)
-    for contact, contact_state in zip(problem.contacts, state.contacts, strict=True):
-        yield from _of_contact(problem, contact, beside=not np.any(contact_state.projected))
+        yield from _idle_motions(problem, support)
+    stances = [stance(problem, contact) for contact in problem.contacts]
+    travel = _travel(problem)
+    if travel == 0.0 and not any(_overlaps(found) for found in stances):
+        yield "no support moves in any stage, and nothing overlaps at the start: nothing will happen"
+    for contact, found, contact_state in zip(problem.contacts, stances, state.contacts, strict=True):
+        yield from _of_stance(contact, found, travel, beside=not np.any(contact_state.projected))
+        yield from _of_contact(problem, contact)
     for one, other in combinations(problem.contacts, 2):
         if (one.slave, one.master) == (other.master, other.slave):
             yield (
@@ -70,20 +79,48 @@ def _far_steps(problem: Problem, support: Support) -> Iterator[str]:
             )
 
 
-def _of_contact(problem: Problem, contact: Contact, beside: bool) -> Iterator[str]:
-    found, travel = stance(problem, contact), _travel(problem)
+def _idle_motions(problem: Problem, support: Support) -> Iterator[str]:
+    """Translations along what a support leaves free."""
+    for stage, motion in zip(problem.stages, support.motions, strict=True):
+        idle = [axis for k, axis in enumerate("xyz") if motion.translate[k] and k not in support.components]
+        if idle:
+            held = ", ".join("xyz"[k] for k in support.components)
+            yield (
+                f"support {support.name!r} is to move along {', '.join(idle)} in stage {stage.name!r}, but prescribes only {held}: "
+                "that motion does nothing"
+            )
+
+
+def _seam(body: Body) -> Iterator[str]:
+    """Opposite faces that lie on each other and are not joined."""
+    points = body.patch.control_points
+    for axis in "uvw":
+        apart = np.abs(points[body.patch.face_points(f"{axis}0")] - points[body.patch.face_points(f"{axis}1")]).max()
+        if axis != body.closed and apart <= 1e-9 * body.size:
+            yield (
+                f"body {body.name!r}: faces {axis}0 and {axis}1 lie on each other, but are not joined, and will part; "
+                f'bodies.{body.name}.closed = "{axis}" joins them'
+            )
+
+
+def _overlaps(found: Stance) -> bool:
+    return found.depth > TOLD_OVERLAP * found.thickness
+
+
+def _of_stance(contact: Contact, found: Stance, travel: float, beside: bool) -> Iterator[str]:
+    """How the faces of a contact stand to each other; no prescribed point goes farther than `travel`."""
     ratio = np.sqrt(found.slave_area / found.master_area)
-    if found.depth > TOLD_OVERLAP * found.thickness:
+    if _overlaps(found):
         yield (
             f"contact {contact.name!r}: the bodies overlap by {found.depth:.3g} at the start (the thinner is {found.thickness:.3g} thick); "
             "the first load step pushes them apart. If no shrink fit is meant, move one of them"
         )
     elif beside:
         yield (
-            f"contact {contact.name!r}: the slave face {contact.slave.body}.{contact.slave.face} is wholly beside its master at the start; "
-            "it meets only what motions bring before it. Check places and faces"
+            f"contact {contact.name!r}: the slave face {contact.slave.body}.{contact.slave.face} is wholly beside its master at the "
+            "start; it meets only what motions bring before it. Check places and faces"
         )
-    elif found.gap > 2.0 * travel:
+    elif found.gap > 2.0 * travel > 0.0:
         yield (
             f"contact {contact.name!r} is {found.gap:.3g} apart at the start, and all supports together travel {travel:.3g}: "
             "it cannot close. Check places, motions and units"
@@ -92,6 +129,15 @@ def _of_contact(problem: Problem, contact: Contact, beside: bool) -> Iterator[st
         yield (
             f"contact {contact.name!r}: the slave face is {ratio:.3g} times as large as the master face. Are the bodies given "
             "in the same unit of length?"
+        )
+
+
+def _of_contact(problem: Problem, contact: Contact) -> Iterator[str]:
+    """What is given for a contact, wherever its faces are."""
+    if contact.friction > HIGH_FRICTION:
+        yield (
+            f"contact {contact.name!r}: a coefficient of friction of {contact.friction:g} makes all stick. Was it meant in per cent, "
+            f"{contact.friction / 100.0:g}?"
         )
     holders = [_holder(problem, place) for place in (contact.slave, contact.master)]
     if all(holders):
