@@ -177,6 +177,7 @@ CASES = {
         "prescribes x of 4 control points (the first at -0.5, -0.5, 1) that support 'top' moves differently",
     ),
     "solver": ("max_cuts = 4", "max_cuts = -1", "solver.max_cuts", "is -1; allowed: greater than or equal to 0"),
+    "solver, cuts without end": ("max_cuts = 4", "max_cuts = 54", "solver.max_cuts", "is 54; allowed: less than or equal to 30"),
     "solver option": ("max_cuts = 4", 'slip_sum = "papers"', "solver.slip_sum", "is 'papers'; allowed: 'local' or 'paper'"),
     "curve": (
         "[solver]",

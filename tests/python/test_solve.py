@@ -131,6 +131,13 @@ def test_unconverged_step_is_cut_and_then_named() -> None:
     assert len(listener.cuts) == 2
 
 
+def test_cuts_end_where_time_no_longer_moves() -> None:
+    listener = Listener()
+    with pytest.raises(ConvergenceError, match="does not converge"):
+        run(small_iron(max_iterations=1, max_cuts=1000), listener)
+    assert len(listener.cuts) < 60
+
+
 def test_stiff_and_fine_slave_is_warned_about() -> None:
     problem = Scene.load(
         "iron", [*TWO_BODIES, "bodies.slave.mesh.elements=[6,6,1]", "stages.press.steps=1", "stages.drag.steps=1"]

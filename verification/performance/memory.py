@@ -78,11 +78,11 @@ def contact_alone(mesh: Mesh) -> tuple[int, int, float]:
     simulation = Simulation(chosen)
     equilibrium = simulation.equilibrium
     positions = _pushed(chosen, simulation)
-    stiffness = equilibrium.solid.stiffness(equilibrium.numbering.reference)
+    scales = equilibrium.measures.scales(equilibrium.numbering.reference)
     before = _begin()
     for pair, start in zip(equilibrium.pairs, equilibrium.initial_state().contacts, strict=True):
         kinematics = pair.kinematics(positions, start)
-        law = pair.law(pair.parameters(kinematics.control, stiffness), start.pressure, start.traction)
+        law = pair.law(pair.parameters(kinematics.control, scales), start.pressure, start.traction)
         response = pair.respond(kinematics, law)
         pair.blocks(positions, kinematics, law, response)
     return *_size(simulation), peak_memory() - before

@@ -9,6 +9,7 @@ from small_scenes import bowl
 
 from isomortar.harness import Bound, case
 from isomortar.solve.contact import Kinematics
+from isomortar.solve.scales import Scales
 from isomortar.solve.simulation import Simulation
 
 
@@ -38,7 +39,7 @@ def forces_are_rows(master: str, slip_sum: str, friction: float) -> dict[str, fl
     pair = simulation.equilibrium.pairs[0]
     positions, start, end = last.state.positions, before.state.contacts[0], last.state.contacts[0]
     kinematics = without_some(pair.kinematics(positions, start))
-    law = pair.law(pair.parameters(kinematics.control, 1.0), end.pressure, end.traction)
+    law = pair.law(pair.parameters(kinematics.control, Scales(np.ones(2), np.zeros(2))), end.pressure, end.traction)
     response = pair.respond(kinematics, law)
     blocks = pair.blocks(positions, kinematics, law, response)
     forces, rows = np.zeros_like(positions), np.zeros_like(positions)

@@ -35,6 +35,11 @@ class Material:
         """Shear modulus A2 = E / (2 (1 + nu))."""
         return self.young / (2.0 * (1.0 + self.poisson))
 
+    @property
+    def modulus(self) -> float:
+        """Stiffness without lateral strain, A1 + 4/3 A2: the largest entries of a tangent go with it."""
+        return self.bulk + 4.0 / 3.0 * self.shear
+
 
 @dataclass(frozen=True)
 class Body:

@@ -8,7 +8,7 @@ from scipy import sparse
 from isomortar import _bindings
 from isomortar._bindings import MasterArrays, Pattern, SlaveArrays
 from isomortar.geometry.patch import FloatArray, IntArray
-from isomortar.model.entities import Contact, Problem, RigidPlane
+from isomortar.model.entities import Contact, Face, Problem, RigidPlane
 from isomortar.model.numbering import Numbering
 from isomortar.model.pattern import incidence, pattern_of, surface_element_points
 
@@ -35,6 +35,10 @@ class Pair:
         For each edge of that face the surface coordinate that runs across it, and its control points.
     neighbours : Pattern
         Slave control points that share an element.
+    bodies : ndarray of int
+        Numbers of the deformable bodies of the pair.
+    softest : ndarray
+        Modulus of the softest of these over that of each.
     """
 
     def __init__(self, contact: Contact, problem: Problem, numbering: Numbering) -> None:
@@ -74,6 +78,10 @@ class Pair:
             self.master_edges = [(0, grid[:, 0]), (0, grid[:, -1]), (1, grid[0]), (1, grid[-1])]
         self.neighbour_matrix = sparse.csr_array(self.elements_of_point @ self.elements_of_point.T)
         self.neighbours: Pattern = pattern_of(self.neighbour_matrix)
+        names = {side.body for side in (contact.slave, contact.master) if isinstance(side, Face)}
+        self.bodies: IntArray = np.array([k for k, body in enumerate(problem.bodies) if body.name in names], dtype=np.int32)
+        moduli = np.array([problem.bodies[k].material.modulus for k in self.bodies])
+        self.softest: FloatArray = moduli.min() / moduli
 
     @property
     def points_per_element(self) -> int:

@@ -20,6 +20,8 @@ class Solid:
     ----------
     pattern : Pattern
         Blocks of the tangent, on global control points; fixed for a whole computation.
+    diagonal : ndarray of int
+        The blocks on its diagonal, one a control point.
 
     Raises
     ------
@@ -38,7 +40,7 @@ class Solid:
         self.pattern = pattern_of(sparse.csr_array(total))
         rows = np.repeat(np.arange(numbering.count), np.diff(self.pattern.start))
         self._last: tuple[FloatArray, FloatArray, FloatArray] | None = None
-        self._diagonal = np.flatnonzero(rows == self.pattern.column)
+        self.diagonal = np.flatnonzero(rows == self.pattern.column)
         try:
             self.forces(numbering.reference)
         except FoldedElementError as error:
@@ -84,8 +86,3 @@ class Solid:
                 place = ", ".join(str(int(i)) for i in where)
                 raise FoldedElementError(f"body {body.name!r}: {error} (element {place} along u, v, w)", error.place) from error
         return forces
-
-    def stiffness(self, positions: FloatArray) -> float:
-        """Largest diagonal entry of the tangent, over all unknowns."""
-        _, tangent = self.forces_and_tangent(positions)
-        return float(np.einsum("kii->ki", tangent[self._diagonal]).max())

@@ -246,7 +246,7 @@ class SolverTable(Table):
     slip_sum: Literal["local", "paper"] = _SOLVER.slip_sum
     """Trial traction from the control point's own slip (local), or summed over active neighbours (paper)."""
     penalty_normal: Penalty = _SOLVER.penalty_normal
-    """Base penalty for the gap, times the largest diagonal entry of the solid tangent over the reference area."""
+    """Base penalty for the gap, times the largest diagonal entry of the tangents of the pair's bodies over the reference area."""
     penalty_tangential: Penalty = _SOLVER.penalty_tangential
     """Base penalty for slip, in the same unit; keep it near a tenth of the normal one."""
     penalty_growth: Annotated[Real, Field(ge=1, le=1e6)] = _SOLVER.penalty_growth
@@ -254,11 +254,11 @@ class SolverTable(Table):
     penalty_growth_max: Annotated[Real, Field(ge=1, le=1e12)] = _SOLVER.penalty_growth_max
     """Limit of that growth over the base."""
     augmentation_tolerance: Annotated[Positive, Field(le=0.1)] = _SOLVER.augmentation_tolerance
-    """Relative change of the multipliers below which augmentations have converged."""
+    """Relative change of the multipliers, and distance from the contact conditions, below which augmentations have converged."""
     augmentation_norm: Literal["separate", "paper"] = _SOLVER.augmentation_norm
     """Pressures and tractions tested each in their norm (separate), or in the paper's single norm, which mixes units."""
     newton_tolerance: Tolerance = _SOLVER.newton_tolerance
-    """Residual over the internal force below which Newton's method has converged."""
+    """Residual over the internal force of each body below which Newton's method has converged."""
     complementarity_tolerance: Tolerance = _SOLVER.complementarity_tolerance
     """Monolithic: relative distance of pressures and tractions from the contact conditions."""
     max_augmentations: Count = _SOLVER.max_augmentations

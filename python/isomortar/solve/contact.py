@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -16,6 +17,7 @@ from isomortar.model.pairs import Pair
 from isomortar.model.supports import Supports
 from isomortar.solve.reach import ContactPatterns, Reach
 from isomortar.solve.record import ContactResult, ContactState
+from isomortar.solve.scales import Scales
 from isomortar.solve.timing import Ledger
 
 #: Tangential over normal complementarity parameter of the monolithic method. It changes no solution; at one, stick and slip take longer
@@ -52,6 +54,23 @@ def moment(arms: FloatArray, forces: FloatArray) -> FloatArray:
     """Sum of arms x forces, shape (3,); NumPy's `cross` takes eight times as long."""
     products = arms.T @ forces
     return np.array([products[1, 2] - products[2, 1], products[2, 0] - products[0, 2], products[0, 1] - products[1, 0]])
+
+
+#: Control pressures, shape (n,), and control tractions, shape (n, 2), of a pair.
+Multipliers = tuple[FloatArray, FloatArray]
+
+
+def ratio(change: float, size: float) -> float:
+    """Square root of a ratio of squares; 0 where nothing changes, infinite where there was nothing before."""
+    if change == 0.0:
+        return 0.0
+    return float(np.sqrt(change / size)) if size > 0.0 else float("inf")
+
+
+def largest(distances: Iterable[tuple[float, float]]) -> tuple[float, float]:
+    """The largest of each of two, not a number where one is not; zeros of none."""
+    first, second = np.max([(0.0, 0.0), *distances], axis=0)
+    return float(first), float(second)
 
 
 class PairMechanics:
@@ -95,10 +114,17 @@ class PairMechanics:
         self._ledger.counts["projections"] += len(pair.slave.area)
         return Kinematics(projections, control)
 
-    def parameters(self, control: Control, stiffness: float) -> FloatArray:
-        """Complementarity parameters of the monolithic method, normal and tangential: K_max / median of w^I and a multiple of it."""
+    def stiffness(self, scales: Scales) -> float:
+        """Largest diagonal entry of the tangents of the pair's bodies, were all of them as soft as the softest, force per length.
+
+        Parameters taken from a stiffer body fail at stiffness ratios of 1e5 (formulation.md Section 7).
+        """
+        return float(np.max(scales.stiffness[self.pair.bodies] * self.pair.softest))
+
+    def parameters(self, control: Control, scales: Scales) -> FloatArray:
+        """Complementarity parameters of the monolithic method, normal and tangential: stiffness / median of w^I and a multiple of it."""
         present = control.weight[control.weight > 0]
-        normal = stiffness / (median(present) if present.size else self.pair.area)
+        normal = self.stiffness(scales) / (median(present) if present.size else self.pair.area)
         return np.array([normal, TANGENTIAL_FACTOR * normal])
 
     def law(self, penalties: FloatArray, pressure: FloatArray, traction: FloatArray) -> Law:
@@ -177,6 +203,33 @@ class PairMechanics:
     def traction_norms(self, control: Control, traction: FloatArray) -> FloatArray:
         """Metric norm of control tractions, shape (..., slave control points)."""
         return np.sqrt(self.traction_squares(control, traction))
+
+    def apart(self, control: Control, some: Multipliers, others: Multipliers) -> tuple[float, float]:
+        """Distance of some control pressures and tractions from others, over the norms of these.
+
+        Tractions count for no less than a hundredth of the cone, or of the pressures where the cone is wider: where nothing pulls they
+        are round-off.
+        """
+        (p, t), (q, s) = some, others
+        size = float(q @ q)
+        squares = self.traction_squares(control, np.stack([t - s, s])).sum(axis=1)
+        least = (0.01 * min(self.friction, 1.0)) ** 2 * size
+        return ratio(float((p - q) @ (p - q)), size), ratio(float(squares[0]), float(np.maximum(squares[1], least)))
+
+    def off_conditions(self, kinematics: Kinematics, law: Law, response: Response, scales: Scales) -> tuple[float, float]:
+        """Relative distance of a response's pressures and tractions from what the contact conditions make of them.
+
+        Gap and slip count here with the stiffness of the whole face, traction per length, for they leave forces off by as much: small
+        penalties change multipliers little, whatever the gap.
+        """
+        present = kinematics.control.weight[kinematics.control.weight > 0]
+        if not present.size:
+            return 0.0, 0.0
+        whole = self.stiffness(scales) / np.sqrt(median(present) * self.pair.area)
+        again = replace(law, penalties=np.array([whole, whole]), pressure=response.pressure, traction=response.traction)
+        with self._ledger.phase("contact"):
+            target = _bindings.augmented_multipliers(self.pair.slave, kinematics.control, again)
+        return self.apart(kinematics.control, (target.pressure, target.traction), (response.pressure, response.traction))
 
     def result(self, positions: FloatArray, kinematics: Kinematics, response: Response) -> ContactResult:
         """Measured quantities at the end of a load step."""

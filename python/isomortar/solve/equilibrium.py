@@ -19,6 +19,7 @@ from isomortar.model.solid import Solid
 from isomortar.model.supports import Supports
 from isomortar.solve.contact import Kinematics, PairMechanics
 from isomortar.solve.record import State
+from isomortar.solve.scales import BodyMeasures
 from isomortar.solve.singular import Multipliers, explain
 from isomortar.solve.system import LinearSystem, Source, block_product, entries
 from isomortar.solve.timing import Ledger
@@ -60,6 +61,7 @@ class Equilibrium:
         self.numbering = Numbering(problem)
         self.supports = Supports(problem, self.numbering)
         self.solid = Solid(problem, self.numbering)
+        self.measures = BodyMeasures(self.numbering, self.supports, self.solid)
         self.pairs = [PairMechanics(Pair(c, problem, self.numbering), problem.settings, ledger) for c in problem.contacts]
         self.solid_source = Source(self.solid.pattern, self.supports.equation, self.supports.equation)
         self._solid_entries: sparse.csr_array | None = None

@@ -12,10 +12,12 @@ from isomortar._bindings import Law, Response
 from isomortar.errors import ConvergenceError, FoldedElementError, LostProjectionError
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.solve.bordered import Border, Correction, solve_bordered, solve_with_kept_factors
+from isomortar.solve.contact import largest
 from isomortar.solve.equilibrium import Balance
 from isomortar.solve.method import Increment, Method
 from isomortar.solve.newton import KEPT_FACTORS, KEPT_SHARE, observed_order, relative_residual, residual_round_off
 from isomortar.solve.record import AugmentationRecord, IterationRecord, State
+from isomortar.solve.scales import Scales
 
 #: Share of the cone within which a trial counts as slip at the start of an increment (Section 6, step 6).
 SLIP_MARGIN = 1e-6
@@ -63,8 +65,8 @@ class Monolithic(Method):
 
     def advance(self, start: State, time: float, step: int) -> Increment:
         """Solve the increment; see `Method.advance`."""
-        prescribed, stiffness = self._begin(start, time)
-        iterate = self._first(start, stiffness)
+        prescribed, scales = self._begin(start, time)
+        iterate = self._first(start, scales)
         moves = bool(np.any(prescribed))
         log: list[IterationRecord] = []
         seen = [iterate.states]
@@ -78,10 +80,10 @@ class Monolithic(Method):
             self._observer.iteration(step, time, 1, record)
             if self._converged(iterate) and not (moves and iteration == 0):
                 if not self._bear(iterate.balance):
-                    return self._increment(iterate, log, stiffness)
+                    return self._increment(iterate, log, scales)
                 multipliers = [(law.pressure, law.traction) for law in iterate.laws]
-                iterate, keep = self._evaluate(iterate.balance.positions, multipliers, start, stiffness), False
-            last, following = iterate, self._by_kept_factors(iterate, start, stiffness, borders) if keep else None
+                iterate, keep = self._evaluate(iterate.balance.positions, multipliers, start, scales), False
+            last, following = iterate, self._by_kept_factors(iterate, start, scales, borders) if keep else None
             if following is not None:
                 iterate, notes = following, (KEPT_FACTORS,)
             elif tangents == self._settings.max_iterations or not np.isfinite(iterate.merit):
@@ -89,11 +91,11 @@ class Monolithic(Method):
             else:
                 tangents += 1
                 if iteration == 0:
-                    last, correction, borders, notes = self._predict(iterate, start, stiffness, prescribed)
+                    last, correction, borders, notes = self._predict(iterate, start, scales, prescribed)
                 else:
                     correction, borders = solve_bordered(self._equilibrium, iterate.balance, iterate.laws, iterate.targets, None)
                     notes = ()
-                iterate, halved = self._update(last, correction, start, stiffness, seen if iteration >= CYCLE_FREE else [], iteration)
+                iterate, halved = self._update(last, correction, start, scales, seen if iteration >= CYCLE_FREE else [], iteration)
                 notes += halved
             keep = iterate.states == last.states and iterate.merit <= KEPT_SHARE * last.merit and "keeping" in self._settings.measures
             seen.append(iterate.states)
@@ -104,19 +106,19 @@ class Monolithic(Method):
             + _toggling(seen, visited, self._settings.slip_sum == "paper")
         )
 
-    def _first(self, start: State, stiffness: float) -> Iterate:
+    def _first(self, start: State, scales: Scales) -> Iterate:
         """The converged state of the last increment as the first iterate; what supports push along a plane slides."""
         pairs = zip(self._equilibrium.pairs, start.contacts, strict=True)
         multipliers = [(contact.pressure, pair.sliding(contact)) for pair, contact in pairs]
         margin = SLIP_MARGIN if "margin" in self._settings.measures else 0.0
-        return self._evaluate(start.positions, multipliers, start, stiffness, margin)
+        return self._evaluate(start.positions, multipliers, start, scales, margin)
 
     def _evaluate(
         self,
         positions: FloatArray,
         multipliers: Sequence[tuple[FloatArray, FloatArray]],
         start: State,
-        stiffness: float,
+        scales: Scales,
         margin: float = 0.0,
         held: Sequence[np.ndarray] | None = None,
     ) -> Iterate:
@@ -129,7 +131,7 @@ class Monolithic(Method):
         kinematics, laws, targets, currents = [], [], [], []
         for k, (pair, (pressure, traction)) in enumerate(zip(equilibrium.pairs, multipliers, strict=True)):
             kinematics.append(pair.kinematics(positions, start.contacts[k]))
-            law = pair.law(pair.parameters(kinematics[-1].control, stiffness), pressure, traction)
+            law = pair.law(pair.parameters(kinematics[-1].control, scales), pressure, traction)
             law = replace(law, slip_margin=margin, forgiving=forgiving, held=law.held if held is None else held[k])
             targets.append(pair.respond(kinematics[-1], law))
             active = targets[-1].state > 0
@@ -137,26 +139,20 @@ class Monolithic(Method):
             currents.append(replace(targets[-1], pressure=laws[-1].pressure, traction=laws[-1].traction))
             pair.add_forces(positions, kinematics[-1], currents[-1], total)
         balance = Balance(positions, internal, total, tuple(kinematics), tuple(currents))
-        residual = relative_residual(equilibrium, balance, stiffness)
+        residual = relative_residual(equilibrium, balance, scales)
         return Iterate(balance, tuple(laws), tuple(targets), residual, *self._gaps(balance, targets))
 
     def _gaps(self, balance: Balance, targets: Sequence[Response]) -> tuple[float, float]:
-        """Relative distance of pressures and tractions from what the contact conditions make of them."""
-        pressure, traction = np.zeros(2), np.zeros(2)
-        for pair, kinematics, now, target in zip(self._equilibrium.pairs, balance.kinematics, balance.responses, targets, strict=True):
-            apart = now.pressure - target.pressure
-            size = target.pressure @ target.pressure
-            pressure += apart @ apart, size
-            squares = pair.traction_squares(kinematics.control, np.stack([now.traction - target.traction, target.traction])).sum(axis=1)
-            traction += squares[0], max(squares[1], (0.01 * pair.friction) ** 2 * size)
-        return tuple(float(np.sqrt(a / b)) if b > 0 else 0.0 for a, b in (pressure, traction))  # type: ignore[return-value]
+        """Relative distance of pressures and tractions from what the contact conditions make of them, of the pair where it is largest."""
+        pairs = zip(self._equilibrium.pairs, balance.kinematics, balance.responses, targets, strict=True)
+        return largest(pair.apart(k.control, (now.pressure, now.traction), (to.pressure, to.traction)) for pair, k, now, to in pairs)
 
     def _converged(self, iterate: Iterate) -> bool:
         tolerance = self._settings.complementarity_tolerance
         return iterate.residual <= self._settings.newton_tolerance and max(iterate.gap_pressure, iterate.gap_traction) <= tolerance
 
     def _predict(
-        self, iterate: Iterate, start: State, stiffness: float, prescribed: FloatArray
+        self, iterate: Iterate, start: State, scales: Scales, prescribed: FloatArray
     ) -> tuple[Iterate, Correction, list[Border | None], tuple[str, ...]]:
         """The first solve, with the prescribed increment; slips that would reverse stick instead, and it is repeated."""
         equilibrium = self._equilibrium
@@ -172,16 +168,16 @@ class Monolithic(Method):
             held = [np.maximum(h, r.astype(np.int32)) for h, r in zip(held, reversed_, strict=True)]
             multipliers = [(law.pressure, law.traction) for law in iterate.laws]
             margin = SLIP_MARGIN if "margin" in self._settings.measures else 0.0
-            iterate = self._evaluate(start.positions, multipliers, start, stiffness, margin, held)
+            iterate = self._evaluate(start.positions, multipliers, start, scales, margin, held)
             correction, borders = solve_bordered(equilibrium, iterate.balance, iterate.laws, iterate.targets, prescribed)
             notes = (f"reversal of {sum(int(h.sum()) for h in held)}",)
         return iterate, correction, borders, notes
 
-    def _by_kept_factors(self, iterate: Iterate, start: State, stiffness: float, borders: Sequence[Border | None]) -> Iterate | None:
+    def _by_kept_factors(self, iterate: Iterate, start: State, scales: Scales, borders: Sequence[Border | None]) -> Iterate | None:
         """The next iterate with the factors of an earlier tangent; None if these leave too much of the merit, or states change."""
         correction = solve_with_kept_factors(self._equilibrium, iterate.balance, iterate.targets, borders)
         try:
-            following = self._evaluate(*_moved(iterate, correction, 1.0), start, stiffness)
+            following = self._evaluate(*_moved(iterate, correction, 1.0), start, scales)
         except (FoldedElementError, LostProjectionError):
             return None
         return following if following.states == iterate.states and following.merit <= KEPT_SHARE * iterate.merit else None
@@ -196,7 +192,7 @@ class Monolithic(Method):
         return (target.state == 2) & (np.einsum("ia,ia->i", raised, change) < 0.0)
 
     def _update(
-        self, iterate: Iterate, correction: Correction, start: State, stiffness: float, seen: list[bytes], iteration: int
+        self, iterate: Iterate, correction: Correction, start: State, scales: Scales, seen: list[bytes], iteration: int
     ) -> tuple[Iterate, tuple[str, ...]]:
         """The next iterate: the full update, or one halved until it is admissible (Section 6, step 7)."""
         halvings = MAX_HALVINGS if "halving" in self._settings.measures else 0
@@ -204,7 +200,7 @@ class Monolithic(Method):
         for halving in range(halvings + 1):
             last = halving == halvings
             try:
-                following = self._evaluate(*_moved(iterate, correction, share), start, stiffness)
+                following = self._evaluate(*_moved(iterate, correction, share), start, scales)
             except (FoldedElementError, LostProjectionError) as error:
                 if last or iteration == 0:
                     raise
@@ -222,10 +218,10 @@ class Monolithic(Method):
         active, slip = iterate.balance.active, iterate.balance.slipping
         return IterationRecord(iteration, iterate.merit, active, active - slip, slip, notes)
 
-    def _increment(self, iterate: Iterate, log: list[IterationRecord], stiffness: float) -> Increment:
+    def _increment(self, iterate: Iterate, log: list[IterationRecord], scales: Scales) -> Increment:
         parameters = iterate.laws[0].penalties if iterate.laws else np.zeros(2)
         record = AugmentationRecord(1, float(parameters[0]), float(parameters[1]), iterate.gap_pressure, iterate.gap_traction, tuple(log))
-        round_off = residual_round_off(self._equilibrium, iterate.balance, stiffness)
+        round_off = residual_round_off(self._equilibrium, iterate.balance, scales)
         return Increment(iterate.balance, (record,), (observed_order(log, round_off),))
 
 

@@ -13,30 +13,29 @@ from isomortar.errors import ConvergenceError, FoldedElementError, LostProjectio
 from isomortar.geometry.patch import FloatArray
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.record import IterationRecord, State
+from isomortar.solve.scales import Scales
 
-#: The residual is measured against no less than this share of the stiffness times the size of the bodies: while bodies move
-#: rigidly, internal forces are round-off and no relative test would pass (formulation.md Section 5).
-FORCE_FLOOR = 1e-4
 #: Factors are kept as long as a solve leaves at most this share of the residual.
 KEPT_SHARE = 0.2
 #: Note of an iteration that was solved with factors of an earlier tangent.
 KEPT_FACTORS = "kept factors"
 
 
-def relative_residual(equilibrium: Equilibrium, balance: Balance, stiffness: float) -> float:
-    """Residual at the free unknowns relative to the internal forces or their floor."""
-    residual = float(np.linalg.norm(balance.total.ravel()[equilibrium.supports.free]))
-    return residual / _scale(equilibrium, balance, stiffness)
+def relative_residual(equilibrium: Equilibrium, balance: Balance, scales: Scales) -> float:
+    """Residual at the free unknowns of a body relative to its internal forces, of the body where that is largest.
+
+    Forces count for no less than what makes round-off pass `newton_tolerance`: while a body moves rigidly, they are nothing else.
+    """
+    floor = scales.round_off / equilibrium.problem.settings.newton_tolerance
+    measures = equilibrium.measures
+    return float(np.max(measures.free_norms(balance.total) / np.maximum(measures.norms(balance.internal), floor)))
 
 
-def residual_round_off(equilibrium: Equilibrium, balance: Balance, stiffness: float) -> float:
-    """Round-off of the relative residual: that of a force is the unit round-off times stiffness times size."""
-    force = float(np.finfo(np.float64).eps) * stiffness * equilibrium.numbering.size
-    return force / _scale(equilibrium, balance, stiffness)
-
-
-def _scale(equilibrium: Equilibrium, balance: Balance, stiffness: float) -> float:
-    return max(float(np.linalg.norm(balance.internal)), FORCE_FLOOR * stiffness * equilibrium.numbering.size)
+def residual_round_off(equilibrium: Equilibrium, balance: Balance, scales: Scales) -> float:
+    """Round-off of the relative residual, of the bodies that have forces above it."""
+    forces = equilibrium.measures.norms(balance.internal)
+    loaded = forces > scales.round_off
+    return float(np.max(scales.round_off[loaded] / forces[loaded], initial=0.0))
 
 
 @dataclass(frozen=True)
@@ -57,12 +56,12 @@ class PositionSolver:
     ----------
     start : State
         Last converged state: slips count from it.
-    stiffness : float
-        Largest diagonal entry of the solid tangent, for the floor of the residual's scale.
+    scales : Scales
+        What the residual is measured against.
     """
 
-    def __init__(self, equilibrium: Equilibrium, start: State, stiffness: float) -> None:
-        self._equilibrium, self._start, self._stiffness = equilibrium, start, stiffness
+    def __init__(self, equilibrium: Equilibrium, start: State, scales: Scales) -> None:
+        self._equilibrium, self._start, self._scales = equilibrium, start, scales
         self._factorised = False
 
     def solve(
@@ -108,7 +107,7 @@ class PositionSolver:
 
     def _evaluate(self, positions: FloatArray, laws: Sequence[Law]) -> _Iterate:
         balance = self._equilibrium.balance(positions, self._start, laws)
-        return _Iterate(balance, relative_residual(self._equilibrium, balance, self._stiffness))
+        return _Iterate(balance, relative_residual(self._equilibrium, balance, self._scales))
 
     def _by_kept_factors(self, iterate: _Iterate, laws: Sequence[Law]) -> _Iterate | None:
         """The next iterate with the factors of an earlier tangent; None if these leave too much of the residual."""

@@ -142,7 +142,7 @@ class Simulation:
     def _cut(self, step: int, time: float, increment: float, longest: float, error: Exception) -> None:
         """Halve the load increment, or give up with a sentence that says where and why."""
         self._increment = 0.5 * increment / longest
-        if self._increment < 0.5**self.problem.settings.max_cuts:
+        if self._increment < 0.5**self.problem.settings.max_cuts or time - 0.5 * increment == time:
             raise ConvergenceError(
                 f"load step {step} (stage {self._stage_of(step)!r}) does not converge at load time {time:.6g}, even with an increment of "
                 f"1/{round(1 / increment)} step: {error}"

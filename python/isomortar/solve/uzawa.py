@@ -8,10 +8,12 @@ import numpy as np
 
 from isomortar._bindings import Law
 from isomortar.errors import ConvergenceError
+from isomortar.solve.contact import largest, ratio
 from isomortar.solve.equilibrium import Balance
 from isomortar.solve.method import Increment, Method
 from isomortar.solve.newton import PositionSolver, observed_order, residual_round_off
 from isomortar.solve.record import AugmentationRecord, IterationRecord, State
+from isomortar.solve.scales import Scales
 
 
 class Uzawa(Method):
@@ -20,13 +22,12 @@ class Uzawa(Method):
     def advance(self, start: State, time: float, step: int) -> Increment:
         """Solve the increment; see `Method.advance`."""
         equilibrium = self._equilibrium
-        prescribed, stiffness = self._begin(start, time)
-        base = np.array([self._settings.penalty_normal, self._settings.penalty_tangential]) * stiffness
-        laws = [
-            pair.law(base / pair.penalty_area, s.pressure, s.traction) for pair, s in zip(equilibrium.pairs, start.contacts, strict=True)
-        ]
+        prescribed, scales = self._begin(start, time)
+        factors = np.array([self._settings.penalty_normal, self._settings.penalty_tangential])
+        base = [factors * pair.stiffness(scales) / pair.penalty_area for pair in equilibrium.pairs]
+        laws = [pair.law(b, s.pressure, s.traction) for pair, b, s in zip(equilibrium.pairs, base, start.contacts, strict=True)]
 
-        newton = PositionSolver(equilibrium, start, stiffness)
+        newton = PositionSolver(equilibrium, start, scales)
         positions, records, orders, growth = start.positions, [], [], 1.0
         for augmentation in range(1, self._settings.max_augmentations + 1):
             log: list[IterationRecord] = []
@@ -36,43 +37,42 @@ class Uzawa(Method):
                 self._observer.iteration(step, time, number, record)
 
             balance = newton.solve(positions, prescribed, laws, report)
-            orders.append(observed_order(log, residual_round_off(equilibrium, balance, stiffness)))
-            changes = self._changes(laws, balance)
-            normal, tangential = (float(penalty) for penalty in growth * base)
-            record = AugmentationRecord(augmentation, normal, tangential, changes[0], changes[1], tuple(log))
+            orders.append(observed_order(log, residual_round_off(equilibrium, balance, scales)))
+            changes, distances = self._changes(laws, balance), self._distances(laws, balance, scales)
+            penalties = laws[0].penalties if laws else np.zeros(2)
+            record = AugmentationRecord(augmentation, float(penalties[0]), float(penalties[1]), changes[0], changes[1], tuple(log))
             records.append(record)
             self._observer.augmented(step, time, record)
-            if max(changes) <= self._settings.augmentation_tolerance and not self._bear(balance):
+            if np.max([*changes, *distances]) <= self._settings.augmentation_tolerance and not self._bear(balance):
                 return Increment(balance, tuple(records), tuple(orders))
             growth = min(growth * self._settings.penalty_growth, max(self._settings.penalty_growth_max, 1.0))
             laws = [
-                replace(law, penalties=growth * base / pair.penalty_area, pressure=r.pressure, traction=r.traction)
-                for law, pair, r in zip(laws, equilibrium.pairs, balance.responses, strict=True)
+                replace(law, penalties=growth * b, pressure=r.pressure, traction=r.traction)
+                for law, b, r in zip(laws, base, balance.responses, strict=True)
             ]
             positions, prescribed = balance.positions, np.zeros_like(prescribed)
         raise ConvergenceError(
-            f"{self._settings.max_augmentations} augmentations left a relative change of the multipliers of {max(changes):.2e} "
-            f"(solver.augmentation_tolerance is {self._settings.augmentation_tolerance:g})"
+            f"{self._settings.max_augmentations} augmentations left a relative change of the multipliers of {np.max(changes):.2e} and "
+            f"{np.max(distances):.2e} off the contact conditions (solver.augmentation_tolerance is "
+            f"{self._settings.augmentation_tolerance:g}; larger penalties need fewer augmentations)"
         )
 
     def _changes(self, laws: list[Law], balance: Balance) -> tuple[float, float]:
-        """Relative change of pressures and of tractions by the last augmentation (the paper's mixed norm: twice the same)."""
-        pressure, traction, mixed = np.zeros(2), np.zeros(2), np.zeros(2)
-        floor = 0.0
+        """Relative change of pressures and of tractions by the last augmentation (the paper's mixed norm: twice the same).
+
+        Of the pair where it is largest: a heavily loaded pair must not hide another one.
+        """
+        changes = []
         for pair, law, kinematics, response in zip(self._equilibrium.pairs, laws, balance.kinematics, balance.responses, strict=True):
-            new_p, new_t = response.pressure - law.pressure, response.traction - law.traction
-            pressure += [np.sum(new_p**2), np.sum(law.pressure**2)]
-            norms = pair.traction_norms(kinematics.control, new_t), pair.traction_norms(kinematics.control, law.traction)
-            traction += [np.sum(norms[0] ** 2), np.sum(norms[1] ** 2)]
-            mixed += [np.sum(new_p**2) + np.sum(new_t**2), np.sum(law.pressure**2) + np.sum(law.traction**2)]
-            floor += (0.01 * pair.friction) ** 2 * float(np.sum(law.pressure**2))
-        if self._settings.augmentation_norm == "paper":
-            return _ratio(*mixed), _ratio(*mixed)
-        return _ratio(*pressure), _ratio(traction[0], max(traction[1], floor))
+            if self._settings.augmentation_norm == "paper":
+                new_p, new_t = response.pressure - law.pressure, response.traction - law.traction
+                mixed = ratio(float(np.sum(new_p**2) + np.sum(new_t**2)), float(np.sum(law.pressure**2) + np.sum(law.traction**2)))
+                changes.append((mixed, mixed))
+            else:
+                changes.append(pair.apart(kinematics.control, (response.pressure, response.traction), (law.pressure, law.traction)))
+        return largest(changes)
 
-
-def _ratio(change: float, size: float) -> float:
-    """Square root of a ratio of squares; 0 where nothing changes, infinite where there was nothing before."""
-    if change <= 0.0:
-        return 0.0
-    return float(np.sqrt(change / size)) if size > 0.0 else float("inf")
+    def _distances(self, laws: list[Law], balance: Balance, scales: Scales) -> tuple[float, float]:
+        """Relative distance of pressures and tractions from the contact conditions, of the pair where it is largest."""
+        pairs = zip(self._equilibrium.pairs, laws, balance.kinematics, balance.responses, strict=True)
+        return largest(pair.off_conditions(kinematics, law, response, scales) for pair, law, kinematics, response in pairs)
