@@ -4,14 +4,14 @@ module isomortar_contact_augmentation
   use isomortar_contact_blocks, only: multipliers_t, row_gap, row_metric, row_slip, row_slip_sum
   use isomortar_contact_control, only: control_t, integrate_slip_sum
   use isomortar_contact_friction, only: metric_matrix, return_map, state_open, state_stick
-  use isomortar_contact_slave, only: slave_t
+  use isomortar_contact_slave, only: integrate_functions, slave_t
   use isomortar_sparse_blocks, only: mark_row, pattern_t
   implicit none
   private
 
   public :: condense, multiplier_rows, respond, trial_rows, trial_rows_summed
 
-  !> A control point whose weight w^I is below this share of the largest has left the master.
+  !> A control point whose weight w^I is below this share of what it has with all slave points has left the master.
   real(wp), parameter :: least_weight = 1.0e-10_wp
 
   !> The law: multipliers of the current augmentation, penalties (force per volume), friction coefficient.
@@ -52,28 +52,32 @@ contains
     logical, intent(in) :: summed
     type(response_t), intent(out) :: response
     real(wp), intent(out) :: field_slip(:, :)
-    real(wp) :: slips(2, slave%count), totals(2, slave%count)
+    real(wp) :: slips(2, slave%count), totals(2, slave%count), present(1, size(slave%area)), whole(1, slave%count)
 
     associate (n => slave%count)
       allocate (response%multipliers%pressure(n), response%multipliers%traction(2, n), response%multipliers%active(n), &
         response%state(n), response%pressure_slope(n), response%traction_slope(2, 6, n))
     end associate
     field_slip = 0.0_wp
+    present = 1.0_wp
+    call integrate_functions(slave, present, whole)
     if (summed) then
-      call active_points(control, law, response%multipliers%pressure, response%multipliers%active)
+      call active_points(control, law, whole(1, :), response%multipliers%pressure, response%multipliers%active)
       slips = 0.0_wp
       where (spread(response%multipliers%active, 1, 2)) slips = control%slip / spread(control%weight, 1, 2)
       call integrate_slip_sum(slave, control%point_metric, slips, field_slip, totals)
-      call augmented_multipliers(control, law, response, totals)
+      call augmented_multipliers(control, law, whole(1, :), response, totals)
     else
-      call augmented_multipliers(control, law, response)
+      call augmented_multipliers(control, law, whole(1, :), response)
     end if
   end subroutine respond
 
-  !> Active control points [2.12]: w p > 0. The pressure of the current augmentation is zero for inactive ones.
-  pure subroutine active_points(control, law, pressure, active)
+  !> Active control points [2.12]: w p > 0. The pressure of the current augmentation is zero for inactive ones. `whole` is <R^I>
+  !> over all slave points. A pressure that is not a number is active, so that forces are none either.
+  pure subroutine active_points(control, law, whole, pressure, active)
     type(control_t), intent(in) :: control
     type(law_t), intent(in) :: law
+    real(wp), intent(in) :: whole(:)
     real(wp), intent(out) :: pressure(:)
     logical, intent(out) :: active(:)
     integer :: i
@@ -81,23 +85,24 @@ contains
     pressure = 0.0_wp
     active = .false.
     do i = 1, size(pressure)
-      if (control%weight(i) <= least_weight * maxval(control%weight) .or. .not. law%bears(i)) cycle
+      if (control%weight(i) <= least_weight * whole(i) .or. .not. law%bears(i)) cycle
       pressure(i) = law%pressure(i) + law%normal_penalty * control%gap(i) / control%weight(i)
-      active(i) = pressure(i) > 0.0_wp
+      active(i) = .not. pressure(i) <= 0.0_wp
       if (.not. active(i)) pressure(i) = 0.0_wp
     end do
   end subroutine active_points
 
   !> Pressures, tractions and states. `slip_sum` is <R^I a_ab zeta^b> for the paper's form, absent for the local one.
-  pure subroutine augmented_multipliers(control, law, response, slip_sum)
+  pure subroutine augmented_multipliers(control, law, whole, response, slip_sum)
     type(control_t), intent(in) :: control
     type(law_t), intent(in) :: law
+    real(wp), intent(in) :: whole(:)
     type(response_t), intent(inout) :: response
     real(wp), intent(in), optional :: slip_sum(:, :)
     real(wp) :: metric(3), trial(2)
     integer :: i
 
-    call active_points(control, law, response%multipliers%pressure, response%multipliers%active)
+    call active_points(control, law, whole, response%multipliers%pressure, response%multipliers%active)
     response%multipliers%traction = 0.0_wp
     response%state = state_open
     response%pressure_slope = 0.0_wp

@@ -30,13 +30,14 @@ contains
     contravariant = contravariant / (metric(1) * metric(3) - metric(2)**2)
   end function raise_index
 
-  !> Norm of covariant components in a metric.
+  !> Norm of covariant components in a metric; not a number where one of them is none, which `max` would drop.
   pure real(wp) function metric_norm(traction, metric)
     real(wp), intent(in) :: traction(2), metric(3)
-    real(wp) :: contravariant(2)
+    real(wp) :: square
 
-    contravariant = raise_index(traction, metric)
-    metric_norm = sqrt(max(0.0_wp, dot_product(traction, contravariant)))
+    square = dot_product(traction, raise_index(traction, metric))
+    if (square < 0.0_wp) square = 0.0_wp
+    metric_norm = sqrt(square)
   end function metric_norm
 
   !> Return the trial traction of a control point under pressure to the disk of radius mu p.

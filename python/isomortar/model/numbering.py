@@ -70,7 +70,7 @@ def _ring_numbers(body: Body) -> tuple[IntArray, IntArray]:
         first, last = body.patch.face_points(body.closed + "0"), body.patch.face_points(body.closed + "1")
         apart = np.linalg.norm(body.patch.control_points[first] - body.patch.control_points[last], axis=1).max()
         size = np.linalg.norm(np.ptp(body.patch.control_points, axis=0))
-        if apart > 1e-9 * size or not np.allclose(body.patch.weights[first], body.patch.weights[last], rtol=1e-9):
+        if not apart <= 1e-9 * size or not np.allclose(body.patch.weights[first], body.patch.weights[last], rtol=1e-9):
             raise InputError(
                 f"the first and last row of control points of a closed ring must coincide; they are {apart:.3g} apart",
                 f"bodies.{body.name}.closed",

@@ -46,7 +46,7 @@ class Iterate:
     @property
     def merit(self) -> float:
         """What an update should make smaller."""
-        return max(self.residual, self.gap_pressure, self.gap_traction)
+        return float(np.max([self.residual, self.gap_pressure, self.gap_traction]))  # not a number where one is not: `max` drops it
 
     @property
     def states(self) -> bytes:
@@ -148,8 +148,9 @@ class Monolithic(Method):
         return largest(pair.apart(k.control, (now.pressure, now.traction), (to.pressure, to.traction)) for pair, k, now, to in pairs)
 
     def _converged(self, iterate: Iterate) -> bool:
-        tolerance = self._settings.complementarity_tolerance
-        return iterate.residual <= self._settings.newton_tolerance and max(iterate.gap_pressure, iterate.gap_traction) <= tolerance
+        within = self._settings.complementarity_tolerance
+        balanced = iterate.residual <= self._settings.newton_tolerance
+        return balanced and iterate.gap_pressure <= within and iterate.gap_traction <= within
 
     def _predict(
         self, iterate: Iterate, start: State, scales: Scales, prescribed: FloatArray
@@ -207,7 +208,7 @@ class Monolithic(Method):
                 reason = "folded element" if isinstance(error, FoldedElementError) else "lost projection"
             else:
                 cycles = following.states != iterate.states and following.states in seen and halving == 0
-                doubles = iteration >= CYCLE_FREE and following.merit > 2.0 * iterate.merit
+                doubles = iteration >= CYCLE_FREE and not following.merit <= 2.0 * iterate.merit
                 if last or iteration == 0 or not (cycles or doubles):
                     break
                 reason = "cycle" if cycles else "merit"

@@ -10,7 +10,7 @@ from isomortar.errors import ConvergenceError, FoldedElementError, LostProjectio
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Problem
 from isomortar.solve.advice import StepAdvice, advice_on_problem
-from isomortar.solve.contact import moment
+from isomortar.solve.contact import largest, moment
 from isomortar.solve.doubts import doubts
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.method import Increment, Method
@@ -115,20 +115,14 @@ class Simulation:
         first = self._method.advance(state, 0.5 * (time + target), step)
         second = self._method.advance(self._state_of(first.balance), target, step)
         error = self._distance(whole.balance, second.balance)
-        if error > tolerance:
+        if not error <= tolerance:
             raise ConvergenceError(f"the path error of the multipliers is {error:.2e}, above solver.path_tolerance = {tolerance:g}")
         return [first, second]
 
     def _distance(self, whole: Balance, halves: Balance) -> float:
         """Largest relative distance between the pressures, or the tractions, of two solutions of an increment."""
-        worst = 0.0
-        for pair, kinematics, a, b in zip(self.equilibrium.pairs, halves.kinematics, whole.responses, halves.responses, strict=True):
-            pressure = float(np.linalg.norm(b.pressure))
-            if pressure > 0.0:
-                traction = np.linalg.norm(pair.traction_norms(kinematics.control, a.traction - b.traction))
-                size = max(float(np.linalg.norm(pair.traction_norms(kinematics.control, b.traction))), 0.01 * pair.friction * pressure)
-                worst = max(worst, float(np.linalg.norm(a.pressure - b.pressure)) / pressure, float(traction) / size if size else 0.0)
-        return worst
+        pairs = zip(self.equilibrium.pairs, halves.kinematics, whole.responses, halves.responses, strict=True)
+        return float(np.max(largest(pair.apart(k.control, (a.pressure, a.traction), (b.pressure, b.traction)) for pair, k, a, b in pairs)))
 
     def _grow(self, increment: float, parts: Sequence[Increment]) -> None:
         """The next load increment, a share of the longest: longer after few linear solves, shorter after many tangents."""

@@ -18,6 +18,8 @@ from isomortar.solve.timing import Ledger
 #: Systems with fewer unknowns than the first are ordered by minimum degree, with more than the second by nested dissection. In between
 #: either can take up to twice as long as the other: there the first matrix is factorised both ways.
 UNDOUBTED = (1000, 5000)
+#: A solution that leaves more than the first share of the right-hand side is refined; one that then leaves more than the second is none.
+REFINED_ABOVE, REFUSED_ABOVE = 1e-6, 0.1
 #: What the diagonal of a singular matrix gets to be factorised, as a share of its largest entry.
 SHIFT = 1e-11
 
@@ -77,6 +79,7 @@ class LinearSystem:
             total = total + entries(sources[1:], size)
         self._start, self._column = total.indptr.astype(np.int64), total.indices.astype(np.int64)
         self.values = np.zeros(len(self._column))
+        self._product = self.matrix()  # the values are its own
         with ledger.phase("factor"):
             self._places = [
                 _bindings.find_places(s.pattern, s.row_of, s.column_of, s.transposed, self._start, self._column) for s in sources
@@ -118,11 +121,31 @@ class LinearSystem:
         return self._rivals[0].ordering
 
     def solve(self, right: FloatArray) -> FloatArray:
-        """Solution for one right-hand side, shape (unknowns,)."""
+        """Solution for one right-hand side, shape (unknowns,).
+
+        Raises
+        ------
+        SingularSystemError
+            What it leaves of the right-hand side is not small, nor is it after refinement.
+        """
         with self._ledger.phase("solve"):
             solution = self._rivals[0].solve(right, refine=0)
+            if not self._left(solution, right) <= REFINED_ABOVE:
+                solution = self._rivals[0].solve(right)
+                left = self._left(solution, right)
+                if not left <= REFUSED_ABOVE:
+                    raise SingularSystemError(
+                        f"the solution of the linear system leaves {left:.1e} of its right-hand side: round-off has taken its digits "
+                        f"(reciprocal condition {self.rcond:.1e})",
+                        -1,
+                    )
         self._ledger.counts["solves"] += 1
         return solution
+
+    def _left(self, solution: FloatArray, right: FloatArray) -> float:
+        """What a solution leaves of the right-hand side; not a number where it is not finite."""
+        size = float(np.linalg.norm(right))
+        return float(np.linalg.norm(right - self._product @ solution)) / size if size > 0.0 else float(np.abs(solution).max(initial=0.0))
 
     def near_null(self) -> FloatArray:
         """A direction that the assembled matrix maps to next to nothing, of length one; not a number if there is no telling.

@@ -1,0 +1,88 @@
+"""Control points of very different weight <R^I>: each is measured by its own, and what is not a number stays so."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from small_scenes import bowl
+
+from isomortar import _bindings
+from isomortar._bindings import Control, Law
+from isomortar.geometry.patch import Direction, FloatArray, Patch
+from isomortar.harness import Bound, case
+from isomortar.model.entities import Body, Contact, Face, Material, Motion, Problem, RigidPlane, SolverSettings, Stage, Support
+from isomortar.solve.simulation import Simulation
+
+
+def graded(span: float) -> Patch:
+    """A unit block of order 2 whose first knot span along x and y is as given, with no strain in its control points."""
+    knots = np.array([0.0, 0.0, 0.0, span, 0.5, 1.0, 1.0, 1.0])
+    along = (knots[1:-2] + knots[2:-1]) / 2  # Greville's points: the functions then reproduce the coordinates
+    deep = np.array([0.0, 0.5, 1.0])
+    z, y, x = np.meshgrid(deep, along, along, indexing="ij")
+    fine, whole = Direction("N", 2, knots), Direction("N", 2, np.array([0.0, 0.0, 0.0, 1.0, 1.0, 1.0]))
+    return Patch((fine, fine, whole), np.column_stack([x.ravel(), y.ravel(), z.ravel()]), np.ones(x.size))
+
+
+def pressed(patch: Patch) -> Problem:
+    """A block pressed on a plane without friction, free to widen."""
+    still = (Motion(),)
+    return Problem(
+        "graded",
+        (Body("block", patch, Material(), (4, 4, 4)),),
+        (Contact("floor", Face("block", "w0"), RigidPlane((0.0,) * 3, (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)), 0.0, (6, 6)),),
+        (
+            Support("top", Face("block", "w1"), (Motion((0.0, 0.0, -0.2)),), components=(2,)),
+            Support("x", Face("block", "u0"), still, components=(0,)),
+            Support("y", Face("block", "v0"), still, components=(1,)),
+        ),
+        (Stage("press", 1),),
+        SolverSettings(newton_tolerance=1e-12, complementarity_tolerance=1e-11),
+    )
+
+
+@case(
+    claim="A uniform pressure is uniform whatever the ratio of the knot spans.",
+    tier="gate",
+    grid={"span": (0.25, 1e-2, 1e-4, 1e-5)},
+    bounds=lambda span: {
+        "spread": Bound(
+            at_most=max(1e-10, 1e-12 / span**2),
+            reason="round-off: Newton leaves 1e-12 of the force, on a control point that carries the square of the span of it",
+        )
+    },
+)
+def spans(span: float) -> dict[str, float]:
+    """Largest less smallest value of the pressure field over the largest."""
+    *_, last = Simulation(pressed(graded(span))).run()
+    low, high = last.contacts[0].pressure_field
+    return {"spread": float((high - low) / high)}
+
+
+@case(
+    claim="What is not a number makes pressure or traction of its control point none either: nothing opens, sticks or slips for it.",
+    tier="gate",
+    grid={"slip_sum": ("local", "paper"), "friction": (0.0, 0.3)},
+    bounds={"hidden": Bound(at_most=0.0, reason="definition: control points whose response is finite")},
+)
+def not_numbers(slip_sum: str, friction: float) -> dict[str, float]:
+    """At the end of a run, one control quantity or multiplier after the other is spoiled at every active control point by itself."""
+    problem = bowl("block", friction, slip_sum=slip_sum)
+    simulation = Simulation(problem)
+    *_, before, last = simulation.run()
+    pair = simulation.equilibrium.pairs[0]
+    state = last.state.contacts[0]
+    control = pair.kinematics(last.state.positions, before.state.contacts[0]).control
+    law = pair.law(np.array([1.0, 1.0]), state.pressure, state.traction)
+    active = np.flatnonzero(state.pressure > 0.0)
+    spoiled = ("gap", "weight", *(("slip", "metric", "square") if friction > 0 else ()))
+    return {"hidden": float(sum(_hidden(pair.pair.slave, control, law, name, int(point)) for name in spoiled for point in active))}
+
+
+def _hidden(slave: _bindings.SlaveArrays, control: Control, law: Law, name: str, point: int) -> bool:
+    """Whether a control point's response is finite where one of its control quantities is not a number."""
+    values: FloatArray = getattr(control, name).copy()
+    values[point] = np.nan
+    response = _bindings.augmented_multipliers(slave, replace(control, **{name: values}), law)
+    return bool(np.isfinite(response.pressure[point]) and np.isfinite(response.traction[point]).all())
