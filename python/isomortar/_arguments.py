@@ -21,13 +21,16 @@ MAX_GAUSS = 64
 
 def array(name: str, value: Any, dtype: type, *shape: int | None) -> NDArray[Any]:
     """The array, if it has the type, the shape (None: any length) and the memory order that the kernel reads without a copy."""
-    wanted = f"contiguous {np.dtype(dtype).name}({', '.join('any' if n is None else str(n) for n in shape)})"
-    if not isinstance(value, np.ndarray):
-        raise InputError(f"is {type(value).__name__}; the kernel needs {wanted}", name)
-    fits = len(value.shape) == len(shape) and all(n is None or n == m for n, m in zip(shape, value.shape, strict=True))
-    if value.dtype != dtype or not fits or not value.flags.c_contiguous:
-        raise InputError(f"is {value.dtype}{value.shape}; the kernel needs {wanted}", name)
-    return value
+    known = isinstance(value, np.ndarray)
+    if known and value.dtype == dtype and value.flags.c_contiguous and (value.shape == shape or _fits(value.shape, shape)):
+        return value
+    found = f"{value.dtype}{value.shape}" if known else type(value).__name__
+    wanted = ", ".join("any" if n is None else str(n) for n in shape)
+    raise InputError(f"is {found}; the kernel needs contiguous {np.dtype(dtype).name}({wanted})", name)
+
+
+def _fits(shape: tuple[int, ...], wanted: tuple[int | None, ...]) -> bool:
+    return len(shape) == len(wanted) and all(n is None or n == m for n, m in zip(wanted, shape, strict=True))
 
 
 def finite(name: str, value: FloatArray) -> FloatArray:

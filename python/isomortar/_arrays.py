@@ -147,10 +147,11 @@ class Projections:
         check.array("slips", self.slips, np.int32, points)
 
     @cached_property
-    def range(self) -> tuple[IntArray, IntArray]:
-        """Lowest and highest element, by direction, of the points that were found."""
+    def range(self) -> tuple[int, int, int]:
+        """Lowest element of the points that were found, and the highest by direction."""
         found = self.element[self.found != 0]
-        return found.min(axis=0, initial=0), found.max(axis=0, initial=-1)
+        first, second = found.max(axis=0, initial=-1).tolist()
+        return int(found.min(initial=0)), first, second
 
 
 @dataclass(frozen=True)

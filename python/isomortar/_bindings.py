@@ -51,9 +51,9 @@ def _check_bodies(positions: FloatArray, slave: SlaveArrays, master: MasterArray
 
 def _check_projections(projections: Projections, slave: SlaveArrays, master: MasterArrays) -> None:
     check.array("projections.found", projections.found, np.int32, len(slave.area))
-    low, high = projections.range
-    if master.elements is not None and not (low.min() >= 0 and np.all(high < master.elements)):
-        raise InputError(f"names elements {low} to {high}; the master has {master.elements}", "projections.element")
+    low, first, second = projections.range
+    if master.elements is not None and not (low >= 0 and first < master.elements[0] and second < master.elements[1]):
+        raise InputError(f"names elements {low} to {first}, {second}; the master has {master.elements}", "projections.element")
 
 
 def _check_control(control: Control, slave: SlaveArrays) -> None:
