@@ -45,7 +45,7 @@ def shifted_bowl(distance: float, size: float, friction: float = 0.3) -> Data:
         motion["translate"] = _times(motion["translate"], size)
     data["supports"]["top"]["centre"] = _times(away, size)
     data["contacts"]["interface"]["friction"] = friction
-    return changed(data, _TIGHT)
+    return data
 
 
 @case(
@@ -64,7 +64,7 @@ def units(length: float, stress: float) -> dict[str, Any]:
         ran(scaled_press(length, stress)),
         lambda done: digits(done.force("top") / stress / length / length, right),
         needed=8.0,
-        causes=["young", "geometry", "too (large|small)", "size"],
+        causes=["[Yy]oung", "geometry", "too (large|small)", "size"],
     )
 
 
@@ -77,7 +77,7 @@ def units(length: float, stress: float) -> dict[str, Any]:
 def origin(distance: float, size: float) -> dict[str, Any]:
     """Symmetry: translation by a distance, in lengths of the body; its coordinates then hold that many digits less."""
     right = ran(shifted_bowl(0.0, 1.0)).force("top")
-    needed = float(np.clip(12.0 - np.log10(max(distance, 1.0)), 3.0, 8.0))
+    needed = float(np.clip(12.0 - np.log10(max(distance, 1.0)), 3.0, 6.0))
     return judge(
         ran(shifted_bowl(distance, size)),
         lambda done: digits(done.force("top") / size**2, right),
@@ -94,7 +94,7 @@ def origin(distance: float, size: float) -> dict[str, Any]:
 )
 def penalty(penalty: float, friction: float) -> dict[str, Any]:
     """Limit: the solution with the default penalty, 100; from 1e-3 to 1e9 times that. The tangential one is a tenth of it."""
-    data = shifted_bowl(0.0, 1.0, friction)
+    data = changed(shifted_bowl(0.0, 1.0, friction), _TIGHT)
     right = ran(data).force("top")
     return judge(
         ran(changed(data, {"solver.penalty_normal": penalty, "solver.penalty_tangential": 0.1 * penalty})),
@@ -122,7 +122,7 @@ def augmentation_penalty(penalty: float) -> dict[str, Any]:
     claim="A result is as good as the tolerance that was asked for, until round-off is in the way.",
     tier=lambda tolerance: "gate" if tolerance == 1e-12 else "nightly",
     grid={"tolerance": (10.0, 1.0, 0.1, 1e-2, 1e-4, 1e-6, 1e-9, 1e-12, 1e-14, 1e-16, 1e-20)},
-    bounds=lambda tolerance: endings(1e-12 <= tolerance <= 1e-2),
+    bounds=lambda tolerance: endings(1e-12 <= tolerance <= 1e-4),
 )
 def newton_tolerance(tolerance: float) -> dict[str, Any]:
     """Finer run: the tolerance 1e-12; an error of a hundred times the tolerance is allowed, for the condition of the system."""
