@@ -87,4 +87,6 @@ def _name(axes: Axes, values: Sequence[Any], name: str) -> None:
 
 def _short(value: Any) -> str:
     """A value of a grid as people read it."""
-    return f"{value:.13g}" if isinstance(value, float) else str(value)
+    if not isinstance(value, float):
+        return str(value)
+    return f"{value:g}" if float(f"{value:g}") == value else f"{value:.13g}"
