@@ -153,7 +153,7 @@ end subroutine contact_forces
 !> Add constraint rows and the geometric tangent (isomortar_contact_blocks).
 subroutine contact_blocks(nodes, basis, area, point, nlocal, nelements, nquad, nslave, kind, knots, nknots, master_point, &
     master_weight, nmaster, x, n, xi, element, fixed, found, slips, with_friction, pressure, traction, state, field_slip, &
-    row_start, row_column, nrows, nkinds, rows, start, nstart, column, nblocks, tangent)
+    row_start, row_column, nrows, nkinds, rows, start, nstart, column, nblocks, tangent, status, place)
   use iso_c_binding, only: c_double, c_int
   use isomortar_api_unpack, only: unpack_master, unpack_pattern, unpack_slave
   use isomortar_contact_blocks, only: integrate_blocks, multipliers_t
@@ -166,6 +166,7 @@ subroutine contact_blocks(nodes, basis, area, point, nlocal, nelements, nquad, n
   real(c_double), intent(in) :: basis(nlocal, nquad), area(nquad), knots(nknots), master_weight(nmaster), x(3, n)
   real(c_double), intent(in) :: xi(2, nquad), pressure(nslave), traction(2, nslave), field_slip(2, nquad)
   real(c_double), intent(inout) :: rows(3, nkinds, nrows), tangent(3, 3, nblocks)
+  integer(c_int), intent(out) :: status, place
   type(projections_t) :: projections
 
   projections%xi = xi
@@ -175,17 +176,18 @@ subroutine contact_blocks(nodes, basis, area, point, nlocal, nelements, nquad, n
   projections%slips = slips /= 0
   call integrate_blocks(unpack_slave(nodes, basis, area, point), unpack_master(kind, knots, master_point, master_weight), x, &
     projections, with_friction /= 0, multipliers_t(pressure, traction, state /= 0), field_slip, &
-    unpack_pattern(row_start, row_column), rows, unpack_pattern(start, column), tangent)
+    unpack_pattern(row_start, row_column), rows, unpack_pattern(start, column), tangent, status, place)
 end subroutine contact_blocks
 
 !> Rows of the multipliers' derivatives of the augmented law (isomortar_contact_augmentation): changes(component, multiplier, block)
 !> and of their trial tractions, trial(component, a, block), on the pattern `wide`; it and `neighbours` differ from the rows'
-!> pattern with `summed` only.
+!> pattern with `summed` only. `place` is the row of a pattern that lacks a block, 0 where `wide` has other rows.
 subroutine multiplier_rows(nodes, basis, area, point, nlocal, nelements, nquad, nslave, weight, square, control_slip, metric, &
     point_metric, summed, penalties, friction, state, pressure_slope, traction_slope, row_start, row_column, nrows, nkinds, rows, &
-    neighbour_start, neighbour_column, nneighbours, wide_start, wide_column, nwide, changes, trial)
+    neighbour_start, neighbour_column, nneighbours, wide_start, wide_column, nwide, changes, trial, status, place)
   use iso_c_binding, only: c_double, c_int
   use isomortar_api_unpack, only: unpack_pattern, unpack_slave
+  use isomortar_base_status, only: status_ok, status_pattern
   use isomortar_contact_augmentation, only: combine => multiplier_rows, law_t, response_t, trial_rows, trial_rows_summed
   use isomortar_contact_control, only: control_t
   use isomortar_sparse_blocks, only: pattern_t
@@ -198,10 +200,11 @@ subroutine multiplier_rows(nodes, basis, area, point, nlocal, nelements, nquad, 
   real(c_double), intent(in) :: control_slip(2, nslave), metric(3, nslave), point_metric(3, nquad), penalties(2), friction
   real(c_double), intent(in) :: pressure_slope(nslave), traction_slope(2, 6, nslave), rows(3, nkinds, nrows)
   real(c_double), intent(out) :: changes(3, 3, nwide), trial(3, 2, nwide)
+  integer(c_int), intent(out) :: status, place
   type(control_t) :: control
   type(law_t) :: law
   type(response_t) :: response
-  type(pattern_t) :: narrow, wide
+  type(pattern_t) :: narrow, neighbours, wide
 
   control%weight = weight
   control%square = square
@@ -214,23 +217,30 @@ subroutine multiplier_rows(nodes, basis, area, point, nlocal, nelements, nquad, 
   response%state = state
   response%pressure_slope = pressure_slope
   response%traction_slope = traction_slope
+  changes = 0.0_c_double
   trial = 0.0_c_double
   narrow = unpack_pattern(row_start, row_column)
+  neighbours = unpack_pattern(neighbour_start, neighbour_column)
   wide = unpack_pattern(wide_start, wide_column)
+  status = status_pattern
+  place = 0
+  if (summed == 0 .and. any(narrow%start /= wide%start)) return
   if (nkinds > 1 .and. summed /= 0) then
-    call trial_rows_summed(unpack_slave(nodes, basis, area, point), control, law, state /= 0, narrow, rows, &
-      unpack_pattern(neighbour_start, neighbour_column), wide, trial)
+    call trial_rows_summed(unpack_slave(nodes, basis, area, point), control, law, state /= 0, narrow, rows, neighbours, wide, &
+      trial, place)
   else if (nkinds > 1) then
     call trial_rows(control, law, state /= 0, narrow, rows, trial)
   end if
-  call combine(control, response, narrow, rows, wide, trial, changes)
+  if (place == 0) call combine(control, response, narrow, rows, wide, trial, changes, place)
+  status = merge(status_pattern, status_ok, place > 0)
 end subroutine multiplier_rows
 
 !> Condense multipliers into the tangent (isomortar_contact_augmentation).
 subroutine condense_multipliers(state, nslave, row_start, row_column, nrows, nkinds, rows, wide_start, wide_column, nwide, &
-    changes, start, nstart, column, nblocks, tangent)
+    changes, start, nstart, column, nblocks, tangent, status, place)
   use iso_c_binding, only: c_double, c_int
   use isomortar_api_unpack, only: unpack_pattern
+  use isomortar_base_status, only: status_ok, status_pattern
   use isomortar_contact_augmentation, only: condense
   implicit none
   integer(c_int), intent(in) :: nslave, nrows, nkinds, nwide, nstart, nblocks
@@ -238,7 +248,9 @@ subroutine condense_multipliers(state, nslave, row_start, row_column, nrows, nki
   integer(c_int), intent(in) :: start(nstart), column(nblocks)
   real(c_double), intent(in) :: rows(3, nkinds, nrows), changes(3, 3, nwide)
   real(c_double), intent(inout) :: tangent(3, 3, nblocks)
+  integer(c_int), intent(out) :: status, place
 
   call condense(state /= 0, unpack_pattern(row_start, row_column), rows, unpack_pattern(wide_start, wide_column), changes, &
-    unpack_pattern(start, column), tangent)
+    unpack_pattern(start, column), tangent, place)
+  status = merge(status_pattern, status_ok, place > 0)
 end subroutine condense_multipliers

@@ -5,7 +5,7 @@ module isomortar_contact_augmentation
   use isomortar_contact_control, only: control_t, integrate_slip_sum
   use isomortar_contact_friction, only: metric_matrix, return_map, state_open, state_stick
   use isomortar_contact_slave, only: integrate_functions, slave_t
-  use isomortar_sparse_blocks, only: mark_row, pattern_t
+  use isomortar_sparse_blocks, only: lacks, mark_row, pattern_t
   implicit none
   private
 
@@ -182,8 +182,8 @@ contains
   end subroutine trial_rows
 
   !> Rows of the trial traction, the paper's slip sum: e_T / w^I (sum_J M_ab^IJ <R^J dxi^b> / w^J + <R^I da_ab zeta^b>).
-  !> `wide` is the pattern of the result, `neighbours` that of M^IJ.
-  pure subroutine trial_rows_summed(slave, control, law, active, pattern, rows, neighbours, wide, trial)
+  !> `wide` is the pattern of the result, `neighbours` that of M^IJ. `lacking` is a row of them without one of the blocks, 0: none.
+  pure subroutine trial_rows_summed(slave, control, law, active, pattern, rows, neighbours, wide, trial, lacking)
     type(slave_t), intent(in) :: slave
     type(control_t), intent(in) :: control
     type(law_t), intent(in) :: law
@@ -191,17 +191,22 @@ contains
     type(pattern_t), intent(in) :: pattern, neighbours, wide
     real(wp), intent(in) :: rows(:, :, :)
     real(wp), intent(out) :: trial(:, :, :)
+    integer, intent(out) :: lacking
     integer, parameter :: entry(2, 2) = reshape([1, 2, 2, 3], [2, 2])
     real(wp), allocatable :: metric(:, :)
     integer, allocatable :: columns(:)
     integer :: a, b, i, j, k, n
 
     allocate (metric(3, size(neighbours%column)), columns(max(maxval(pattern%column), maxval(wide%column))))
-    call pair_metric(slave, control, neighbours, metric)
+    columns = 0
     trial = 0.0_wp
+    call pair_metric(slave, control, neighbours, metric, lacking)
+    if (lacking > 0) return
     do i = 1, size(active)
       if (.not. active(i)) cycle
+      lacking = i
       call mark_row(wide, i, columns)
+      if (lacks(wide, i, columns, pattern%column(pattern%start(i - 1) + 1:pattern%start(i)))) return
       associate (factor => law%tangential_penalty / control%weight(i))
         do k = pattern%start(i - 1) + 1, pattern%start(i)
           associate (target => trial(:, :, columns(pattern%column(k))))
@@ -211,6 +216,7 @@ contains
         do n = neighbours%start(i - 1) + 1, neighbours%start(i)
           j = neighbours%column(n)
           if (.not. active(j)) cycle
+          if (lacks(wide, i, columns, pattern%column(pattern%start(j - 1) + 1:pattern%start(j)))) return
           do k = pattern%start(j - 1) + 1, pattern%start(j)
             do b = 1, 2
               do a = 1, 2
@@ -223,21 +229,26 @@ contains
         end do
       end associate
     end do
+    lacking = 0
   end subroutine trial_rows_summed
 
-  !> M_ab^IJ = <R^I a_ab R^J> as 11, 12, 22 on the pattern of neighbours.
-  pure subroutine pair_metric(slave, control, neighbours, metric)
+  !> M_ab^IJ = <R^I a_ab R^J> as 11, 12, 22 on the pattern of neighbours; `lacking` as above.
+  pure subroutine pair_metric(slave, control, neighbours, metric, lacking)
     type(slave_t), intent(in) :: slave
     type(control_t), intent(in) :: control
     type(pattern_t), intent(in) :: neighbours
     real(wp), intent(out) :: metric(:, :)
+    integer, intent(out) :: lacking
     integer :: a, b, columns(slave%count), e, per_element, q
 
     metric = 0.0_wp
+    columns = 0
     per_element = size(slave%area) / size(slave%nodes, 2)
     do e = 1, size(slave%nodes, 2)
       do a = 1, size(slave%nodes, 1)
-        call mark_row(neighbours, slave%nodes(a, e), columns)
+        lacking = slave%nodes(a, e)
+        call mark_row(neighbours, lacking, columns)
+        if (lacks(neighbours, lacking, columns, slave%nodes(:, e))) return
         do q = (e - 1) * per_element + 1, e * per_element
           do b = 1, size(slave%nodes, 1)
             associate (target => metric(:, columns(slave%nodes(b, e))))
@@ -247,23 +258,29 @@ contains
         end do
       end do
     end do
+    lacking = 0
   end subroutine pair_metric
 
-  !> Rows of the multipliers p, t_1, t_2 on the pattern `wide` of the trial rows: result(component, multiplier, block).
-  pure subroutine multiplier_rows(control, response, pattern, rows, wide, trial, result)
+  !> Rows of the multipliers p, t_1, t_2 on the pattern `wide` of the trial rows: result(component, multiplier, block). `lacking` is a row
+  !> of it without one of the blocks, 0: none.
+  pure subroutine multiplier_rows(control, response, pattern, rows, wide, trial, result, lacking)
     type(control_t), intent(in) :: control
     type(response_t), intent(in) :: response
     type(pattern_t), intent(in) :: pattern, wide
     real(wp), intent(in) :: rows(:, :, :), trial(:, :, :)
     real(wp), intent(out) :: result(:, :, :)
+    integer, intent(out) :: lacking
     integer, allocatable :: columns(:)
     integer :: i, k
 
     allocate (columns(max(maxval(pattern%column), maxval(wide%column))))
+    columns = 0
     result = 0.0_wp
     do i = 1, size(response%state)
       if (response%state(i) == state_open) cycle
+      lacking = i
       call mark_row(wide, i, columns)
+      if (lacks(wide, i, columns, pattern%column(pattern%start(i - 1) + 1:pattern%start(i)))) return
       do k = pattern%start(i - 1) + 1, pattern%start(i)
         associate (target => result(:, :, columns(pattern%column(k))), by => response%traction_slope(:, :, i))
           target(:, 1) = response%pressure_slope(i) * rows(:, row_gap, k)
@@ -278,23 +295,27 @@ contains
         result(:, 2:3, k) = result(:, 2:3, k) + matmul(trial(:, :, k), transpose(response%traction_slope(:, 2:3, i)))
       end do
     end do
+    lacking = 0
   end subroutine multiplier_rows
 
-  !> Add sum_I <R^I dg> Dp^I + <R^I dxi^a> Dt_a^I to a matrix of blocks.
-  pure subroutine condense(active, pattern, rows, wide, changes, target_pattern, target)
+  !> Add sum_I <R^I dg> Dp^I + <R^I dxi^a> Dt_a^I to a matrix of blocks; `lacking` is a row of it without one of the blocks, 0: none.
+  pure subroutine condense(active, pattern, rows, wide, changes, target_pattern, target, lacking)
     logical, intent(in) :: active(:)
     type(pattern_t), intent(in) :: pattern, wide, target_pattern
     real(wp), intent(in) :: rows(:, :, :), changes(:, :, :)
     real(wp), intent(inout) :: target(:, :, :)
+    integer, intent(out) :: lacking
     integer, allocatable :: columns(:)
     integer :: a, b, i, multipliers
 
-    allocate (columns(size(target_pattern%start)))
+    allocate (columns(size(target_pattern%start) - 1), source=0)
     multipliers = merge(1, 3, size(rows, 2) == 1)
     do i = 1, size(active)
       if (.not. active(i)) cycle
       do a = pattern%start(i - 1) + 1, pattern%start(i)
-        call mark_row(target_pattern, pattern%column(a), columns)
+        lacking = pattern%column(a)
+        call mark_row(target_pattern, lacking, columns)
+        if (lacks(target_pattern, lacking, columns, wide%column(wide%start(i - 1) + 1:wide%start(i)))) return
         do b = wide%start(i - 1) + 1, wide%start(i)
           associate (block => target(:, :, columns(wide%column(b))))
             block = block + matmul(changes(:, 1:multipliers, b), transpose(rows(:, 1:multipliers, a)))
@@ -302,6 +323,7 @@ contains
         end do
       end do
     end do
+    lacking = 0
   end subroutine condense
 
 end module isomortar_contact_augmentation

@@ -3,13 +3,14 @@
 !> The rows are returned apart from what they are multiplied with, so that one pass serves every way of enforcing contact.
 module isomortar_contact_blocks
   use isomortar_base_kinds, only: wp
+  use isomortar_base_status, only: status_ok, status_pattern
   use isomortar_contact_control, only: point_on_master, projections_t
   use isomortar_contact_kinematics, only: all_components, contact_point_t, first_variations, gap_variation, metric_variation, &
     short_vectors, traction_variation, variations_t
   use isomortar_contact_master, only: master_order, master_point_count, master_t
   use isomortar_contact_slave, only: slave_t
   use isomortar_nurbs_surface, only: derivative_columns
-  use isomortar_sparse_blocks, only: mark_row, pattern_t
+  use isomortar_sparse_blocks, only: lacks, mark_row, pattern_t
   implicit none
   private
 
@@ -93,9 +94,10 @@ contains
   !> Add constraint rows and the geometric tangent <p Ddg> + <t_a Ddxi^a>.
   !>
   !> `row_pattern` holds for each slave control point (row) the control points (columns) that its rows reach;
-  !> rows(component, kind, block). `field_slip` is the field of control slips, used by the slip sum's rows.
+  !> rows(component, kind, block). `field_slip` is the field of control slips, used by the slip sum's rows. On failure `place` is the row
+  !> of a pattern that lacks a block.
   subroutine integrate_blocks(slave, master, positions, projections, with_friction, multipliers, field_slip, row_pattern, rows, &
-      pattern, tangent)
+      pattern, tangent, status, place)
     type(slave_t), intent(in) :: slave
     type(master_t), intent(in) :: master
     real(wp), intent(in) :: positions(:, :)
@@ -105,12 +107,16 @@ contains
     real(wp), intent(in) :: field_slip(:, :)
     type(pattern_t), intent(in) :: row_pattern, pattern
     real(wp), intent(inout) :: rows(:, :, :), tangent(:, :, :)
+    integer, intent(out) :: status, place
     type(sample_t) :: sample
     type(batch_t) :: batch
     logical :: pending(size(slave%area) / size(slave%nodes, 2)), together(size(slave%area) / size(slave%nodes, 2))
     integer :: columns(size(positions, 2))
     integer :: before, e, k
 
+    status = status_pattern
+    place = 0
+    columns = 0
     call reserve(slave, master, size(pending), short_vectors(master%is_plane, with_friction), size(rows, 2), batch)
     do e = 1, size(slave%nodes, 2)
       if (.not. any(multipliers%active(slave%nodes(:, e)))) cycle
@@ -128,10 +134,12 @@ contains
           call add_sample(slave, before + k, projections%slips(before + k), sample, field_slip(:, before + k), &
             fields_at(slave, multipliers, e, before + k), master%is_plane, batch)
         end do
-        call scatter_rows(slave%nodes(:, e), multipliers%active, batch, sample%points, row_pattern, columns, rows)
-        if (.not. master%is_plane) call scatter_tangent(batch, sample%points, pattern, columns, tangent)
+        call scatter_rows(slave%nodes(:, e), multipliers%active, batch, sample%points, row_pattern, columns, rows, place)
+        if (place == 0 .and. .not. master%is_plane) call scatter_tangent(batch, sample%points, pattern, columns, tangent, place)
+        if (place > 0) return
       end do
     end do
+    status = status_ok
   end subroutine integrate_blocks
 
   !> Which places are the same as place k.
@@ -271,14 +279,15 @@ contains
     second = reshape(matmul(sample%coefficients, reshape(by_vector, [vectors, 9 * vectors])), shape(second))
   end subroutine spread_geometric
 
-  !> Add the rows of a batch to those of its active slave control points.
-  pure subroutine scatter_rows(nodes, active, batch, points, pattern, columns, rows)
+  !> Add the rows of a batch to those of its active slave control points; `lacking` is a row without one of the blocks, 0: none.
+  pure subroutine scatter_rows(nodes, active, batch, points, pattern, columns, rows, lacking)
     integer, intent(in) :: nodes(:), points(:)
     logical, intent(in) :: active(:)
     type(batch_t), intent(in) :: batch
     type(pattern_t), intent(in) :: pattern
     integer, intent(inout) :: columns(:)
     real(wp), intent(inout) :: rows(:, :, :)
+    integer, intent(out) :: lacking
     real(wp) :: sums(size(points), 3, size(nodes), size(rows, 2))
     integer :: a, i, kind
 
@@ -292,13 +301,16 @@ contains
     end do
     do i = 1, size(nodes)
       if (.not. active(nodes(i))) cycle
-      call mark_row(pattern, nodes(i), columns)
+      lacking = nodes(i)
+      call mark_row(pattern, lacking, columns)
+      if (lacks(pattern, lacking, columns, points)) return
       do a = 1, size(points)
         associate (row => rows(:, :, columns(points(a))))
           row = row + sums(a, :, i, :)
         end associate
       end do
     end do
+    lacking = 0
   end subroutine scatter_rows
 
   !> sums = left right^T, over m quadrature points.
@@ -310,26 +322,30 @@ contains
     sums = matmul(left, transpose(right))
   end subroutine sum_points
 
-  !> Add the geometric tangent of a batch.
-  pure subroutine scatter_tangent(batch, points, pattern, columns, tangent)
+  !> Add the geometric tangent of a batch; `lacking` as above.
+  pure subroutine scatter_tangent(batch, points, pattern, columns, tangent, lacking)
     type(batch_t), intent(in) :: batch
     integer, intent(in) :: points(:)
     type(pattern_t), intent(in) :: pattern
     integer, intent(inout) :: columns(:)
     real(wp), intent(inout) :: tangent(:, :, :)
+    integer, intent(out) :: lacking
     real(wp) :: sums(size(points), 3, 3, size(points))
     integer :: a, b
 
     call sum_points(9 * size(points), size(batch%coefficients, 2) * batch%count, size(points), batch%second, batch%coefficients, &
       sums)
     do a = 1, size(points)
-      call mark_row(pattern, points(a), columns)
+      lacking = points(a)
+      call mark_row(pattern, lacking, columns)
+      if (lacks(pattern, lacking, columns, points)) return
       do b = 1, size(points)
         associate (block => tangent(:, :, columns(points(b))))
           block = block + transpose(sums(b, :, :, a))
         end associate
       end do
     end do
+    lacking = 0
   end subroutine scatter_tangent
 
 end module isomortar_contact_blocks

@@ -4,11 +4,11 @@
 !> goes through the elements in their order, so that the bits of the result do not depend on the number of threads.
 module isomortar_solid_assembly
   use isomortar_base_kinds, only: wp
-  use isomortar_base_status, only: status_ok
+  use isomortar_base_status, only: status_ok, status_pattern
   use isomortar_nurbs_patch, only: element_count, element_nodes, element_of, line_rule, line_rule_t, patch_t
   use isomortar_nurbs_tensor_product, only: line_pairs, line_pairs_t
   use isomortar_solid_element, only: component_pairs, element_residual, element_tangent, sample_element, samples_t
-  use isomortar_sparse_blocks, only: mark_row, pattern_t
+  use isomortar_sparse_blocks, only: lacks, mark_row, pattern_t
 !$ use omp_lib, only: omp_get_max_threads
   implicit none
   private
@@ -65,7 +65,8 @@ contains
     smallest_jacobian = huge(1.0_wp)
     do first = 0, element_count(patch) - 1, size(batch)
       many = min(size(batch), element_count(patch) - first)
-      !$omp parallel do private(at) schedule(dynamic)
+      !$omp parallel do default(none) private(at) shared(batch, bulk, first, many, patch, positions, references, shear, tangent) &
+      !$omp shared(u, uu, v, vv, w, ww) schedule(dynamic)
       do k = 1, many
         at = element_of(patch, first + k)
         call take_element(patch, at, u(at(1)), v(at(2)), w(at(3)), bulk, shear, positions, references, batch(k))
@@ -81,7 +82,10 @@ contains
         if (status /= status_ok) return
         call add_forces(batch(k), residual)
       end do
-      if (present(tangent)) call add_blocks(pattern, batch(:many), patch%direction%order + 1, tangent)
+      if (.not. present(tangent)) cycle
+      call add_blocks(pattern, batch(:many), patch%direction%order + 1, tangent, place)
+      status = merge(status_pattern, status_ok, place > 0)
+      if (status /= status_ok) return
     end do
     place = 0
   end subroutine add_body
@@ -130,20 +134,24 @@ contains
     end do
   end subroutine add_forces
 
-  !> Add the tangents of a batch of elements, shares of the rows at the same time. `count` is the number of functions by direction.
-  subroutine add_blocks(pattern, batch, count, tangent)
+  !> Add the tangents of a batch of elements, shares of the rows at the same time. `count` is the number of functions by direction,
+  !> `lacking` a row that has no block where one is to be added, 0 without any.
+  subroutine add_blocks(pattern, batch, count, tangent, lacking)
     type(pattern_t), intent(in) :: pattern
     type(element_t), intent(in) :: batch(:)
     integer, intent(in) :: count(3)
     real(wp), intent(inout) :: tangent(:, :, :)
+    integer, intent(out) :: lacking
     integer, allocatable :: columns(:)
     integer :: a, a1, a2, a3, k, shares, share
 
     shares = 1
 !$  shares = omp_get_max_threads()
-    !$omp parallel do private(columns, k, a, a1, a2, a3)
+    lacking = 0
+    !$omp parallel do default(none) private(a, a1, a2, a3, columns, k) shared(batch, count, pattern, shares, tangent) &
+    !$omp reduction(max: lacking)
     do share = 0, shares - 1
-      allocate (columns(size(pattern%start) - 1))
+      allocate (columns(size(pattern%start) - 1), source=0)
       do k = 1, size(batch)
         associate (element => batch(k))
           a = 0
@@ -153,6 +161,10 @@ contains
                 a = a + 1
                 if (modulo(element%nodes(a) / row_group, shares) /= share) cycle
                 call mark_row(pattern, element%nodes(a), columns)
+                if (lacks(pattern, element%nodes(a), columns, element%nodes)) then
+                  lacking = max(lacking, element%nodes(a))
+                  cycle
+                end if
                 call add_row(element, [a1, a2, a3], a, count, element%block, columns, tangent)
               end do
             end do

@@ -1,10 +1,11 @@
-!> Compressed rows of 3x3 blocks: places are found by marking a row once, never by searching.
+!> Compressed rows of 3x3 blocks: places are found by marking a row once, never by searching, and `lacks` tells of those
+!> that there are not.
 module isomortar_sparse_blocks
   use isomortar_base_kinds, only: wp
   implicit none
   private
 
-  public :: mark_row
+  public :: lacks, mark_row
 
   !> Pattern of a matrix of 3x3 blocks; rows and columns are numbered from 1, offsets from 0.
   type, public :: pattern_t
@@ -16,7 +17,7 @@ module isomortar_sparse_blocks
 
 contains
 
-  !> Write the place of each block of a row at its column: place(column) = block. Other columns keep what they hold.
+  !> Write the place of each block of a row at its column: place(column) = block. Other columns keep what they hold, zero at first.
   pure subroutine mark_row(pattern, row, place)
     type(pattern_t), intent(in) :: pattern
     integer, intent(in) :: row
@@ -27,5 +28,18 @@ contains
       place(pattern%column(k)) = k
     end do
   end subroutine mark_row
+
+  !> Whether the row that was marked last has no block at one of some columns.
+  pure function lacks(pattern, row, place, columns)
+    type(pattern_t), intent(in) :: pattern
+    integer, intent(in) :: row, place(:), columns(:)
+    logical :: lacks
+    integer :: k
+
+    lacks = .false.
+    do k = 1, size(columns)
+      lacks = lacks .or. place(columns(k)) <= pattern%start(row - 1) .or. place(columns(k)) > pattern%start(row)
+    end do
+  end function lacks
 
 end module isomortar_sparse_blocks

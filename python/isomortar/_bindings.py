@@ -38,6 +38,7 @@ def _raise(status: int, place: int) -> NoReturn:
         1: (FoldedElementError, f"element {place} is folded (J <= 0)"),
         2: (FoldedElementError, f"element {place} is folded (J <= 0) in the reference configuration"),
         3: (LostProjectionError, f"the closest-point projection of slave quadrature point {place} did not settle"),
+        9: (KernelError, f"a pattern does not fit what is added to it: block missing in row {place} (-1: it has other rows)"),
     }
     kind, sentence = sentences.get(status, (KernelError, f"the kernel returned status {status} at {place}"))
     raise kind(sentence, place)
@@ -274,7 +275,13 @@ def contact_blocks(
     pattern: Pattern,
     tangent: FloatArray,
 ) -> None:
-    """Add constraint rows, shape (blocks, kinds, 3), and the geometric tangent, shape (blocks, 3, 3)."""
+    """Add constraint rows, shape (blocks, kinds, 3), and the geometric tangent, shape (blocks, 3, 3).
+
+    Raises
+    ------
+    KernelError
+        A pattern lacks a block.
+    """
     _check_bodies(positions, slave, master)
     _check_projections(projections, slave, master)
     _check_response(response, slave)
@@ -282,12 +289,14 @@ def contact_blocks(
     _check_rows(row_pattern, rows, len(slave.point), len(positions))
     _check_pattern("pattern", pattern, len(positions), len(positions))
     check.array("tangent", tangent, np.float64, len(pattern.column), 3, 3)
-    _kernel.contact_blocks(
+    status, place = _kernel.contact_blocks(
         slave.nodes.T, slave.basis.T, slave.area, slave.point, master.kind, master.knots, master.point, master.weight, positions.T,
         projections.xi.T, projections.element.T, projections.fixed.T, projections.found, projections.slips, int(friction > 0),
         response.pressure, response.traction.T, response.state, response.field_slip.T, row_pattern.start, row_pattern.column, rows.T,
         pattern.start, pattern.column, tangent.T,
     )  # fmt: skip
+    if status:
+        _raise(status, place - 1)
 
 
 def multiplier_rows(
@@ -300,7 +309,13 @@ def multiplier_rows(
     neighbours: Pattern,
     wide: Pattern,
 ) -> tuple[FloatArray, FloatArray]:
-    """Derivatives by the positions of p, t_1, t_2, shape (blocks of `wide`, 3, 3), and of the trial tractions, (blocks, 2, 3)."""
+    """Derivatives by the positions of p, t_1, t_2, shape (blocks of `wide`, 3, 3), and of the trial tractions, (blocks, 2, 3).
+
+    Raises
+    ------
+    KernelError
+        A pattern lacks a block.
+    """
     points, columns = len(slave.point), max(row_pattern.highest, wide.highest) + 1
     _check_control(control, slave)
     _check_law(law, slave)
@@ -308,28 +323,38 @@ def multiplier_rows(
     _check_rows(row_pattern, rows, points, columns)
     _check_pattern("neighbours", neighbours, points, points)
     _check_pattern("wide", wide, points, columns)
-    changes, trial = _kernel.multiplier_rows(
+    changes, trial, status, place = _kernel.multiplier_rows(
         slave.nodes.T, slave.basis.T, slave.area, slave.point, control.weight, control.square, control.slip.T, control.metric.T,
         control.point_metric.T, int(law.summed), law.penalties, law.friction, response.state, response.pressure_slope,
         response.traction_slope.T, row_pattern.start, row_pattern.column, rows.T, neighbours.start, neighbours.column,
         wide.start, wide.column,
     )  # fmt: skip
+    if status:
+        _raise(status, place - 1)
     return changes.T, trial.T
 
 
 def condense_multipliers(
     state: IntArray, row_pattern: Pattern, rows: FloatArray, wide: Pattern, changes: FloatArray, pattern: Pattern, tangent: FloatArray
 ) -> None:
-    """Add the product of constraint rows and derivatives of the multipliers to a tangent."""
+    """Add the product of constraint rows and derivatives of the multipliers to a tangent.
+
+    Raises
+    ------
+    KernelError
+        A pattern lacks a block.
+    """
     points, columns = len(check.array("state", state, np.int32, None)), len(pattern.start) - 1
     _check_rows(row_pattern, rows, points, columns)
     _check_pattern("wide", wide, points, columns)
     check.array("changes", changes, np.float64, len(wide.column), 3, 3)
     _check_pattern("pattern", pattern, columns, columns)
     check.array("tangent", tangent, np.float64, len(pattern.column), 3, 3)
-    _kernel.condense_multipliers(
+    status, place = _kernel.condense_multipliers(
         state, row_pattern.start, row_pattern.column, rows.T, wide.start, wide.column, changes.T, pattern.start, pattern.column, tangent.T
     )
+    if status:
+        _raise(status, place - 1)
 
 
 def find_places(

@@ -36,3 +36,10 @@ def test_module_is_named_by_its_path(path):
     # The kind module of the other precision bears the same name; API files are bare subroutines.
     wanted = f"isomortar_{path.parent.name}_{path.stem.removesuffix('_extended')}"
     assert names == ([] if path.stem.endswith("_api") else [wanted])
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: f"{path.parent.name}/{path.name}")
+def test_every_parallel_loop_says_of_each_variable_whether_threads_share_it(path):
+    joined = re.sub(r"&\s*\n\s*!\$omp", "", path.read_text(), flags=re.IGNORECASE)
+    regions = re.findall(r"^\s*!\$omp\s+(?!end\b)(.*\b(?:parallel|task|taskloop|teams)\b.*)$", joined, re.MULTILINE | re.IGNORECASE)
+    assert all(re.search(r"\bdefault\s*\(\s*none\s*\)", region, re.IGNORECASE) for region in regions), regions
