@@ -71,10 +71,14 @@ def _arc(start: float, end: float) -> tuple[FloatArray, FloatArray]:
     return np.column_stack([np.cos(angles), np.sin(angles)]) / weights[:, None], weights
 
 
-def roof(order: int, slope: float) -> Patch:
-    """Two by two Lagrange elements below z = slope |x| (curved a little at order 2), -1 < x < 1, 0 < y < 1: bent along x = 0."""
-    patch = mesh(box((-1.0, 0.0, -1.0), (1.0, 1.0, 0.0)), ("L", "L", "L"), (order, order, 1), (2, 2, 1))
+def roof(order: int, slope: float, across: int = 0) -> Patch:
+    """Two by two Lagrange elements below z = slope |x| (curved a little at order 2), -1 < x < 1, 0 < y < 1: bent along x = 0.
+
+    `across` is the surface coordinate that runs across the bend: with 1, x and y change places.
+    """
+    low, high = ((-1.0, 0.0, -1.0), (1.0, 1.0, 0.0)) if across == 0 else ((0.0, -1.0, -1.0), (1.0, 1.0, 0.0))
+    patch = mesh(box(low, high), ("L", "L", "L"), (order, order, 1), (2, 2, 1))
     points = patch.control_points.copy()
-    x, top = np.abs(points[:, 0]), points[:, 2] > -0.5
+    x, top = np.abs(points[:, across]), points[:, 2] > -0.5
     points[top, 2] = (slope * x + (order - 1) * 0.05 * x**2)[top]
     return replace(patch, control_points=points)

@@ -13,11 +13,18 @@ from isomortar.model.numbering import patch_arrays
 
 #: Distance of the path from the line, and number of its points.
 RADIUS, POINTS = 0.1, 401
+#: Of the two faces of a roof against the horizontal.
+SLOPE = 0.4
+#: Distances from the line, from a tenth of an element to a hundred times the least that has a direction.
+DISTANCES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
+EPSILON = float(np.finfo(float).eps)
 
 
-def feet(bend: str, order: int, targets: FloatArray, starts: FloatArray | None) -> tuple[Projections, FloatArray, FloatArray]:
+def feet(
+    bend: str, order: int, targets: FloatArray, starts: FloatArray | None, across: int = 0
+) -> tuple[Projections, FloatArray, FloatArray]:
     """Projections of points onto the upper face of a roof, their gaps, and the normals there (the forces of unit pressures)."""
-    patch = roof(order, 0.4 if bend == "valley" else -0.4)
+    patch = roof(order, SLOPE if bend == "valley" else -SLOPE, across)
     own, n = len(patch.weights), len(targets)
     arrays = patch_arrays(patch, np.arange(own, dtype=np.int32))
     master = MasterArrays(np.concatenate([[3, 1], arrays.layout]).astype(np.int32), arrays.knots, arrays.point, arrays.weight)
@@ -64,3 +71,35 @@ def around(bend: str, order: int) -> dict[str, float]:
         "on the line": float(on.mean()),
         "element": float(np.max([np.abs(other.element - projections.element)[on].max() for other in others])),
     }
+
+
+@case(
+    claim="However near to a line, and whichever coordinate runs across it, gap and normal are those of the two half planes.",
+    tier="gate",
+    grid={"bend": ["ridge", "valley"], "across": [0, 1]},
+    bounds={
+        "gap": Bound(at_most=20 * EPSILON, reason="round-off: of coordinates of size one"),
+        "normal": Bound(at_most=20 * EPSILON, reason="round-off: of coordinates of size one, times the distance: that of a direction"),
+        "fixed": Bound(at_most=0.0, reason="theory: feet are on the line within the angle between the faces' normals, else on a face"),
+        "slip": Bound(at_most=50 * EPSILON, reason="round-off: along the line the foot is where the point is"),
+    },
+)
+def near(bend: str, across: int) -> dict[str, float]:
+    """Largest errors over arcs of all distances from the line; that of the normal times the distance."""
+    side = 1.0 if bend == "ridge" else -1.0
+    alpha = float(np.arctan(SLOPE))
+    angle = np.concatenate([np.linspace(-0.95, 0.95, 39) * alpha, np.linspace(1.05, 1.9, 18) * alpha, -np.linspace(1.05, 1.9, 18) * alpha])
+    turned = np.clip(angle, -alpha, alpha)
+    errors: dict[str, list[float]] = {"gap": [], "normal": [], "fixed": [], "slip": []}
+    for distance in DISTANCES:
+        along = 0.31 + 0.05 * angle
+        targets = np.column_stack([distance * np.sin(angle), along, side * distance * np.cos(angle)])
+        normals = np.column_stack([side * np.sin(turned), np.zeros_like(angle), np.cos(turned)])
+        if across:
+            targets, normals = targets[:, [1, 0, 2]], normals[:, [1, 0, 2]]
+        projections, gap, normal = feet(bend, 1, targets, None, across)
+        errors["gap"].append(np.abs(gap + side * distance * np.cos(angle - turned)).max())
+        errors["normal"].append(distance * np.abs(normal - normals).max())
+        errors["fixed"].append(np.abs(projections.fixed[:, across] - (np.abs(angle) < alpha)).max())
+        errors["slip"].append(np.abs(projections.xi[:, 1 - across] - along).max())
+    return {name: float(np.max(values)) for name, values in errors.items()}
