@@ -261,8 +261,8 @@ contains
     lacking = 0
   end subroutine pair_metric
 
-  !> Rows of the multipliers p, t_1, t_2 on the pattern `wide` of the trial rows: result(component, multiplier, block). `lacking` is a row
-  !> of it without one of the blocks, 0: none.
+  !> Rows of the multipliers p, t_1, t_2 on the pattern `wide` of the trial rows: result(component, multiplier, block).
+  !> `lacking` is a row of it without one of the blocks, 0: none.
   pure subroutine multiplier_rows(control, response, pattern, rows, wide, trial, result, lacking)
     type(control_t), intent(in) :: control
     type(response_t), intent(in) :: response
@@ -298,7 +298,7 @@ contains
     lacking = 0
   end subroutine multiplier_rows
 
-  !> Add sum_I <R^I dg> Dp^I + <R^I dxi^a> Dt_a^I to a matrix of blocks; `lacking` is a row of it without one of the blocks, 0: none.
+  !> Add sum_I <R^I dg> Dp^I + <R^I dxi^a> Dt_a^I to a matrix of blocks; `lacking` is a row without one of the blocks, 0: none.
   pure subroutine condense(active, pattern, rows, wide, changes, target_pattern, target, lacking)
     logical, intent(in) :: active(:)
     type(pattern_t), intent(in) :: pattern, wide, target_pattern

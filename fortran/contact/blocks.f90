@@ -94,8 +94,8 @@ contains
   !> Add constraint rows and the geometric tangent <p Ddg> + <t_a Ddxi^a>.
   !>
   !> `row_pattern` holds for each slave control point (row) the control points (columns) that its rows reach;
-  !> rows(component, kind, block). `field_slip` is the field of control slips, used by the slip sum's rows. On failure `place` is the row
-  !> of a pattern that lacks a block.
+  !> rows(component, kind, block). `field_slip` is the field of control slips, used by the slip sum's rows. On failure
+  !> `place` is the row of a pattern that lacks a block.
   subroutine integrate_blocks(slave, master, positions, projections, with_friction, multipliers, field_slip, row_pattern, rows, &
       pattern, tangent, status, place)
     type(slave_t), intent(in) :: slave

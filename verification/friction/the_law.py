@@ -1,0 +1,149 @@
+"""The augmented law at control points against itself written down anew, and its slopes against derivatives of that by complex steps."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from small_scenes import bowl
+
+from isomortar import _bindings
+from isomortar._bindings import Control, Law
+from isomortar.geometry.patch import FloatArray
+from isomortar.harness import Bound, case
+from isomortar.solve.equilibrium import Equilibrium
+from isomortar.solve.timing import Ledger
+
+FRICTION, PENALTIES = 0.4, np.array([30.0, 7.0])
+#: Imaginary step of the derivatives, which have no error of their own.
+STEP = 1e-30
+#: Quantities, multipliers and options of the law; the first two tractions and slips have a component that is zero.
+VARIANTS = ("plain", "first tractions zero", "second tractions zero", "margin", "held", "forgiving", "frictionless")
+
+#: Real, or complex where a derivative is formed.
+Numbers = NDArray[Any]
+
+
+@dataclass(frozen=True)
+class Point:
+    """What the law says of one control point: pressure, traction, state (0 open, 1 stick, 2 slip)."""
+
+    pressure: float
+    traction: FloatArray
+    state: int
+
+
+def length(traction: Numbers, metric: Numbers) -> Any:
+    """Norm of covariant components in a metric of 11, 12, 22."""
+    matrix = np.array([[metric[0], metric[1]], [metric[1], metric[2]]])
+    return np.sqrt(traction @ np.linalg.solve(matrix, traction))
+
+
+def returned(pressure: Any, trial: Numbers, metric: Numbers, friction: float) -> Numbers:
+    """The slipping traction of a trial."""
+    return friction * pressure * trial / length(trial, metric)
+
+
+def law_at(trial_pressure: float, trial: FloatArray, metric: FloatArray, law: Law, held: bool) -> Point:
+    """Coulomb's law."""
+    if trial_pressure <= 0.0:
+        return Point(0.0, np.zeros(2), 0)
+    if law.friction <= 0.0:
+        return Point(trial_pressure, np.zeros(2), 1)
+    if held or length(trial, metric) <= law.friction * trial_pressure * (1.0 - law.slip_margin):
+        return Point(trial_pressure, trial, 1)
+    return Point(trial_pressure, returned(trial_pressure, trial, metric, law.friction), 2)
+
+
+def slopes_at(point: Point, trial: FloatArray, metric: FloatArray, law: Law, radial: FloatArray) -> FloatArray:
+    """Derivatives of the traction by pressure, trial (2) and metric (3), shape (6, 2), of the law's branch.
+
+    A forgiving law has `radial`, no longer than the cone, in place of the traction where the trial's length changes.
+    """
+    if point.state == 0 or law.friction <= 0.0:
+        return np.zeros((6, 2))
+    if point.state == 1:
+        return np.vstack([np.zeros((1, 2)), np.eye(2), np.zeros((3, 2))])
+    at = np.concatenate([[point.pressure], trial, metric])
+
+    def change(function: Callable[[Numbers], Any]) -> FloatArray:
+        return np.array([np.imag(function(at + step)) / STEP for step in 1j * STEP * np.eye(6)])
+
+    exact = change(lambda v: returned(v[0], v[1:3], v[3:6], law.friction))
+    if not law.forgiving:
+        return exact
+    cone = law.friction * point.pressure
+    shortened = radial * min(1.0, cone / length(radial, metric))
+    stretch = change(lambda v: length(v[1:3], v[3:6])) / length(trial, metric)
+    return exact + np.outer(stretch, point.traction - shortened)
+
+
+@case(
+    claim="Pressures, tractions and states are those of Coulomb's law, their slopes its derivatives, with every option, in every state.",
+    grid={"variant": VARIANTS, "summed": (False, True)},
+    bounds=lambda variant, summed: {  # noqa: ARG005
+        "pressure": Bound(at_most=1e-14, reason="round-off: a sum of two products"),
+        "traction": Bound(at_most=1e-13, reason="round-off: sums of some products, and a quotient"),
+        "states": Bound(0.0, 0.0, "definition: the same states"),
+        "slopes": Bound(at_most=1e-11, reason="round-off: products of some numbers, over lengths of trials of a hundredth and more"),
+        "present": Bound(at_least=2.0 if variant == "frictionless" else 3.0, reason="definition: open, stick and slip all occur"),
+    },
+)
+def control_points(variant: str, summed: bool) -> dict[str, float]:
+    """Largest differences; number of different states."""
+    pair = Equilibrium(bowl("plane"), Ledger()).pairs[0].pair
+    random = np.random.default_rng(17)
+    n, points = len(pair.slave.point), len(pair.slave.area)
+    weight, square = random.uniform(0.2, 1.0, n), random.uniform(0.2, 1.0, n)
+    weight[:2] = 0.0  # nothing of these projects on the master
+    gap = weight * random.uniform(-0.05, 0.05, n)
+    control = Control(
+        weight, square, gap, 0.03 * random.standard_normal((n, 2)), metrics(random, n) * square[:, None], metrics(random, points)
+    )
+    traction = 0.4 * random.standard_normal((n, 2))
+    if "zero" in variant:
+        traction[:, 0 if variant.startswith("first") else 1] = 0.0
+        control.slip[:, 0 if variant.startswith("first") else 1] = 0.0
+    law = Law(
+        PENALTIES, 0.0 if variant == "frictionless" else FRICTION, random.uniform(-0.5, 1.5, n), traction, summed,
+        (np.arange(n) % 3 == 0).astype(np.int32) * (variant == "held"), slip_margin=0.2 * (variant == "margin"),
+        forgiving=variant == "forgiving",
+    )  # fmt: skip
+    response = _bindings.augmented_multipliers(pair.slave, control, law)
+
+    present = np.where(weight > 0.0, weight, 1.0)
+    pressure = np.where(weight > 0.0, law.pressure + PENALTIES[0] * gap / present, 0.0)
+    metric = control.metric / square[:, None]
+    slips = np.where((pressure > 0.0)[:, None], control.slip / present[:, None], 0.0)
+    element = np.repeat(pair.slave.nodes, pair.points_per_element, axis=0)
+    at_points = product(control.point_metric, np.einsum("qa,qab->qb", pair.slave.basis, slips[element]))
+    totals = np.zeros((n, 2))
+    np.add.at(totals, element, (pair.slave.basis * pair.slave.area[:, None])[..., None] * at_points[:, None, :])
+    sums = totals if summed else product(metric, control.slip)
+    trial = traction + PENALTIES[1] * sums / present[:, None]
+    found = [law_at(pressure[i], trial[i], metric[i], law, bool(law.held[i])) for i in range(n)]
+    slopes = np.array([slopes_at(found[i], trial[i], metric[i], law, traction[i]) for i in range(n)])
+    slope = np.where(np.array([point.state for point in found]) > 0, PENALTIES[0] / present, 0.0)
+    return {
+        "pressure": float(np.abs(response.pressure - [point.pressure for point in found]).max()),
+        "traction": float(np.abs(response.traction - [point.traction for point in found]).max()),
+        "states": float(np.count_nonzero(response.state != [point.state for point in found])),
+        "slopes": float(np.maximum(np.abs(response.traction_slope - slopes).max(), np.abs(response.pressure_slope - slope).max())),
+        "present": float(len(set(response.state))),
+    }
+
+
+def metrics(random: np.random.Generator, count: int) -> FloatArray:
+    """Positive definite metrics 11, 12, 22 of size one, not diagonal, shape (count, 3)."""
+    tangents = np.eye(2) + 0.3 * random.standard_normal((count, 2, 2))
+    matrices = tangents @ tangents.swapaxes(1, 2) + 0.2 * np.eye(2)
+    return np.ascontiguousarray(matrices[:, [0, 0, 1], [0, 1, 1]])
+
+
+def product(metric: FloatArray, vector: FloatArray) -> FloatArray:
+    """Covariant components of contravariant ones."""
+    (m11, m12, m22), (first, second) = metric.T, vector.T
+    return np.column_stack([m11 * first + m12 * second, m12 * first + m22 * second])
