@@ -1,0 +1,209 @@
+"""The march through the load steps: what follows a cut, a hard increment, a resumed run; and the names of stages."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+
+from isomortar.errors import ConvergenceError
+from isomortar.model.entities import Motion, Problem, Stage
+from isomortar.scene import Scene
+from isomortar.solve.method import Increment
+from isomortar.solve.record import AugmentationRecord, IterationRecord, State, StepResult
+from isomortar.solve.simulation import EASY_ITERATIONS, HARD_TANGENTS, Simulation
+
+SCENE = """
+format = 1
+name = "dragged"
+[bodies.block]
+geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 0.8, 0.5] }
+mesh = { order = [2, 2, 1], elements = [3, 2, 1] }
+[contacts.floor]
+slave = "block.w0"
+plane = { point = [0, 0, 0], normal = [0.02, 0.01, 1] }
+friction = 0.3
+[supports.top]
+face = "block.w1"
+[[stages]]
+name = "press"
+steps = 1
+motions.top = { translate = [0, 0, -0.06] }
+[[stages]]
+name = "drag"
+steps = 2
+motions.top = { translate = [0.06, 0.04, 0], rotate = 10 }
+[[stages]]
+name = "wait"
+steps = 1
+[solver]
+newton_tolerance = 1e-12
+complementarity_tolerance = 1e-12
+"""
+#: Linear solves and tangents of an increment by how it went.
+COSTS = {
+    "easy": (EASY_ITERATIONS, EASY_ITERATIONS),
+    "middle": (EASY_ITERATIONS + 1, HARD_TANGENTS - 1),
+    "hard": (HARD_TANGENTS, HARD_TANGENTS),
+}
+
+
+def problem() -> Problem:
+    return Scene.from_toml(SCENE).problem()
+
+
+@dataclass
+class Went:
+    """An increment that says how hard it was."""
+
+    real: Increment
+    iterations: int
+    tangents: int
+    orders: tuple[float, ...] = (2.0, float("nan"))
+
+    @property
+    def balance(self):
+        return self.real.balance
+
+    @property
+    def augmentations(self):
+        return (AugmentationRecord(1, 1.0, 1.0, 0.0, 0.0, (IterationRecord(self.iterations, 0.0, 0, 0, 0),)),)
+
+
+class Scripted:
+    """A method whose increments go as a script says: each is solved, also those that then fail; notes where they began and ended."""
+
+    def __init__(self, simulation: Simulation, script: Sequence[str]) -> None:
+        self.real, self.script = simulation._method, iter(script)
+        self.tried: list[tuple[State, float, str]] = []
+        self.ends: list[np.ndarray] = []
+
+    def advance(self, start: State, time: float, step: int):
+        how = next(self.script)
+        self.tried.append((start, time, how))
+        increment = self.real.advance(start, time, step)
+        self.ends.append(increment.balance.positions)
+        if how == "fail":
+            raise ConvergenceError("as the script says")
+        return Went(increment, *COSTS[how])
+
+
+def scripted(script: Sequence[str], resume_from: StepResult | None = None) -> tuple[Simulation, Scripted]:
+    simulation = Simulation(problem(), resume_from=resume_from)
+    simulation._method = method = Scripted(simulation, script)
+    return simulation, method
+
+
+#: How increments go, where each begins and ends, and the increment that comes after: halved when they fail, doubled when they were easy,
+#: halved when they were hard, as they are in between; a recorded step ends where it ends.
+MARCH = [
+    ("fail", 0.0, 1.0, 0.5),
+    ("fail", 0.0, 0.5, 0.25),
+    ("easy", 0.0, 0.25, 0.5),
+    ("middle", 0.25, 0.75, 0.5),
+    ("easy", 0.75, 1.0, 0.5),  # 0.25 long
+    ("hard", 1.0, 1.5, 0.25),
+    ("fail", 1.5, 1.75, 0.125),
+    ("middle", 1.5, 1.625, 0.125),
+    ("easy", 1.625, 1.75, 0.25),
+    ("hard", 1.75, 2.0, 0.125),
+    ("easy", 2.0, 2.125, 0.25),
+    ("easy", 2.125, 2.375, 0.5),
+    ("middle", 2.375, 2.875, 0.5),
+    ("middle", 2.875, 3.0, 0.5),  # shortened to the step's end: no reason for shorter ones
+    ("easy", 3.0, 3.5, 1.0),
+    ("middle", 3.5, 4.0, 1.0),
+]
+
+
+def test_increments_are_cut_and_grow_back_as_documented():
+    simulation, method = scripted([how for how, *_ in MARCH])
+    results = list(simulation.run())
+    assert [(how, time) for _, time, how in method.tried] == [(how, end) for how, _, end, _ in MARCH]
+    state, reached = simulation.equilibrium.initial_state().positions, 0.0
+    for (how, begin, end, _), (start, _, _), found in zip(MARCH, method.tried, method.ends, strict=True):
+        assert reached == begin
+        assert np.array_equal(start.positions, state), f"the increment to {end} does not begin where the last one ended"
+        if how != "fail":
+            state, reached = found, end
+    for result in results:
+        mine = [(how, after) for how, begin, _, after in MARCH if result.step - 1 <= begin < result.step]
+        assert result.cuts == sum(how == "fail" for how, _ in mine)
+        assert result.substeps == sum(how != "fail" for how, _ in mine)
+        assert result.next_increment == mine[-1][1]
+        assert [a.iterations[0].iteration for a in result.augmentations] == [COSTS[how][0] for how, _ in mine if how != "fail"]
+        assert result.newton_order == 2.0
+
+
+@pytest.mark.parametrize("step", [1, 2, 3])
+def test_a_resumed_run_goes_on_with_the_increment_that_came_next(step):
+    whole = list(scripted([how for how, *_ in MARCH])[0].run())
+    rest = [row for row in MARCH if row[1] >= step]
+    simulation, method = scripted([how for how, *_ in rest], whole[step - 1])
+    again = list(simulation.run())
+    assert [time for _, time, _ in method.tried] == [end for _, _, end, _ in rest]
+    for one, other in zip(whole[step:], again, strict=True):
+        np.testing.assert_allclose(one.state.positions, other.state.positions, atol=1e-11)
+        assert (one.cuts, one.substeps, one.next_increment, one.stage) == (other.cuts, other.substeps, other.next_increment, other.stage)
+
+
+def test_what_failed_leaves_no_trace():
+    """Every increment fails once when it has been solved: the same as twice the load steps, with none that fail."""
+    plain = problem()
+    halves = replace(plain, stages=tuple(Stage(stage.name, 2 * stage.steps) for stage in plain.stages))
+    simulation = Simulation(plain)
+    simulation._method = Scripted(simulation, ["fail", "easy", "middle"] * 4)
+    one, other = list(simulation.run()), list(Simulation(halves).run())
+    assert [result.cuts for result in one] == [1] * 4
+    for result, reference in zip(one, other[1::2], strict=True):
+        assert result.contacts[0].slip == reference.contacts[0].slip
+        np.testing.assert_allclose(result.state.positions, reference.state.positions, atol=1e-9)
+        np.testing.assert_allclose(result.state.contacts[0].traction, reference.state.contacts[0].traction, atol=1e-6)
+    assert max(result.contacts[0].slip for result in one) > 0
+
+
+def test_a_path_tolerance_takes_halves_one_after_the_other():
+    toleranced = problem()
+    simulation = Simulation(replace(toleranced, settings=replace(toleranced.settings, path_tolerance=1e3)))
+    simulation._method = method = Scripted(simulation, ["easy"] * 12)
+    results = list(simulation.run())
+    assert [time for _, time, _ in method.tried] == [t for step in range(1, 5) for t in (step, step - 0.5, step)]
+    for k in range(0, 12, 3):
+        (whole, _, _), (first, _, _), (second, _, _) = method.tried[k : k + 3]
+        assert whole is first
+        assert np.array_equal(second.positions, method.ends[k + 1])
+        assert np.array_equal(results[k // 3].state.positions, method.ends[k + 2])
+
+
+def test_every_step_bears_the_name_of_its_stage():
+    results = list(Simulation(problem()).run())
+    assert [result.stage for result in results] == ["press", "drag", "drag", "wait"]
+    assert [(result.step, result.time) for result in results] == [(1, 1.0), (2, 2.0), (3, 3.0), (4, 4.0)]
+
+
+@pytest.mark.parametrize(("step", "name"), [(1, "press"), (2, "drag"), (3, "drag"), (4, "wait")])
+def test_a_step_that_fails_is_named_with_its_stage_and_the_least_increment(step, name):
+    limited = problem()
+    simulation = Simulation(replace(limited, settings=replace(limited.settings, max_cuts=2)))
+    simulation._method = Scripted(simulation, ["easy"] * (step - 1) + ["fail"] * 3)
+    words = rf"load step {step} \(stage '{name}'\) does not converge at load time {step - 0.75:g}, even with an increment of 1/4 step"
+    with pytest.raises(ConvergenceError, match=words):
+        list(simulation.run())
+
+
+def test_supports_are_where_their_stages_put_them_at_any_time():
+    """Translations and rotations grow linearly over a stage, one stage after the other."""
+    supports = Simulation(problem()).equilibrium.supports
+    (support,) = problem().supports
+    reference = supports.place(0.0)
+    press, drag = (0.0, 0.0, -0.06), (0.06, 0.04, -0.06)
+    places = [(0.5, (0.0, 0.0, -0.03), 0.0), (1.0, press, 0.0), (1.5, (0.015, 0.01, -0.06), 2.5), (3.0, drag, 10.0), (4.0, drag, 10.0)]
+    for time, shift, angle in places:
+        c, s = np.cos(np.radians(angle)), np.sin(np.radians(angle))
+        turn = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
+        points = supports.points[0]
+        np.testing.assert_allclose(supports.place(time)[points], reference[points] @ turn.T + shift, atol=1e-15)
+        np.testing.assert_allclose(supports.centre(support, time), shift, atol=1e-16)
+    assert list(support.motions) == [Motion((0, 0, -0.06)), Motion((0.06, 0.04, 0), 10), Motion()]
