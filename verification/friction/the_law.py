@@ -21,7 +21,7 @@ FRICTION, PENALTIES = 0.4, np.array([30.0, 7.0])
 #: Imaginary step of the derivatives, which have no error of their own.
 STEP = 1e-30
 #: Quantities, multipliers and options of the law; the first two tractions and slips have a component that is zero.
-VARIANTS = ("plain", "first tractions zero", "second tractions zero", "margin", "held", "forgiving", "frictionless")
+VARIANTS = ("plain", "first tractions zero", "second tractions zero", "margin", "held", "forgiving", "supported", "frictionless")
 
 #: Real, or complex where a derivative is formed.
 Numbers = NDArray[Any]
@@ -107,15 +107,19 @@ def control_points(variant: str, summed: bool) -> dict[str, float]:
     if "zero" in variant:
         traction[:, 0 if variant.startswith("first") else 1] = 0.0
         control.slip[:, 0 if variant.startswith("first") else 1] = 0.0
+    bears, free = np.ones(n, dtype=np.int32), np.tile(np.eye(2), (n, 1, 1))
+    if variant == "supported":  # some bear nothing, others have no traction along a direction
+        bears[::4] = 0
+        free[::2] -= random.standard_normal((len(free[::2]), 2, 1)) @ random.standard_normal((len(free[::2]), 1, 2))
     law = Law(
-        PENALTIES, 0.0 if variant == "frictionless" else FRICTION, random.uniform(-0.5, 1.5, n), traction, summed,
+        PENALTIES, 0.0 if variant == "frictionless" else FRICTION, random.uniform(-0.5, 1.5, n), traction, summed, bears, free,
         (np.arange(n) % 3 == 0).astype(np.int32) * (variant == "held"), slip_margin=0.2 * (variant == "margin"),
         forgiving=variant == "forgiving",
     )  # fmt: skip
     response = _bindings.augmented_multipliers(pair.slave, control, law)
 
     present = np.where(weight > 0.0, weight, 1.0)
-    pressure = np.where(weight > 0.0, law.pressure + PENALTIES[0] * gap / present, 0.0)
+    pressure = np.where((weight > 0.0) & (bears > 0), law.pressure + PENALTIES[0] * gap / present, 0.0)
     metric = control.metric / square[:, None]
     slips = np.where((pressure > 0.0)[:, None], control.slip / present[:, None], 0.0)
     element = np.repeat(pair.slave.nodes, pair.points_per_element, axis=0)
@@ -123,9 +127,10 @@ def control_points(variant: str, summed: bool) -> dict[str, float]:
     totals = np.zeros((n, 2))
     np.add.at(totals, element, (pair.slave.basis * pair.slave.area[:, None])[..., None] * at_points[:, None, :])
     sums = totals if summed else product(metric, control.slip)
-    trial = traction + PENALTIES[1] * sums / present[:, None]
+    trial = np.einsum("iba,ib->ia", free, traction + PENALTIES[1] * sums / present[:, None])
     found = [law_at(pressure[i], trial[i], metric[i], law, bool(law.held[i])) for i in range(n)]
     slopes = np.array([slopes_at(found[i], trial[i], metric[i], law, traction[i]) for i in range(n)])
+    slopes[:, 1:3] = free @ slopes[:, 1:3]
     slope = np.where(np.array([point.state for point in found]) > 0, PENALTIES[0] / present, 0.0)
     return {
         "pressure": float(np.abs(response.pressure - [point.pressure for point in found]).max()),
