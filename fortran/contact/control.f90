@@ -2,13 +2,14 @@
 module isomortar_contact_control
   use isomortar_base_kinds, only: wp
   use isomortar_base_status, only: status_lost_projection, status_ok
+  use isomortar_contact_hulls, only: enclose, hulls_t, within_reach
   use isomortar_contact_kinematics, only: contact_point, contact_point_t, plane_point
   use isomortar_contact_kink, only: hold_on_lines
   use isomortar_contact_master, only: master_t
-  use isomortar_contact_projection, only: nearest_start, project, projection_inside, projection_lost, projection_outside, &
-    sample_surface
+  use isomortar_contact_projection, only: descend, look_round, projection_inside, projection_lost, search_t, start_at, &
+    start_nearest
   use isomortar_contact_slave, only: integrate_functions, slave_t
-  use isomortar_nurbs_surface, only: derivative_columns, shortest_way, surface_basis, surface_nodes
+  use isomortar_nurbs_surface, only: derivative_columns, shortest_way, surface_basis, surface_nodes, surface_t
   implicit none
   private
 
@@ -45,7 +46,7 @@ module isomortar_contact_control
 
 contains
 
-  !> Project every slave quadrature point; `xi` holds starts where `started`, which a coarse search finds elsewhere.
+  !> Project every slave quadrature point; `xi` holds starts where `started`, elsewhere the nearest sample of the master is one.
   !> `origin` and `had` are the projections at the last converged load step. On failure `place` is the quadrature point.
   subroutine project_points(slave, master, positions, started, origin, had, projections, status, place)
     type(slave_t), intent(in) :: slave
@@ -55,29 +56,25 @@ contains
     real(wp), intent(in) :: origin(:, :)
     type(projections_t), intent(inout) :: projections
     integer, intent(out) :: status, place
-    real(wp), allocatable :: coordinates(:, :), samples(:, :)
-    real(wp) :: x(3)
-    integer :: outcome, q
+    type(hulls_t) :: hulls
+    integer :: e, last, per_element, q
 
     status = status_ok
     place = 0
-    if (.not. master%is_plane .and. .not. all(started)) call sample_surface(master%surface, positions, coordinates, samples)
-    do q = 1, size(slave%area)
-      x = slave_position(slave, positions, q)
+    per_element = size(slave%area) / size(slave%nodes, 2)
+    if (.not. master%is_plane) call enclose(master%surface, positions, hulls)
+    do e = 1, size(slave%nodes, 2)
+      last = per_element * e
       if (master%is_plane) then
-        projections%xi(:, q) = matmul(x - master%origin, master%tangent)
-        projections%fixed(:, q) = .false.
-        outcome = projection_inside
+        do q = last - per_element + 1, last
+          projections%xi(:, q) = matmul(slave_position(slave, positions, q) - master%origin, master%tangent)
+          projections%fixed(:, q) = .false.
+          projections%found(q) = .true.
+        end do
       else
-        if (.not. started(q)) projections%xi(:, q) = nearest_start(coordinates, samples, x)
-        call project(master%surface, positions, x, projections%xi(:, q), projections%place(:, q), projections%fixed(:, q), outcome)
+        call project_element(slave, master%surface, hulls, positions, started, last - per_element, projections, status, place)
+        if (status /= status_ok) return
       end if
-      if (outcome == projection_lost) then
-        status = status_lost_projection
-        place = q
-        return
-      end if
-      projections%found(q) = outcome /= projection_outside
     end do
     projections%slips = projections%found .and. had
     do q = 1, size(slave%area)
@@ -85,6 +82,43 @@ contains
       if (.not. master%is_plane) projections%slip(:, q) = shortest_way(master%surface, projections%slip(:, q))
     end do
   end subroutine project_points
+
+  !> Project the quadrature points of a slave element, which are near each other: those after number `before`.
+  pure subroutine project_element(slave, surface, hulls, positions, started, before, projections, status, place)
+    type(slave_t), intent(in) :: slave
+    type(surface_t), intent(in) :: surface
+    type(hulls_t), intent(in) :: hulls
+    real(wp), intent(in) :: positions(:, :)
+    logical, intent(in) :: started(:)
+    integer, intent(in) :: before
+    type(projections_t), intent(inout) :: projections
+    integer, intent(inout) :: status, place
+    type(search_t) :: here(size(slave%area) / size(slave%nodes, 2))
+    real(wp) :: x(3, size(here)), middle(3), reach
+    integer :: count, list(size(hulls%radius)), q
+
+    do q = 1, size(here)
+      x(:, q) = slave_position(slave, positions, before + q)
+      here(q) = start_at(surface, projections%xi(:, before + q))
+      if (.not. started(before + q)) here(q) = start_nearest(surface, hulls, x(:, q))
+      call descend(surface, positions, x(:, q), here(q))
+    end do
+    middle = sum(x, 2) / size(here)
+    reach = maxval(norm2(x - spread(middle, 2, size(here)), 1) + sqrt(2.0_wp * here%distance))
+    call within_reach(hulls, middle, reach, list, count)
+    do q = 1, size(here)
+      call look_round(surface, hulls, positions, x(:, q), list(:count), here(q))
+      if (here(q)%outcome == projection_lost) then
+        status = status_lost_projection
+        place = before + q
+        return
+      end if
+      projections%xi(:, before + q) = here(q)%xi
+      projections%place(:, before + q) = here(q)%place
+      projections%fixed(:, before + q) = here(q)%fixed
+      projections%found(before + q) = here(q)%outcome == projection_inside
+    end do
+  end subroutine project_element
 
   !> Position of a slave quadrature point.
   pure function slave_position(slave, positions, q) result(x)

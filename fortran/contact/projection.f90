@@ -1,18 +1,20 @@
-!> Closest-point projection onto a surface, element by element, from any start.
+!> Closest-point projection onto a surface: the nearest point of the whole of it, from any start.
 !>
 !> Each element is searched by Newton's method within its bounds; where the distance still falls across a boundary the
 !> search goes on in the neighbour. The distance falls strictly from element to element, so the search ends: inside an
 !> element, on a line that neither side improves (a C0 line), or on the edge of the patch (no projection).
 !> Coordinates across such a line are fixed, and the foot belongs to the lower element, wherever the search came from.
+!> That foot is the nearest one near its start. Then every other element whose hull comes nearer than it is searched too.
 module isomortar_contact_projection
   use isomortar_base_kinds, only: wp
+  use isomortar_contact_hulls, only: hulls_t, is_farther, nearest_sample
   use isomortar_nurbs_direction, only: element_at, is_kink
-  use isomortar_nurbs_surface, only: derivative_columns, step_across, surface_basis, surface_element_count, &
-    surface_element_of, surface_nodes, surface_t
+  use isomortar_nurbs_surface, only: homogeneous_net, step_across, surface_element_count, surface_element_of, surface_point, &
+    surface_t
   implicit none
   private
 
-  public :: nearest_start, project, sample_surface
+  public :: descend, look_round, start_at, start_nearest
 
   !> The point has no projection: its nearest point lies on the edge of the patch.
   integer, parameter, public :: projection_outside = 0
@@ -25,13 +27,25 @@ module isomortar_contact_projection
   real(wp), parameter :: last_step = epsilon(1.0_wp)**0.6_wp
   !> Squared distances whose ratio is less are the same but for round-off.
   real(wp), parameter :: same_distance = 1.0_wp + 8.0_wp * epsilon(1.0_wp)
+  !> Two feet that are at the same distance but for this share are equally near: the one in the lower element is taken.
+  real(wp), parameter :: tie = epsilon(1.0_wp)**0.75_wp
+
+  !> Distance times largest curvature up to which an element holds one near point alone.
+  real(wp), parameter :: safe_bend = 0.5_wp
+
+  !> A place is searched from if its squared distance is less than this times the half squared distance of the point found.
+  real(wp), parameter :: worth_a_search = 3.0_wp
+  real(wp), parameter :: pi = acos(-1.0_wp)
 
   !> Where a search stands.
-  type :: search_t
+  type, public :: search_t
     integer :: place(2)
     real(wp) :: xi(2)
-    !> Half of the squared distance.
-    real(wp) :: distance
+    !> Coordinates that stay on a C0 line while the point moves.
+    logical :: fixed(2)
+    integer :: outcome
+    !> Half of the squared distance, and the way from the point to the surface.
+    real(wp) :: distance, way(3)
     !> For each coordinate -1 or 1 where the distance falls across the lower or upper bound of the element, else 0.
     integer :: pressing(2)
     logical :: settled
@@ -39,61 +53,207 @@ module isomortar_contact_projection
 
 contains
 
-  !> Project x from coordinates `xi`, which are replaced by the result; `place` is its element by direction, and `fixed` says
-  !> which coordinates stay on a C0 line while x moves.
-  pure subroutine project(surface, positions, x, xi, place, fixed, outcome)
+  !> A search that starts at given coordinates.
+  pure function start_at(surface, xi) result(here)
     type(surface_t), intent(in) :: surface
-    real(wp), intent(in) :: positions(:, :), x(3)
-    real(wp), intent(inout) :: xi(2)
-    integer, intent(out) :: place(2), outcome
-    logical, intent(out) :: fixed(2)
+    real(wp), intent(in) :: xi(2)
     type(search_t) :: here
-    logical :: moved
-    integer :: visit
 
     here%place = [element_at(surface%direction(1), xi(1)), element_at(surface%direction(2), xi(2))]
     here%xi = xi
+  end function start_at
+
+  !> A search that starts at the nearest sample of all elements.
+  pure function start_nearest(surface, hulls, x) result(here)
+    type(surface_t), intent(in) :: surface
+    type(hulls_t), intent(in) :: hulls
+    real(wp), intent(in) :: x(3)
+    type(search_t) :: here
+    real(wp) :: least, square, xi(2)
+    integer :: e
+
+    least = huge(1.0_wp)
+    do e = 1, surface_element_count(surface)
+      call nearest_sample(surface, hulls, e, x, xi, square)
+      if (square >= least) cycle
+      least = square
+      here%place = surface_element_of(surface, e)
+      here%xi = xi
+    end do
+  end function start_nearest
+
+  !> From where a search stands to the next place that is nearest to x among those near it.
+  pure subroutine descend(surface, positions, x, here)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in) :: positions(:, :), x(3)
+    type(search_t), intent(inout) :: here
+    logical :: moved
+    integer :: visit
+
     call search_element(surface, positions, x, here)
-    fixed = .false.
-    outcome = projection_lost
     do visit = 1, 8 + 2 * surface_element_count(surface)
+      here%outcome = projection_lost
+      here%fixed = .false.
       if (.not. here%settled) return
-      xi = here%xi
-      place = here%place
-      outcome = projection_inside
+      here%outcome = projection_inside
       if (all(here%pressing == 0)) return
       if (all(here%pressing == 0 .or. on_edge(surface, here))) then
-        outcome = projection_outside
+        here%outcome = projection_outside
         return
       end if
       call cross_boundary(surface, positions, x, here, moved)
-      if (.not. moved) then
-        if (any(on_edge(surface, here))) outcome = projection_outside
-        call settle_on_lines(surface, here%pressing, xi, place, fixed)
-        return
-      end if
-      outcome = projection_lost
+      if (moved) cycle
+      if (any(on_edge(surface, here))) here%outcome = projection_outside
+      call settle_on_lines(surface, here)
+      return
     end do
-  end subroutine project
+    here%outcome = projection_lost
+  end subroutine descend
+
+  !> Search the elements of a list that may hold a nearer point than the one found, and go on from there: first from what samples
+  !> are nearer, then in all elements that may still hold one.
+  pure subroutine look_round(surface, hulls, positions, x, list, here)
+    type(surface_t), intent(in) :: surface
+    type(hulls_t), intent(in) :: hulls
+    real(wp), intent(in) :: positions(:, :), x(3)
+    integer, intent(in) :: list(:)
+    type(search_t), intent(inout) :: here
+    type(search_t) :: there
+    real(wp) :: square
+    integer :: count, k, near(size(list))
+
+    count = 0
+    do k = 1, size(list)
+      if (is_settled(surface, hulls, list(k), x, here)) cycle
+      count = count + 1
+      near(count) = list(k)
+      there%place = surface_element_of(surface, list(k))
+      call nearest_sample(surface, hulls, list(k), x, there%xi, square)
+      if (square < 2.0_wp * here%distance) call go_on(surface, positions, x, there, here)
+    end do
+    do k = 1, count
+      if (is_settled(surface, hulls, near(k), x, here)) cycle
+      there%place = surface_element_of(surface, near(k))
+      if (is_plain(hulls, near(k), here)) then
+        call nearest_sample(surface, hulls, near(k), x, there%xi, square)
+        call go_on(surface, positions, x, there, here)
+      else
+        call search_thoroughly(surface, positions, x, there%place, here)
+      end if
+    end do
+  end subroutine look_round
+
+  !> Whether an element holds no nearer point than the one found: it is farther, or it is that point's own.
+  pure logical function is_settled(surface, hulls, e, x, here)
+    type(surface_t), intent(in) :: surface
+    type(hulls_t), intent(in) :: hulls
+    integer, intent(in) :: e
+    real(wp), intent(in) :: x(3)
+    type(search_t), intent(in) :: here
+    integer :: place(2)
+
+    place = surface_element_of(surface, e)
+    is_settled = all(place == here%place .or. (here%fixed .and. place == mod(here%place, surface%direction%elements) + 1))
+    if (is_settled) is_settled = is_plain(hulls, e, here)
+    if (.not. is_settled) is_settled = is_farther(hulls, e, x, here%way, sqrt(2.0_wp * here%distance))
+  end function is_settled
+
+  !> Whether a point at the distance of the one found has one near point alone in an element.
+  pure logical function is_plain(hulls, e, here)
+    type(hulls_t), intent(in) :: hulls
+    integer, intent(in) :: e
+    type(search_t), intent(in) :: here
+
+    is_plain = sqrt(2.0_wp * here%distance) * hulls%curvature(e) < safe_bend
+  end function is_plain
+
+  !> Search the element of a start, and go on from where that ends if it is better.
+  pure subroutine go_on(surface, positions, x, start, here)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in) :: positions(:, :), x(3)
+    type(search_t), intent(in) :: start
+    type(search_t), intent(inout) :: here
+    type(search_t) :: there
+
+    there = start
+    call search_element(surface, positions, x, there)
+    if (.not. is_preferred(there, here)) return
+    here = there
+    call descend(surface, positions, x, here)
+  end subroutine go_on
+
+  !> Search an element that may hold several near points, from places of a fine grid (Chebyshev's: denser at the bounds)
+  !> that are lowest along one of its lines.
+  pure subroutine search_thoroughly(surface, positions, x, place, here)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in) :: positions(:, :), x(3)
+    integer, intent(in) :: place(2)
+    type(search_t), intent(inout) :: here
+    type(search_t) :: there
+    real(wp) :: square(0:grid_size(surface, 1) + 1, 0:grid_size(surface, 2) + 1), xi(2, size(square, 1), size(square, 2))
+    real(wp) :: net(4, surface%direction(1)%order + 1, surface%direction(2)%order + 1), s(3, 6), share(2)
+    integer :: a, i, j
+
+    call homogeneous_net(surface, positions, place, net)
+    square = huge(1.0_wp)
+    do j = 1, ubound(square, 2) - 1
+      do i = 1, ubound(square, 1) - 1
+        share = 0.5_wp - 0.5_wp * cos(pi * real([i, j] - 1, wp) / real(ubound(square) - 2, wp))
+        do a = 1, 2
+          associate (boundary => surface%direction(a)%boundary)
+            xi(a, i, j) = boundary(place(a) - 1) + share(a) * (boundary(place(a)) - boundary(place(a) - 1))
+          end associate
+        end do
+        call surface_point(surface, place, net, xi(:, i, j), s)
+        square(i, j) = sum((x - s(:, 1))**2)
+      end do
+    end do
+    do j = 1, ubound(square, 2) - 1
+      do i = 1, ubound(square, 1) - 1
+        if (square(i, j) > minval(square(i - 1:i + 1, j)) .and. square(i, j) > minval(square(i, j - 1:j + 1))) cycle
+        if (square(i, j) > worth_a_search * here%distance) cycle
+        there%place = place
+        there%xi = xi(:, i, j)
+        call go_on(surface, positions, x, there, here)
+      end do
+    end do
+  end subroutine search_thoroughly
+
+  !> Points along a direction of the grid in an element that is searched thoroughly.
+  pure integer function grid_size(surface, direction)
+    type(surface_t), intent(in) :: surface
+    integer, intent(in) :: direction
+
+    grid_size = surface%direction(direction)%order + 6
+  end function grid_size
+
+  !> Whether a foot is nearer than another one, or as near and in a lower element.
+  pure logical function is_preferred(there, here)
+    type(search_t), intent(in) :: there, here
+    logical :: lower
+
+    lower = there%place(2) < here%place(2) .or. (there%place(2) == here%place(2) .and. there%place(1) < here%place(1))
+    is_preferred = there%distance < here%distance * (1.0_wp - tie)
+    if (.not. is_preferred .and. lower .and. there%settled .and. all(there%pressing == 0)) then
+      is_preferred = there%distance <= here%distance * (1.0_wp + tie)
+    end if
+  end function is_preferred
 
   !> Fix the coordinates that press against a C0 line which neither side improves.
-  pure subroutine settle_on_lines(surface, pressing, xi, place, fixed)
+  pure subroutine settle_on_lines(surface, here)
     type(surface_t), intent(in) :: surface
-    integer, intent(in) :: pressing(2)
-    real(wp), intent(inout) :: xi(2)
-    integer, intent(inout) :: place(2)
-    logical, intent(inout) :: fixed(2)
+    type(search_t), intent(inout) :: here
     integer :: a, line
 
     do a = 1, 2
-      if (pressing(a) == 0) cycle
-      line = place(a) + min(pressing(a), 0)
+      if (here%pressing(a) == 0) cycle
+      line = here%place(a) + min(here%pressing(a), 0)
       if (surface%closed(a) .and. line == 0) line = surface%direction(a)%elements
       if (line == 0 .or. (line == surface%direction(a)%elements .and. .not. surface%closed(a))) cycle
-      fixed(a) = is_kink(surface%direction(a), line)
-      if (.not. fixed(a)) cycle
-      place(a) = line
-      xi(a) = surface%direction(a)%boundary(line)
+      here%fixed(a) = is_kink(surface%direction(a), line)
+      if (.not. here%fixed(a)) cycle
+      here%place(a) = line
+      here%xi(a) = surface%direction(a)%boundary(line)
     end do
   end subroutine settle_on_lines
 
@@ -138,13 +298,11 @@ contains
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :), x(3)
     type(search_t), intent(inout) :: here
-    real(wp) :: points(3, product(surface%direction%order + 1))
-    integer :: nodes(product(surface%direction%order + 1))
+    real(wp) :: net(4, surface%direction(1)%order + 1, surface%direction(2)%order + 1)
     real(wp) :: low(2), high(2), slope(2), hessian(2, 2), metric(2, 2), step(2)
     integer :: a, iteration
 
-    call surface_nodes(surface, here%place, nodes)
-    points = positions(:, surface%point(nodes))
+    call homogeneous_net(surface, positions, here%place, net)
     do a = 1, 2
       low(a) = surface%direction(a)%boundary(here%place(a) - 1)
       high(a) = surface%direction(a)%boundary(here%place(a))
@@ -152,11 +310,11 @@ contains
     here%xi = min(max(here%xi, low), high)
     here%settled = .false.
     do iteration = 1, 100
-      call distance_derivatives(surface, here%place, nodes, points, x, here%xi, here%distance, slope, hessian, metric)
+      call distance_derivatives(surface, net, x, here, slope, hessian, metric)
       call find_pressing(here, slope, metric, low, high)
       step = newton_step(slope, hessian, metric, here%pressing == 0)
       if (maxval(abs(step) / (high - low)) > 1.0e-3_wp) then
-        call limit_step(surface, here, nodes, points, x, slope, low, high, step)
+        call limit_step(surface, here, net, x, slope, low, high, step)
       end if
       step = min(max(here%xi + step, low), high) - here%xi
       here%xi = here%xi + step
@@ -165,24 +323,26 @@ contains
     end do
   end subroutine search_element
 
-  !> Half the squared distance, its slope, its Hessian, and the metric of the surface.
-  pure subroutine distance_derivatives(surface, place, nodes, points, x, xi, distance, slope, hessian, metric)
+  !> Way and distance of a search, the distance's slope and Hessian, and the metric of the surface.
+  pure subroutine distance_derivatives(surface, net, x, here, slope, hessian, metric)
     type(surface_t), intent(in) :: surface
-    integer, intent(in) :: place(2), nodes(:)
-    real(wp), intent(in) :: points(:, :), x(3), xi(2)
-    real(wp), intent(out) :: distance, slope(2), hessian(2, 2), metric(2, 2)
-    real(wp) :: values(size(nodes), derivative_columns(2)), s(3, derivative_columns(2)), d(3)
+    real(wp), intent(in) :: net(:, :, :), x(3)
+    type(search_t), intent(inout) :: here
+    real(wp), intent(out) :: slope(2), hessian(2, 2), metric(2, 2)
+    real(wp) :: s(3, 6)
 
-    call surface_basis(surface, place, nodes, xi, 2, values)
-    s = matmul(points, values)
-    d = x - s(:, 1)
-    distance = 0.5_wp * dot_product(d, d)
-    slope = -matmul(d, s(:, 2:3))
-    metric = matmul(transpose(s(:, 2:3)), s(:, 2:3))
-    hessian(1, 1) = metric(1, 1) - dot_product(d, s(:, 4))
-    hessian(1, 2) = metric(1, 2) - dot_product(d, s(:, 5))
+    call surface_point(surface, here%place, net, here%xi, s)
+    here%way = s(:, 1) - x
+    here%distance = 0.5_wp * dot_product(here%way, here%way)
+    slope = [dot_product(here%way, s(:, 2)), dot_product(here%way, s(:, 3))]
+    metric(1, 1) = dot_product(s(:, 2), s(:, 2))
+    metric(1, 2) = dot_product(s(:, 2), s(:, 3))
+    metric(2, 1) = metric(1, 2)
+    metric(2, 2) = dot_product(s(:, 3), s(:, 3))
+    hessian(1, 1) = metric(1, 1) + dot_product(here%way, s(:, 4))
+    hessian(1, 2) = metric(1, 2) + dot_product(here%way, s(:, 5))
     hessian(2, 1) = hessian(1, 2)
-    hessian(2, 2) = metric(2, 2) - dot_product(d, s(:, 6))
+    hessian(2, 2) = metric(2, 2) + dot_product(here%way, s(:, 6))
   end subroutine distance_derivatives
 
   !> Note the bounds across which the distance falls by more than round-off.
@@ -222,68 +382,21 @@ contains
   end function newton_step
 
   !> Halve a long step until the distance falls as its slope promises (Armijo's rule on the bounded step).
-  pure subroutine limit_step(surface, here, nodes, points, x, slope, low, high, step)
+  pure subroutine limit_step(surface, here, net, x, slope, low, high, step)
     type(surface_t), intent(in) :: surface
     type(search_t), intent(in) :: here
-    integer, intent(in) :: nodes(:)
-    real(wp), intent(in) :: points(:, :), x(3), slope(2), low(2), high(2)
+    real(wp), intent(in) :: net(:, :, :), x(3), slope(2), low(2), high(2)
     real(wp), intent(inout) :: step(2)
-    real(wp) :: d(3), target(2), values(size(nodes), 1)
+    real(wp) :: d(3), s(3, 6), target(2)
     integer :: halving
 
     do halving = 1, 40
       target = min(max(here%xi + step, low), high)
-      call surface_basis(surface, here%place, nodes, target, 0, values)
-      d = x - matmul(points, values(:, 1))
+      call surface_point(surface, here%place, net, target, s)
+      d = x - s(:, 1)
       if (0.5_wp * dot_product(d, d) <= here%distance + 1.0e-4_wp * dot_product(slope, target - here%xi)) return
       step = 0.5_wp * step
     end do
   end subroutine limit_step
-
-  !> Points of the surface on a grid in every element, for `nearest_start`.
-  pure subroutine sample_surface(surface, positions, coordinates, points)
-    type(surface_t), intent(in) :: surface
-    real(wp), intent(in) :: positions(:, :)
-    real(wp), allocatable, intent(out) :: coordinates(:, :), points(:, :)
-    integer :: nodes(product(surface%direction%order + 1)), e, i, j, k, m(2), place(2)
-    real(wp) :: low(2), high(2), values(size(nodes), 1)
-
-    m = surface%direction%order + 1
-    allocate (coordinates(2, product(m) * surface_element_count(surface)), points(3, product(m) * surface_element_count(surface)))
-    k = 0
-    do e = 1, surface_element_count(surface)
-      place = surface_element_of(surface, e)
-      call surface_nodes(surface, place, nodes)
-      low = [surface%direction(1)%boundary(place(1) - 1), surface%direction(2)%boundary(place(2) - 1)]
-      high = [surface%direction(1)%boundary(place(1)), surface%direction(2)%boundary(place(2))]
-      do j = 1, m(2)
-        do i = 1, m(1)
-          k = k + 1
-          coordinates(:, k) = low + (high - low) * (real([i, j], wp) - 0.5_wp) / real(m, wp)
-          call surface_basis(surface, place, nodes, coordinates(:, k), 0, values)
-          points(:, k) = matmul(positions(:, surface%point(nodes)), values(:, 1))
-        end do
-      end do
-    end do
-  end subroutine sample_surface
-
-  !> Coordinates of the sample nearest to x.
-  pure function nearest_start(coordinates, points, x) result(xi)
-    real(wp), intent(in) :: coordinates(:, :), points(:, :), x(3)
-    real(wp) :: xi(2)
-    integer :: k, nearest
-    real(wp) :: distance, least
-
-    least = huge(1.0_wp)
-    nearest = 1
-    do k = 1, size(points, 2)
-      distance = sum((x - points(:, k))**2)
-      if (distance < least) then
-        least = distance
-        nearest = k
-      end if
-    end do
-    xi = coordinates(:, nearest)
-  end function nearest_start
 
 end module isomortar_contact_projection

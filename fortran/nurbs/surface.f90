@@ -6,7 +6,8 @@ module isomortar_nurbs_surface
   implicit none
   private
 
-  public :: face_of, shortest_way, step_across, surface_basis, surface_element_count, surface_element_of, surface_nodes
+  public :: face_of, homogeneous_net, shortest_way, step_across, surface_basis, surface_element_count, surface_element_of, &
+    surface_nodes, surface_point
 
   !> Column of each partial derivative (k, l) in a table of derivatives to order three.
   integer, parameter, public :: derivative_column(0:3, 0:3) = reshape( &
@@ -131,6 +132,60 @@ contains
       end do
     end do
   end subroutine surface_nodes
+
+  !> Control points of an element in homogeneous form: times their weights, and these.
+  pure subroutine homogeneous_net(self, positions, place, net)
+    type(surface_t), intent(in) :: self
+    real(wp), intent(in) :: positions(:, :)
+    integer, intent(in) :: place(2)
+    real(wp), intent(out) :: net(:, 0:, 0:)
+    integer :: a, i, j
+
+    do j = 0, self%direction(2)%order
+      do i = 0, self%direction(1)%order
+        a = 1 + self%direction(1)%first(place(1)) + i + self%direction(1)%count * (self%direction(2)%first(place(2)) + j)
+        net(1:3, i, j) = self%weight(a) * positions(:, self%point(a))
+        net(4, i, j) = self%weight(a)
+      end do
+    end do
+  end subroutine homogeneous_net
+
+  !> Point of an element and its derivatives to order 2 (columns: derivative_column), from its net: what `surface_basis` would give.
+  pure subroutine surface_point(self, place, net, xi, derivatives)
+    type(surface_t), intent(in) :: self
+    integer, intent(in) :: place(2)
+    real(wp), intent(in) :: net(:, 0:, 0:), xi(2)
+    real(wp), intent(out) :: derivatives(3, 6)
+    real(wp) :: u(0:self%direction(1)%order, 0:2), v(0:self%direction(2)%order, 0:2), row(4, 0:2), h(4, 6)
+    integer :: i, j
+
+    call basis(self%direction(1), place(1), xi(1), 2, u)
+    call basis(self%direction(2), place(2), xi(2), 2, v)
+    h = 0.0_wp
+    do j = 0, self%direction(2)%order
+      row = 0.0_wp
+      do i = 0, self%direction(1)%order
+        row(:, 0) = row(:, 0) + u(i, 0) * net(1:4, i, j)
+        row(:, 1) = row(:, 1) + u(i, 1) * net(1:4, i, j)
+        row(:, 2) = row(:, 2) + u(i, 2) * net(1:4, i, j)
+      end do
+      h(:, 1) = h(:, 1) + v(j, 0) * row(:, 0)
+      h(:, 2) = h(:, 2) + v(j, 0) * row(:, 1)
+      h(:, 3) = h(:, 3) + v(j, 1) * row(:, 0)
+      h(:, 4) = h(:, 4) + v(j, 0) * row(:, 2)
+      h(:, 5) = h(:, 5) + v(j, 1) * row(:, 1)
+      h(:, 6) = h(:, 6) + v(j, 2) * row(:, 0)
+    end do
+    h = h / h(4, 1)
+    associate (s => derivatives, w => h(4, :))
+      s(:, 1) = h(1:3, 1)
+      s(:, 2) = h(1:3, 2) - w(2) * s(:, 1)
+      s(:, 3) = h(1:3, 3) - w(3) * s(:, 1)
+      s(:, 4) = h(1:3, 4) - 2.0_wp * w(2) * s(:, 2) - w(4) * s(:, 1)
+      s(:, 5) = h(1:3, 5) - w(2) * s(:, 3) - w(3) * s(:, 2) - w(5) * s(:, 1)
+      s(:, 6) = h(1:3, 6) - 2.0_wp * w(3) * s(:, 3) - w(6) * s(:, 1)
+    end associate
+  end subroutine surface_point
 
   !> Rational functions of an element at xi and their partial derivatives up to `order` (columns: derivative_column).
   !> Quotient rule on the homogeneous form, Piegl and Tiller 1997, Section 4.5.

@@ -1,0 +1,94 @@
+"""The foot is the nearest point of the whole master, from any start: by an exhaustive search that shares nothing with the kernel's."""
+
+from __future__ import annotations
+
+import numpy as np
+from projection.closed import face as ring_face
+from projection.closest_points import Surface
+from scipy.optimize import minimize
+from scipy.spatial import cKDTree
+
+from isomortar.geometry.patch import FloatArray, Patch
+from isomortar.geometry.primitives import box
+from isomortar.geometry.refinement import mesh
+from isomortar.harness import Bound, case
+
+
+def _bent(kind: str, elements: int, thickness: float, height: FloatArray | None = None, fold: bool = False) -> Surface:
+    """The upper face of a plate over the unit square, its control points raised by `height` or rolled into an S."""
+    order = int(kind[1:])
+    plate = box((0.0, 0.0, -thickness), (1.0, 1.0, 0.0))
+    patch = mesh(plate, (kind[0],) * 3, (order, order, 1), (elements, elements, 1))  # type: ignore[arg-type]
+    points = patch.control_points.copy()
+    if height is not None:
+        points[:, 2] += height[0] * np.sin(2 * np.pi * height[1] * points[:, 0]) * np.sin(2 * np.pi * height[1] * points[:, 1])
+    if fold:
+        turn = 2 * np.pi * points[:, 0]
+        along = np.column_stack([0.8 * np.cos(2 * turn) + 0.3 / (2 * np.pi), np.full(len(turn), 1 / 6)])
+        along /= np.linalg.norm(along, axis=1)[:, None]
+        middle = np.column_stack([0.4 * np.sin(2 * turn) + 0.3 * points[:, 0], turn / 6])
+        points[:, 0], points[:, 2] = (middle + points[:, 2:] * np.column_stack([-along[:, 1], along[:, 0]])).T
+    return Surface(Patch(patch.directions, points, patch.weights), "w1")
+
+
+#: Masters by class: wavy ones, with several near points within an element too; folded; thin; closed, from inside and outside.
+MASTERS = {
+    "wavy N2": lambda: _bent("N2", 8, 0.5, np.array([0.12, 2.0])),
+    "wavy N3": lambda: _bent("N3", 8, 0.5, np.array([0.12, 2.0])),
+    "wavy N4": lambda: _bent("N4", 3, 0.5, np.array([0.5, 1.5])),
+    "wavy L1": lambda: _bent("L1", 8, 0.5, np.array([0.12, 2.0])),
+    "wavy L2": lambda: _bent("L2", 8, 0.5, np.array([0.12, 2.0])),
+    "folded N2": lambda: _bent("N2", 12, 0.1, fold=True),
+    "folded N3": lambda: _bent("N3", 12, 0.1, fold=True),
+    "thin N2": lambda: _bent("N2", 6, 1e-3, np.array([0.05, 1.0])),
+    "inside a ring": lambda: ring_face("N2", "v0"),
+    "round a ring": lambda: ring_face("N3", "v1"),
+}
+#: Samples along each side of the exhaustive search, and the number of points by tier.
+SAMPLES, POINTS = 401, {"gate": 300, "nightly": 100_000}
+
+
+def exhaustive(face: Surface, targets: FloatArray, feet: FloatArray) -> FloatArray:
+    """By how much a point of the face is nearer to each target than its foot; refined where a sample comes within a cell of that."""
+    u, v = (np.linspace(low, high, SAMPLES) for low, high in face.ends.T)
+    grid = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
+    points = face.points(grid)
+    least, nearest = cKDTree(points).query(targets)
+    distance = np.linalg.norm(face.points(feet) - targets, axis=1)
+    excess = distance - least
+    apart = np.linalg.norm(points[nearest] - face.points(feet), axis=1)
+    cell = np.linalg.norm(np.diff(points.reshape(SAMPLES, SAMPLES, 3), axis=0), axis=2).max()
+    for q in np.flatnonzero((apart > 4 * cell) & (excess > -(cell**2) / np.maximum(distance, cell))):
+        refined = minimize(
+            lambda xi, q=q: float(np.sum((face.points(xi[None])[0] - targets[q]) ** 2)), grid[nearest[q]], bounds=face.ends.T
+        )
+        excess[q] = distance[q] - np.sqrt(refined.fun)
+    return excess
+
+
+@case(
+    claim="From random starts, the foot of a random point is the nearest point of the whole master, and the same as from no start.",
+    tier=lambda master, points: "gate" if points == POINTS["gate"] else "nightly",  # noqa: ARG005
+    grid={"master": list(MASTERS), "points": list(POINTS.values())},
+    bounds={
+        "nearer": Bound(at_most=1e-9, reason="definition: no point of the master may be nearer; half the digits of a least distance"),
+        "apart": Bound(at_most=1e-7, reason="round-off: the distance is flat at its least; half of the digits of a foot"),
+        "found": Bound(at_least=0.05, at_most=0.95, reason="definition: points lie beside the master too"),
+    },
+)
+def nearest_foot(master: str, points: int) -> dict[str, float]:
+    """Most that a point of the master is nearer than the foot, largest distance from the foot without a start, share found."""
+    face = MASTERS[master]()
+    low, high = face.ends
+    random = np.random.default_rng(points)
+    corners = face.patch.control_points[face.patch.face_points(face.face)]
+    targets = random.uniform(corners.min(axis=0) - 0.3, corners.max(axis=0) + 0.3, (points, 3))
+    warm = face.project(targets, low + random.uniform(0, 1, (points, 2)) * (high - low))
+    cold = face.project(targets)
+    both = (warm.found == 1) & (cold.found == 1)
+    feet = face.points(warm.xi)
+    return {
+        "nearer": float(np.maximum(0.0, exhaustive(face, targets, warm.xi).max())),
+        "apart": float(np.linalg.norm(feet - face.points(cold.xi), axis=1)[both].max()) + float(np.sum(warm.found != cold.found)),
+        "found": float(np.mean(warm.found)),
+    }
