@@ -33,6 +33,22 @@ def turned(problem: Problem, turn: FloatArray) -> Problem:
     )
 
 
+def moved(problem: Problem, by: FloatArray) -> Problem:
+    """The problem somewhere else: geometry, rigid planes and centres of supports moved by a vector, shape (3,)."""
+    away = with_patches(problem, lambda patch: replace(patch, control_points=patch.control_points + by))
+    return replace(
+        away,
+        contacts=tuple(_moved_contact(contact, by) for contact in problem.contacts),
+        supports=tuple(replace(support, centre=vector(np.asarray(support.centre) + by)) for support in problem.supports),
+    )
+
+
+def _moved_contact(contact: Contact, by: FloatArray) -> Contact:
+    if not isinstance(contact.master, RigidPlane):
+        return contact
+    return replace(contact, master=replace(contact.master, point=vector(np.asarray(contact.master.point) + by)))
+
+
 def mirrored(problem: Problem) -> Problem:
     """The mirror image in the plane x = 0, direction u reversed to keep the volume positive."""
     mirror = np.diag([-1.0, 1.0, 1.0])

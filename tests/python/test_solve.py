@@ -155,6 +155,19 @@ def test_resuming_gives_the_same_numbers() -> None:
     np.testing.assert_allclose(rest[-1].state.positions, whole[-1].state.positions, atol=1e-12)
 
 
+def test_far_from_the_origin_resuming_gives_the_same_numbers_and_centres_are_the_scenes() -> None:
+    problem = small_iron()
+    away = np.array([3e6, 0.0, -2e6])
+    bodies = tuple(replace(b, patch=replace(b.patch, control_points=b.patch.control_points + away)) for b in problem.bodies)
+    problem = replace(problem, bodies=bodies, supports=tuple(replace(s, centre=(3e6, 0.0, -2e6)) for s in problem.supports))
+    whole = run(problem)
+    rest = list(Simulation(problem, resume_from=whole[8]).run())
+    np.testing.assert_allclose(rest[-1].state.positions - away, whole[-1].state.positions - away, atol=1e-12)
+    np.testing.assert_allclose(rest[-1].reactions[0].force, whole[-1].reactions[0].force, rtol=1e-12)
+    shift = np.sum([motion.translate for motion in problem.supports[0].motions], axis=0)
+    np.testing.assert_allclose(whole[-1].reactions[0].centre - away, shift, atol=1e-9)
+
+
 @pytest.mark.parametrize("exponent", [-6, 6])
 def test_units_do_not_make_the_system_singular(exponent: int) -> None:
     problem = Scene.load("press", ["bodies.block.mesh.elements=[3,3,2]"]).problem()

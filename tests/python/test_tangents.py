@@ -120,6 +120,15 @@ def test_body_without_contact() -> None:
     assert set(errors(report)) == {"solid", "whole", "symmetry"}
 
 
+def test_far_from_the_origin() -> None:
+    problem = curved()
+    away = np.array([1e6, 7e5, -3e5])
+    bodies = tuple(replace(b, patch=replace(b.patch, control_points=b.patch.control_points + away)) for b in problem.bodies)
+    supports = tuple(replace(s, centre=tuple((away + s.centre).tolist())) for s in problem.supports)
+    report = check_tangent(replace(problem, bodies=bodies, supports=supports), STEP, directions=1)
+    assert report.passes
+
+
 def test_a_contact_that_is_open_is_not_measured() -> None:
     """Its tangent has no part at such a state: nothing is known of it, whatever the solid's is."""
     report = check_tangent(curved("stages.0.motions.top.translate=[0,0,0.1]", "stages.1.motions.top.translate=[0,0,0]"), 2, directions=1)

@@ -1,4 +1,4 @@
-"""Rotations, units, mirror images, parametrisations and names leave the results of a scene with friction."""
+"""Rotations, places, units, mirror images, parametrisations and names leave the results of a scene with friction."""
 
 from __future__ import annotations
 
@@ -6,11 +6,12 @@ from collections.abc import Callable
 
 import numpy as np
 from small_scenes import bowl
-from transforms import mirrored, relabelled, scaled, turned, with_knots, with_weights
+from transforms import mirrored, moved, relabelled, scaled, turned, with_knots, with_weights
 
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, case
 from isomortar.model.entities import Problem
+from isomortar.solve.record import StepResult
 from isomortar.solve.simulation import Simulation
 
 #: No axis, plane or round number is kept by this rotation.
@@ -62,6 +63,42 @@ def rotation(master: str) -> dict[str, float]:
         lambda problem: turned(problem, TURN),
         lambda found: found | {"forces": found["forces"] @ TURN, "moments": found["moments"] @ TURN},
     )
+
+
+def _last_bits(distance: float) -> dict[str, Bound]:
+    """Coordinates of the input are rounded to the last bits that they have at a distance."""
+    bits = f"round-off: the input's last bits at {distance:g} lengths, over a compression of some hundredths"
+    reach = 10.0 * float(np.spacing(distance))
+    forces = Bound(at_most=reach, reason=bits)
+    return BOUNDS | {
+        "forces": forces,
+        "moments": forces,
+        "contact": Bound(at_most=1e-14, reason="round-off: of forces times the distance"),
+        "pressures": Bound(at_most=10.0 * reach, reason=f"{bits}; of the load of one control point, a tenth of the largest"),
+        "tractions": Bound(at_most=10.0 * reach / 0.3, reason=f"{bits}; the same, and 0.3, the friction, of the pressures"),
+    }
+
+
+@case(
+    claim="Where a scene stands changes no result, and contact moments are about the origin wherever that is.",
+    tier="gate",
+    grid={"master": MASTERS, "distance": (1e3, 1e5, 1e6)},
+    bounds=lambda distance, **_: _last_bits(distance),
+)
+def place(master: str, distance: float) -> dict[str, float]:
+    """Everything moved, but what moves; moments of contact forces taken back to where they were. Distances are in lengths of the body."""
+    problem, by = bowl(master), distance * np.array([1.0, 0.7, -0.3])
+    away = moved(problem, by)
+    before, after = measure(problem), measure(away)
+    found = {name: float(np.abs(after[name] - value).max() / np.abs(value).max()) for name, value in before.items()}
+    near, far = (np.array([_contact_wrench(result) for result in Simulation(p).run()]) for p in (problem, away))
+    back = far[:, 1] - np.cross(by, far[:, 0])
+    return found | {"contact": float(np.abs(back - near[:, 1]).max() / distance / np.abs(near[:, 0]).max())}
+
+
+def _contact_wrench(result: StepResult) -> tuple[FloatArray, FloatArray]:
+    """Force on the slave and its moment about the origin."""
+    return result.contacts[0].force_slave, result.contacts[0].moment_slave
 
 
 @case(

@@ -26,7 +26,7 @@ class PairVisit:
 
 @dataclass(frozen=True)
 class Visit:
-    """A visited state: its positions, shape (control points, 3), and its contact pairs."""
+    """A visited state: its positions about the equilibrium's origin, shape (control points, 3), and its contact pairs."""
 
     positions: FloatArray
     pairs: tuple[PairVisit, ...]
@@ -75,7 +75,7 @@ def visited_states(problem: Problem, step: int) -> list[Visit]:
             break
         notes.clear()
     if not notes:
-        return [Visit(result.state.positions, ())]
+        return [Visit(simulation.state.positions, ())]
     visits = _of_last_increment(_in_visits(notes, len(problem.contacts)))
     chosen = sorted({0, max(0, len(visits) - 2), len(visits) - 1})
     return [visits[k] for k in chosen]

@@ -14,6 +14,7 @@ from isomortar.errors import SingularSystemError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Problem
 from isomortar.model.numbering import Numbering
+from isomortar.model.origin import about, origin_of
 from isomortar.model.pairs import Pair
 from isomortar.model.solid import Solid
 from isomortar.model.supports import Supports
@@ -49,6 +50,13 @@ class Balance:
 class Equilibrium:
     """A problem with its unknowns: everything that load steps and solvers share.
 
+    Attributes
+    ----------
+    origin : ndarray, shape (3,)
+        Where all coordinates in here count from, in those of the problem given: zero unless its bodies are far from the origin.
+    problem : Problem
+        In coordinates about `origin`.
+
     Raises
     ------
     InputError
@@ -56,7 +64,8 @@ class Equilibrium:
     """
 
     def __init__(self, problem: Problem, ledger: Ledger) -> None:
-        self.problem = problem
+        self.origin = origin_of(problem)
+        self.problem = problem = about(problem, self.origin)
         self.ledger = ledger
         self.numbering = Numbering(problem)
         self.supports = Supports(problem, self.numbering)

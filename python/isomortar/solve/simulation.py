@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from isomortar.solve.doubts import doubts
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.method import Increment, Method
 from isomortar.solve.monolithic import Monolithic
-from isomortar.solve.record import AugmentationRecord, Observer, Reaction, State, StepResult
+from isomortar.solve.record import AugmentationRecord, ContactResult, Observer, Reaction, State, StepResult
 from isomortar.solve.timing import Ledger
 from isomortar.solve.uzawa import Uzawa
 
@@ -39,6 +40,11 @@ class Simulation:
     resume_from : StepResult, optional
         Last recorded step of an earlier run of the same problem.
 
+    Attributes
+    ----------
+    state : State
+        What the next load step starts from, in coordinates about `equilibrium.origin`.
+
     Examples
     --------
     >>> for result in Simulation(problem).run():  # doctest: +SKIP
@@ -53,7 +59,7 @@ class Simulation:
         self._method = _METHODS[problem.settings.method](self.equilibrium, self._observer)
         self._step = resume_from.step if resume_from else 0
         self._increment = resume_from.next_increment if resume_from else 1.0
-        self.state = resume_from.state if resume_from else self.equilibrium.initial_state()
+        self.state = self._from_record(resume_from) if resume_from else self.equilibrium.initial_state()
 
     def run(self) -> Iterator[StepResult]:
         """Compute the load steps that are left, one recorded step at a time.
@@ -66,12 +72,12 @@ class Simulation:
         self._observer.started(self.problem.total_steps, self._step + 1)
         fresh = self._step == 0
         if fresh:
-            self._warn(doubts(self.problem, self.state))
+            self._warn(doubts(self.equilibrium.problem, self.state))
         self._warn(advice_on_problem(self.problem, self.equilibrium.pairs))
         advice = StepAdvice(self.problem)
         while self._step < self.problem.total_steps:
             result = self._advance_step(self._step + 1)
-            self._step, self.state = result.step, result.state
+            self._step, self.state = result.step, self._from_record(result)
             self._observer.recorded(result)
             self._warn(advice.after_step(result.step, result.contacts, [contact.pressure for contact in self.state.contacts]))
             yield result
@@ -151,13 +157,24 @@ class Simulation:
         contacts = [pair.state(k, r) for pair, k, r in zip(self.equilibrium.pairs, balance.kinematics, balance.responses, strict=True)]
         return State(balance.positions, tuple(contacts))
 
+    def _from_record(self, result: StepResult) -> State:
+        """The state of a recorded step, to the digits that are recorded: a run that is resumed there comes to the same numbers.
+
+        Far from the origin these are fewer; supports then put what they prescribe in its place anew, or it would seem to move.
+        """
+        origin, supports = self.equilibrium.origin, self.equilibrium.supports
+        if not np.any(origin):
+            return result.state
+        positions = np.where(supports.held, supports.place(result.time), result.state.positions - origin)
+        return replace(result.state, positions=positions)
+
     def _reactions(self, time: float, positions: FloatArray, total: FloatArray) -> tuple[Reaction, ...]:
         """Forces that the supports exert: their shares of the residual at the components that they prescribe."""
         reactions = []
         supports = self.equilibrium.supports
-        for support, points, share in zip(self.problem.supports, supports.points, supports.shares, strict=True):
+        for support, points, share in zip(self.equilibrium.problem.supports, supports.points, supports.shares, strict=True):
             centre, forces = supports.centre(support, time), share * total[points]
-            reactions.append(Reaction(forces.sum(axis=0), moment(positions[points] - centre, forces), centre))
+            reactions.append(Reaction(forces.sum(axis=0), moment(positions[points] - centre, forces), centre + self.equilibrium.origin))
         return tuple(reactions)
 
     def _result(
@@ -165,13 +182,14 @@ class Simulation:
     ) -> StepResult:
         pairs = zip(self.equilibrium.pairs, balance.kinematics, balance.responses, strict=True)
         timings, counters = self.ledger.take()
+        origin = self.equilibrium.origin
         return StepResult(
             step=step,
             stage=self._stage_of(step),
             time=float(step),
-            state=state,
+            state=replace(state, positions=state.positions + origin),
             reactions=self._reactions(float(step), balance.positions, balance.total),
-            contacts=tuple(pair.result(balance.positions, k, r) for pair, k, r in pairs),
+            contacts=tuple(_about_origin(pair.result(balance.positions, k, r), origin) for pair, k, r in pairs),
             augmentations=log,
             newton_order=float(np.median(orders)) if orders else float("nan"),
             substeps=substeps,
@@ -180,3 +198,12 @@ class Simulation:
             timings=timings,
             counters=counters,
         )
+
+
+def _about_origin(result: ContactResult, own: FloatArray) -> ContactResult:
+    """The result with moments about the origin in place of those about an origin of its own."""
+    return replace(
+        result,
+        moment_slave=result.moment_slave + moment(own[None], result.force_slave[None]),
+        moment_master=result.moment_master + moment(own[None], result.force_master[None]),
+    )

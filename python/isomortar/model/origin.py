@@ -1,0 +1,53 @@
+"""Coordinates about an origin of a problem's own: far from that of the scene they have few digits left for what moves."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from isomortar.geometry.patch import FloatArray
+from isomortar.model.entities import Body, Contact, Problem, RigidPlane, Support
+
+#: Bodies that are centred within so many times their size of the origin are computed as they are, to the last bit.
+NEAR = 16.0
+
+Point = tuple[float, float, float]
+
+
+def origin_of(problem: Problem) -> FloatArray:
+    """Where a problem's coordinates are to count from: the centre of its bodies in components that are far away, else 0; shape (3,)."""
+    ends = np.array([end(body.patch.control_points, axis=0) for body in problem.bodies for end in (np.min, np.max)])
+    low, high = ends.min(axis=0), ends.max(axis=0)
+    centre = low + 0.5 * (high - low)
+    return np.where(np.abs(centre) > NEAR * (high - low).max(), centre, 0.0)
+
+
+def about(problem: Problem, origin: FloatArray) -> Problem:
+    """The problem with coordinates that count from a point, shape (3,); itself, where that is the origin."""
+    if not np.any(origin):
+        return problem
+    return replace(
+        problem,
+        bodies=tuple(_body(body, origin) for body in problem.bodies),
+        contacts=tuple(_contact(contact, origin) for contact in problem.contacts),
+        supports=tuple(_support(support, origin) for support in problem.supports),
+    )
+
+
+def _body(body: Body, origin: FloatArray) -> Body:
+    return replace(body, patch=replace(body.patch, control_points=body.patch.control_points - origin))
+
+
+def _contact(contact: Contact, origin: FloatArray) -> Contact:
+    master = contact.master
+    return replace(contact, master=replace(master, point=_point(master.point, origin))) if isinstance(master, RigidPlane) else contact
+
+
+def _support(support: Support, origin: FloatArray) -> Support:
+    return replace(support, centre=_point(support.centre, origin))
+
+
+def _point(point: Point, origin: FloatArray) -> Point:
+    x, y, z = (np.asarray(point) - origin).tolist()
+    return x, y, z
