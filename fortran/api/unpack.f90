@@ -46,6 +46,7 @@ contains
       master = plane_through(real(knots(1:3), wp), real(knots(4:6), wp), real(knots(7:9), wp))
     else
       master%surface = face_of(unpack_patch(kind(3:11), knots, point, weight), int(kind(1)), int(kind(2)))
+      master%opposite = face_of(unpack_patch(kind(3:11), knots, point, weight), int(kind(1)), 1 - int(kind(2)))
     end if
   end function unpack_master
 

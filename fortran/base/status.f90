@@ -23,5 +23,9 @@ module isomortar_base_status
   integer, parameter, public :: status_library = 8
   !> An entry is missing from a compressed pattern; the place is its row.
   integer, parameter, public :: status_pattern = 9
+  !> A position is not finite; the place is the control point.
+  integer, parameter, public :: status_not_finite = 10
+  !> A point that was in contact's reach is deeper than the master's body; the place is the slave quadrature point.
+  integer, parameter, public :: status_passed_through = 11
 
 end module isomortar_base_status

@@ -1,19 +1,22 @@
 !> First pass over the slave quadrature points: projection and control quantities (formulation.md Section 4).
 module isomortar_contact_control
   use isomortar_base_kinds, only: wp
-  use isomortar_base_status, only: status_lost_projection, status_ok
+  use isomortar_base_status, only: status_lost_projection, status_not_finite, status_ok, status_passed_through
   use isomortar_contact_hulls, only: enclose, hulls_t, within_reach
   use isomortar_contact_kinematics, only: contact_point, contact_point_t, plane_point
   use isomortar_contact_kink, only: hold_on_lines
   use isomortar_contact_master, only: master_t
-  use isomortar_contact_projection, only: descend, look_round, projection_inside, projection_lost, search_t, start_at, &
-    start_nearest
+  use isomortar_contact_projection, only: descend, is_too_deep, look_round, projection_inside, projection_lost, &
+    projection_outside, search_t, start_at, start_nearest
   use isomortar_contact_slave, only: integrate_functions, slave_t
-  use isomortar_nurbs_surface, only: derivative_columns, shortest_way, surface_basis, surface_nodes, surface_t
+  use isomortar_nurbs_surface, only: derivative_columns, shortest_way, surface_basis, surface_nodes
   implicit none
   private
 
   public :: control_quantities, integrate_slip_sum, point_on_master, project_points
+
+  !> Share of the least depth between control points within which a point is not asked how deep the master's body is.
+  real(wp), parameter :: shallow_share = 0.25_wp
 
   !> Where the slave quadrature points stand on the master.
   type, public :: projections_t
@@ -57,12 +60,22 @@ contains
     type(projections_t), intent(inout) :: projections
     integer, intent(out) :: status, place
     type(hulls_t) :: hulls
+    real(wp) :: shallow
     integer :: e, last, per_element, q
 
     status = status_ok
     place = 0
     per_element = size(slave%area) / size(slave%nodes, 2)
-    if (.not. master%is_plane) call enclose(master%surface, positions, hulls)
+    place = first_not_finite(positions, slave%point)
+    if (place == 0 .and. .not. master%is_plane) place = first_not_finite(positions, master%surface%point)
+    if (place > 0) then
+      status = status_not_finite
+      return
+    end if
+    if (.not. master%is_plane) then
+      call enclose(master%surface, positions, hulls)
+      shallow = shallow_share * least_depth(master, positions)
+    end if
     do e = 1, size(slave%nodes, 2)
       last = per_element * e
       if (master%is_plane) then
@@ -72,7 +85,7 @@ contains
           projections%found(q) = .true.
         end do
       else
-        call project_element(slave, master%surface, hulls, positions, started, last - per_element, projections, status, place)
+        call project_element(slave, master, hulls, positions, started, had, shallow, last - per_element, projections, status, place)
         if (status /= status_ok) return
       end if
     end do
@@ -84,12 +97,12 @@ contains
   end subroutine project_points
 
   !> Project the quadrature points of a slave element, which are near each other: those after number `before`.
-  pure subroutine project_element(slave, surface, hulls, positions, started, before, projections, status, place)
+  pure subroutine project_element(slave, master, hulls, positions, started, had, shallow, before, projections, status, place)
     type(slave_t), intent(in) :: slave
-    type(surface_t), intent(in) :: surface
+    type(master_t), intent(in) :: master
     type(hulls_t), intent(in) :: hulls
-    real(wp), intent(in) :: positions(:, :)
-    logical, intent(in) :: started(:)
+    real(wp), intent(in) :: positions(:, :), shallow
+    logical, intent(in) :: started(:), had(:)
     integer, intent(in) :: before
     type(projections_t), intent(inout) :: projections
     integer, intent(inout) :: status, place
@@ -99,19 +112,27 @@ contains
 
     do q = 1, size(here)
       x(:, q) = slave_position(slave, positions, before + q)
-      here(q) = start_at(surface, projections%xi(:, before + q))
-      if (.not. started(before + q)) here(q) = start_nearest(surface, hulls, x(:, q))
-      call descend(surface, positions, x(:, q), here(q))
+      here(q) = start_at(master%surface, projections%xi(:, before + q))
+      if (.not. started(before + q)) here(q) = start_nearest(master%surface, hulls, x(:, q))
+      call descend(master%surface, positions, x(:, q), here(q))
     end do
     middle = sum(x, 2) / size(here)
     reach = maxval(norm2(x - spread(middle, 2, size(here)), 1) + sqrt(2.0_wp * here%distance))
     call within_reach(hulls, middle, reach, list, count)
     do q = 1, size(here)
-      call look_round(surface, hulls, positions, x(:, q), list(:count), here(q))
+      call look_round(master%surface, hulls, positions, x(:, q), list(:count), here(q))
       if (here(q)%outcome == projection_lost) then
         status = status_lost_projection
         place = before + q
         return
+      end if
+      if (here(q)%outcome == projection_inside .and. 2.0_wp * here(q)%distance > shallow**2) then
+        if (is_too_deep(master%surface, master%opposite, positions, here(q))) here(q)%outcome = projection_outside
+        if (here(q)%outcome == projection_outside .and. had(before + q)) then
+          status = status_passed_through
+          place = before + q
+          return
+        end if
       end if
       projections%xi(:, before + q) = here(q)%xi
       projections%place(:, before + q) = here(q)%place
@@ -119,6 +140,31 @@ contains
       projections%found(before + q) = here(q)%outcome == projection_inside
     end do
   end subroutine project_element
+
+  !> The first of some control points whose position is not finite; 0 where there is none.
+  pure integer function first_not_finite(positions, points) result(point)
+    real(wp), intent(in) :: positions(:, :)
+    integer, intent(in) :: points(:)
+    integer :: a
+
+    do a = 1, size(points)
+      point = points(a)
+      if (.not. all(abs(positions(:, point)) <= huge(1.0_wp))) return
+    end do
+    point = 0
+  end function first_not_finite
+
+  !> Least distance of a control point of the master from that across the body.
+  pure real(wp) function least_depth(master, positions)
+    type(master_t), intent(in) :: master
+    real(wp), intent(in) :: positions(:, :)
+    integer :: a
+
+    least_depth = huge(1.0_wp)
+    do a = 1, size(master%surface%point)
+      least_depth = min(least_depth, norm2(positions(:, master%surface%point(a)) - positions(:, master%opposite%point(a))))
+    end do
+  end function least_depth
 
   !> Position of a slave quadrature point.
   pure function slave_position(slave, positions, q) result(x)

@@ -15,6 +15,8 @@ module isomortar_contact_master
     real(wp) :: normal(3) = 0.0_wp
     real(wp) :: tangent(3, 2) = 0.0_wp
     type(surface_t) :: surface
+    !> The face of the same body across from it: how deep the body is.
+    type(surface_t) :: opposite
   end type master_t
 
 contains

@@ -6,6 +6,7 @@
 !> Coordinates across such a line are fixed, and the foot belongs to the lower element, wherever the search came from.
 !> That foot is the nearest one near its start. Then every other element whose hull comes nearer than it is searched too.
 module isomortar_contact_projection
+  use isomortar_base_algebra, only: cross
   use isomortar_base_kinds, only: wp
   use isomortar_contact_hulls, only: hulls_t, is_farther, nearest_sample
   use isomortar_nurbs_direction, only: element_at, is_kink
@@ -14,7 +15,7 @@ module isomortar_contact_projection
   implicit none
   private
 
-  public :: descend, look_round, start_at, start_nearest
+  public :: descend, is_too_deep, look_round, start_at, start_nearest
 
   !> The point has no projection: its nearest point lies on the edge of the patch.
   integer, parameter, public :: projection_outside = 0
@@ -44,8 +45,8 @@ module isomortar_contact_projection
     !> Coordinates that stay on a C0 line while the point moves.
     logical :: fixed(2)
     integer :: outcome
-    !> Half of the squared distance, and the way from the point to the surface.
-    real(wp) :: distance, way(3)
+    !> Half of the squared distance, the way from the point to the surface, and a_1 x a_2 there.
+    real(wp) :: distance, way(3), across(3)
     !> For each coordinate -1 or 1 where the distance falls across the lower or upper bound of the element, else 0.
     integer :: pressing(2)
     logical :: settled
@@ -239,6 +240,22 @@ contains
     end if
   end function is_preferred
 
+  !> Whether a point is behind the surface by more than its body's depth below the foot, up to the face across from it.
+  pure logical function is_too_deep(surface, opposite, positions, here) result(deep)
+    type(surface_t), intent(in) :: surface, opposite
+    real(wp), intent(in) :: positions(:, :)
+    type(search_t), intent(in) :: here
+    real(wp) :: net(4, surface%direction(1)%order + 1, surface%direction(2)%order + 1), near(3, 6), far(3, 6)
+
+    deep = surface%outward * dot_product(here%way, here%across) > 0.0_wp
+    if (.not. deep) return
+    call homogeneous_net(surface, positions, here%place, net)
+    call surface_point(surface, here%place, net, here%xi, near)
+    call homogeneous_net(opposite, positions, here%place, net)
+    call surface_point(opposite, here%place, net, here%xi, far)
+    deep = 2.0_wp * here%distance > sum((far(:, 1) - near(:, 1))**2)
+  end function is_too_deep
+
   !> Fix the coordinates that press against a C0 line which neither side improves.
   pure subroutine settle_on_lines(surface, here)
     type(surface_t), intent(in) :: surface
@@ -334,6 +351,7 @@ contains
     call surface_point(surface, here%place, net, here%xi, s)
     here%way = s(:, 1) - x
     here%distance = 0.5_wp * dot_product(here%way, here%way)
+    here%across = cross(s(:, 2), s(:, 3))
     slope = [dot_product(here%way, s(:, 2)), dot_product(here%way, s(:, 3))]
     metric(1, 1) = dot_product(s(:, 2), s(:, 2))
     metric(1, 2) = dot_product(s(:, 2), s(:, 3))

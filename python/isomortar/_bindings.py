@@ -39,6 +39,8 @@ def _raise(status: int, place: int) -> NoReturn:
         2: (FoldedElementError, f"element {place} is folded (J <= 0) in the reference configuration"),
         3: (LostProjectionError, f"the closest-point projection of slave quadrature point {place} did not settle"),
         9: (KernelError, f"a pattern does not fit what is added to it: block missing in row {place} (-1: it has other rows)"),
+        10: (LostProjectionError, f"the position of control point {place} is not finite"),
+        11: (LostProjectionError, f"slave quadrature point {place} has passed through the master's body"),
     }
     kind, sentence = sentences.get(status, (KernelError, f"the kernel returned status {status} at {place}"))
     raise kind(sentence, place)

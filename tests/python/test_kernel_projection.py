@@ -37,9 +37,9 @@ def project(order: int, elements: int, points: np.ndarray, starts: np.ndarray | 
 
 
 def scattered(count: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
-    """Points near and away from the cylinder, inside and outside, and their distances from its axis."""
+    """Points near and away from the cylinder, in the ring's body and outside, and their distances from its axis."""
     random = np.random.default_rng(seed)
-    angle, distance = random.uniform(0.0, 2.0 * np.pi, count), random.uniform(0.1, 1.0, count)
+    angle, distance = random.uniform(0.0, 2.0 * np.pi, count), random.uniform(0.32, 1.0, count)
     points = np.column_stack([distance * np.sin(angle), random.uniform(-0.9, 0.9, count), distance * np.cos(angle)])
     return points, distance
 

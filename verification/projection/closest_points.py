@@ -15,13 +15,13 @@ from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, Shown, case
 from isomortar.model.numbering import patch_arrays
 
-RADIUS, MAJOR, TURN = 0.7, 2.0, 1.2
+RADIUS, INNER, MAJOR, TURN = 0.7, 0.3, 2.0, 1.2
 SECTION = (-0.5, 0.8)
 #: Coarse patch, and the face that is projected onto.
 PATCHES = {
-    "cylinder": (cylinder_sector(0.3, RADIUS, TURN, 1.0), "u1"),
-    "sphere": (turned_sector(0.0, 0.3, RADIUS, SECTION, TURN), "v1"),
-    "torus": (turned_sector(MAJOR, 0.3, RADIUS, SECTION, TURN), "v1"),
+    "cylinder": (cylinder_sector(INNER, RADIUS, TURN, 1.0), "u1"),
+    "sphere": (turned_sector(0.0, INNER, RADIUS, SECTION, TURN), "v1"),
+    "torus": (turned_sector(MAJOR, INNER, RADIUS, SECTION, TURN), "v1"),
 }
 
 
@@ -76,9 +76,10 @@ class Surface:
         return np.array([np.linalg.norm(grid - target, axis=1).min() for target in targets])
 
 
-def surface(shape: str, family: str, order: int) -> Surface:
-    """A refined face; Lagrange faces are faceted, with lines that are only continuous."""
+def surface(shape: str, family: str, order: int, hollow: bool = False) -> Surface:
+    """A refined face (`hollow`: that across the body); Lagrange faces are faceted, with lines that are only continuous."""
     patch, face = PATCHES[shape]
+    face = f"{face[0]}0" if hollow else face
     elements = [1 if d.order == 1 and shape != "cylinder" else 3 for d in patch.directions]
     return Surface(mesh(patch, (family,) * 3, (order,) * 3, elements), face)  # type: ignore[arg-type]
 
@@ -180,13 +181,13 @@ def along_edges(shape: str, kind: str) -> dict[str, float]:
 )
 def equidistant(shape: str, order: int) -> dict[str, float]:
     """Error of the distance from the axis of the cylinder and the centre of the sphere, from the coarse search and from random starts."""
-    face = surface(shape, "N", order)
+    face = surface(shape, "N", order, hollow=True)
     centres = np.linspace(0.2, 0.8, 7)[:, None] * [0.0, 0.0, float(shape == "cylinder")]
     starts = face.ends[0] + np.random.default_rng(1).uniform(0, 1, (7, 2)) * (face.ends[1] - face.ends[0])
     worst = 0.0
     for origin in (None, starts):
         xi = face.project(centres, origin).xi
-        worst = float(np.maximum(worst, np.abs(np.linalg.norm(face.points(xi) - centres, axis=1) - RADIUS).max()))
+        worst = float(np.maximum(worst, np.abs(np.linalg.norm(face.points(xi) - centres, axis=1) - INNER).max()))
     return {"distance": worst}
 
 
@@ -203,7 +204,7 @@ def equidistant(shape: str, order: int) -> dict[str, float]:
 )
 def centres_of_curvature(order: int, off: float) -> dict[str, float]:
     """Largest error of the distance of settled targets, from random starts; share of the targets that are lost."""
-    face = surface("torus", "N", order)
+    face = surface("torus", "N", order, hollow=True)
     random = np.random.default_rng(order)
     distances = []
     for angle in random.uniform(0.2, TURN - 0.2, 100):
@@ -213,7 +214,7 @@ def centres_of_curvature(order: int, off: float) -> dict[str, float]:
         except LostProjectionError:
             continue
         distances.append(np.linalg.norm(face.points(xi) - target))
-    return {"distance": float(np.abs(np.array(distances) - RADIUS).max()), "lost": 1 - len(distances) / 100}
+    return {"distance": float(np.abs(np.array(distances) - INNER).max()), "lost": 1 - len(distances) / 100}
 
 
 @case(

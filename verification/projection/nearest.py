@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 from projection.closed import face as ring_face
 from projection.closest_points import Surface
 from scipy.optimize import minimize
@@ -66,29 +67,43 @@ def exhaustive(face: Surface, targets: FloatArray, feet: FloatArray) -> FloatArr
     return excess
 
 
+def too_deep(face: Surface, targets: FloatArray, feet: FloatArray) -> NDArray[np.bool_]:
+    """Which targets are behind the face by more than the body's depth below their feet."""
+    across = Surface(face.patch, f"{face.face[0]}{1 - int(face.face[1])}", face.closed)
+    foot = face.points(feet)
+    depth = across.points(feet) - foot
+    way = targets - foot
+    return (np.sum(way * depth, axis=1) > 0) & (np.linalg.norm(way, axis=1) > np.linalg.norm(depth, axis=1))
+
+
 @case(
-    claim="From random starts, the foot of a random point is the nearest point of the whole master, and the same as from no start.",
+    claim="The foot of a random point is the nearest point of the whole master, from any start; one deeper than the body has none.",
     tier=lambda master, points: "gate" if points == POINTS["gate"] else "nightly",  # noqa: ARG005
     grid={"master": list(MASTERS), "points": list(POINTS.values())},
     bounds={
         "nearer": Bound(at_most=1e-9, reason="definition: no point of the master may be nearer; half the digits of a least distance"),
         "apart": Bound(at_most=1e-7, reason="round-off: the distance is flat at its least; half of the digits of a foot"),
+        "deep": Bound(at_most=0.0, reason="definition: what is behind the body takes no part"),
         "found": Bound(at_least=0.05, at_most=0.95, reason="definition: points lie beside the master too"),
     },
 )
 def nearest_foot(master: str, points: int) -> dict[str, float]:
-    """Most that a point of the master is nearer than the foot, largest distance from the foot without a start, share found."""
+    """Most that a point is nearer than a foot, feet from random starts apart from those from none, too deep and found, share found."""
     face = MASTERS[master]()
     low, high = face.ends
     random = np.random.default_rng(points)
     corners = face.patch.control_points[face.patch.face_points(face.face)]
     targets = random.uniform(corners.min(axis=0) - 0.3, corners.max(axis=0) + 0.3, (points, 3))
-    warm = face.project(targets, low + random.uniform(0, 1, (points, 2)) * (high - low))
     cold = face.project(targets)
-    both = (warm.found == 1) & (cold.found == 1)
-    feet = face.points(warm.xi)
+    deep = too_deep(face, targets, cold.xi)
+    starts = low + random.uniform(0, 1, (points, 2)) * (high - low)
+    warm, found = face.project(targets[~deep], starts[~deep]), cold.found[~deep]
+    ways = face.points(warm.xi) - targets[~deep], face.points(cold.xi[~deep]) - targets[~deep]
+    both = (warm.found == 1) & (found == 1)
+    excess = np.abs(np.linalg.norm(ways[0], axis=1) - np.linalg.norm(ways[1], axis=1))
     return {
-        "nearer": float(np.maximum(0.0, exhaustive(face, targets, warm.xi).max())),
-        "apart": float(np.linalg.norm(feet - face.points(cold.xi), axis=1)[both].max()) + float(np.sum(warm.found != cold.found)),
-        "found": float(np.mean(warm.found)),
+        "nearer": float(np.maximum(excess.max(), exhaustive(face, targets, cold.xi).max())),
+        "apart": float(np.linalg.norm(ways[0] - ways[1], axis=1)[both].max()) + float(np.sum(warm.found != found)),
+        "deep": float(np.sum(cold.found[deep])),
+        "found": float(np.mean(cold.found)),
     }
