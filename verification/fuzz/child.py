@@ -84,7 +84,8 @@ def _heard(reader: int, child: int) -> bytes | None:
     """What the child tells before it ends; None: it had to be killed."""
     deadline, said = time.monotonic() + WALL_SECONDS, b""
     while True:
-        if not select.select([reader], [], [], max(0.0, deadline - time.monotonic()))[0]:
+        left = deadline - time.monotonic()
+        if left < 0.0 or not select.select([reader], [], [], left)[0]:
             os.kill(child, signal.SIGKILL)
             return None
         piece = os.read(reader, 1 << 16)

@@ -100,7 +100,7 @@ def _look_at_contact(results: Results, name: str, friction: float) -> None:
     allowed = ROUND_OFF + OF_TOLERANCE * _tolerance(results)
     if not np.all(history.traction_norm <= friction * history.pressure * (1 + allowed) + allowed * history.pressure.max()):
         raise Wrong(f"the cone is left in {name}")
-    size = max(float(np.ptp(body.patch.control_points, axis=0).max()) for body in results.problem.bodies)
+    size = float(np.max([np.ptp(body.patch.control_points, axis=0).max() for body in results.problem.bodies]))
     if results.problem.settings.method == "monolithic" and not np.all(history.gap <= allowed * size):
         raise Wrong(f"{name} penetrates by {history.gap.max():g}, of bodies of size {size:g}")
 
@@ -112,7 +112,7 @@ def _finite(name: str, values: Any) -> None:
 
 def _nothing(results: Results) -> float:
     """A force that is round-off of the stiffest body."""
-    return max(1e-13 * b.material.young * float(np.ptp(b.patch.control_points, axis=0).max()) ** 2 for b in results.problem.bodies)
+    return float(np.max([1e-13 * b.material.young * np.ptp(b.patch.control_points, axis=0).max() ** 2 for b in results.problem.bodies]))
 
 
 def _close(one: FloatArray, other: FloatArray, share: float, nothing: float = 0.0) -> bool:
