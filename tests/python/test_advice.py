@@ -4,17 +4,22 @@ from __future__ import annotations
 
 import io
 import sys
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from rich.console import Console
 
 import isomortar
 from isomortar import cli
 from isomortar.cli.progress import Progress
+from isomortar.geometry.patch import Direction, Patch
+from isomortar.model.entities import Body, Face, Material, Motion, Problem, Stage, Support
+from isomortar.model.rational import points_enough
 from isomortar.scene import Scene
 from isomortar.scene.source import bundled_scenes
-from isomortar.solve.doubts import doubts
+from isomortar.solve.doubts import QUADRATURE_ERROR, doubts
 from isomortar.solve.simulation import Simulation
 from test_scene_contacts import PAIR, PRESS, RINGS, TYRE, UNUSUAL
 
@@ -94,6 +99,32 @@ def test_locking_is_told_by_order_and_ratio(family: str, order: int, sound: floa
     assert warnings(scene, material(sound, family, order)) == []
     (said,) = warnings(scene, material(locks, family, order))
     assert f"Poisson's ratio {locks:g} elements of order {order} lock" in said
+
+
+def rational(contrast: float) -> Body:
+    """A cube of control points with two weights in turn along u."""
+    corners = np.array([0.0, 0.25, 0.75, 1.0])
+    points = np.stack(np.meshgrid(corners, corners, corners, indexing="ij"), axis=-1).reshape((-1, 3), order="F")
+    line = Direction("N", 2, np.array([0.0, 0.0, 0.0, 0.5, 1.0, 1.0, 1.0]))
+    return Body("b", Patch((line, line, line), points, np.tile([contrast, 1.0], 32)), Material(), (4, 4, 4))
+
+
+def test_weights_that_the_points_do_not_follow_are_told_with_a_cure_that_cures() -> None:
+    assert not any("quadrature" in said for said in _of_weights(rational(2.0)))
+    (said,) = _of_weights(rational(30.0))
+    assert "its weights, from 1 to 30, differ too much for the quadrature with 4 x 4 x 4" in said
+    enough = points_enough(rational(30.0), QUADRATURE_ERROR)
+    assert enough is not None
+    assert f"mesh.quadrature = {list(enough)}" in said
+    assert _of_weights(replace(rational(30.0), quadrature=enough)) == []
+    (said,) = _of_weights(rational(1e6))
+    assert said.endswith("Bring the weights nearer to each other")
+
+
+def _of_weights(body: Body) -> list[str]:
+    top = Support("top", Face("b", "w1"), (Motion((0.0, 0.0, -0.1)),))
+    problem = Problem("rational", (body,), (), (top,), (Stage("press", 1),))
+    return [said for said in doubts(problem, Simulation(problem).state) if "weights" in said]
 
 
 @pytest.mark.parametrize("text", [PRESS, PAIR, TYRE, PRESS.replace("point = [0, 0, 0]", "point = [0, 0, -0.05]")])

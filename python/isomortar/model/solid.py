@@ -44,7 +44,9 @@ class Solid:
         try:
             self.forces(numbering.reference)
         except FoldedElementError as error:
-            raise InputError(f"{error}; check the geometry, the order of its control points and the face it is seen from") from error
+            raise InputError(
+                f"{error}; check the geometry, the order of its control points, their weights, and the face it is seen from"
+            ) from error
 
     def forces(self, positions: FloatArray) -> FloatArray:
         """Internal forces, shape (control points, 3).

@@ -7,8 +7,10 @@ from itertools import combinations
 
 import numpy as np
 
+from isomortar.errors import FoldedElementError
 from isomortar.model.entities import Body, Contact, Face, Problem, RigidPlane, Support
 from isomortar.model.memory import memory_needed, memory_of_machine
+from isomortar.model.rational import points_enough, quadrature_error
 from isomortar.model.stance import Stance, stance
 from isomortar.solve.record import State
 
@@ -22,6 +24,8 @@ SIZE_RATIO = 100.0
 HIGH_FRICTION = 10.0
 #: Bulk over shear modulus above which elements of order 1 lock; a tenfold of it for every order more (docs/method.md).
 LOCKING = 10.0
+#: Share of the forces that the quadrature of rational functions may be off.
+QUADRATURE_ERROR = 0.01
 
 
 def doubts(problem: Problem, state: State) -> Iterator[str]:
@@ -39,6 +43,7 @@ def doubts(problem: Problem, state: State) -> Iterator[str]:
     for body in problem.bodies:
         yield from _locking(body)
         yield from _seam(body)
+        yield from _weights(body)
     for support in problem.supports:
         yield from _far_steps(problem, support)
         yield from _idle_motions(problem, support)
@@ -65,6 +70,23 @@ def _locking(body: Body) -> Iterator[str]:
         yield (
             f"body {body.name!r}: with Poisson's ratio {body.material.poisson:g} elements of order {order} lock, and forces come out "
             f"far too large. Take order {needed} or more in all directions, or a Poisson's ratio that is lower"
+        )
+
+
+def _weights(body: Body) -> Iterator[str]:
+    """Rational functions that the Gauss points do not follow."""
+    try:
+        error = quadrature_error(body)
+        enough = None if error <= QUADRATURE_ERROR else points_enough(body, QUADRATURE_ERROR)
+    except FoldedElementError as folded:
+        yield f"body {body.name!r}: between its Gauss points {folded}; look at its weights and at its control points"
+        return
+    if not error <= QUADRATURE_ERROR:
+        cure = f"Take bodies.{body.name}.mesh.quadrature = {list(enough)} and as many in its contacts, or bring" if enough else "Bring"
+        yield (
+            f"body {body.name!r}: its weights, from {body.patch.weights.min():g} to {body.patch.weights.max():g}, differ too much for the "
+            f"quadrature with {' x '.join(map(str, body.quadrature))} Gauss points an element: forces are off by {100 * error:.2g} % or "
+            f"more. {cure} the weights nearer to each other"
         )
 
 
