@@ -11,7 +11,8 @@ module isomortar_base_status
   integer, parameter, public :: status_folded_initially = 2
   !> The closest-point projection did not settle; the place is the slave quadrature point.
   integer, parameter, public :: status_lost_projection = 3
-  !> The master surface has no tangent plane at the projection; the place is the slave quadrature point.
+  !> The master surface has no tangent plane at the projection, or that is not the only nearest place; the place is the slave
+  !> quadrature point.
   integer, parameter, public :: status_degenerate_surface = 4
   !> The matrix is singular; the place is the unknown without a pivot.
   integer, parameter, public :: status_singular = 5

@@ -1,13 +1,14 @@
 !> First pass over the slave quadrature points: projection and control quantities (formulation.md Section 4).
 module isomortar_contact_control
   use isomortar_base_kinds, only: wp
-  use isomortar_base_status, only: status_lost_projection, status_not_finite, status_ok, status_passed_through
+  use isomortar_base_status, only: status_degenerate_surface, status_lost_projection, status_not_finite, status_ok, &
+    status_passed_through
   use isomortar_contact_hulls, only: enclose, hulls_t, within_reach
   use isomortar_contact_kinematics, only: contact_point, contact_point_t, plane_point
   use isomortar_contact_kink, only: hold_on_lines
   use isomortar_contact_master, only: master_t
-  use isomortar_contact_projection, only: descend, is_too_deep, look_round, projection_inside, projection_lost, &
-    projection_outside, search_t, start_at, start_nearest
+  use isomortar_contact_projection, only: descend, is_isolated, is_too_deep, look_round, projection_degenerate, &
+    projection_inside, projection_lost, projection_outside, search_t, start_at, start_nearest
   use isomortar_contact_slave, only: integrate_functions, slave_t
   use isomortar_nurbs_surface, only: derivative_columns, shortest_way, surface_basis, surface_nodes
   implicit none
@@ -121,8 +122,9 @@ contains
     call within_reach(hulls, middle, reach, list, count)
     do q = 1, size(here)
       call look_round(master%surface, hulls, positions, x(:, q), list(:count), here(q))
-      if (here(q)%outcome == projection_lost) then
-        status = status_lost_projection
+      if (here(q)%outcome == projection_inside .and. .not. is_isolated(here(q))) here(q)%outcome = projection_degenerate
+      if (here(q)%outcome == projection_lost .or. here(q)%outcome == projection_degenerate) then
+        status = merge(status_lost_projection, status_degenerate_surface, here(q)%outcome == projection_lost)
         place = before + q
         return
       end if

@@ -15,7 +15,7 @@ module isomortar_contact_projection
   implicit none
   private
 
-  public :: descend, is_too_deep, look_round, start_at, start_nearest
+  public :: descend, is_isolated, is_too_deep, look_round, start_at, start_nearest
 
   !> The point has no projection: its nearest point lies on the edge of the patch.
   integer, parameter, public :: projection_outside = 0
@@ -23,6 +23,8 @@ module isomortar_contact_projection
   integer, parameter, public :: projection_inside = 1
   !> The search did not settle.
   integer, parameter, public :: projection_lost = -1
+  !> The foot does not follow the point: the surface is collapsed there, or places beside the foot are as near.
+  integer, parameter, public :: projection_degenerate = -2
 
   !> Relative size of the last Newton step: its error is the square of that.
   real(wp), parameter :: last_step = epsilon(1.0_wp)**0.6_wp
@@ -30,6 +32,11 @@ module isomortar_contact_projection
   real(wp), parameter :: same_distance = 1.0_wp + 8.0_wp * epsilon(1.0_wp)
   !> Two feet that are at the same distance but for this share are equally near: the one in the lower element is taken.
   real(wp), parameter :: tie = epsilon(1.0_wp)**0.75_wp
+
+  !> Squared length or sine below which two tangents span no surface: a place on a collapsed edge, say.
+  real(wp), parameter :: flat_metric = epsilon(1.0_wp)
+  !> Share of the metric below which the distance has no curvature but round-off.
+  real(wp), parameter :: flat_distance = epsilon(1.0_wp)**0.75_wp
 
   !> Distance times largest curvature up to which an element holds one near point alone.
   real(wp), parameter :: safe_bend = 0.5_wp
@@ -50,6 +57,10 @@ module isomortar_contact_projection
     !> For each coordinate -1 or 1 where the distance falls across the lower or upper bound of the element, else 0.
     integer :: pressing(2)
     logical :: settled
+    !> Coordinates along which the surface has no length, and whether its tangents are parallel or without length.
+    logical :: collapsed(2), degenerate
+    !> Hessian of the distance over the metric: its diagonal, and its determinant.
+    real(wp) :: bend(2), bend_both
   end type search_t
 
 contains
@@ -93,15 +104,16 @@ contains
 
     call search_element(surface, positions, x, here)
     do visit = 1, 8 + 2 * surface_element_count(surface)
-      here%outcome = projection_lost
+      here%outcome = merge(projection_degenerate, projection_lost, here%degenerate)
       here%fixed = .false.
       if (.not. here%settled) return
-      here%outcome = projection_inside
-      if (all(here%pressing == 0)) return
-      if (all(here%pressing == 0 .or. on_edge(surface, here))) then
+      if (is_beyond_edge(surface, here)) then
         here%outcome = projection_outside
         return
       end if
+      if (here%degenerate) return
+      here%outcome = projection_inside
+      if (all(here%pressing == 0)) return
       call cross_boundary(surface, positions, x, here, moved)
       if (moved) cycle
       if (any(on_edge(surface, here))) here%outcome = projection_outside
@@ -240,6 +252,14 @@ contains
     end if
   end function is_preferred
 
+  !> Whether the distance grows from a foot in all directions that are free there.
+  pure logical function is_isolated(here)
+    type(search_t), intent(in) :: here
+
+    is_isolated = all(here%fixed .or. here%bend > flat_distance)
+    if (.not. any(here%fixed)) is_isolated = is_isolated .and. here%bend_both > flat_distance
+  end function is_isolated
+
   !> Whether a point is behind the surface by more than its body's depth below the foot, up to the face across from it.
   pure logical function is_too_deep(surface, opposite, positions, here) result(deep)
     type(surface_t), intent(in) :: surface, opposite
@@ -284,6 +304,15 @@ contains
       ((here%pressing < 0 .and. here%place == 1) .or. (here%pressing > 0 .and. here%place == surface%direction%elements))
   end function on_edge
 
+  !> Whether the search presses against the edge of the patch alone; a pole, round which the surface is closed, is no edge.
+  pure logical function is_beyond_edge(surface, here)
+    type(surface_t), intent(in) :: surface
+    type(search_t), intent(in) :: here
+
+    is_beyond_edge = any(here%pressing /= 0) .and. all(here%pressing == 0 .or. on_edge(surface, here)) &
+      .and. .not. any(here%collapsed .and. surface%closed)
+  end function is_beyond_edge
+
   !> Go on in the neighbour across the boundary (the diagonal one first) in which the distance falls further, or, where round-off
   !> hides that, in which the search ends inside.
   pure subroutine cross_boundary(surface, positions, x, here, moved)
@@ -327,9 +356,9 @@ contains
     here%xi = min(max(here%xi, low), high)
     here%settled = .false.
     do iteration = 1, 100
-      call distance_derivatives(surface, net, x, here, slope, hessian, metric)
+      call distance_derivatives(surface, net, x, high - low, here, slope, hessian, metric)
       call find_pressing(here, slope, metric, low, high)
-      step = newton_step(slope, hessian, metric, here%pressing == 0)
+      step = newton_step(here, slope, hessian, metric)
       if (maxval(abs(step) / (high - low)) > 1.0e-3_wp) then
         call limit_step(surface, here, net, x, slope, low, high, step)
       end if
@@ -341,12 +370,12 @@ contains
   end subroutine search_element
 
   !> Way and distance of a search, the distance's slope and Hessian, and the metric of the surface.
-  pure subroutine distance_derivatives(surface, net, x, here, slope, hessian, metric)
+  pure subroutine distance_derivatives(surface, net, x, span, here, slope, hessian, metric)
     type(surface_t), intent(in) :: surface
-    real(wp), intent(in) :: net(:, :, :), x(3)
+    real(wp), intent(in) :: net(:, :, :), x(3), span(2)
     type(search_t), intent(inout) :: here
     real(wp), intent(out) :: slope(2), hessian(2, 2), metric(2, 2)
-    real(wp) :: s(3, 6)
+    real(wp) :: s(3, 6), length(2)
 
     call surface_point(surface, here%place, net, here%xi, s)
     here%way = s(:, 1) - x
@@ -361,6 +390,13 @@ contains
     hessian(1, 2) = metric(1, 2) + dot_product(here%way, s(:, 5))
     hessian(2, 1) = hessian(1, 2)
     hessian(2, 2) = metric(2, 2) + dot_product(here%way, s(:, 6))
+    length = [metric(1, 1), metric(2, 2)]
+    here%collapsed = .not. length * span**2 > flat_metric * maxval(length * span**2)
+    here%degenerate = any(here%collapsed) .or. .not. dot_product(here%across, here%across) > flat_metric * product(length)
+    where (here%collapsed) slope = 0.0_wp
+    if (here%degenerate) return
+    here%bend = [hessian(1, 1), hessian(2, 2)] / length
+    here%bend_both = (hessian(1, 1) * hessian(2, 2) - hessian(1, 2)**2) / product(length)
   end subroutine distance_derivatives
 
   !> Note the bounds across which the distance falls by more than round-off.
@@ -379,14 +415,16 @@ contains
   end subroutine find_pressing
 
   !> Newton's step on the free coordinates; with the metric for Hessian where that is not positive definite.
-  pure function newton_step(slope, hessian, metric, free) result(step)
+  pure function newton_step(here, slope, hessian, metric) result(step)
+    type(search_t), intent(in) :: here
     real(wp), intent(in) :: slope(2), hessian(2, 2), metric(2, 2)
-    logical, intent(in) :: free(2)
     real(wp) :: step(2), m(2, 2)
+    logical :: free(2)
     integer :: a
 
     step = 0.0_wp
-    if (all(free)) then
+    free = here%pressing == 0 .and. .not. here%collapsed
+    if (all(free) .and. .not. here%degenerate) then
       m = hessian
       if (m(1, 1) * m(2, 2) - m(1, 2)**2 <= 1.0e-6_wp * metric(1, 1) * metric(2, 2) .or. m(1, 1) + m(2, 2) <= 0.0_wp) m = metric
       step(1) = -(m(2, 2) * slope(1) - m(1, 2) * slope(2))

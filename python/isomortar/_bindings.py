@@ -38,6 +38,7 @@ def _raise(status: int, place: int) -> NoReturn:
         1: (FoldedElementError, f"element {place} is folded (J <= 0)"),
         2: (FoldedElementError, f"element {place} is folded (J <= 0) in the reference configuration"),
         3: (LostProjectionError, f"the closest-point projection of slave quadrature point {place} did not settle"),
+        4: (LostProjectionError, f"the master's closest point to slave quadrature point {place} is at a pole, or not the only one"),
         9: (KernelError, f"a pattern does not fit what is added to it: block missing in row {place} (-1: it has other rows)"),
         10: (LostProjectionError, f"the position of control point {place} is not finite"),
         11: (LostProjectionError, f"slave quadrature point {place} has passed through the master's body"),

@@ -8,6 +8,7 @@ from projection.closed import face as ring_face
 from projection.closest_points import Surface
 from scipy.optimize import minimize
 from scipy.spatial import cKDTree
+from shapes import turned_sector
 
 from isomortar.geometry.patch import FloatArray, Patch
 from isomortar.geometry.primitives import box
@@ -15,11 +16,11 @@ from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
 
 
-def _bent(kind: str, elements: int, thickness: float, height: FloatArray | None = None, fold: bool = False) -> Surface:
+def _bent(kind: str, elements: int | tuple[int, int], thickness: float, height: FloatArray | None = None, fold: bool = False) -> Surface:
     """The upper face of a plate over the unit square, its control points raised by `height` or rolled into an S."""
     order = int(kind[1:])
     plate = box((0.0, 0.0, -thickness), (1.0, 1.0, 0.0))
-    patch = mesh(plate, (kind[0],) * 3, (order, order, 1), (elements, elements, 1))  # type: ignore[arg-type]
+    patch = mesh(plate, (kind[0],) * 3, (order, order, 1), (*np.broadcast_to(elements, 2), 1))  # type: ignore[arg-type]
     points = patch.control_points.copy()
     if height is not None:
         points[:, 2] += height[0] * np.sin(2 * np.pi * height[1] * points[:, 0]) * np.sin(2 * np.pi * height[1] * points[:, 1])
@@ -32,16 +33,27 @@ def _bent(kind: str, elements: int, thickness: float, height: FloatArray | None 
     return Surface(Patch(patch.directions, points, patch.weights), "w1")
 
 
-#: Masters by class: wavy ones, with several near points within an element too; folded; thin; closed, from inside and outside.
+def _pole(kind: str) -> Surface:
+    """The outer face of a part of a sphere up to its pole, where an edge is collapsed."""
+    part = turned_sector(0.0, 0.3, 0.7, (-0.5, np.pi / 2), 1.2)
+    return Surface(mesh(part, (kind[0],) * 3, (int(kind[1:]),) * 3, (3, 3, 2)), "v1")  # type: ignore[arg-type]
+
+
+#: Masters by class: wavy ones, with several near points within an element too; with knot lines of the second direction alone;
+#: folded; thin; with a pole; closed, from inside and outside.
 MASTERS = {
     "wavy N2": lambda: _bent("N2", 8, 0.5, np.array([0.12, 2.0])),
     "wavy N3": lambda: _bent("N3", 8, 0.5, np.array([0.12, 2.0])),
     "wavy N4": lambda: _bent("N4", 3, 0.5, np.array([0.5, 1.5])),
     "wavy L1": lambda: _bent("L1", 8, 0.5, np.array([0.12, 2.0])),
     "wavy L2": lambda: _bent("L2", 8, 0.5, np.array([0.12, 2.0])),
+    "one row N2": lambda: _bent("N2", (1, 8), 0.5, np.array([0.12, 1.0])),
+    "one row L2": lambda: _bent("L2", (1, 8), 0.5, np.array([0.12, 1.0])),
     "folded N2": lambda: _bent("N2", 12, 0.1, fold=True),
     "folded N3": lambda: _bent("N3", 12, 0.1, fold=True),
     "thin N2": lambda: _bent("N2", 6, 1e-3, np.array([0.05, 1.0])),
+    "pole N2": lambda: _pole("N2"),
+    "pole N3": lambda: _pole("N3"),
     "inside a ring": lambda: ring_face("N2", "v0"),
     "round a ring": lambda: ring_face("N3", "v1"),
 }
