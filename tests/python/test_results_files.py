@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import resource
 import signal
@@ -11,11 +12,12 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+import h5py
 import pytest
 
 import isomortar
 from isomortar.errors import InputError, ResultsError
-from isomortar.results.files import claimed
+from isomortar.results.files import claimed, sealed
 
 SMALL = ["bodies.block.mesh.elements=[3,3,2]", "stages.press.steps=3"]
 
@@ -178,3 +180,12 @@ def test_reading_goes_on_while_a_run_writes(tmp_path: Path) -> None:
                 seen = len(recorded(tmp_path / "run.h5"))
         run.kill()
     assert seen >= 2
+
+
+def test_a_file_that_was_edited_and_sealed_again_is_refused_where_bodies_are_missing(results: Path) -> None:
+    content = io.BytesIO(results.read_bytes())
+    with h5py.File(content, "a") as file:
+        del file["problem/bodies/0"]
+    results.write_bytes(sealed(content.getvalue()))
+    with isomortar.Results(results) as edited, pytest.raises(ResultsError, match="bodies of the scene are missing"):
+        _ = edited.problem

@@ -36,10 +36,20 @@ def write_problem(group: h5py.Group, problem: Problem) -> None:
 
 
 def read_problem(group: h5py.Group) -> Problem:
-    """Rebuild the problem that `write_problem` stored."""
+    """Rebuild the problem that `write_problem` stored.
+
+    Raises
+    ------
+    ValueError
+        Bodies are missing.
+    """
     plain: dict[str, Any] = {name: TypeAdapter(kind).validate_json(bytes(group.attrs[name])) for name, kind in _PLAIN.items()}
     bodies = tuple(_read_body(group[f"bodies/{number}"]) for number in range(len(group["bodies"])))
-    return Problem(name=json.loads(group.attrs["name"]), bodies=bodies, **plain)
+    problem = Problem(name=json.loads(group.attrs["name"]), bodies=bodies, **plain)
+    named = {support.place.body for support in problem.supports} | {contact.slave.body for contact in problem.contacts}
+    if not bodies or not named <= {body.name for body in bodies}:
+        raise ValueError("bodies of the scene are missing")
+    return problem
 
 
 def differences(stored: Problem, given: Problem) -> list[str]:
