@@ -20,6 +20,7 @@ from isomortar.model.rational import points_enough
 from isomortar.scene import Scene
 from isomortar.scene.source import bundled_scenes
 from isomortar.solve.doubts import QUADRATURE_ERROR, doubts
+from isomortar.solve.record import Observer
 from isomortar.solve.simulation import Simulation
 from test_scene_contacts import PAIR, PRESS, RINGS, TYRE, UNUSUAL
 
@@ -119,6 +120,50 @@ def test_weights_that_the_points_do_not_follow_are_told_with_a_cure_that_cures()
     assert _of_weights(replace(rational(30.0), quadrature=enough)) == []
     (said,) = _of_weights(rational(1e6))
     assert said.endswith("Bring the weights nearer to each other")
+
+
+PLATE = """
+format = 1
+[bodies.b]
+geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, THICKNESS] }
+mesh = { order = [4, 1, 2], elements = [2, 1, 1] }
+[supports.root]
+face = "b.u0"
+TIP
+[[stages]]
+name = "move"
+steps = 1
+MOTION
+"""
+
+
+@pytest.mark.parametrize(
+    ("thickness", "tip", "motion", "told"),
+    [
+        (1e-4, 1e-7, "", True),
+        (1e-4, 1e-2, "", False),
+        (1e-1, 1e-7, "", False),
+        (1e-1, 0.0, "motions.root = { translate = [0.3, 0.2, 0.1], rotate = 30 }", False),
+    ],
+    ids=["thin", "thin, far", "thick", "rigid"],
+)
+def test_forces_that_are_round_off_are_told(thickness: float, tip: float, motion: str, told: bool) -> None:
+    text = PLATE.replace("THICKNESS", str(thickness))
+    text = text.replace("TIP", '[supports.tip]\nface = "b.u1"\ncomponents = ["z"]' if tip else "")
+    observer = Warned()
+    simulation = Simulation(Scene.from_toml(text.replace("MOTION", motion or f"motions.tip.translate = [0, 0, {tip}]")).problem(), observer)
+    list(simulation.run())
+    assert any("lost in round-off" in said for said in observer.said) == told
+
+
+class Warned(Observer):
+    """Keeps what it is warned of."""
+
+    def __init__(self) -> None:
+        self.said: list[str] = []
+
+    def warned(self, message: str) -> None:
+        self.said.append(message)
 
 
 def _of_weights(body: Body) -> list[str]:

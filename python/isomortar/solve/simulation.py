@@ -14,6 +14,7 @@ from isomortar.solve.advice import StepAdvice, advice_on_problem
 from isomortar.solve.contact import largest, moment
 from isomortar.solve.doubts import doubts
 from isomortar.solve.equilibrium import Balance, Equilibrium
+from isomortar.solve.lost import LostDigits
 from isomortar.solve.method import Increment, Method
 from isomortar.solve.monolithic import Monolithic
 from isomortar.solve.record import AugmentationRecord, ContactResult, Observer, Reaction, State, StepResult
@@ -57,6 +58,7 @@ class Simulation:
         self.equilibrium = Equilibrium(problem, self.ledger)
         self._observer = observer or Observer()
         self._method = _METHODS[problem.settings.method](self.equilibrium, self._observer)
+        self._lost = LostDigits(self.equilibrium)
         self._step = resume_from.step if resume_from else 0
         self._increment = resume_from.next_increment if resume_from else 1.0
         self.state = self._from_record(resume_from) if resume_from else self.equilibrium.initial_state()
@@ -110,7 +112,9 @@ class Simulation:
                 log += part.augmentations
                 orders += [order for order in part.orders if np.isfinite(order)]
             self._grow(increment / longest, parts)
-        return self._result(step, state, parts[-1].balance, tuple(log), orders, substeps, cuts)
+        result = self._result(step, state, parts[-1].balance, tuple(log), orders, substeps, cuts)
+        self._warn(self._lost.after_step(parts[-1].balance, result))
+        return result
 
     def _advance(self, state: State, time: float, target: float, step: int) -> list[Increment]:
         """One load increment; with a path tolerance in two halves, whose distance from the whole estimates its error."""

@@ -1,0 +1,59 @@
+"""Bodies whose forces are lost in round-off: they deform, and what they are out of balance by counts beside what they bear."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from isomortar.geometry.patch import FloatArray
+from isomortar.model.entities import Body, Face
+from isomortar.solve.equilibrium import Balance, Equilibrium
+from isomortar.solve.record import StepResult
+
+#: Share of what a body bears that the sum of its unbalanced forces may be.
+LOST = 0.01
+#: Share of a body's size above which displacements that no rigid motion explains are no round-off.
+DEFORMED = 1e-10
+
+
+class LostDigits:
+    """Warnings of forces that are nothing but round-off; each is given once a body."""
+
+    def __init__(self, equilibrium: Equilibrium) -> None:
+        self._equilibrium = equilibrium
+        self._told = set[str]()
+
+    def after_step(self, balance: Balance, result: StepResult) -> Iterator[str]:
+        """Warnings that the end of a load step gives rise to."""
+        equilibrium = self._equilibrium
+        measures, problem = equilibrium.measures, equilibrium.problem
+        by_round_off = measures.free_norms(balance.total) > problem.settings.newton_tolerance * measures.norms(balance.internal)
+        for body in [body for body, so in zip(problem.bodies, by_round_off, strict=True) if so and body.name not in self._told]:
+            own = np.unique(equilibrium.numbering.points[body.name])
+            left = float(np.linalg.norm(np.where(equilibrium.supports.held[own], 0.0, balance.total[own]).sum(axis=0)))
+            borne = self._borne(body, result)
+            if left > LOST * borne and _deforms(equilibrium.numbering.reference[own], balance.positions[own]):
+                self._told.add(body.name)
+                yield (
+                    f"body {body.name!r}, load step {result.step}: its forces are lost in round-off: {left:.2g} is out of balance where "
+                    f"supports and contacts bear {borne:.2g}. It is too thin for so small a load: take larger motions, or a thicker body"
+                )
+
+    def _borne(self, body: Body, result: StepResult) -> float:
+        """The largest force of a support or contact on a body, or moment of a support over the body's size."""
+        problem = self._equilibrium.problem
+        reactions = [r for s, r in zip(problem.supports, result.reactions, strict=True) if s.place.body == body.name]
+        vectors = [v for r in reactions for v in (r.force, r.moment / body.size)]
+        for contact, found in zip(problem.contacts, result.contacts, strict=True):
+            sides = [side.body for side in (contact.slave, contact.master) if isinstance(side, Face)]
+            vectors += [found.force_slave] if body.name in sides else []
+        return float(np.max([np.linalg.norm(vector) for vector in vectors], initial=0.0))
+
+
+def _deforms(reference: FloatArray, positions: FloatArray) -> bool:
+    """Whether displacements are more than a rigid motion, the closest of which is a polar decomposition."""
+    before, after = reference - reference.mean(axis=0), positions - positions.mean(axis=0)
+    u, _, v = np.linalg.svd(before.T @ after)
+    turn = u @ np.diag([1.0, 1.0, np.linalg.det(u @ v)]) @ v
+    return bool(np.abs(after - before @ turn).max() > DEFORMED * np.ptp(reference, axis=0).max())
