@@ -28,7 +28,8 @@ def relative_residual(equilibrium: Equilibrium, balance: Balance, scales: Scales
     """
     floor = scales.round_off / equilibrium.problem.settings.newton_tolerance
     measures = equilibrium.measures
-    return float(np.max(measures.free_norms(balance.total) / np.maximum(measures.norms(balance.internal), floor)))
+    residual, forces = measures.free_norms(balance.total), np.maximum(measures.norms(balance.internal), floor)
+    return float(np.max(np.divide(residual, forces, out=np.zeros_like(residual), where=residual != 0.0)))  # a body with nothing free: zero
 
 
 def residual_round_off(equilibrium: Equilibrium, balance: Balance, scales: Scales) -> float:

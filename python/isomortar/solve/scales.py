@@ -41,7 +41,9 @@ class BodyMeasures:
 
     def norms(self, forces: FloatArray) -> FloatArray:
         """Norm of the forces, shape (control points, 3), on each body."""
-        return np.sqrt(np.add.reduceat(np.einsum("ij,ij->i", forces, forces), self._starts))
+        size = _power_of_two(forces)
+        scaled = forces / size
+        return np.sqrt(np.add.reduceat(np.einsum("ij,ij->i", scaled, scaled), self._starts)) * size
 
     def free_norms(self, forces: FloatArray) -> FloatArray:
         """The same over the free unknowns."""
@@ -58,5 +60,13 @@ class BodyMeasures:
         pattern = self._solid.pattern
         diagonal = np.einsum("kii->ki", tangent[self._solid.diagonal])
         last_bits = np.spacing(np.maximum(np.abs(positions), np.abs(self._numbering.reference)))[pattern.column]
-        shares = np.add.reduceat(np.einsum("kij,kij,kj,kj->ki", tangent, tangent, last_bits, last_bits), pattern.start[:-1])
-        return Scales(np.maximum.reduceat(diagonal.max(axis=1), self._starts), ROUND_OFF * self.free_norms(np.sqrt(shares)))
+        forces = tangent * last_bits[:, None]
+        size = _power_of_two(forces)
+        forces /= size
+        shares = np.add.reduceat(np.einsum("kij,kij->ki", forces, forces), pattern.start[:-1])
+        return Scales(np.maximum.reduceat(diagonal.max(axis=1), self._starts), ROUND_OFF * self.free_norms(np.sqrt(shares) * size))
+
+
+def _power_of_two(values: FloatArray) -> float:
+    """The power of two next to the largest value: divided by it, squares neither vanish nor overflow, and no bit changes."""
+    return float(np.ldexp(1.0, np.frexp(np.max(np.abs(values), initial=0.0))[1]))
