@@ -27,7 +27,7 @@ def channel(done: Run) -> float:
             "bodies.slave.geometry.lower": [0.02, -0.1, 0.4],
             "bodies.slave.geometry.upper": [0.2, 0.1, 0.6],
             "stages.0.motions.push.translate": [0.15, 0, 0],
-            "stages.0.steps": 3,
+            "stages.0.steps": 4,
         },
     )
     return digits(done.force("push")[-1], ran(near).force("push")[-1])
