@@ -75,7 +75,7 @@ def _verdict(run: Run, found: Callable[[Run], float], needed: float, causes: Seq
     if run.code < 0:
         return Ending.WRONG, 0.0, f"{signal.Signals(-run.code).name}: {last}"
     if "Traceback" in run.said or run.code > 2:
-        return Ending.WRONG, 0.0, f"a traceback: {last}"
+        return Ending.WRONG, 0.0, f"a traceback: {said[-1]}"
     if run.code == 0:
         return _finished(run, found, needed, [line for line in said if line.startswith("warning: ") and _names(line, causes)])
     if not _names(last, causes):
