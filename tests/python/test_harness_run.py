@@ -208,6 +208,18 @@ def test_all_ways_to_import_count(root, how):
         del sys.modules[name]
 
 
+def test_packages_beside_an_installed_program_are_not_read(root, monkeypatch):
+    packages = root.parent / "site-packages"
+    for name in ("isomortar/ours.py", "isomortar/__init__.py", "beside/__init__.py"):
+        (packages / name).parent.mkdir(parents=True, exist_ok=True)
+        (packages / name).write_text("SCALE = 1\n")
+    monkeypatch.setattr(store, "_PACKAGE", packages / "isomortar")
+    path = root / "family" / "case.py"
+    path.parent.mkdir()
+    path.write_text("import beside\nimport isomortar.ours\n")
+    assert store._with_imports(path, root, set()) == {path, packages / "isomortar/ours.py"}
+
+
 def test_bad_cells_fail_and_the_run_goes_on(root, monkeypatch):
     monkeypatch.setitem(__import__("isomortar.harness.cases").harness.cases.TIMEOUTS, "gate", 8.0)
     next(root.glob("family_*")).joinpath("bad.py").write_text(BAD)

@@ -136,24 +136,28 @@ def _kernel_files() -> Iterator[Path]:
 
 @functools.cache
 def _case_hash(path: Path, files: tuple[Path, ...]) -> str:
-    return _hash(file.read_bytes() for file in [*sorted(_with_imports(path, (path.parent.parent, _PACKAGE.parent), set())), *files])
+    return _hash(file.read_bytes() for file in [*sorted(_with_imports(path, path.parent.parent, set())), *files])
 
 
-def _with_imports(path: Path, roots: tuple[Path, ...], seen: set[Path]) -> set[Path]:
-    """A file and the files below `roots` that it imports, and so on."""
+def _with_imports(path: Path, cases: Path, seen: set[Path]) -> set[Path]:
+    """A file and the files that it imports, and so on: those in the folder of cases, and those of this package.
+
+    Other packages count by their versions; an installed program has them beside itself.
+    """
     seen.add(path)
     for node in ast.walk(ast.parse(path.read_text())):
         names: list[str] = []
-        within = roots
+        within = [cases, _PACKAGE.parent]
         if isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]
         elif isinstance(node, ast.ImportFrom):
             names = [".".join(filter(None, (node.module, name))) for name in ("", *(alias.name for alias in node.names))]
-            within = (path.parents[node.level - 1],) if node.level else roots
+            within = [path.parents[node.level - 1]] if node.level else within
         for base in (root.joinpath(*name.split(".")) for name in names for root in within):
             for imported in (base.with_suffix(".py"), base / "__init__.py"):
-                if imported.is_file() and imported not in seen and imported != _ENTRANCE:
-                    _with_imports(imported, roots, seen)
+                ours = imported.is_relative_to(cases) or imported.is_relative_to(_PACKAGE)
+                if ours and imported.is_file() and imported not in seen and imported != _ENTRANCE:
+                    _with_imports(imported, cases, seen)
     return seen
 
 
