@@ -13,7 +13,7 @@ from isomortar.harness.collection import collect
 from isomortar.harness.measurement import Measurement
 from isomortar.harness.mutants import report
 from isomortar.harness.mutants.bench import Bench, freeze
-from isomortar.harness.mutants.campaign import Attacked, Outcome
+from isomortar.harness.mutants.campaign import Attacked, Campaign, Outcome
 from isomortar.harness.mutants.faults import fault_at, read_planted
 from isomortar.harness.mutants.gate import Gate, Verdict
 from isomortar.harness.mutants.generate import draw
@@ -187,11 +187,12 @@ def test_cells_passed_before_are_not_asked_again(cells):
     assert "mutants_family/dear" not in dict(bench.asked)
 
 
-def test_a_journal_that_was_cut_short_goes_on(tmp_path):
+@pytest.mark.parametrize("torn", ['{"key": "b", "val', '{"key": "\u00e4'.encode()[:-1], '"'])
+def test_a_journal_that_was_cut_short_goes_on(tmp_path, torn):
     path = tmp_path / "journal.jsonl"
     Journal(path).put("a", {"value": 1})
-    with path.open("a") as file:
-        file.write('{"key": "b", "val')
+    with path.open("ab") as file:
+        file.write(torn if isinstance(torn, bytes) else torn.encode())
     journal = Journal(path)
     assert journal.get("a") == {"value": 1}
     assert journal.get("b") is None
@@ -327,6 +328,29 @@ old = "dense_limit = 1.0e3_c_double"
 new = "dense_limit = 1.0e2_c_double"
 why = "no case of this folder sees it"
 """
+
+
+@pytest.mark.parametrize("ending", ["raised", "crashed", "timed out"])
+def test_that_the_machine_failed_is_not_kept_of_the_sound_program(tmp_path, monkeypatch, ending):
+    family = tmp_path / "cases" / f"mutants_{ending[:6]}"
+    family.mkdir(parents=True)
+    (family / f"mutants_{ending[:6]}_cases.py").write_text(KERNEL_CASE)
+    cells = [cell for case in collect(family.parent) for cell in case.cells]
+    asked = []
+
+    def measure(_, __, cell, ___):
+        asked.append(cell.name)
+        if cell.name.endswith("precision"):
+            return Measurement("measured", {"error": 0.0})
+        return Measurement(ending, {}, "no memory") if asked.count(cell.name) == 1 else Measurement("measured", {"status": 6.0})
+
+    monkeypatch.setattr(Bench, "measure", measure)
+    seen = []
+    for _ in range(3):
+        with Campaign(LAYERS["python"], ROOT, family.parent, cells, lambda *_: None, tmp_path / "work", 1, lambda *_: None) as campaign:
+            seen.append(campaign.run([], [], 0, math.inf).unused)
+    assert ["stale" in " ".join(unused) for unused in seen] == [True, False, False]
+    assert sorted(name.partition("/")[2] for name in asked) == ["precision", "stale", "stale"]
 
 
 def test_a_campaign_with_a_real_kernel(tmp_path, monkeypatch):

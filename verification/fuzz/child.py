@@ -97,10 +97,7 @@ def _heard(reader: int, child: int) -> bytes | None:
 def program(*words: str, folder: Path) -> tuple[int, str]:
     """Run ``isomortar WORDS`` within this process: its exit code, and what it said on stderr.
 
-    Raises
-    ------
-    Exception
-        What a person would see as a traceback.
+    A traceback it never shows: that is exit code 3.
     """
     said = folder / "stderr"
     sys.argv = ["isomortar", *words]
@@ -114,12 +111,12 @@ def program(*words: str, folder: Path) -> tuple[int, str]:
 
 
 def ending_of(code: int, said: str) -> Ending:
-    """What an exit code and its words amount to; a sentence of the program begins with its name."""
+    """What an exit code and its words amount to; a sentence of the program begins with its name. Code 3, a fault of its own, is wrong."""
     if code == 0:
         return Ending("right", "")
     sentences = [line for line in said.splitlines() if line.startswith("isomortar: ")]
     if code not in (1, 2) or len(sentences) != 1 or len(said) > 5000:
-        raise Wrong(f"exit code {code} with other words than one sentence: {said[-1500:]!r}")
+        raise Wrong(f"exit code {code} and the words {said[-1500:]!r}")
     return Ending("refused" if code == 2 else "stopped", sentences[0])
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -12,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from isomortar.harness.runner import Result
-from isomortar.harness.store import append_line, program_hash
+from isomortar.harness.store import append_line, program_hash, read_lines
 
 #: Runs before a point that it is compared with.
 _BEFORE = 8
@@ -42,13 +41,7 @@ def append(path: Path, results: Sequence[Result]) -> None:
 
 def read(path: Path, last: int = 60) -> list[Run]:
     """The last runs, oldest first; a line that was cut short by a crash is left out."""
-    runs = []
-    for line in path.read_text().splitlines()[-last:] if path.exists() else []:
-        try:
-            runs.append(Run(**json.loads(line)))
-        except (ValueError, TypeError):
-            continue
-    return runs
+    return [Run(**entry) for entry in read_lines(path)[-last:]]
 
 
 def values_of(runs: Sequence[Run], cell: str, number: str) -> list[float]:

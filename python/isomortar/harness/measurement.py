@@ -46,6 +46,11 @@ class Measurement:
     sources: str = ""
 
     @property
+    def lasts(self) -> bool:
+        """Whether it would end like this again. All else may be the machine's fault, or be there the next time."""
+        return self.ending in ("measured", "not converged")
+
+    @property
     def reason(self) -> str:
         """Why it was not measured, in one line: the last one of a traceback, without the path of the error's class."""
         last = (self.message.strip().splitlines() or [self.ending])[-1]

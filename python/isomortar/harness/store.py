@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import contextlib
 import functools
 import hashlib
 import importlib.metadata
@@ -45,8 +46,8 @@ class Store:
             return None
 
     def put(self, cell: Cell, measurement: Measurement) -> None:
-        """Keep what was measured, and that a scene does not converge. All else may be the machine's fault, or be there the next time."""
-        if measurement.ending in ("measured", "not converged"):
+        """Keep what was measured, and that a scene does not converge: what lasts."""
+        if measurement.lasts:
             plain = asdict(measurement)
             content = {"cell": cell.name, "program": program_hash(), "hash": _content_hash(plain), "measurement": plain}
             write_whole(self._path(cell), json.dumps(content, indent=1))
@@ -69,9 +70,19 @@ def write_whole(path: Path, text: str) -> None:
 def append_line(path: Path, entry: dict[str, Any]) -> None:
     """Add an entry to a file of JSON lines, on a line of its own also where the one before was cut short by a crash."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    torn = path.exists() and not path.read_bytes().endswith(b"\n")
-    with path.open("a") as file:
-        file.write("\n" * torn + json.dumps(entry) + "\n")
+    with path.open("a+b") as file:
+        file.seek(-min(1, file.tell()), os.SEEK_CUR)
+        torn = file.read() not in (b"", b"\n")
+        file.write(b"\n" * torn + json.dumps(entry).encode() + b"\n")
+
+
+def read_lines(path: Path) -> list[dict[str, Any]]:
+    """Entries of a file of JSON lines, oldest first, without those that a crash cut short; none where there is no file."""
+    entries = []
+    for line in path.read_bytes().splitlines() if path.exists() else ():
+        with contextlib.suppress(ValueError):  # a character that is cut in two is one as well
+            entries.append(json.loads(line))
+    return [entry for entry in entries if isinstance(entry, dict)]
 
 
 def cell_key(cell: Cell, program: str | None = None) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -12,7 +11,7 @@ from pathlib import Path
 
 from isomortar.harness.bench.declaration import NOTE, Row
 from isomortar.harness.bench.processes import Outcome
-from isomortar.harness.store import append_line, program_hash
+from isomortar.harness.store import append_line, program_hash, read_lines
 
 #: Runs that a trend shows.
 _SHOWN = 60
@@ -43,17 +42,8 @@ def append(path: Path, outcome: Outcome, when: datetime) -> None:
 
 def read(path: Path, name: str) -> Trend:
     """The last runs of a benchmark; a line that was cut short by a crash is left out."""
-    return Trend(tuple(_runs(path, name))[-_SHOWN:])
-
-
-def _runs(path: Path, name: str) -> Iterator[dict[str, dict[str, float]]]:
-    for line in path.read_text().splitlines() if path.exists() else ():
-        try:
-            entry = json.loads(line)
-        except ValueError:
-            continue
-        if entry["benchmark"] == name:
-            yield entry["rows"]
+    runs = [entry["rows"] for entry in read_lines(path) if entry["benchmark"] == name]
+    return Trend(tuple(runs[-_SHOWN:]))
 
 
 def _without_note(row: Row) -> Iterator[float | int | str]:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import json
 import threading
 from pathlib import Path
 from typing import Any
+
+from isomortar.harness.store import append_line, read_lines
 
 
 class Journal:
@@ -14,13 +15,7 @@ class Journal:
     def __init__(self, path: Path) -> None:
         self._path = path
         self._lock = threading.Lock()
-        self._entries: dict[str, dict[str, Any]] = {}
-        for line in path.read_text().splitlines() if path.exists() else []:
-            try:
-                entry = json.loads(line)
-                self._entries[entry.pop("key")] = entry
-            except (ValueError, KeyError, AttributeError, TypeError):
-                continue  # cut short by a crash
+        self._entries = {entry.pop("key"): entry for entry in read_lines(path)}
 
     def get(self, key: str) -> dict[str, Any] | None:
         """The entry of a key, if there is one."""
@@ -30,14 +25,4 @@ class Journal:
         """Keep an entry."""
         with self._lock:
             self._entries[key] = entry
-            self._path.parent.mkdir(parents=True, exist_ok=True)
-            with self._path.open("a") as file:
-                file.write("\n" * self._cut_short() + json.dumps({"key": key, **entry}) + "\n")
-
-    def _cut_short(self) -> bool:
-        """Whether the file ends in the middle of a line."""
-        if not self._path.stat().st_size:
-            return False
-        with self._path.open("rb") as file:
-            file.seek(-1, 2)
-            return file.read() != b"\n"
+            append_line(self._path, {"key": key, **entry})
