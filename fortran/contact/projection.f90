@@ -41,8 +41,6 @@ module isomortar_contact_projection
   !> Distance times largest curvature up to which an element holds one near point alone.
   real(wp), parameter :: safe_bend = 0.5_wp
 
-  !> A place is searched from if its squared distance is less than this times the half squared distance of the point found.
-  real(wp), parameter :: worth_a_search = 3.0_wp
   real(wp), parameter :: pi = acos(-1.0_wp)
 
   !> Where a search stands.
@@ -196,7 +194,7 @@ contains
   end subroutine go_on
 
   !> Search an element that may hold several near points, from places of a fine grid (Chebyshev's: denser at the bounds)
-  !> that are lowest along one of its lines.
+  !> that are lowest along one of its lines and not farther than the point found by more than the way to their neighbours.
   pure subroutine search_thoroughly(surface, positions, x, place, here)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :), x(3)
@@ -205,6 +203,7 @@ contains
     type(search_t) :: there
     real(wp) :: square(0:grid_size(surface, 1) + 1, 0:grid_size(surface, 2) + 1), xi(2, size(square, 1), size(square, 2))
     real(wp) :: net(4, surface%direction(1)%order + 1, surface%direction(2)%order + 1), s(3, 6), share(2)
+    real(wp) :: point(3, size(square, 1) - 2, size(square, 2) - 2)
     integer :: a, i, j
 
     call homogeneous_net(surface, positions, place, net)
@@ -218,19 +217,35 @@ contains
           end associate
         end do
         call surface_point(surface, place, net, xi(:, i, j), s)
+        point(:, i, j) = s(:, 1)
         square(i, j) = sum((x - s(:, 1))**2)
       end do
     end do
     do j = 1, ubound(square, 2) - 1
       do i = 1, ubound(square, 1) - 1
         if (square(i, j) > minval(square(i - 1:i + 1, j)) .and. square(i, j) > minval(square(i, j - 1:j + 1))) cycle
-        if (square(i, j) > worth_a_search * here%distance) cycle
+        if (sqrt(square(i, j)) > sqrt(2.0_wp * here%distance) + way_to_neighbours(point, i, j)) cycle
         there%place = place
         there%xi = xi(:, i, j)
         call go_on(surface, positions, x, there, here)
       end do
     end do
   end subroutine search_thoroughly
+
+  !> The longest way from a point of a grid to one beside it.
+  pure real(wp) function way_to_neighbours(point, i, j) result(longest)
+    real(wp), intent(in) :: point(:, :, :)
+    integer, intent(in) :: i, j
+    integer :: k
+
+    longest = 0.0_wp
+    do k = max(i - 1, 1), min(i + 1, size(point, 2))
+      longest = max(longest, norm2(point(:, k, j) - point(:, i, j)))
+    end do
+    do k = max(j - 1, 1), min(j + 1, size(point, 3))
+      longest = max(longest, norm2(point(:, i, k) - point(:, i, j)))
+    end do
+  end function way_to_neighbours
 
   !> Points along a direction of the grid in an element that is searched thoroughly.
   pure integer function grid_size(surface, direction)

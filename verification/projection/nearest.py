@@ -119,3 +119,39 @@ def nearest_foot(master: str, points: int) -> dict[str, float]:
         "deep": float(np.sum(cold.found[deep])),
         "found": float(np.mean(cold.found)),
     }
+
+
+def _beside_lines(face: Surface, count: int, seed: int) -> tuple[FloatArray, FloatArray]:
+    """Points on the hollow side of C0 lines, near to both elements there, and starts in either of them."""
+    random = np.random.default_rng(seed)
+    elements = int(face.patch.directions[0].elements)
+    across = random.integers(0, 2, count)
+    xi = random.uniform(0.0, 1.0, (count, 2))
+    xi[np.arange(count), across] = random.integers(1, elements, count) / elements
+    line, shift = face.points(xi), 1e-4 * np.eye(2)[across]
+    sides = [face.points(xi + sign * shift) - line for sign in (-1.0, 1.0)]
+    hollow = np.sum([side / np.linalg.norm(side, axis=1)[:, None] for side in sides], axis=0)
+    kinked = np.linalg.norm(hollow, axis=1) > 0.02
+    distance = 10.0 ** random.uniform(-3.0, -1.3, (count, 1))
+    way = hollow[kinked] / np.linalg.norm(hollow[kinked], axis=1)[:, None] + 0.1 * random.normal(size=(np.sum(kinked), 3))
+    starts = xi + random.uniform(-1.0, 1.0, (count, 2)) / elements
+    return line[kinked] + distance[kinked] * way, np.clip(starts, 0.0, 1.0)[kinked]
+
+
+@case(
+    claim="Of the feet on both sides of a hollow kink the nearer one is found, from either side, however near to the kink.",
+    tier="gate",
+    grid={"kind": ["L1", "L2"]},
+    bounds={
+        "nearer": Bound(at_most=1e-9, reason="definition: no point of the master may be nearer; half the digits of a least distance"),
+        "points": Bound(at_least=400, at_most=1000, reason="definition: so many were looked at"),
+    },
+)
+def beside_lines(kind: str) -> dict[str, float]:
+    """Most that a point is nearer than a foot from a near start or from none; how many points."""
+    face = _bent(kind, 6, 0.8, np.array([0.3, 2.0]))
+    targets, starts = _beside_lines(face, 1000, seed=1)
+    near, cold = (face.points(face.project(targets, start).xi) - targets for start in (starts, None))
+    apart = np.abs(np.linalg.norm(near, axis=1) - np.linalg.norm(cold, axis=1)).max()
+    excess = exhaustive(face, targets, face.project(targets).xi).max()
+    return {"nearer": float(np.maximum(apart, excess)), "points": float(len(targets))}
