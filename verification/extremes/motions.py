@@ -13,6 +13,9 @@ from isomortar.harness.extremes import Run, digits, endings, judge
 _TIGHT = {"solver.newton_tolerance": 1e-12, "solver.complementarity_tolerance": 1e-11}
 _FRICTIONS = (0.0, 1e-150, 1e-12, 1e-6, 1e-3, 0.1, 0.3, 1.0, 3.0, 10.0, 1e3, 1e6, 1e12, 1e50, 1e150, 1e156, 1e300)
 
+#: Share of the press of which two digits are round-off.
+DRAG_ROUND_OFF = 1e-11
+
 
 def press_with(friction: float) -> Data:
     """``coarse-press`` with another coefficient of friction."""
@@ -39,12 +42,15 @@ def friction(friction: float) -> dict[str, Any]:
 
 
 def _drag_per_friction(done: Run, friction: float) -> float:
-    """Digits of the press and of the drag over friction, against those at a friction of 1e-4."""
+    """Digits of the press and of the drag over friction, against those at a friction of 1e-4.
+
+    A drag that is less than the round-off of the press has none.
+    """
     right, found = ran(press_with(1e-4)).force("top"), done.force("top")
     normal = digits(found[:, 2], right[:, 2])
-    if friction == 0.0:
-        return float(np.minimum(normal, digits(found[:, :2], 0.0 * found[:, :2], size=float(np.abs(found).max())) - 6.0))
-    return float(np.minimum(normal, digits(found[:, :2] / friction, right[:, :2] / 1e-4)))
+    drag = friction * right[:, :2] / 1e-4
+    size = max(float(np.abs(drag).max()), DRAG_ROUND_OFF * float(np.abs(found).max()))
+    return float(np.minimum(normal, digits(found[:, :2], drag, size=size)))
 
 
 def bar(base_turns: bool, degrees: float, steps: int) -> Data:

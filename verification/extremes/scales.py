@@ -64,13 +64,13 @@ def units(length: float, stress: float) -> dict[str, Any]:
         ran(scaled_press(length, stress)),
         lambda done: digits(done.force("top") / stress / length / length, right),
         needed=8.0,
-        causes=["[Yy]oung", "geometry", "too (large|small)", "size"],
+        causes=["[Yy]oung", "geometry", "is .* long", "its size"],
     )
 
 
 @case(
     claim="Where in space a scene stands changes no result.",
-    tier=lambda distance, size: "gate" if (distance, size) in ((1e2, 1e-6), (1e6, 1.0)) else "nightly",
+    tier=lambda distance, size: "gate" if (distance, size) in ((1e2, 1e-6), (1e6, 1.0), (1e16, 1.0)) else "nightly",
     grid={"distance": (0.0, 1e2, 1e4, 1e5, 1e6, 1e8, 1e10, 1e12, 1e16), "size": (1e-6, 1.0)},
     bounds=lambda distance, **_: endings(distance <= 1e6),
 )
@@ -82,7 +82,7 @@ def origin(distance: float, size: float) -> dict[str, Any]:
         ran(shifted_bowl(distance, size)),
         lambda done: digits(done.force("top") / size**2, right),
         needed=needed,
-        causes=["origin", "round-off", "coordinates"],
+        causes=["far from the origin", "from the origin and is"],
     )
 
 
@@ -115,7 +115,7 @@ def augmentation_penalty(penalty: float) -> dict[str, Any]:
     data = loaded("coarse-bowl")
     right = ran(data).force("top")
     uzawa = changed(data, {"solver.method": "uzawa", "solver.penalty_normal": penalty, "solver.penalty_tangential": 0.1 * penalty})
-    return judge(ran(uzawa), lambda done: digits(done.force("top"), right), needed=1.3, causes=["penalt", "augmentation"])
+    return judge(ran(uzawa), lambda done: digits(done.force("top"), right), needed=1.3, causes=["penalt", "larger penalties"])
 
 
 @case(
@@ -135,14 +135,14 @@ def newton_tolerance(tolerance: float) -> dict[str, Any]:
 
 @case(
     claim="A load step that has no solution ends, however often it may be cut.",
-    tier=lambda cuts: "gate" if cuts == 8 else "nightly",
+    tier=lambda cuts: "gate" if cuts in (0, 54) else "nightly",
     grid={"cuts": (0, 8, 30, 54, 1000)},
     bounds=endings(right=False),
 )
 def cuts(cuts: int) -> dict[str, Any]:
     """No result is right: a box is pressed through itself."""
     data = changed(loaded("coarse-press"), {"stages.0.motions.top.translate": [0, 0, -1.0], "solver.max_cuts": cuts})
-    return judge(ran(data), _none_is_right, needed=1.0, causes=["max_cuts", "J = ", "folded", "does not converge"])
+    return judge(ran(data), _none_is_right, needed=1.0, causes=["max_cuts", "folded", "pressed flat"])
 
 
 def _none_is_right(_: Run) -> float:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from isomortar.errors import InputError
 
@@ -19,6 +19,16 @@ MAX_ORDER: dict[Family, int] = {"N": 10, "L": 4}
 
 #: Faces of a patch: first and last parametric value of direction u, v, w.
 FACES = ("u0", "u1", "v0", "v1", "w0", "w1")
+
+#: Knots and weights within this power of two of one are taken as they are.
+_USUAL = 64
+
+
+def _usual(values: ArrayLike) -> FloatArray:
+    """Values of which ratios alone count, of a usual size: those far from it are divided by a power of two, which changes no bit."""
+    array = np.ascontiguousarray(values, dtype=np.float64)
+    power = int(np.frexp(np.max(np.abs(array), initial=0.0))[1])
+    return np.ldexp(array, -power) if abs(power) > _USUAL else array
 
 
 @dataclass(frozen=True)
@@ -33,7 +43,8 @@ class Direction:
         Polynomial order.
     knots : ndarray, shape (k,)
         ``N``: the full open knot vector. ``L``: the element boundaries; each element has ``order + 1``
-        equally spaced nodes and shares one with its neighbour.
+        equally spaced nodes and shares one with its neighbour. In any unit: where the largest is beyond 2^64, or below
+        2^-64, they are divided by a power of two.
 
     Raises
     ------
@@ -46,7 +57,7 @@ class Direction:
     knots: FloatArray
 
     def __post_init__(self) -> None:
-        knots = np.ascontiguousarray(self.knots, dtype=np.float64)
+        knots = _usual(self.knots)
         object.__setattr__(self, "knots", knots)
         if self.family not in MAX_ORDER:
             raise InputError(f"family is {self.family!r}; allowed: 'N' (NURBS), 'L' (Lagrange)", "family")
@@ -98,7 +109,7 @@ class Patch:
     control_points : ndarray, shape (n1*n2*n3, 3)
         First direction fastest: number = i1 + n1 (i2 + n2 i3). Lengths in the unit of the scene.
     weights : ndarray, shape (n1*n2*n3,)
-        Positive, same numbering; not multiplied into the control points.
+        Positive, same numbering; not multiplied into the control points. In any unit, as knots are.
 
     Raises
     ------
@@ -112,7 +123,7 @@ class Patch:
 
     def __post_init__(self) -> None:
         points = np.ascontiguousarray(self.control_points, dtype=np.float64)
-        weights = np.ascontiguousarray(self.weights, dtype=np.float64)
+        weights = _usual(self.weights)
         object.__setattr__(self, "control_points", points)
         object.__setattr__(self, "weights", weights)
         wanted = int(np.prod(self.shape))

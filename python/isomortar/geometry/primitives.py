@@ -24,7 +24,11 @@ def box(lower: Vector, upper: Vector) -> Patch:
         `upper` is not above `lower` in each coordinate.
     """
     if not all(low < high for low, high in zip(lower, upper, strict=True)):
-        raise InputError(f"is {list(upper)}; each coordinate must be larger than that of lower = {list(lower)}", "upper")
+        message = f"is {list(upper)}; each coordinate must be larger than that of lower = {list(lower)}"
+        sizes, last_bit = np.subtract(upper, lower), np.spacing(np.abs([lower, upper]).max())
+        if 0.0 < sizes.max() <= 4.0 * last_bit:
+            message += "; so far from the origin coordinates hold no smaller differences"
+        raise InputError(message, "upper")
     z, y, x = np.meshgrid(*((low, high) for low, high in zip(lower[::-1], upper[::-1], strict=True)), indexing="ij")
     return _patch((_bezier(1), _bezier(1), _bezier(1)), x, y, z)
 

@@ -48,6 +48,10 @@ class Solid:
                 f"{error}; check the geometry, the order of its control points, their weights, and the face it is seen from"
             ) from error
 
+    def smallest_jacobians(self, positions: FloatArray) -> list[float]:
+        """The smallest J = det F at a quadrature point of each body; see `forces`."""
+        return self._add(np.zeros_like(positions), positions, None)
+
     def forces(self, positions: FloatArray) -> FloatArray:
         """Internal forces, shape (control points, 3).
 
@@ -56,7 +60,9 @@ class Solid:
         FoldedElementError
             Naming body and element.
         """
-        return self._add(positions, None)
+        forces = np.zeros_like(self._numbering.reference)
+        self._add(forces, positions, None)
+        return forces
 
     def forces_and_tangent(self, positions: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Internal forces and tangent blocks, shape (blocks, 3, 3): block, row component, column component.
@@ -64,15 +70,17 @@ class Solid:
         Those of the last positions are kept: the start of a load step asks for them twice.
         """
         if self._last is None or self._last[0] is not positions:
-            tangent = np.zeros((len(self.pattern.column), 3, 3))
-            self._last = (positions, self._add(positions, tangent), tangent)
+            forces, tangent = np.zeros_like(positions), np.zeros((len(self.pattern.column), 3, 3))
+            self._add(forces, positions, tangent)
+            self._last = (positions, forces, tangent)
         return self._last[1], self._last[2]
 
-    def _add(self, positions: FloatArray, tangent: FloatArray | None) -> FloatArray:
-        forces = np.zeros_like(self._numbering.reference)
+    def _add(self, forces: FloatArray, positions: FloatArray, tangent: FloatArray | None) -> list[float]:
+        """Add forces and tangent; the smallest J of each body."""
+        smallest = []
         for body, patch in zip(self._bodies, self._patches, strict=True):
             try:
-                _bindings.add_body(
+                jacobian = _bindings.add_body(
                     patch,
                     body.quadrature,
                     body.material.bulk,
@@ -83,8 +91,9 @@ class Solid:
                     self.pattern if tangent is not None else None,
                     tangent,
                 )
+                smallest.append(jacobian)
             except FoldedElementError as error:
                 where = np.unravel_index(error.place, [d.elements for d in body.patch.directions], order="F")
                 place = ", ".join(str(int(i)) for i in where)
                 raise FoldedElementError(f"body {body.name!r}: {error} (element {place} along u, v, w)", error.place) from error
-        return forces
+        return smallest

@@ -14,8 +14,11 @@ from isomortar.model.entities import Body, Contact, Face, Problem, Support
 from isomortar.model.memory import memory_needed, memory_of_machine
 from isomortar.scene.contacts import check_contacts
 
-#: Sizes of bodies, and forces (Young's modulus times the square of the size), whose squares and cubes are normal numbers.
+#: Sizes of bodies, and forces and force densities (Young's modulus times the square of the size, and over the size) whose squares and
+#: cubes are normal numbers.
 SIZES, FORCES = (1e-76, 1e76), (1e-153, 1e153)
+#: Share of a body's size that the last bit of its coordinates may be.
+LAST_BIT = 1e-3
 
 
 def check(problem: Problem) -> None:
@@ -44,11 +47,19 @@ def _check_units(body: Body) -> None:
             f"body {body.name!r} is {size:.3g} long; allowed: {SIZES[0]:g} to {SIZES[1]:g}; take another unit of length",
             f"bodies.{body.name}",
         )
-    if not FORCES[0] <= young * size * size <= FORCES[1]:
+    for product, words in ((young * size * size, "times the square of"), (young / size, "over")):
+        if not FORCES[0] <= product <= FORCES[1]:
+            raise InputError(
+                f"body {body.name!r}: young = {young:.3g} {words} its size, {size:.3g}, is {product:.3g}; "
+                f"allowed: {FORCES[0]:g} to {FORCES[1]:g}; take other units",
+                f"bodies.{body.name}.material",
+            )
+    farthest = float(np.abs(body.patch.control_points).max())
+    if np.spacing(farthest) > LAST_BIT * size:
         raise InputError(
-            f"body {body.name!r}: young = {young:.3g} times the square of its size, {size:.3g}, is a force of "
-            f"{young * size * size:.3g}; allowed: {FORCES[0]:g} to {FORCES[1]:g}; take other units",
-            f"bodies.{body.name}.material",
+            f"body {body.name!r} stands {farthest:.3g} from the origin and is {size:.3g} long: its coordinates have no digits left for "
+            "that; move the whole scene nearer to the origin",
+            f"bodies.{body.name}",
         )
 
 

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from itertools import combinations
 
+import numpy as np
+
 from isomortar.errors import InputError
-from isomortar.model.entities import Contact, Face, Problem, RigidPlane
+from isomortar.model.entities import Body, Contact, Face, Problem, RigidPlane
 from isomortar.model.stance import Stance, stance
 
-#: Least area of a contact face, over the square of its body's size: what is below is a line or a point.
-LEAST_AREA = 1e-12
+#: Least area of a contact face over the square of its own extent, and least extent over its body's: what is below is a line or a point.
+LEAST = 1e-12
 #: Faces look the same way where all normals of the slave are within 60 degrees of the master's.
 SAME_WAY = 0.5
 #: Bodies that overlap by this share of the thinner one have passed through each other.
@@ -38,12 +40,18 @@ def check_contacts(problem: Problem) -> None:
 
 def _check_area(problem: Problem, contact: Contact, found: Stance) -> None:
     for side, place, area in (("slave", contact.slave, found.slave_area), ("master", contact.master, found.master_area)):
-        if isinstance(place, Face) and not area > LEAST_AREA * problem.body(place.body).size ** 2:
+        if isinstance(place, Face) and not _spreads(problem.body(place.body), place.face, area):
             raise InputError(
                 f"is {place.body}.{place.face}, a face of area {area:.3g}: its control points fall onto a line or a point; "
                 "name another face",
                 f"contacts.{contact.name}.{side}",
             )
+
+
+def _spreads(body: Body, face: str, area: float) -> bool:
+    """Whether a face is a surface. It is judged by its own extent: that of a long body makes each of its ends seem a point."""
+    extent = float(np.ptp(body.patch.control_points[body.patch.face_points(face)], axis=0).max())
+    return area > LEAST * extent**2 and extent > LEAST * body.size
 
 
 def _check_stance(problem: Problem, contact: Contact, found: Stance) -> None:

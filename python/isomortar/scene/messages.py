@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import reprlib
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -67,5 +68,6 @@ def _sentence(fault: ErrorDetails) -> str:
         case "too_short" | "too_long":
             return f"has {fault['ctx']['actual_length']} entries; allowed: " + message.split(" should have ")[1].split(" after")[0]
     if message.startswith("Input should be "):
-        return f"is {given}; allowed: " + message.removeprefix("Input should be ")
+        allowed = re.sub(r"\d{16,}", lambda digits: f"{int(digits[0]):g}", message.removeprefix("Input should be "))
+        return f"is {given}; allowed: {allowed}"
     return message

@@ -6,7 +6,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from isomortar.model.entities import Problem, RigidPlane
+from isomortar.model.contrasts import element_lengths
+from isomortar.model.entities import Body, Contact, Face, Problem, RigidPlane
 from isomortar.solve.contact import PairMechanics
 from isomortar.solve.record import ContactResult
 
@@ -14,6 +15,8 @@ from isomortar.solve.record import ContactResult
 STIFFER = 10.0
 #: Control pressures this many times above the field's largest value oscillate.
 OSCILLATION = 1.5
+#: Quadrature points are to be no farther apart than elements of the master are long; by this factor, for round-off.
+ENOUGH = 0.99
 
 
 def advice_on_problem(problem: Problem, pairs: Sequence[PairMechanics]) -> Iterator[str]:
@@ -31,6 +34,30 @@ def advice_on_problem(problem: Problem, pairs: Sequence[PairMechanics]) -> Itera
                 f"contact {contact.name!r}: the slave {slave.name!r} is {stiffer:.0f} times stiffer and its elements are {finer:.1f} times "
                 "smaller than the master's; control pressures may be far off. Swap slave and master, or refine the master"
             )
+    for contact in problem.contacts:
+        yield from few_points(problem, contact)
+
+
+def few_points(problem: Problem, contact: Contact) -> Iterator[str]:
+    """Slaves whose quadrature points are farther apart than their master's elements are long: some of these bear nothing."""
+    if isinstance(contact.master, RigidPlane):
+        return
+    slave, master = problem.body(contact.slave.body), problem.body(contact.master.body)
+    apart = _element_size(slave, contact.slave) / np.sqrt(np.prod(contact.quadrature))
+    share = float(_element_size(master, contact.master) / apart)
+    if share < ENOUGH and slave.material.modulus >= master.material.modulus:
+        needed = [int(np.ceil(2.0 * points / share)) for points in contact.quadrature]
+        yield (
+            f"contact {contact.name!r}: quadrature points of the slave are {1.0 / share:.1f} elements of its softer or equal master apart, "
+            f"which dents between them. Swap slave and master, refine the slave, or take contacts.{contact.name}.quadrature = {needed}"
+        )
+
+
+def _element_size(body: Body, face: Face) -> float:
+    """Typical length of the elements at a face."""
+    lengths = element_lengths(body.patch)
+    axis = "uvw".index(face.face[0])
+    return float(np.sqrt(np.prod([np.median(lengths[(axis + k) % 3]) for k in (1, 2)])))
 
 
 def _area(points: np.ndarray) -> float:

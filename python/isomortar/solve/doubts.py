@@ -8,6 +8,8 @@ from itertools import combinations
 import numpy as np
 
 from isomortar.errors import FoldedElementError
+from isomortar.geometry.patch import MAX_ORDER
+from isomortar.model.contrasts import element_lengths
 from isomortar.model.entities import Body, Contact, Face, Problem, RigidPlane, Support
 from isomortar.model.memory import memory_needed, memory_of_machine
 from isomortar.model.rational import points_enough, quadrature_error
@@ -24,6 +26,8 @@ SIZE_RATIO = 100.0
 HIGH_FRICTION = 10.0
 #: Bulk over shear modulus above which elements of order 1 lock; a tenfold of it for every order more (docs/method.md).
 LOCKING = 10.0
+#: Lengths of elements along a direction further apart cost pressures at the short ones all digits but two: 1e-16 times their square.
+SPANS = 1e7
 #: Share of the forces that the quadrature of rational functions may be off.
 QUADRATURE_ERROR = 0.01
 
@@ -42,6 +46,7 @@ def doubts(problem: Problem, state: State) -> Iterator[str]:
         yield f"tangent and factors may take {needed / 1e9:.2g} GB of memory, within a factor of two, and there are {there / 1e9:.2g} GB"
     for body in problem.bodies:
         yield from _locking(body)
+        yield from _spans(body)
         yield from _seam(body)
         yield from _weights(body)
     for support in problem.supports:
@@ -67,10 +72,21 @@ def _locking(body: Body) -> Iterator[str]:
     ratio, limit = body.material.bulk / body.material.shear, LOCKING * 10.0 ** (order - 1)
     if ratio > limit:
         needed = order + int(np.ceil(np.log10(ratio / limit)))
+        cure = f"Take order {needed} or more in all directions, or" if needed <= MAX_ORDER["N"] else "Take"
         yield (
-            f"body {body.name!r}: with Poisson's ratio {body.material.poisson:g} elements of order {order} lock, and forces come out "
-            f"far too large. Take order {needed} or more in all directions, or a Poisson's ratio that is lower"
+            f"body {body.name!r}: with Poisson's ratio {body.material.poisson:.15g} elements of order {order} lock, and forces come out "
+            f"far too large. {cure} a Poisson's ratio that is lower"
         )
+
+
+def _spans(body: Body) -> Iterator[str]:
+    """Elements so short beside their neighbours that the last bits of positions are strains of theirs which count."""
+    for axis, lengths in zip("uvw", element_lengths(body.patch), strict=True):
+        if lengths.max() > SPANS * lengths.min():
+            yield (
+                f"body {body.name!r}: its elements along {axis} are {lengths.min():.1e} to {lengths.max():.1e} long "
+                "(knot spans, or control points): pressures and stresses at the short ones are lost in round-off. Make these longer"
+            )
 
 
 def _weights(body: Body) -> Iterator[str]:

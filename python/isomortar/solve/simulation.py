@@ -11,6 +11,7 @@ from isomortar.errors import ConvergenceError, FoldedElementError, LostProjectio
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Problem
 from isomortar.solve.advice import StepAdvice, advice_on_problem
+from isomortar.solve.causes import causes
 from isomortar.solve.contact import largest, moment
 from isomortar.solve.doubts import doubts
 from isomortar.solve.equilibrium import Balance, Equilibrium
@@ -103,7 +104,7 @@ class Simulation:
             try:
                 parts = self._advance(state, time, target, step)
             except _REASONS_TO_CUT as error:
-                self._cut(step, target, increment, longest, error)
+                self._cut(step, state, target, increment, longest, error)
                 cuts += 1
                 continue
             time, substeps = target, substeps + len(parts)
@@ -143,13 +144,14 @@ class Simulation:
         else:
             self._increment = min(1.0, max(increment, self._increment))
 
-    def _cut(self, step: int, time: float, increment: float, longest: float, error: Exception) -> None:
-        """Halve the load increment, or give up with a sentence that says where and why."""
+    def _cut(self, step: int, state: State, time: float, increment: float, longest: float, error: Exception) -> None:
+        """Halve the load increment, or give up with a sentence that says where and why; `state` is where the increment began."""
         self._increment = 0.5 * increment / longest
         if self._increment < 0.5**self.problem.settings.max_cuts or time - 0.5 * increment == time:
+            likely = causes(self.equilibrium, state.positions, error)
             raise ConvergenceError(
                 f"load step {step} (stage {self._stage_of(step)!r}) does not converge at load time {time:.6g}, even with an increment of "
-                f"1/{round(1 / increment)} step: {error}"
+                f"1/{round(1 / increment)} step: {error}{''.join(f'. {cause[0].upper()}{cause[1:]}' for cause in likely)}"
             ) from error
         self._observer.cut(step, time, 0.5 * increment, str(error))
 

@@ -102,4 +102,5 @@ def _finished(run: Run, found: Callable[[Run], float], needed: float, warnings: 
 
 
 def _names(text: str, causes: Sequence[str]) -> bool:
-    return any(re.search(cause, text) for cause in causes)
+    """Whether a text contains one of the causes, each from the beginning of a word: "thin" is not in "nothing"."""
+    return any(re.search(rf"(?<!\w)(?:{cause})", text) for cause in causes)

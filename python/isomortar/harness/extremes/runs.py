@@ -51,11 +51,17 @@ class Run:
 
     def force(self, support: str) -> FloatArray:
         """Forces that a support exerts, shape (steps, 3)."""
-        return self.held[f"curves/supports/{support}/force"]
+        return self._of_support(support, "force")
 
     def moment(self, support: str) -> FloatArray:
         """Moments that a support exerts, shape (steps, 3)."""
-        return self.held[f"curves/supports/{support}/moment"]
+        return self._of_support(support, "moment")
+
+    def _of_support(self, support: str, name: str) -> FloatArray:
+        path = f"curves/supports/{support}/{name}"
+        if path not in self.held:
+            raise LookupError(f"a run that others are compared with came to nothing: {self.said.strip() or path}")
+        return self.held[path]
 
 
 @contextmanager

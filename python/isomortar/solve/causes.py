@@ -1,0 +1,93 @@
+"""What is likely to be behind a load step that is given up: bodies pressed flat, numbers too far apart, penalties too large."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import combinations
+
+import numpy as np
+
+from isomortar.errors import SingularSystemError
+from isomortar.geometry.patch import FloatArray
+from isomortar.model.contrasts import element_lengths
+from isomortar.model.entities import Body, Problem
+from isomortar.solve.advice import few_points
+from isomortar.solve.equilibrium import Equilibrium
+
+#: Volume ratios below this one are those of elements about to fold.
+FLAT = 0.1
+#: Lengths of elements further apart cost more than ten digits of the tangent, which goes with their squares; moduli go as they are.
+LENGTHS, MODULI = 1e5, 1e10
+#: Bending of a thin body goes with the fourth power: at this ratio a tangent without digits is its.
+LENGTHS_BENT = 1e3
+#: Bulk over shear modulus above which elements of any usual order lock, and Newton's method is led astray.
+INCOMPRESSIBLE = 1e4
+#: Penalties of augmentations above this one make contact so stiff that Newton's method goes to and fro.
+PENALTY = 1e3
+
+
+def causes(equilibrium: Equilibrium, positions: FloatArray, error: Exception) -> Iterator[str]:
+    """Sentences, without a capital, on what a person should look at.
+
+    Parameters
+    ----------
+    equilibrium : Equilibrium
+    positions : ndarray, shape (control points, 3)
+        Where the last load increment ended that converged.
+    error : Exception
+        Why the next one did not.
+    """
+    problem = equilibrium.problem
+    yield from _flat(problem.bodies, equilibrium.solid.smallest_jacobians(positions))
+    for body in problem.bodies:
+        yield from _lengths(body, LENGTHS_BENT if isinstance(error, SingularSystemError) else LENGTHS)
+        yield from _incompressible(body)
+    yield from _moduli(problem)
+    yield from _penalties(problem)
+    for contact in problem.contacts:
+        yield from few_points(problem, contact)
+
+
+def _flat(bodies: Sequence[Body], jacobians: Sequence[float]) -> Iterator[str]:
+    for body, jacobian in zip(bodies, jacobians, strict=True):
+        if jacobian < FLAT:
+            yield f"body {body.name!r} is pressed flat by then, down to J = {jacobian:.1e} of its volume: end the motion earlier"
+
+
+def _lengths(body: Body, ratio: float) -> Iterator[str]:
+    lengths = np.concatenate(element_lengths(body.patch))
+    if lengths.max() > ratio * lengths.min():
+        yield (
+            f"elements of body {body.name!r} are {lengths.min():.1e} thin and up to {lengths.max():.1e} long, too different for double "
+            "precision: make the body thicker, or its shortest knot spans longer"
+        )
+
+
+def _incompressible(body: Body) -> Iterator[str]:
+    ratio = body.material.bulk / body.material.shear
+    if ratio > INCOMPRESSIBLE:
+        yield (
+            f"with Poisson's ratio {body.material.poisson:.15g} body {body.name!r} resists compression {ratio:.1e} times as much as "
+            "shear: its elements lock. Take a lower one"
+        )
+
+
+def _moduli(problem: Problem) -> Iterator[str]:
+    for one, other in combinations(problem.bodies, 2):
+        softer, stiffer = sorted((one, other), key=lambda body: body.material.modulus)
+        ratio = stiffer.material.modulus / softer.material.modulus
+        if ratio > MODULI:
+            yield (
+                f"body {stiffer.name!r} is {ratio:.1e} times as stiff as {softer.name!r}, too different for double precision: take it less "
+                "stiff, or a rigid plane for it"
+            )
+
+
+def _penalties(problem: Problem) -> Iterator[str]:
+    settings = problem.settings
+    largest = max(settings.penalty_normal, settings.penalty_tangential)
+    if settings.method == "uzawa" and largest > PENALTY:
+        yield (
+            f"a penalty of {largest:g}, times the stiffness of the pair, makes contact so stiff that Newton's method goes to and fro: take "
+            "solver.penalty_normal and penalty_tangential of 10 to 1000"
+        )

@@ -1,0 +1,185 @@
+"""A load step that is given up names what is behind it, and names nothing in a sound scene."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from isomortar.errors import ConvergenceError, InputError, SingularSystemError
+from isomortar.geometry.patch import Direction, Patch
+from isomortar.geometry.primitives import box, ring
+from isomortar.geometry.refinement import mesh
+from isomortar.model.contrasts import element_lengths
+from isomortar.scene import Scene
+from isomortar.solve.advice import few_points
+from isomortar.solve.causes import causes
+from isomortar.solve.doubts import doubts
+from isomortar.solve.simulation import Simulation
+
+SCENE = """
+format = 1
+[materials]
+soft = { young = SOFT, poisson = POISSON }
+hard = { young = HARD, poisson = 0.3 }
+[bodies.upper]
+material = "hard"
+geometry = { kind = "box", lower = [0, 0, 1], upper = [1, 1, TOP] }
+mesh = { order = [2, 2, 1], elements = [SLAVE, SLAVE, 1] }
+[bodies.lower]
+material = "soft"
+geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }
+mesh = { order = [2, 2, 1], elements = [MASTER, MASTER, 1] }
+[contacts.c]
+slave = "upper.w0"
+master = "lower.w1"
+[supports]
+top = { face = "upper.w1" }
+floor = { face = "lower.w0" }
+[solver]
+method = "METHOD"
+penalty_normal = PENALTY
+[[stages]]
+name = "press"
+steps = 1
+motions.top.translate = [0, 0, -0.1]
+"""
+SOUND: dict[str, Any] = {
+    "SOFT": 10, "POISSON": 0.3, "HARD": 10, "TOP": 2, "SLAVE": 2, "MASTER": 2, "METHOD": "monolithic", "PENALTY": 100
+}  # fmt: skip
+
+
+def scene(**changes: Any) -> Simulation:
+    text = SCENE
+    for name, value in (SOUND | changes).items():
+        text = text.replace(name, str(value))
+    return Simulation(Scene.from_toml(text).problem())
+
+
+def said(simulation: Simulation, error: Exception | None = None) -> list[str]:
+    return list(causes(simulation.equilibrium, simulation.state.positions, error or ConvergenceError("")))
+
+
+def test_a_sound_scene_gives_no_cause() -> None:
+    assert said(scene()) == said(scene(), SingularSystemError("")) == []
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"TOP": 1.000001}, "elements of body 'upper' are 1.0e-06 thin and up to 5.0e-01 long"),
+        ({"POISSON": 0.499999}, "Poisson's ratio 0.499999 body 'lower' resists compression 5.0e+05 times"),
+        ({"HARD": 1e12}, "body 'upper' is 1.0e+11 times as stiff as 'lower'"),
+        ({"METHOD": "uzawa", "PENALTY": 1e4}, "a penalty of 10000,"),
+        ({"SLAVE": 1, "MASTER": 8}, "contacts.c.quadrature = [16, 16]"),
+    ],
+)
+def test_each_cause_is_named_alone(changes: dict[str, Any], words: str) -> None:
+    found = said(scene(**changes))
+    assert len(found) == 1
+    assert words in found[0]
+
+
+def test_thin_bodies_bend_to_a_singular_tangent_sooner() -> None:
+    thin = scene(TOP=1.0004)
+    assert said(thin) == []
+    assert "4.0e-04 thin" in said(thin, SingularSystemError(""))[0]
+
+
+def test_penalties_of_the_monolithic_method_are_no_cause() -> None:
+    assert said(scene(PENALTY=1e4)) == []
+
+
+def test_bodies_pressed_flat_are_named_with_what_is_left_of_them() -> None:
+    simulation = scene()
+    positions = simulation.state.positions.copy()
+    lower = np.unique(simulation.equilibrium.numbering.points["lower"])
+    positions[lower, 2] *= 0.05
+    simulation.state = replace(simulation.state, positions=positions)
+    assert simulation.equilibrium.solid.smallest_jacobians(positions) == pytest.approx([1.0, 0.05])
+    found = said(simulation)
+    assert len(found) == 1
+    assert "body 'lower' is pressed flat by then, down to J = 5.0e-02" in found[0]
+
+
+def test_the_message_of_a_step_that_is_given_up_ends_with_the_causes() -> None:
+    simulation = scene(POISSON=0.499999)
+    with pytest.raises(ConvergenceError, match=r"step: no luck\. With Poisson's ratio 0\.499999 body 'lower'"):
+        simulation._cut(1, simulation.state, 1.0, 0.5**8, 1.0, ConvergenceError("no luck"))
+
+
+def test_few_points_are_warned_of_under_a_stiffer_slave_only() -> None:
+    for changes, count in (({}, 0), ({"HARD": 1}, 0), ({"SLAVE": 1, "MASTER": 8, "HARD": 1}, 0), ({"SLAVE": 1, "MASTER": 8}, 1)):
+        problem = scene(**changes).problem
+        assert len(list(few_points(problem, problem.contacts[0]))) == count
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_elements_are_as_long_as_their_spans_of_a_straight_box(axis: int) -> None:
+    knots = np.array([0.0, 0.0, 0.0, 0.0, 0.1, 0.5, 0.5, 2.0, 2.0, 2.0, 2.0])
+    line = np.array([knots[i + 1 : i + 4].mean() for i in range(7)])
+    directions = [Direction("N", 1, np.array([0.0, 0.0, 3.0, 3.0]))] * 3
+    directions[axis] = Direction("N", 3, knots)
+    lines = [np.array([0.0, 3.0])] * 3
+    lines[axis] = line
+    grid = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape((-1, 3), order="F")
+    lengths = element_lengths(Patch((directions[0], directions[1], directions[2]), grid, np.ones(28)))
+    for k in range(3):
+        np.testing.assert_allclose(lengths[k], [0.1, 0.4, 1.5] if k == axis else [3.0], rtol=1e-14)
+
+
+def test_lagrange_elements_and_poles_have_their_lengths() -> None:
+    lagrange = mesh(box((0, 0, 0), (1, 2, 3)), ("L", "L", "L"), (2, 3, 1), (2, 1, 4))
+    for found, wanted in zip(element_lengths(lagrange), ([0.5, 0.5], [2.0], [0.75] * 4), strict=True):
+        np.testing.assert_allclose(found, wanted, rtol=1e-14)
+    points = box((0, 0, 0), (1, 1, 1)).control_points.copy()
+    points[4:6] = [0.5, 0.0, 1.0]  # an edge along u
+    assert [length.min() for length in element_lengths(Patch(box((0, 0, 0), (1, 1, 1)).directions, points, np.ones(8)))] >= [1.0] * 3
+
+
+def test_short_spans_are_warned_of_and_by_direction() -> None:
+    def warned(span: float) -> list[str]:
+        simulation = scene()
+        body = simulation.problem.bodies[1]
+        knots = np.array([0.0, 0.0, 0.0, span, 0.5, 1.0, 1.0, 1.0])
+        line = np.array([knots[i + 1 : i + 3].mean() for i in range(5)])
+        grid = np.stack(np.meshgrid(line, [0.0, 1.0], [0.0, 1.0], indexing="ij"), axis=-1).reshape((-1, 3), order="F")
+        linear = Direction("N", 1, np.array([0.0, 0.0, 1.0, 1.0]))
+        patch = Patch((Direction("N", 2, knots), linear, linear), grid, np.ones(20))
+        bodies = (simulation.problem.bodies[0], replace(body, patch=patch, quadrature=(3, 2, 2)))
+        problem = replace(simulation.problem, bodies=bodies)
+        return [text for text in doubts(problem, Simulation(problem).state) if "elements along" in text]
+
+    assert warned(1e-6) == []
+    (text,) = warned(1e-9)
+    assert "'lower': its elements along u are 1.0e-09 to 5.0e-01 long" in text
+
+
+@pytest.mark.parametrize("factor", [2.0**-1000, 2.0**-70, 2.0**66, 2.0**1000])
+def test_knots_and_weights_in_any_unit_give_the_same_patch(factor: float) -> None:
+    usual = mesh(ring((0.0, 0.0, 0.0), 0.5, 1.0, 1.0), ("N", "N", "N"), (3, 2, 1), (8, 2, 1))
+    directions = [Direction(d.family, d.order, factor * d.knots) for d in usual.directions]
+    other = Patch((directions[0], directions[1], directions[2]), usual.control_points, factor * usual.weights)
+    for mine, theirs in [
+        *((d.knots, e.knots) for d, e in zip(other.directions, usual.directions, strict=True)),
+        (other.weights, usual.weights),
+    ]:
+        ratios = mine[theirs != 0.0] / theirs[theirs != 0.0]
+        assert np.all(ratios == ratios[0])
+        assert np.log2(ratios[0]) == int(np.log2(ratios[0]))
+        assert 0.25 <= np.abs(mine).max() <= 4.0
+
+
+def test_coordinates_without_digits_are_refused() -> None:
+    with pytest.raises(InputError, match="so far from the origin coordinates hold no smaller differences"):
+        box((1e16, 0.0, 0.0), (1e16, 1.0, 1.0))
+    with pytest.raises(InputError, match=r"larger than that of lower = \[0.0, 0.0, 0.0\]$"):
+        box((0.0, 0.0, 0.0), (1.0, 1.0, 0.0))
+    far = SCENE.replace("lower = [0, 0, 0], upper = [1, 1, 1]", "lower = [11e12, 0, 0], upper = [11000000000001, 1, 1]")
+    for name, value in SOUND.items():
+        far = far.replace(name, str(value))
+    scene = Scene.from_toml(far)
+    with pytest.raises(InputError, match=r"bodies.lower: body 'lower' stands 1.1e\+13 from the origin"):
+        scene.problem()
