@@ -39,7 +39,7 @@ module isomortar_api_difference
 
 contains
 
-  !> (upper - lower) / (2 step).
+  !> Central difference (upper - lower) / (2 step), theory 9.4.
   elemental function difference(upper, lower, step) result(slope)
     real(wp), intent(in) :: upper, lower, step
     real(wp) :: slope

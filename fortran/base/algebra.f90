@@ -61,7 +61,7 @@ contains
     t = a(1, 1) + a(2, 2) + a(3, 3)
   end function trace
 
-  !> ln(1 + y) without losing the digits of a small y (Kahan's correction of the rounded sum), in every mode of rounding.
+  !> ln(1 + y) without losing the digits of a small y (theory 1.5, Kahan's correction of the sum), in every mode of rounding.
   elemental function log1p(y) result(r)
     real(wp), intent(in) :: y
     real(wp) :: r

@@ -72,7 +72,8 @@ contains
     element = low
   end function element_at
 
-  !> Whether functions are only continuous from element to element + 1. From the last one on, at a seam, they are: knots are open.
+  !> Whether functions are only continuous from element to element + 1 (theory 2.9). From the last one on, at a seam, they are:
+  !> knots are open.
   pure logical function is_kink(self, element)
     type(direction_t), intent(in) :: self
     integer, intent(in) :: element
@@ -117,7 +118,7 @@ contains
     end do
   end subroutine bspline_basis
 
-  !> Values of order q from those of order q - 1 on the same span.
+  !> Values of order q from those of order q - 1 on the same span (theory 2.1).
   pure subroutine raise(self, span, q, lower, u, raised)
     type(direction_t), intent(in) :: self
     integer, intent(in) :: span, q
@@ -136,7 +137,7 @@ contains
     end do
   end subroutine raise
 
-  !> Derivative number order - q of the functions of full order, from the values of order q.
+  !> Derivative number order - q of the functions of full order, from the values of order q (theory 2.2).
   pure subroutine differentiate_up(self, span, q, lower, derivative)
     type(direction_t), intent(in) :: self
     integer, intent(in) :: span, q
@@ -159,7 +160,7 @@ contains
     end do
   end subroutine differentiate_up
 
-  !> Nodal Lagrange functions on equally spaced nodes, multiplied up factor by factor with their derivatives.
+  !> Nodal Lagrange functions on equally spaced nodes, multiplied up factor by factor with their derivatives (theory 2.3).
   pure subroutine lagrange_basis(self, element, u, derivatives, values)
     type(direction_t), intent(in) :: self
     integer, intent(in) :: element

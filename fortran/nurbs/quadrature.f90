@@ -8,7 +8,7 @@ module isomortar_nurbs_quadrature
 
 contains
 
-  !> Points and weights on [0, 1], by Newton's method on the Legendre polynomial.
+  !> Points and weights on [0, 1], by Newton's method on the Legendre polynomial (theory 2.7).
   pure subroutine gauss_legendre(points, weights)
     real(wp), intent(out) :: points(:), weights(:)
     real(wp), parameter :: pi = acos(-1.0_wp)

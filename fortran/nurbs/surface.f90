@@ -29,7 +29,7 @@ module isomortar_nurbs_surface
 
 contains
 
-  !> The face of a patch: axis 1..3 is the direction that is constant, at its start (end = 0) or end (end = 1).
+  !> The face of a patch: axis 1..3 is the direction that is constant, at its start (end = 0) or end (end = 1) (theory 3.2).
   pure function face_of(patch, axis, end) result(self)
     type(patch_t), intent(in) :: patch
     integer, intent(in) :: axis, end
@@ -85,7 +85,7 @@ contains
     end do
   end subroutine step_across
 
-  !> A difference of coordinates, the shortest way round in closed directions.
+  !> A difference of coordinates, the shortest way round in closed directions (theory 3.20).
   pure function shortest_way(self, difference) result(way)
     type(surface_t), intent(in) :: self
     real(wp), intent(in) :: difference(2)
@@ -150,7 +150,7 @@ contains
     end do
   end subroutine homogeneous_net
 
-  !> Point of an element and its derivatives to order 2 (columns: derivative_column), from its net: what `surface_basis` would give.
+  !> Point of an element and its derivatives to order 2 (columns: derivative_column), from its net (theory 2.5).
   pure subroutine surface_point(self, place, net, xi, derivatives)
     type(surface_t), intent(in) :: self
     integer, intent(in) :: place(2)
@@ -187,7 +187,7 @@ contains
     end associate
   end subroutine surface_point
 
-  !> Rational functions of an element at xi and their partial derivatives up to `order` (columns: derivative_column).
+  !> Rational functions of an element at xi and their partial derivatives up to `order` (columns: derivative_column) (theory 2.4).
   !> Quotient rule on the homogeneous form, Piegl and Tiller 1997, Section 4.5.
   pure subroutine surface_basis(self, place, nodes, xi, order, values)
     type(surface_t), intent(in) :: self
@@ -218,7 +218,7 @@ contains
     call divide(order, total, values)
   end subroutine surface_basis
 
-  !> From the derivatives of numerators and denominator to those of the quotients.
+  !> From the derivatives of numerators and denominator to those of the quotients (theory 2.5).
   pure subroutine divide(order, total, values)
     integer, intent(in) :: order
     real(wp), intent(in) :: total(:)

@@ -28,7 +28,7 @@ module isomortar_solid_element
 
 contains
 
-  !> Evaluate an element at all its quadrature points.
+  !> Evaluate an element at all its quadrature points (theory 1.3, 2.6, 2.8).
   !> `positions` and `references` are its control points, shape (3, control points).
   pure subroutine sample_element(u, v, w, weight, positions, references, samples, status)
     type(line_rule_t), intent(in) :: u, v, w
@@ -77,7 +77,7 @@ contains
     end do
   end subroutine sample_element
 
-  !> Derivatives by the parameters of a rational field, from those of its denominator and numerators: (component, parameter).
+  !> Derivatives by the parameters of a rational field, from denominator and numerators: (component, parameter) (theory 1.3).
   pure function quotient(denominator, numerator) result(slope)
     real(wp), intent(in) :: denominator(4), numerator(3, 4)
     real(wp) :: slope(3, 3), scale
@@ -101,7 +101,7 @@ contains
     allocate (samples%gradient(m, 3, 4), samples%volume(m), samples%state(m))
   end subroutine reserve
 
-  !> Internal forces, shape (3, control points).
+  !> Internal forces, shape (3, control points) (theory 1.7).
   pure subroutine element_residual(u, v, w, weight, samples, bulk, shear, residual)
     type(line_rule_t), intent(in) :: u, v, w
     real(wp), intent(in) :: weight(:)
@@ -121,7 +121,7 @@ contains
   end subroutine element_residual
 
   !> The tangents K_ik of `component_pairs` without the weights of the control points: (pair, u, v, w), where each of u, v, w
-  !> runs over pairs of functions.
+  !> runs over pairs of functions (theory 1.8).
   pure subroutine element_tangent(u, v, w, samples, bulk, shear, tangent)
     type(line_pairs_t), intent(in) :: u, v, w
     type(samples_t), intent(in) :: samples

@@ -1,4 +1,4 @@
-!> Neo-Hookean solid with volumetric-deviatoric split, in the current configuration (formulation.md Section 1).
+!> Neo-Hookean solid with volumetric-deviatoric split, in the current configuration (theory 1).
 module isomortar_solid_material
   use isomortar_base_algebra, only: determinant, identity, log1p, trace
   use isomortar_base_kinds, only: wp
@@ -23,7 +23,7 @@ module isomortar_solid_material
 
 contains
 
-  !> Stretch of the displacement gradient h = F - 1. J - 1 is summed from the invariants of h.
+  !> Stretch of the displacement gradient h = F - 1. J - 1 is summed from the invariants of h (theory 1.4).
   pure function stretch(h) result(self)
     real(wp), intent(in) :: h(3, 3)
     type(stretch_t) :: self
@@ -41,7 +41,7 @@ contains
     self%trace = 3.0_wp + trace(increment)
   end function stretch
 
-  !> Kirchhoff stress J sigma = A1 ln J 1 + A2 J^(-2/3) dev b; the first Piola stress is this times F⁻ᵀ.
+  !> Kirchhoff stress J sigma = A1 ln J 1 + A2 J^(-2/3) dev b; the first Piola stress is this times F⁻ᵀ (theory 1.1, 1.6).
   pure function kirchhoff_stress(state, bulk, shear) result(stress)
     type(stretch_t), intent(in) :: state
     real(wp), intent(in) :: bulk, shear
@@ -50,7 +50,7 @@ contains
     stress = bulk * state%log_jacobian * identity + isochoric(state, shear) * state%deviator
   end function kirchhoff_stress
 
-  !> Coefficients of the tangent of control points a, b with spatial gradients g, h = b g:
+  !> Coefficients of the tangent of control points a, b with spatial gradients g, h = b g (theory 1.9):
   !> K_ik = c1 g_i^a g_k^b + c2 g_k^a g_i^b + c3 (g^a.h^b) delta_ik - c4 (h_i^a g_k^b + g_i^a h_k^b).
   pure function tangent_coefficients(state, bulk, shear) result(c)
     type(stretch_t), intent(in) :: state
