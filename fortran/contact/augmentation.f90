@@ -1,4 +1,4 @@
-!> Control pressures and tractions of an augmented penalty law, and their derivatives as rows (formulation.md Section 4).
+!> Control pressures and tractions of an augmented penalty law, and their derivatives as rows (theory 4).
 module isomortar_contact_augmentation
   use isomortar_base_kinds, only: wp
   use isomortar_contact_blocks, only: multipliers_t, row_gap, row_metric, row_slip, row_slip_sum
@@ -72,8 +72,8 @@ contains
     end if
   end subroutine respond
 
-  !> Active control points [2.12]: w p > 0. The pressure of the current augmentation is zero for inactive ones. `whole` is <R^I>
-  !> over all slave points. A pressure that is not a number is active, so that forces are none either.
+  !> Active control points (theory 4.3). The pressure of the current augmentation is zero for inactive ones. `whole` is
+  !> <R^I> over all slave points. A pressure that is not a number is active, so that forces are none either.
   pure subroutine active_points(control, law, whole, pressure, active)
     type(control_t), intent(in) :: control
     type(law_t), intent(in) :: law
@@ -92,7 +92,8 @@ contains
     end do
   end subroutine active_points
 
-  !> Pressures, tractions and states. `slip_sum` is <R^I a_ab zeta^b> for the paper's form, absent for the local one.
+  !> Pressures, tractions and states (theory 4.4, 4.9). `slip_sum` is <R^I a_ab zeta^b> for the paper's form (theory 4.5), absent
+  !> for the local one.
   pure subroutine augmented_multipliers(control, law, whole, response, slip_sum)
     type(control_t), intent(in) :: control
     type(law_t), intent(in) :: law
@@ -152,7 +153,7 @@ contains
     end associate
   end subroutine apply_friction
 
-  !> Rows of the trial traction, "local" slip sum: e_T (m_ab <R^I dxi^b> / w + dm_ab slip^b), shape (3, 2, blocks).
+  !> Rows of the trial traction, "local" slip sum (theory 4.10): e_T (m_ab <R^I dxi^b> / w + dm_ab slip^b), shape (3, 2, blocks).
   pure subroutine trial_rows(control, law, active, pattern, rows, trial)
     type(control_t), intent(in) :: control
     type(law_t), intent(in) :: law
@@ -181,8 +182,9 @@ contains
     end do
   end subroutine trial_rows
 
-  !> Rows of the trial traction, the paper's slip sum: e_T / w^I (sum_J M_ab^IJ <R^J dxi^b> / w^J + <R^I da_ab zeta^b>).
-  !> `wide` is the pattern of the result, `neighbours` that of M^IJ. `lacking` is a row of them without one of the blocks, 0: none.
+  !> Rows of the trial traction (theory 4.10), the paper's slip sum: e_T / w^I (sum_J M_ab^IJ <R^J dxi^b> / w^J + <R^I da_ab
+  !> zeta^b>). `wide` is the pattern of the result, `neighbours` that of M^IJ. `lacking` is a row of them without one of the
+  !> blocks, 0: none.
   pure subroutine trial_rows_summed(slave, control, law, active, pattern, rows, neighbours, wide, trial, lacking)
     type(slave_t), intent(in) :: slave
     type(control_t), intent(in) :: control
@@ -232,7 +234,7 @@ contains
     lacking = 0
   end subroutine trial_rows_summed
 
-  !> M_ab^IJ = <R^I a_ab R^J> as 11, 12, 22 on the pattern of neighbours; `lacking` as above.
+  !> M_ab^IJ = <R^I a_ab R^J> (theory 4.10) as 11, 12, 22 on the pattern of neighbours; `lacking` as above.
   pure subroutine pair_metric(slave, control, neighbours, metric, lacking)
     type(slave_t), intent(in) :: slave
     type(control_t), intent(in) :: control
@@ -261,8 +263,8 @@ contains
     lacking = 0
   end subroutine pair_metric
 
-  !> Rows of the multipliers p, t_1, t_2 on the pattern `wide` of the trial rows: result(component, multiplier, block).
-  !> `lacking` is a row of it without one of the blocks, 0: none.
+  !> Rows of the multipliers p, t_1, t_2 (theory 4.8, 4.9) on the pattern `wide` of the trial rows: result(component, multiplier,
+  !> block). `lacking` is a row of it without one of the blocks, 0: none.
   pure subroutine multiplier_rows(control, response, pattern, rows, wide, trial, result, lacking)
     type(control_t), intent(in) :: control
     type(response_t), intent(in) :: response
@@ -298,7 +300,8 @@ contains
     lacking = 0
   end subroutine multiplier_rows
 
-  !> Add sum_I <R^I dg> Dp^I + <R^I dxi^a> Dt_a^I to a matrix of blocks; `lacking` is a row without one of the blocks, 0: none.
+  !> Add sum_I <R^I dg> Dp^I + <R^I ds^a> Dt_a^I (theory 4.8) to a matrix of blocks; `lacking` is a row without one of the blocks,
+  !> 0: none.
   pure subroutine condense(active, pattern, rows, wide, changes, target_pattern, target, lacking)
     logical, intent(in) :: active(:)
     type(pattern_t), intent(in) :: pattern, wide, target_pattern

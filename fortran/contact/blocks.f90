@@ -60,7 +60,7 @@ module isomortar_contact_blocks
 
 contains
 
-  !> Add the contact forces r(d) = sum p^I <R^I dg> + sum t_a^I <R^I dxi^a>.
+  !> Add the contact forces r(d) = sum p^I <R^I dg> + sum t_a^I <R^I dxi^a> (theory 4.7).
   subroutine integrate_forces(slave, master, positions, projections, with_friction, multipliers, forces)
     type(slave_t), intent(in) :: slave
     type(master_t), intent(in) :: master
@@ -91,7 +91,7 @@ contains
     end do
   end subroutine integrate_forces
 
-  !> Add constraint rows and the geometric tangent <p Ddg> + <t_a Ddxi^a>.
+  !> Add constraint rows and the geometric tangent <p Ddg> + <t_a Ddxi^a> (theory 4.8).
   !>
   !> `row_pattern` holds for each slave control point (row) the control points (columns) that its rows reach;
   !> rows(component, kind, block). `field_slip` is the field of control slips, used by the slip sum's rows. On failure
@@ -164,7 +164,7 @@ contains
     if (.not. master%is_plane) allocate (batch%second(n, 3, 3, vectors, per_element))
   end subroutine reserve
 
-  !> p, t_1, t_2 at a quadrature point.
+  !> p, t_1, t_2 at a quadrature point (theory 4.7).
   pure function fields_at(slave, multipliers, e, q) result(field)
     type(slave_t), intent(in) :: slave
     type(multipliers_t), intent(in) :: multipliers

@@ -1,4 +1,4 @@
-!> First pass over the slave quadrature points: projection and control quantities (formulation.md Section 4).
+!> First pass over the slave quadrature points: projection and control quantities (theory 4.1).
 module isomortar_contact_control
   use isomortar_base_kinds, only: wp
   use isomortar_base_status, only: status_degenerate_surface, status_lost_projection, status_not_finite, status_ok, &
@@ -51,7 +51,8 @@ module isomortar_contact_control
 contains
 
   !> Project every slave quadrature point; `xi` holds starts where `started`, elsewhere the nearest sample of the master is one.
-  !> `origin` and `had` are the projections at the last converged load step. On failure `place` is the quadrature point.
+  !> `origin` and `had` are the projections at the last converged load step (theory 3.4, 3.20). On failure `place` is the quadrature
+  !> point.
   subroutine project_points(slave, master, positions, started, origin, had, projections, status, place)
     type(slave_t), intent(in) :: slave
     type(master_t), intent(in) :: master
@@ -97,7 +98,7 @@ contains
     end do
   end subroutine project_points
 
-  !> Project the quadrature points of a slave element, which are near each other: those after number `before`.
+  !> Project the quadrature points of a slave element, which are near each other: those after number `before` (theory 3.19).
   pure subroutine project_element(slave, master, hulls, positions, started, had, shallow, before, projections, status, place)
     type(slave_t), intent(in) :: slave
     type(master_t), intent(in) :: master
@@ -210,7 +211,7 @@ contains
     end associate
   end subroutine point_on_master
 
-  !> Integrate the control quantities. Points without a projection take no part in any of them.
+  !> Integrate the control quantities. Points without a projection take no part in any of them (theory 4.1).
   pure subroutine control_quantities(slave, master, positions, projections, control)
     type(slave_t), intent(in) :: slave
     type(master_t), intent(in) :: master
@@ -247,7 +248,7 @@ contains
     if (.not. master%is_plane) product_of_orders = product(master%surface%direction%order + 1)
   end function product_of_orders
 
-  !> <R^I R^I> and <R^I R^I a_ab> over the points whose `present` is 1.
+  !> <R^I R^I> and <R^I R^I a_ab> over the points whose `present` is 1 (theory 4.2).
   pure subroutine integrate_squares(slave, present, control)
     type(slave_t), intent(in) :: slave
     real(wp), intent(in) :: present(:)
@@ -269,7 +270,7 @@ contains
     end do
   end subroutine integrate_squares
 
-  !> <R^I a_ab zeta^b> with zeta the field of control slips (formulation.md Section 4, "paper"); zero slip where inactive.
+  !> <R^I a_ab zeta^b> with zeta the field of control slips (theory 4.5); zero slip where inactive.
   pure subroutine integrate_slip_sum(slave, point_metric, control_slip, field_slip, totals)
     type(slave_t), intent(in) :: slave
     real(wp), intent(in) :: point_metric(:, :), control_slip(:, :)

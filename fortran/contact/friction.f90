@@ -1,4 +1,4 @@
-!> Coulomb friction at a control point: trial traction, return map, and its exact derivative (formulation.md Section 4).
+!> Coulomb friction at a control point: trial traction, return map, and its exact derivative (theory 4.6).
 module isomortar_contact_friction
   use isomortar_base_kinds, only: wp
   implicit none
@@ -30,7 +30,7 @@ contains
     contravariant = contravariant / (metric(1) * metric(3) - metric(2)**2)
   end function raise_index
 
-  !> Norm of covariant components in a metric; not a number where one of them is none, which `max` would drop.
+  !> Norm of covariant components in a metric; not a number where one of them is none, which `max` would drop (theory 4.2).
   pure real(wp) function metric_norm(traction, metric)
     real(wp), intent(in) :: traction(2), metric(3)
     real(wp) :: square
@@ -40,11 +40,11 @@ contains
     metric_norm = sqrt(square)
   end function metric_norm
 
-  !> Return the trial traction of a control point under pressure to the disk of radius mu p.
+  !> Return the trial traction of a control point under pressure to the disk of radius mu p (theory 4.6, 4.13).
   !>
   !> `derivative(a, :)` is d traction_a by the pressure (1), the trial traction (2:3) and the metric (4:6: 11, 12, 22).
   !> A trial above (1 - margin) mu p slips. `radial` replaces the traction in the part of the derivative that shortens the
-  !> trial: the current traction there is more forgiving on the way and the same at the solution (formulation.md Section 6).
+  !> trial: the current traction there is more forgiving on the way and the same at the solution (theory 4.14).
   pure subroutine return_map(trial, pressure, friction, metric, margin, traction, state, derivative, radial)
     real(wp), intent(in) :: trial(2), pressure, friction, metric(3), margin
     real(wp), intent(out) :: traction(2)
@@ -79,7 +79,7 @@ contains
     end do
   end subroutine return_map
 
-  !> A traction, shortened to a radius where it is longer.
+  !> A traction, shortened to a radius where it is longer (theory 4.14).
   pure function onto_disk(traction, radius, metric) result(shortened)
     real(wp), intent(in) :: traction(2), radius, metric(3)
     real(wp) :: shortened(2)

@@ -183,8 +183,8 @@ contains
     end associate
   end subroutine put_in_box
 
-  !> A bound of the curvature: second differences of the Bezier points over the product of first differences, these along their
-  !> means.
+  !> A bound of the curvature (theory 3.17): second differences of the Bezier points over the product of first differences, these
+  !> along their means.
   pure real(wp) function largest_curvature(points, corner) result(curvature)
     integer, intent(in) :: points(2)
     real(wp), intent(in) :: corner(:, :)

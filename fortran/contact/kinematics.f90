@@ -1,4 +1,4 @@
-!> Gap, projection and their variations at one slave point (formulation.md Section 3).
+!> Gap, projection and their variations at one slave point (theory 3).
 !>
 !> Variations are linear forms in short vectors: dx - dS, dS,1, dS,2, dS,11, dS,12, dS,22, three components each. A plane
 !> needs the first, a frictionless surface the first three, friction on a surface all six.
@@ -57,7 +57,8 @@ contains
     short_vectors = merge(1, merge(6, 3, with_friction), is_plane)
   end function short_vectors
 
-  !> Kinematics on a deformable surface. `derivatives` holds S and its derivatives by column, `outward` the sign of the normal.
+  !> Kinematics on a deformable surface (theory 3.2, 3.3). `derivatives` holds S and its derivatives by column, `outward` the sign
+  !> of the normal.
   pure function contact_point(x, derivatives, outward) result(self)
     real(wp), intent(in) :: x(3), derivatives(:, :), outward
     type(contact_point_t) :: self
@@ -79,7 +80,7 @@ contains
     self%inverse_h = inverse2(self%metric + self%gap * self%curvature)
   end function contact_point
 
-  !> Kinematics on a rigid plane.
+  !> Kinematics on a rigid plane (theory 3.4).
   pure function plane_point(x, origin, normal, tangent) result(self)
     real(wp), intent(in) :: x(3), origin(3), normal(3), tangent(3, 2)
     type(contact_point_t) :: self
@@ -102,7 +103,7 @@ contains
     range = [3 * k - 2, 3 * k - 1, 3 * k]
   end function components
 
-  !> Rows of dg, dxi and the slip.
+  !> Rows of dg, dxi and the slip (theory 3.5, 3.6, 3.12).
   pure function first_variations(point, vectors) result(self)
     type(contact_point_t), intent(in) :: point
     integer, intent(in) :: vectors
@@ -126,7 +127,7 @@ contains
     end do
   end function first_variations
 
-  !> Rows of dS,a with the projection moving along: dS,a + S,ab dxi^b, three rows.
+  !> Rows of dS,a with the projection moving along: dS,a + S,ab dxi^b, three rows (theory 3.7).
   pure function moving_tangent(point, projection, a) result(rows)
     type(contact_point_t), intent(in) :: point
     real(wp), intent(in) :: projection(:, :)
@@ -143,7 +144,7 @@ contains
     end do
   end function moving_tangent
 
-  !> Rows of the metric's variation: a_11, a_12, a_22.
+  !> Rows of the metric's variation: a_11, a_12, a_22 (theory 3.8).
   pure function metric_variation(point, variations) result(rows)
     type(contact_point_t), intent(in) :: point
     type(variations_t), intent(in) :: variations
@@ -157,7 +158,7 @@ contains
     rows(:, 3) = 2.0_wp * matmul(second, point%tangent(:, 2))
   end function metric_variation
 
-  !> Add scale * Ddg to a bilinear form over the components.
+  !> Add scale * Ddg to a bilinear form over the components (theory 3.9, 3.13).
   pure subroutine gap_variation(point, variations, scale, form)
     type(contact_point_t), intent(in) :: point
     type(variations_t), intent(in) :: variations
@@ -181,7 +182,7 @@ contains
     if (point%turns) call add_turn(point, scale / point%gap, form(1:3, 1:3))
   end subroutine gap_variation
 
-  !> Add scale * (dx - dS)^T P (Dx - DS), P the projector across the normal and the free tangents: on a C0 line.
+  !> Add scale * (dx - dS)^T P (Dx - DS), P the projector across the normal and the free tangents: on a C0 line (theory 3.13).
   pure subroutine add_turn(point, scale, form)
     type(contact_point_t), intent(in) :: point
     real(wp), intent(in) :: scale
@@ -197,7 +198,7 @@ contains
     end do
   end subroutine add_turn
 
-  !> Rows of dx - dS - a_b dxi^b, three rows.
+  !> Rows of dx - dS - a_b dxi^b, three rows (theory 3.7).
   pure function moving_distance(point, projection) result(rows)
     type(contact_point_t), intent(in) :: point
     real(wp), intent(in) :: projection(:, :)
@@ -211,8 +212,8 @@ contains
     end do
   end function moving_distance
 
-  !> Add traction_a D(slip)^a, scaled, to a bilinear form over the components: formulation.md has it for slips dxi; here the
-  !> forces' slips are d, the projection's own changes D.
+  !> Add traction_a D(slip)^a, scaled, to a bilinear form over the components (theory 3.10): d moves with the forces' slips, D with
+  !> the projection's own changes.
   pure subroutine traction_variation(point, variations, traction, form)
     type(contact_point_t), intent(in) :: point
     type(variations_t), intent(in) :: variations
@@ -244,7 +245,7 @@ contains
   end subroutine traction_variation
 
   !> What stands beside dxi^c in the slip's second variation, weighted with theta: the row of the vectors' own changes, and that of
-  !> their further derivatives as the projection moves.
+  !> their further derivatives as the projection moves (theory 3.10).
   pure subroutine second_row(point, theta, projection, c, row, carried)
     type(contact_point_t), intent(in) :: point
     real(wp), intent(in) :: theta(2), projection(:, :)

@@ -1,4 +1,4 @@
-!> Feet of slave points on C0 lines of the master (formulation.md Section 3): there the normal is the direction of the distance.
+!> Feet of slave points on C0 lines of the master (theory 3.11): there the normal is the direction of the distance.
 !>
 !> Gap and normal are continuous from a face onto the line, along it, and onto the next face.
 module isomortar_contact_kink
@@ -16,7 +16,7 @@ module isomortar_contact_kink
 
 contains
 
-  !> Kinematics at a foot with fixed coordinates, from those of the lower element's face at the same place.
+  !> Kinematics at a foot with fixed coordinates, from those of the lower element's face at the same place (theory 3.11, 3.14).
   pure subroutine hold_on_lines(surface, positions, x, xi, place, fixed, point)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :), x(3), xi(2)
@@ -43,7 +43,7 @@ contains
     point%inverse_h = inverse2(point%metric + point%gap * point%curvature)
   end subroutine hold_on_lines
 
-  !> Mean of the outward unit normals of the faces that meet on the lines: `place` is the lowest of their elements.
+  !> Mean of the outward unit normals of the faces that meet on the lines: `place` is the lowest of their elements (theory 3.11).
   pure function mean_normal(surface, positions, xi, place, fixed) result(normal)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :), xi(2)
@@ -70,7 +70,7 @@ contains
     normal = normal / norm2(normal)
   end function mean_normal
 
-  !> The longer of an element's lengths along its coordinates.
+  !> The longer of an element's lengths along its coordinates (theory 3.14).
   pure real(wp) function element_size(surface, place, point)
     type(surface_t), intent(in) :: surface
     integer, intent(in) :: place(2)

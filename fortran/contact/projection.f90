@@ -92,7 +92,7 @@ contains
     end do
   end function start_nearest
 
-  !> From where a search stands to the next place that is nearest to x among those near it.
+  !> From where a search stands to the next place that is nearest to x among those near it (theory 3.1).
   pure subroutine descend(surface, positions, x, here)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :), x(3)
@@ -122,7 +122,7 @@ contains
   end subroutine descend
 
   !> Search the elements of a list that may hold a nearer point than the one found, and go on from there: first from what samples
-  !> are nearer, then in all elements that may still hold one.
+  !> are nearer, then in all elements that may still hold one (theory 3.1).
   pure subroutine look_round(surface, hulls, positions, x, list, here)
     type(surface_t), intent(in) :: surface
     type(hulls_t), intent(in) :: hulls
@@ -169,7 +169,7 @@ contains
     if (.not. is_settled) is_settled = is_farther(hulls, e, x, here%way, sqrt(2.0_wp * here%distance))
   end function is_settled
 
-  !> Whether a point at the distance of the one found has one near point alone in an element.
+  !> Whether a point at the distance of the one found has one near point alone in an element (theory 3.17).
   pure logical function is_plain(hulls, e, here)
     type(hulls_t), intent(in) :: hulls
     integer, intent(in) :: e
@@ -267,7 +267,7 @@ contains
     end if
   end function is_preferred
 
-  !> Whether the distance grows from a foot in all directions that are free there.
+  !> Whether the distance grows from a foot in all directions that are free there (theory 3.18).
   pure logical function is_isolated(here)
     type(search_t), intent(in) :: here
 
@@ -275,7 +275,7 @@ contains
     if (.not. any(here%fixed)) is_isolated = is_isolated .and. here%bend_both > flat_distance
   end function is_isolated
 
-  !> Whether a point is behind the surface by more than its body's depth below the foot, up to the face across from it.
+  !> Whether a point is behind the surface by more than its body's depth below the foot (theory 3.19).
   pure logical function is_too_deep(surface, opposite, positions, here) result(deep)
     type(surface_t), intent(in) :: surface, opposite
     real(wp), intent(in) :: positions(:, :)
@@ -354,7 +354,7 @@ contains
     if (moved) here = there
   end subroutine cross_boundary
 
-  !> Least distance within one element: Newton's method on the free coordinates, steps kept inside the bounds.
+  !> Least distance within one element: Newton's method on the free coordinates, steps kept inside the bounds (theory 3.16).
   pure subroutine search_element(surface, positions, x, here)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :), x(3)
@@ -384,7 +384,7 @@ contains
     end do
   end subroutine search_element
 
-  !> Way and distance of a search, the distance's slope and Hessian, and the metric of the surface.
+  !> Way and distance of a search, the distance's slope and Hessian, and the metric of the surface (theory 3.15).
   pure subroutine distance_derivatives(surface, net, x, span, here, slope, hessian, metric)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: net(:, :, :), x(3), span(2)
@@ -429,7 +429,7 @@ contains
     end do
   end subroutine find_pressing
 
-  !> Newton's step on the free coordinates; with the metric for Hessian where that is not positive definite.
+  !> Newton's step on the free coordinates; with the metric for Hessian where that is not positive definite (theory 3.15).
   pure function newton_step(here, slope, hessian, metric) result(step)
     type(search_t), intent(in) :: here
     real(wp), intent(in) :: slope(2), hessian(2, 2), metric(2, 2)
@@ -452,7 +452,7 @@ contains
     end if
   end function newton_step
 
-  !> Halve a long step until the distance falls as its slope promises (Armijo's rule on the bounded step).
+  !> Halve a long step until the distance falls as its slope promises (theory 3.16, Armijo's rule on the bounded step).
   pure subroutine limit_step(surface, here, net, x, slope, low, high, step)
     type(surface_t), intent(in) :: surface
     type(search_t), intent(in) :: here

@@ -26,7 +26,7 @@ module isomortar_contact_slave
 
 contains
 
-  !> Functions and reference areas at the quadrature points of a contact patch.
+  !> Functions and reference areas at the quadrature points of a contact patch (theory 2.8).
   !> `nodes` are numbered within the surface.
   pure subroutine slave_tables(surface, points, references, nodes, basis, area)
     type(surface_t), intent(in) :: surface
@@ -58,7 +58,7 @@ contains
     end do
   end subroutine slave_tables
 
-  !> <R^I f> for every slave control point, of fields given at the quadrature points: totals(field, I).
+  !> <R^I f> (theory 2.8) for every slave control point, of fields given at the quadrature points: totals(field, I).
   pure subroutine integrate_functions(slave, fields, totals)
     type(slave_t), intent(in) :: slave
     real(wp), intent(in) :: fields(:, :)
