@@ -173,7 +173,7 @@ class Law:
     What supports hold: control points with `bears` 0 bear nothing, and `free`, shape (n, 2, 2), projects the covariant tractions of the
     others (component, traction) so that nothing is left along it.
     Trials above (1 - `slip_margin`) mu p slip; `held` control points (1) stick whatever their trial; `forgiving` takes the current
-    traction for the radial part of the slip derivative (formulation.md Section 6).
+    traction for the radial part of the slip derivative (theory 4.14).
     """
 
     penalties: FloatArray

@@ -34,7 +34,7 @@ def box(lower: Vector, upper: Vector) -> Patch:
 
 
 def bowl(centre: tuple[float, float], half_width: float, bottom: float, rise: float, top: float) -> Patch:
-    """Block with a flat top and a paraboloid below; u, v, w run along x, y, z. One bi-quadratic by linear element.
+    """Block with a flat top and a paraboloid below; u, v, w run along x, y, z. One bi-quadratic by linear element (theory 2.10).
 
     The underside is ``z = bottom + rise ((x - x0)^2 + (y - y0)^2) / half_width^2`` over a square: its
     mid-edges are raised by `rise`, its corners by twice that.
@@ -66,7 +66,7 @@ def bowl(centre: tuple[float, float], half_width: float, bottom: float, rise: fl
 
 
 def ring(centre: Vector, inner: float, outer: float, width: float) -> Patch:
-    """Ring about the y-axis: four exact quarter arcs whose joints are only continuous.
+    """Ring about the y-axis: four exact quarter arcs whose joints are only continuous (theory 2.10).
 
     u runs round the ring from its highest point towards +x (knots 0 to 4, one unit an arc; the last row of
     control points repeats the first), v from the inner to the outer radius, w along -y.

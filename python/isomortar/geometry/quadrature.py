@@ -1,4 +1,4 @@
-"""Default numbers of Gauss points: Table 1 of Temizer (2012), with N1 and N5 of `formulation.md` Section 5."""
+"""Default numbers of Gauss points: Table 1 of Temizer (2012), and ours where it has none (theory 2)."""
 
 from __future__ import annotations
 

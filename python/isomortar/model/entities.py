@@ -12,7 +12,7 @@ from isomortar.geometry.patch import FloatArray, Patch
 
 @dataclass(frozen=True)
 class Material:
-    """Neo-Hookean solid of `formulation.md` Section 1.
+    """Neo-Hookean solid (theory 1).
 
     Parameters
     ----------
@@ -27,17 +27,17 @@ class Material:
 
     @property
     def bulk(self) -> float:
-        """Bulk modulus A1 = E / (3 (1 - 2 nu))."""
+        """Bulk modulus A1 = E / (3 (1 - 2 nu)), theory 1.2."""
         return self.young / (3.0 * (1.0 - 2.0 * self.poisson))
 
     @property
     def shear(self) -> float:
-        """Shear modulus A2 = E / (2 (1 + nu))."""
+        """Shear modulus A2 = E / (2 (1 + nu)), theory 1.2."""
         return self.young / (2.0 * (1.0 + self.poisson))
 
     @property
     def modulus(self) -> float:
-        """Stiffness without lateral strain, A1 + 4/3 A2: the largest entries of a tangent go with it."""
+        """Stiffness without lateral strain, A1 + 4/3 A2: the largest entries of a tangent go with it (theory 5.7)."""
         return self.bulk + 4.0 / 3.0 * self.shear
 
 
@@ -82,7 +82,7 @@ class RigidPlane:
 class Contact:
     """A contact pair. `quadrature` are Gauss points per slave contact element and surface direction.
 
-    `reference_area` divides the penalties (Section 5); None: the area of the slave face in the reference configuration.
+    `reference_area` divides the penalties (theory 7.1); None: the area of the slave face in the reference configuration.
     """
 
     name: str
@@ -127,7 +127,7 @@ class Stage:
     steps: int
 
 
-#: What helps Newton's method on the way to the solution (formulation.md Section 6, but for keeping); none changes the solution.
+#: What helps Newton's method on the way to the solution (theory 6.5); none changes the solution.
 #: keeping: factors of an earlier tangent serve for as long as solves with them leave a small share of the residual. The others
 #: help the monolithic loop. forgiving: slip rows with the current traction in place of the cone's. margin: what slips at the
 #: start of an increment goes on slipping. reversal: predicted slip against its traction sticks instead. halving: updates that
@@ -138,14 +138,14 @@ MEASURES: tuple[Measure, ...] = ("forgiving", "margin", "reversal", "halving", "
 
 @dataclass(frozen=True)
 class SolverSettings:
-    """How contact is enforced and when a load step has converged (`formulation.md` Section 5).
+    """How contact is enforced and when a load step has converged (theory 5).
 
     Parameters
     ----------
     method : {"monolithic", "uzawa"}
-        Multipliers as unknowns of one Newton loop (Section 6), or augmentations around Newton's method (the paper's way).
+        Multipliers as unknowns of one Newton loop (theory 6), or augmentations around Newton's method (theory 7, the paper's way).
     slip_sum : {"local", "paper"}
-        The trial traction from the control point's own slip, or summed over active neighbours (Section 4).
+        The trial traction from the control point's own slip, or summed over active neighbours (theory 4.4, 4.5).
     penalty_normal, penalty_tangential : float
         Base penalties, times the largest diagonal entry of the solid tangent over the reference area.
     penalty_growth, penalty_growth_max : float
@@ -159,7 +159,7 @@ class SolverSettings:
     max_augmentations, max_iterations, max_cuts : int
         `max_cuts`: how often a load step may be halved.
     measures : tuple of str
-        What helps Newton's method on the way (MEASURES; Section 6, steps 4, 6, 7).
+        What helps Newton's method on the way (MEASURES; theory 6.5).
     path_tolerance : float or None
         Relative error of the control multipliers that a load increment may make by itself, estimated by halving it; None: the
         increments are the stages' load steps.

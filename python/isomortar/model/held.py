@@ -50,7 +50,7 @@ def nothing_held(pair: Pair) -> Held:
 
 
 def held_by(supports: Supports, pair: Pair, start: FloatArray, time: float) -> Held:
-    """What supports hold of a pair in the increment from positions `start` to a load time."""
+    """What supports hold of a pair in the increment from positions `start` to a load time (theory 4.11, 4.12)."""
     held = nothing_held(pair)
     if isinstance(pair.contact.master, RigidPlane):
         _beside_plane(held, supports, pair, supports.increment(start, time), supports.moved(time))

@@ -23,7 +23,7 @@ _LIMIT = re.compile(r"(?:MemAvailable: +|^)([0-9]+)")
 
 
 def memory_needed(problem: Problem) -> float:
-    """Bytes that tangents and factors of the bodies will take, within a factor of two; contact comes on top."""
+    """Bytes that tangents and factors of the bodies will take, within a factor of two; contact comes on top (theory 9.3)."""
     return sum(BLOCK_BYTES * blocks(body.patch) + FACTOR_BYTES * factor_entries(body.patch) for body in problem.bodies)
 
 
@@ -59,7 +59,7 @@ def _first_points(direction: Direction) -> np.ndarray:
 
 
 def factor_entries(patch: Patch) -> float:
-    """Entries of both factors, were the unknowns eliminated by nested dissection of the grid of control points."""
+    """Entries of both factors, were the unknowns eliminated by nested dissection of the grid of control points (theory 9.3)."""
     widths = tuple(1 if d.family == "L" else d.order for d in patch.directions)
 
     @cache

@@ -16,7 +16,7 @@ Point = tuple[float, float, float]
 
 
 def origin_of(problem: Problem) -> FloatArray:
-    """Where a problem's coordinates are to count from: the centre of its bodies in components that are far away, else 0; shape (3,)."""
+    """Where coordinates count from: the bodies' centre in components that are far away, else 0 (theory 5.10); shape (3,)."""
     ends = np.array([end(body.patch.control_points, axis=0) for body in problem.bodies for end in (np.min, np.max)])
     low, high = ends.min(axis=0), ends.max(axis=0)
     centre = low + 0.5 * (high - low)

@@ -18,7 +18,7 @@ Rule = tuple[int, int, int]
 
 
 def quadrature_error(body: Body) -> float:
-    """Error of the forces of a uniform stretch by a body's Gauss points, relative to all of them; 0 where weights hardly differ.
+    """Error of the forces of a uniform stretch by a body's Gauss points (theory 9.2), relative to all; 0 where weights hardly differ.
 
     These forces are integrals of the functions' derivatives, as those of any state are.
 

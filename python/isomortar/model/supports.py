@@ -19,13 +19,13 @@ LARGEST_TURN = 36.0
 
 
 def progress(stages: Sequence[Stage], time: float) -> FloatArray:
-    """Share of each stage that has passed at a load time (in load steps), shape (stages,)."""
+    """Share of each stage that has passed at a load time (in load steps), shape (stages,) (theory 5.1)."""
     starts = np.cumsum([0] + [stage.steps for stage in stages])[:-1]
     return np.clip((time - starts) / np.array([stage.steps for stage in stages]), 0.0, 1.0)
 
 
 def rotation(axis: FloatArray, angle: float) -> FloatArray:
-    """Matrix that turns vectors about a unit axis, by Rodrigues' formula; SciPy's rotations take a tenth of the start of a run to load."""
+    """Matrix that turns vectors about a unit axis, by Rodrigues' formula (theory 5.3); SciPy's take a tenth of a run's start."""
     x, y, z = axis
     across = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     return np.eye(3) + np.sin(angle) * across + 2.0 * np.sin(0.5 * angle) ** 2 * across @ across
@@ -78,7 +78,7 @@ class Supports:
         return (3 * self.points[k].astype(np.int64)[:, None] + components).ravel()
 
     def longest_increment(self, step: int) -> float:
-        """The largest share of a recorded load step in which no support turns by more than LARGEST_TURN: one over a whole number."""
+        """The largest share of a recorded load step in which no support turns by more than LARGEST_TURN (theory 5.2): 1 / n."""
         stage = int(np.searchsorted(np.cumsum([stage.steps for stage in self._problem.stages]), step))
         turns = [abs(support.motions[stage].rotate) / self._problem.stages[stage].steps for support in self._problem.supports]
         return 1.0 / max(1, int(np.ceil(max(turns, default=0.0) / LARGEST_TURN)))
@@ -110,7 +110,7 @@ class Supports:
         return lacking
 
     def place(self, time: float) -> FloatArray:
-        """Positions of all control points with the prescribed ones where their supports put them at a load time.
+        """Positions of all control points with the prescribed ones where their supports put them at a load time (theory 5.2).
 
         Returns
         -------

@@ -86,7 +86,7 @@ def functions_at(direction: Direction, parameters: FloatArray) -> tuple[FloatArr
 
 
 def rational(matrices: Sequence[FloatArray], weights: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Apply one matrix a direction to values at the control points of a rational tensor product.
+    """Apply one matrix a direction to values at the control points of a rational tensor product (theory 2.4).
 
     Parameters
     ----------

@@ -13,7 +13,7 @@ from isomortar.model.pairs import Pair
 
 
 def gaps(problem: Problem, contact: Contact, positions: FloatArray, points: FloatArray) -> FloatArray:
-    """Gap g of points to the master by closest-point projection (formulation.md Section 3); positive is penetration.
+    """Gap g of points to the master by closest-point projection (theory 3.2); positive is penetration.
 
     Parameters
     ----------

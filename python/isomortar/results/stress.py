@@ -12,7 +12,7 @@ from isomortar.results.bezier import functions_at, rational_gradient
 
 
 def deformation_gradient(body: Body, points: FloatArray, parameters: Sequence[FloatArray]) -> FloatArray:
-    """F = dx/dX on a grid of parameters.
+    """F = dx/dX on a grid of parameters (theory 8.3).
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ def deformation_gradient(body: Body, points: FloatArray, parameters: Sequence[Fl
 
 
 def first_piola_stress(material: Material, deformation: FloatArray) -> FloatArray:
-    """P = A1 ln J F^-T + A2 J^(-2/3) (F - tr C/3 F^-T) (formulation.md Section 1), force per reference area.
+    """P = A1 ln J F^-T + A2 J^(-2/3) (F - tr C/3 F^-T) (theory 8.3), force per reference area.
 
     Parameters
     ----------
