@@ -11,7 +11,7 @@ from isomortar.model.entities import Body, Contact, Face, Problem, RigidPlane
 from isomortar.solve.contact import PairMechanics
 from isomortar.solve.record import ContactResult
 
-#: A slave this many times stiffer than its master, and finer, has nearly redundant constraints (formulation.md Section 6).
+#: A slave this many times stiffer than its master, and finer, has nearly redundant constraints (theory 6).
 STIFFER = 10.0
 #: Control pressures this many times above the field's largest value oscillate.
 OSCILLATION = 1.5

@@ -3,7 +3,7 @@
     [ K + K_geo   G^T ] [ dx ]     [ forces              ]
     [ -target'    L   ] [ dl ] = - [ multiplier - target ]
 
-Multiplier columns are scaled by e, rows of the contact conditions by w (formulation.md Section 6, step 5), and those of the covariant
+Multiplier columns are scaled by e, rows of the contact conditions by w (theory 6.4), and those of the covariant
 tractions by the lengths of the master's tangent vectors: all entries then have the unit of the stiffness, whatever the units and knots.
 """
 
@@ -60,7 +60,7 @@ class Border:
         return sources, [self.blocks.geometric, columns, conditions, np.ascontiguousarray(own)]
 
     def _own_block(self) -> FloatArray:
-        """Derivative of multiplier - target by the multipliers, shape (slave control points, 3, 3)."""
+        """Derivative of multiplier - target by the multipliers, shape (slave control points, 3, 3) (theory 6.3)."""
         active = self.target.state > 0
         own = np.zeros((len(active), 3, 3))
         own[:, [0, 1, 2], [0, 1, 2]] = 1.0
@@ -80,7 +80,7 @@ class Border:
 def solve_bordered(
     equilibrium: Equilibrium, balance: Balance, laws: Sequence[Law], targets: Sequence[Response], prescribed: FloatArray | None
 ) -> tuple[Correction, list[Border | None]]:
-    """Newton's correction, with given increments of the prescribed positions.
+    """Newton's correction, with given increments of the prescribed positions (theory 5.4, 6.3).
 
     `balance.responses` hold the current multipliers, `targets` what the contact conditions make of them.
 
@@ -133,7 +133,7 @@ def _correction(
 
 
 def _border(equilibrium: Equilibrium, k: int, balance: Balance, law: Law, target: Response, first: int) -> Border | None:
-    """Border of one pair, its equations numbered from `first`; None where nothing is active."""
+    """Border of one pair, its equations numbered from `first`; None where nothing is active (theory 6.4)."""
     if not np.any(target.state):
         return None
     pair = equilibrium.pairs[k]

@@ -51,7 +51,7 @@ def median(values: FloatArray) -> Any:
 
 
 def moment(arms: FloatArray, forces: FloatArray) -> FloatArray:
-    """Sum of arms x forces, shape (3,); NumPy's `cross` takes eight times as long."""
+    """Sum of arms x forces (theory 8.1), shape (3,); NumPy's `cross` takes eight times as long."""
     products = arms.T @ forces
     return np.array([products[1, 2] - products[2, 1], products[2, 0] - products[0, 2], products[0, 1] - products[1, 0]])
 
@@ -61,7 +61,7 @@ Multipliers = tuple[FloatArray, FloatArray]
 
 
 def ratio(change: float, size: float) -> float:
-    """Square root of a ratio of squares; 0 where nothing changes, infinite where there was nothing before."""
+    """Square root of a ratio of squares; 0 where nothing changes, infinite where there was nothing before (theory 5.8)."""
     if change == 0.0:
         return 0.0
     return float(np.sqrt(change / size)) if size > 0.0 else float("inf")
@@ -89,7 +89,7 @@ class PairMechanics:
 
     @property
     def penalty_area(self) -> float:
-        """Area that the penalties are divided by (formulation.md Section 5)."""
+        """Area that the penalties are divided by (theory 7.1)."""
         return self.pair.contact.reference_area or self.pair.area
 
     def begin(self, supports: Supports, start: FloatArray, time: float) -> None:
@@ -98,7 +98,7 @@ class PairMechanics:
         self.held = held_by(supports, self.pair, start, time)
 
     def initial(self, positions: FloatArray) -> ContactState:
-        """State before the first load step: no tractions; slips count from where the reference configuration projects."""
+        """State before the first load step: no tractions; slips count from where the reference configuration projects (theory 3.20)."""
         n, q = len(self.pair.slave.point), len(self.pair.slave.area)
         nowhere = ContactState(np.zeros(n), np.zeros((n, 2)), np.zeros((q, 2)), np.zeros(q, dtype=np.int32))
         projections = self.kinematics(positions, nowhere).projections
@@ -115,14 +115,14 @@ class PairMechanics:
         return Kinematics(projections, control)
 
     def stiffness(self, scales: Scales) -> float:
-        """Largest diagonal entry of the tangents of the pair's bodies, were all of them as soft as the softest, force per length.
+        """Largest diagonal entry of the tangents of the pair's bodies, all as soft as the softest (theory 5.7), force per length.
 
-        Parameters taken from a stiffer body fail at stiffness ratios of 1e5 (formulation.md Section 7).
+        Parameters taken from a stiffer body fail at stiffness ratios of 1e5.
         """
         return float(np.max(scales.stiffness[self.pair.bodies] * self.pair.softest))
 
     def parameters(self, control: Control, scales: Scales) -> FloatArray:
-        """Complementarity parameters of the monolithic method, normal and tangential: stiffness / median of w^I and a multiple of it."""
+        """Complementarity parameters, normal and tangential (theory 6.1): stiffness / median of w^I and a multiple of it."""
         present = control.weight[control.weight > 0]
         normal = self.stiffness(scales) / (median(present) if present.size else self.pair.area)
         return np.array([normal, TANGENTIAL_FACTOR * normal])
@@ -133,14 +133,14 @@ class PairMechanics:
         return Law(penalties, self.friction, pressure, traction, self.summed, self.held.bears, self.held.free, sticks)
 
     def bear(self, kinematics: Kinematics, depth: float) -> bool:
-        """Let control points that supports hold along the normal bear if their control gap is above `depth`; whether there are any."""
+        """Let control points that supports hold along the normal bear if deeper than `depth` (theory 4.11); whether there are any."""
         alone = (self.held.bears == 0) & (kinematics.control.weight > 0)
         sunk = alone & (kinematics.control.gap > depth * kinematics.control.weight)
         self.held.bears[sunk] = 1
         return bool(sunk.any())
 
     def sliding(self, start: ContactState) -> FloatArray:
-        """Tractions of the last converged state, with those of sliding where supports push; shape (slave control points, 2)."""
+        """Tractions of the last converged state, with those of sliding where supports push (theory 4.12); shape (n, 2)."""
         pushed = np.any(self.held.pushed != 0.0, axis=1)
         return np.where(pushed[:, None], self.friction * start.pressure[:, None] * self.held.pushed, start.traction)
 
@@ -180,7 +180,7 @@ class PairMechanics:
         return blocks.patterns.tangent, tangent
 
     def contravariant(self, control: Control, traction: FloatArray) -> FloatArray:
-        """Contravariant components of control tractions in the discrete metric, shape (..., slave control points, 2)."""
+        """Contravariant components of control tractions in the discrete metric, shape (..., slave control points, 2) (theory 4.2)."""
         m11, m12, m22 = (control.metric / np.where(control.square > 0, control.square, 1.0)[:, None]).T
         determinant = m11 * m22 - m12**2
         scale = 1.0 / np.where(determinant > 0, determinant, 1.0)
@@ -191,13 +191,13 @@ class PairMechanics:
         return raised
 
     def tangent_lengths(self, control: Control) -> FloatArray:
-        """Typical lengths of the master's tangent vectors a_1, a_2 where the slave projects, shape (2,)."""
+        """Typical lengths of the master's tangent vectors a_1, a_2 where the slave projects, shape (2,) (theory 6.4)."""
         present = control.square > 0
         squared = control.metric[present][:, [0, 2]] / control.square[present, None]
         return np.sqrt(median(squared)) if np.any(present) and self.friction > 0 else np.ones(2)
 
     def traction_squares(self, control: Control, traction: FloatArray) -> FloatArray:
-        """Squared metric norm of control tractions, shape (..., slave control points)."""
+        """Squared metric norm of control tractions, shape (..., slave control points) (theory 4.2)."""
         return np.maximum(np.einsum("...a,...a->...", self.contravariant(control, traction), traction), 0.0)
 
     def traction_norms(self, control: Control, traction: FloatArray) -> FloatArray:
@@ -205,7 +205,7 @@ class PairMechanics:
         return np.sqrt(self.traction_squares(control, traction))
 
     def apart(self, control: Control, some: Multipliers, others: Multipliers) -> tuple[float, float]:
-        """Distance of some control pressures and tractions from others, over the norms of these.
+        """Distance of some control pressures and tractions from others, over the norms of these (theory 5.8).
 
         Tractions count for no less than a hundredth of the cone, or of the pressures where the cone is wider: where nothing pulls they
         are round-off.
@@ -217,7 +217,7 @@ class PairMechanics:
         return ratio(float((p - q) @ (p - q)), size), ratio(float(squares[0]), float(np.maximum(squares[1], least)))
 
     def off_conditions(self, kinematics: Kinematics, law: Law, response: Response, scales: Scales) -> tuple[float, float]:
-        """Relative distance of a response's pressures and tractions from what the contact conditions make of them.
+        """Relative distance of a response's pressures and tractions from what the contact conditions make of them (theory 7.4).
 
         Gap and slip count here with the stiffness of the whole face, traction per length, for they leave forces off by as much: small
         penalties change multipliers little, whatever the gap.
@@ -232,7 +232,7 @@ class PairMechanics:
         return self.apart(kinematics.control, (target.pressure, target.traction), (response.pressure, response.traction))
 
     def result(self, positions: FloatArray, kinematics: Kinematics, response: Response) -> ContactResult:
-        """Measured quantities at the end of a load step."""
+        """Measured quantities at the end of a load step (theory 8.2)."""
         control, projections = kinematics.control, kinematics.projections
         slave_forces, forces = np.zeros_like(positions), np.zeros_like(positions)
         self.add_forces(positions, kinematics, response, forces)

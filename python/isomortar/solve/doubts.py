@@ -68,6 +68,7 @@ def doubts(problem: Problem, state: State) -> Iterator[str]:
 
 
 def _locking(body: Body) -> Iterator[str]:
+    """Elements that are too stiff for their Poisson's ratio (theory 9.1)."""
     order = min(direction.order for direction in body.patch.directions)
     ratio, limit = body.material.bulk / body.material.shear, LOCKING * 10.0 ** (order - 1)
     if ratio > limit:

@@ -116,7 +116,7 @@ class Equilibrium:
         return sources, values
 
     def correction(self, balance: Balance, laws: Sequence[Law], prescribed: FloatArray) -> FloatArray:
-        """Newton's correction of all positions, with given increments of the prescribed ones, shape (control points, 3).
+        """Newton's correction of all positions, with given increments of the prescribed ones, shape (control points, 3) (theory 5.4).
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""The monolithic method: positions and multipliers in one semismooth Newton loop (formulation.md Section 6)."""
+"""The monolithic method: positions and multipliers in one semismooth Newton loop (theory 6)."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from isomortar.solve.newton import KEPT_FACTORS, KEPT_SHARE, observed_order, rel
 from isomortar.solve.record import AugmentationRecord, IterationRecord, State
 from isomortar.solve.scales import Scales
 
-#: Share of the cone within which a trial counts as slip at the start of an increment (Section 6, step 6).
+#: Share of the cone within which a trial counts as slip at the start of an increment (theory 6.5).
 SLIP_MARGIN = 1e-6
 #: How often the predictor is solved again with reversed slips held.
 MAX_REVERSALS = 2
@@ -45,7 +45,7 @@ class Iterate:
 
     @property
     def merit(self) -> float:
-        """What an update should make smaller."""
+        """What an update should make smaller (theory 6.6)."""
         return float(np.max([self.residual, self.gap_pressure, self.gap_traction]))  # not a number where one is not: `max` drops it
 
     @property
@@ -107,7 +107,7 @@ class Monolithic(Method):
         )
 
     def _first(self, start: State, scales: Scales) -> Iterate:
-        """The converged state of the last increment as the first iterate; what supports push along a plane slides."""
+        """The converged state of the last increment as the first iterate; what supports push along a plane slides (theory 6.5)."""
         pairs = zip(self._equilibrium.pairs, start.contacts, strict=True)
         multipliers = [(contact.pressure, pair.sliding(contact)) for pair, contact in pairs]
         margin = SLIP_MARGIN if "margin" in self._settings.measures else 0.0
@@ -122,7 +122,7 @@ class Monolithic(Method):
         margin: float = 0.0,
         held: Sequence[np.ndarray] | None = None,
     ) -> Iterate:
-        """An iterate; multipliers of control points that turn out inactive are set to zero."""
+        """An iterate; multipliers of control points that turn out inactive are set to zero (theory 6.2)."""
         equilibrium = self._equilibrium
         forgiving = "forgiving" in self._settings.measures
         with equilibrium.ledger.phase("solid"):
@@ -143,11 +143,12 @@ class Monolithic(Method):
         return Iterate(balance, tuple(laws), tuple(targets), residual, *self._gaps(balance, targets))
 
     def _gaps(self, balance: Balance, targets: Sequence[Response]) -> tuple[float, float]:
-        """Relative distance of pressures and tractions from what the contact conditions make of them, of the pair where it is largest."""
+        """Relative distance of pressures and tractions from the contact conditions, of the pair where it is largest (theory 6.6)."""
         pairs = zip(self._equilibrium.pairs, balance.kinematics, balance.responses, targets, strict=True)
         return largest(pair.apart(k.control, (now.pressure, now.traction), (to.pressure, to.traction)) for pair, k, now, to in pairs)
 
     def _converged(self, iterate: Iterate) -> bool:
+        """Whether forces are in balance and the contact conditions are met (theory 5.6, 6.6)."""
         within = self._settings.complementarity_tolerance
         balanced = iterate.residual <= self._settings.newton_tolerance
         return balanced and iterate.gap_pressure <= within and iterate.gap_traction <= within
@@ -155,7 +156,7 @@ class Monolithic(Method):
     def _predict(
         self, iterate: Iterate, start: State, scales: Scales, prescribed: FloatArray
     ) -> tuple[Iterate, Correction, list[Border | None], tuple[str, ...]]:
-        """The first solve, with the prescribed increment; slips that would reverse stick instead, and it is repeated."""
+        """The first solve, with the prescribed increment; slips that would reverse stick instead, and it is repeated (theory 6.5)."""
         equilibrium = self._equilibrium
         correction, borders = solve_bordered(equilibrium, iterate.balance, iterate.laws, iterate.targets, prescribed)
         if "reversal" not in self._settings.measures:
@@ -184,7 +185,7 @@ class Monolithic(Method):
         return following if following.states == iterate.states and following.merit <= KEPT_SHARE * iterate.merit else None
 
     def _reversals(self, k: int, iterate: Iterate, correction: Correction, border: Border | None) -> np.ndarray:
-        """Slipping control points whose predicted trial change opposes their traction: s^a dt_a < 0."""
+        """Slipping control points whose predicted trial change opposes their traction: t^a Dt_a < 0 (theory 6.5)."""
         target = iterate.targets[k]
         if border is None or self._equilibrium.pairs[k].friction <= 0:
             return np.zeros(len(target.state), dtype=bool)
@@ -195,7 +196,7 @@ class Monolithic(Method):
     def _update(
         self, iterate: Iterate, correction: Correction, start: State, scales: Scales, seen: list[bytes], iteration: int
     ) -> tuple[Iterate, tuple[str, ...]]:
-        """The next iterate: the full update, or one halved until it is admissible (Section 6, step 7)."""
+        """The next iterate: the full update, or one halved until it is admissible (theory 6)."""
         halvings = MAX_HALVINGS if "halving" in self._settings.measures else 0
         reason, share = "", 1.0
         for halving in range(halvings + 1):

@@ -22,7 +22,7 @@ KEPT_FACTORS = "kept factors"
 
 
 def relative_residual(equilibrium: Equilibrium, balance: Balance, scales: Scales) -> float:
-    """Residual at the free unknowns of a body relative to its internal forces, of the body where that is largest.
+    """Residual at the free unknowns of a body relative to its internal forces, of the body where that is largest (theory 5.6).
 
     Forces count for no less than what makes round-off pass `newton_tolerance`: while a body moves rigidly, they are nothing else.
     """
@@ -33,7 +33,7 @@ def relative_residual(equilibrium: Equilibrium, balance: Balance, scales: Scales
 
 
 def residual_round_off(equilibrium: Equilibrium, balance: Balance, scales: Scales) -> float:
-    """Round-off of the relative residual, of the bodies that have forces above it."""
+    """Round-off of the relative residual, of the bodies that have forces above it (theory 8.4)."""
     forces = equilibrium.measures.norms(balance.internal)
     loaded = forces > scales.round_off
     return float(np.max(scales.round_off[loaded] / forces[loaded], initial=0.0))
@@ -121,7 +121,7 @@ class PositionSolver:
 
 
 def observed_order(log: Sequence[IterationRecord], round_off: float) -> float:
-    """Observed order of convergence of one Newton loop; NaN where it can not be told.
+    """Observed order of convergence of one Newton loop; NaN where it can not be told (theory 8.4).
 
     The order q solves r_(k+1) = C r_k^q over three successive residuals. Taken are the last three that fall, with unchanged numbers of
     active and slipping control points and nothing else acting, and that are not at round-off: at order two the third would be

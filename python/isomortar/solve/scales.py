@@ -50,7 +50,7 @@ class BodyMeasures:
         return self.norms(np.where(self._free, forces, 0.0))
 
     def scales(self, positions: FloatArray) -> Scales:
-        """Scales at given positions.
+        """Scales at given positions (theory 5.5).
 
         Positions are known to their last bits. What these make of the forces, sum over j of K_ij^2 (last bit of x_j)^2 for the
         square of each, is the least residual that Newton's method can be asked for: while a body moves rigidly its internal forces are

@@ -118,7 +118,7 @@ class Simulation:
         return result
 
     def _advance(self, state: State, time: float, target: float, step: int) -> list[Increment]:
-        """One load increment; with a path tolerance in two halves, whose distance from the whole estimates its error."""
+        """One load increment; with a path tolerance in two halves, whose distance from the whole estimates its error (theory 5.9)."""
         whole = self._method.advance(state, target, step)
         tolerance = self.problem.settings.path_tolerance
         if tolerance is None:
@@ -131,7 +131,7 @@ class Simulation:
         return [first, second]
 
     def _distance(self, whole: Balance, halves: Balance) -> float:
-        """Largest relative distance between the pressures, or the tractions, of two solutions of an increment."""
+        """Largest relative distance between the pressures, or the tractions, of two solutions of an increment (theory 5.9)."""
         pairs = zip(self.equilibrium.pairs, halves.kinematics, whole.responses, halves.responses, strict=True)
         return float(np.max(largest(pair.apart(k.control, (a.pressure, a.traction), (b.pressure, b.traction)) for pair, k, a, b in pairs)))
 
@@ -175,7 +175,7 @@ class Simulation:
         return replace(result.state, positions=positions)
 
     def _reactions(self, time: float, positions: FloatArray, total: FloatArray) -> tuple[Reaction, ...]:
-        """Forces that the supports exert: their shares of the residual at the components that they prescribe."""
+        """Forces that the supports exert: their shares of the residual at the components that they prescribe (theory 8.1)."""
         reactions = []
         supports = self.equilibrium.supports
         for support, points, share in zip(self.equilibrium.problem.supports, supports.points, supports.shares, strict=True):
@@ -207,7 +207,7 @@ class Simulation:
 
 
 def _about_origin(result: ContactResult, own: FloatArray) -> ContactResult:
-    """The result with moments about the origin in place of those about an origin of its own."""
+    """The result with moments about the origin in place of those about an origin of its own (theory 8.2)."""
     return replace(
         result,
         moment_slave=result.moment_slave + moment(own[None], result.force_slave[None]),

@@ -1,4 +1,4 @@
-"""Uzawa's method: Newton's method for the positions inside a loop of augmentations (formulation.md Section 5)."""
+"""Uzawa's method: Newton's method for the positions inside a loop of augmentations (theory 7)."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Uzawa(Method):
     """Solves load increments by augmentations of control pressures and tractions."""
 
     def advance(self, start: State, time: float, step: int) -> Increment:
-        """Solve the increment; see `Method.advance`."""
+        """Solve the increment; see `Method.advance` (theory 7.1, 7.2)."""
         equilibrium = self._equilibrium
         prescribed, scales = self._begin(start, time)
         factors = np.array([self._settings.penalty_normal, self._settings.penalty_tangential])
@@ -63,7 +63,7 @@ class Uzawa(Method):
         )
 
     def _changes(self, laws: list[Law], balance: Balance) -> tuple[float, float]:
-        """Relative change of pressures and of tractions by the last augmentation (the paper's mixed norm: twice the same).
+        """Relative change of pressures and of tractions by the last augmentation (theory 7.3; the paper's mixed norm: twice the same).
 
         Of the pair where it is largest: a heavily loaded pair must not hide another one.
         """
@@ -78,6 +78,6 @@ class Uzawa(Method):
         return largest(changes)
 
     def _distances(self, laws: list[Law], balance: Balance, scales: Scales) -> tuple[float, float]:
-        """Relative distance of pressures and tractions from the contact conditions, of the pair where it is largest."""
+        """Relative distance of pressures and tractions from the contact conditions, of the pair where it is largest (theory 7.4)."""
         pairs = zip(self._equilibrium.pairs, laws, balance.kinematics, balance.responses, strict=True)
         return largest(pair.off_conditions(kinematics, law, response, scales) for pair, law, kinematics, response in pairs)
