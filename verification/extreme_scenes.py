@@ -63,7 +63,7 @@ def column(size: tuple[float, float, float] = (1.0, 1.0, 1.0), press: float = 0.
 
 
 def column_pressure(stretch: float, young: float = YOUNG, poisson: float = POISSON) -> float:
-    """Force per reference area of a column at an axial stretch: the lateral traction of formulation.md Section 1 is zero.
+    """Force per reference area of a column at an axial stretch: the lateral traction (theory 8.3) is zero.
 
     With ``e = ln J`` that traction is ``bulk e + shear exp(-2e/3) (exp(e)/stretch - stretch^2) / 3 = 0``, well conditioned where the body
     is nearly incompressible.

@@ -41,7 +41,7 @@ F = np.array([[1.3, 0.2, -0.1], [0.05, 0.8, 0.3], [0.1, -0.2, 1.1]])
 
 
 def energy(material: Material, f: np.ndarray) -> float:
-    """W of formulation.md Section 1."""
+    """W (theory 1.1)."""
     j = float(np.linalg.det(f))
     return 0.5 * material.bulk * np.log(j) ** 2 + 0.5 * material.shear * (j ** (-2 / 3) * float((f * f).sum()) - 3)
 

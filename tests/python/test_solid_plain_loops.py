@@ -1,4 +1,4 @@
-"""The solid by plain loops over elements and points, as formulation.md Section 1 writes it: what sum factorisation must give.
+"""The solid by plain loops over elements and points, as theory 1 writes it: what sum factorisation must give.
 
 Forces are summed point by point with SciPy's B-splines; the tangent's product with a direction is their complex-step derivative.
 """

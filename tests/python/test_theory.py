@@ -1,5 +1,6 @@
 """The theory page and the sources name each other: every equation its procedures, every citation an equation."""
 
+import ast
 import re
 from pathlib import Path
 
@@ -28,9 +29,13 @@ def cited(text):
 
 
 def procedures(path):
-    """Names of the procedures of a Fortran or Python file."""
-    pattern = r"^\s*def (\w+)" if path.suffix == ".py" else r"^[^!\n]*\b(?:function|subroutine) (\w+)"
-    return set(re.findall(pattern, path.read_text(encoding="utf-8"), re.MULTILINE))
+    """What is said of each procedure of a Fortran or Python file: the comment above it, or its docstring."""
+    text = path.read_text(encoding="utf-8")
+    if path.suffix == ".py":
+        functions = (node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.FunctionDef))
+        return {function.name: ast.get_docstring(function) or "" for function in functions}
+    said = re.findall(r"((?:^ *!>.*\n)*)^(?! *end )[^!\n]*\b(?:function|subroutine) (\w+)", text, re.MULTILINE)
+    return {name: comment for comment, name in said}
 
 
 def test_equations_are_numbered_without_gaps():
@@ -45,15 +50,16 @@ def test_every_equation_has_one_row_with_a_source():
     assert all(source.strip() for _, _, source in ROWS)
 
 
-@pytest.mark.parametrize(("number", "where"), [(number, where) for number, where, _ in ROWS], ids=EQUATIONS)
-def test_every_equation_names_procedures_that_exist(number, where):
+@pytest.mark.parametrize(("number", "where"), [(number, where) for number, where, _ in ROWS])
+def test_equation_and_its_procedures_name_each_other(number, where):
     files = re.findall(r"\[([\w.]+)\]\(\.\./([\w/.]+)\)([^\[]*)", where)
     assert files
     for shown, path, rest in files:
         assert Path(path).name == shown
-        named = set(re.findall(r"`(\w+)`", rest))
+        named, there = set(re.findall(r"`(\w+)`", rest)), procedures(ROOT / path)
         assert named, f"equation {number} names no procedure of {path}"
-        assert named <= procedures(ROOT / path), f"equation {number}: {path} has no {named - procedures(ROOT / path)}"
+        assert named <= there.keys(), f"{path} has no {named - there.keys()}"
+        assert all(number in cited(there[name]) for name in named), f"{path}: {named} must each say (theory {number})"
 
 
 def test_the_page_refers_to_its_own_equations():
@@ -67,3 +73,15 @@ def test_every_citation_of_the_theory_exists():
     known = {*EQUATIONS, *SECTIONS}
     wrong = [f"{path.relative_to(ROOT)}: theory {n}" for path in SOURCES for n in cited(path.read_text(encoding="utf-8")) if n not in known]
     assert not wrong
+
+
+def test_no_comment_cites_a_page_outside_of_the_repository():
+    """Pages by name, sections of a page without its author and year, equations in brackets."""
+    wrong = []
+    for path in SOURCES:
+        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+            pages = [p for p in re.findall(r"[\w./-]+\.md\b", line) if not any((base / p).is_file() for base in (ROOT, ROOT / "docs"))]
+            sections = re.findall(r"\bSection \d", line) if not re.search(r"\b(?:1[89]|20)\d\d\b|\bpaper\b", line) else []
+            brackets = re.findall(r"!.*(\[\d\.\d+\])", line) if path.suffix == ".f90" else []
+            wrong += [f"{path.relative_to(ROOT)}:{number}: {what}" for what in pages + sections + brackets]
+    assert not wrong, "\n".join(wrong)

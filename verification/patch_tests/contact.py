@@ -30,7 +30,7 @@ TILTS = (0.0, 30.0)
 
 
 def exact_pressure() -> float:
-    """Contact pressure per reference area of P = A1 ln J F^-T with F = STRETCH times the identity (formulation.md Section 1)."""
+    """Contact pressure per reference area of P = A1 ln J F^-T with F = STRETCH times the identity (theory 8.3)."""
     return -3.0 * MATERIAL.bulk * float(np.log(STRETCH)) / STRETCH
 
 

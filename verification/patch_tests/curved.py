@@ -66,7 +66,7 @@ def problem(kind: str, interference: float) -> Problem:
 
 
 def principal(stretches: FloatArray) -> FloatArray:
-    """Principal first Piola stresses (formulation.md Section 1) by principal stretches, shape (3, n)."""
+    """Principal first Piola stresses (theory 8.3) by principal stretches, shape (3, n)."""
     j = np.prod(stretches, axis=0)
     squares = (stretches**2).sum(axis=0)
     return MATERIAL.bulk * np.log(j) / stretches + MATERIAL.shear * j ** (-2 / 3) * (stretches - squares / (3 * stretches))

@@ -69,7 +69,7 @@ def solid(x: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def stress(gradient: FloatArray, material: Material) -> FloatArray:
-    """First Piola stress (formulation.md Section 1) of displacement gradients, shape (n, 3, 3)."""
+    """First Piola stress (theory 8.3) of displacement gradients, shape (n, 3, 3)."""
     f = np.eye(3) + gradient
     j = np.linalg.det(f)[:, None, None]
     inverse = np.swapaxes(np.linalg.inv(f), 1, 2)

@@ -26,7 +26,7 @@ def placed(pair: PairMechanics, positions: FloatArray, visit: PairVisit, pressur
     positions : ndarray, shape (control points, 3)
     visit : PairVisit
     pressure : ndarray, shape (slave control points,)
-        Trial control pressures (formulation.md Section 4), force per area.
+        Trial control pressures (theory 4.3), force per area.
     length : ndarray, shape (slave control points,)
         Metric norms of the trial tractions as a share of friction times pressure; directions stay as they are.
     """

@@ -8,7 +8,7 @@ import getfem as gf
 import numpy as np
 from performance.peers.bulk_work import answer, main, multilinear, seconds
 
-#: Strain energy (formulation.md Section 1).
+#: Strain energy (theory 1.1).
 ENERGY = "A1/2*sqr(log(Det(Id(3)+Grad_u))) + A2/2*(pow(Det(Id(3)+Grad_u),-2/3)*Norm_sqr(Id(3)+Grad_u)-3)"
 
 

@@ -17,7 +17,7 @@ import numpy as np
 HELD, CONTACT = 1, 2
 #: Newton iterations after which a load step has failed.
 MOST_ITERATIONS = 60
-#: Strain energy (formulation.md Section 1) of a displacement.
+#: Strain energy (theory 1.1) of a displacement.
 ENERGY = "A1/2*sqr(log(Det(Id(3)+Grad_{u}))) + A2/2*(pow(Det(Id(3)+Grad_{u}),-2/3)*Norm_sqr(Id(3)+Grad_{u})-3)"
 #: Augmentation parameter, about E over a length: it steers the iterations and leaves the solution as it is.
 AUGMENTATION = 10.0

@@ -1,4 +1,4 @@
-"""Section 5: what holds in all studies."""
+"""The paper's Section 5: what holds in all studies."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Section 4.4: the dragging force."""
+"""The paper's Section 4.4: the dragging force."""
 
 from __future__ import annotations
 

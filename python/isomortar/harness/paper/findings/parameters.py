@@ -1,4 +1,4 @@
-"""Section 4.1: penalties, augmentation tolerance, load steps."""
+"""The paper's Section 4.1: penalties, augmentation tolerance, load steps."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Section 4.2: pressure and tangential traction over the contact zone of the pressed block."""
+"""The paper's Section 4.2: pressure and tangential traction over the contact zone of the pressed block."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Section 4.5: the torque of the rolling tire."""
+"""The paper's Section 4.5: the torque of the rolling tire."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Section 4.3: the twisting moment."""
+"""The paper's Section 4.3: the twisting moment."""
 
 from __future__ import annotations
 
