@@ -8,7 +8,7 @@ from isomortar.geometry.patch import FloatArray, Patch
 
 
 def element_lengths(patch: Patch) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Lengths of a patch's elements along u, v and w, where they are longest across that: a pole makes no element short.
+    """Lengths of a patch's elements along u, v and w, where they are longest across that: a pole makes no element short (theory 9.5).
 
     Each is the way along the control points over an element's span, shape (elements,).
     """

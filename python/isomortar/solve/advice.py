@@ -39,7 +39,7 @@ def advice_on_problem(problem: Problem, pairs: Sequence[PairMechanics]) -> Itera
 
 
 def few_points(problem: Problem, contact: Contact) -> Iterator[str]:
-    """Slaves whose quadrature points are farther apart than their master's elements are long: some of these bear nothing."""
+    """Slaves whose quadrature points are farther apart than their master's elements are long: some of these bear nothing (theory 9.5)."""
     if isinstance(contact.master, RigidPlane):
         return
     slave, master = problem.body(contact.slave.body), problem.body(contact.master.body)
