@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from friction.virtual_work import Surface, areas, on_surface
 
 from isomortar.harness import Bound, case
 from isomortar.scene import Scene
@@ -86,3 +87,64 @@ def over_a_corner(friction: float) -> dict[str, float]:
     points = 16 * 6 * 6
     alone = [result.contacts[0].excluded > points / 2 and result.contacts[0].active > 0 for result in results]
     return {"force": forces[-1] / max(forces), "left": results[-1].contacts[0].excluded / points, "alone": float(sum(alone))}
+
+
+#: A bowl pressed near the edge of its master, moved half over it and back.
+_OUT_AND_BACK = """
+format = 1
+bodies.slave.geometry = { kind = "bowl", half_width = 0.3, bottom = 0.0, rise = 0.05, top = 0.4 }
+bodies.slave.mesh = { order = [2, 2, 1], elements = [3, 3, 1] }
+bodies.master.geometry = { kind = "box", lower = [-0.6, -0.6, -0.5], upper = [0.4, 0.6, 0] }
+bodies.master.mesh = { order = [2, 3, 1], elements = [3, 2, 1] }
+contacts.interface = { slave = "slave.w0", master = "master.w1", friction = FRICTION }
+supports.top.face = "slave.w1"
+supports.base.face = "master.w0"
+stages = [
+    { name = "press", steps = 1, motions.top.translate = [0, 0, -0.05] },
+    { name = "out", steps = 2, motions.top.translate = [0.45, 0.1, 0] },
+    { name = "back", steps = 2, motions.top.translate = [-0.45, -0.1, 0] },
+]
+"""
+
+
+@case(
+    claim="A point that leaves its master counts as excluded for as long as it is away and no longer; one that has come back is where its "
+    "foot is. Without friction all is then as it was before.",
+    tier="gate",
+    grid={"friction": (0.0, 0.3)},
+    bounds=lambda friction: (
+        {
+            "excluded": Bound(0.0, 0.0, "definition: points whose foot is beyond the edge, by a search of its own"),
+            "remembered": Bound(0.0, 0.0, "definition: the state says of the same points that they have a foot"),
+            "foot": Bound(at_most=1e-13, reason="round-off: coordinates of size one, by two searches that stop where nothing moves"),
+            "away": Bound(at_least=50.0, reason="definition: points are away, and have all come back at the end"),
+            "left": Bound(0.0, 0.0, "definition: at the end no point is away"),
+        }
+        | (
+            {}
+            if friction
+            else {"change": Bound(at_most=1e-7, reason="theory: no path; Newton's method stops at 1e-9 of the internal forces")}
+        )
+    ),
+)
+def out_and_back(friction: float) -> dict[str, float]:
+    """Wrong numbers of excluded points, wrong states of points, distance of coordinates from those of the feet.
+
+    Then the most points that were away, those at the end, and what is not as it was before they went.
+    """
+    problem = Scene.from_toml(_OUT_AND_BACK.replace("FRICTION", str(friction))).problem()
+    simulation = Simulation(problem)
+    functions, _ = areas(problem)
+    numbers, patch = simulation.equilibrium.numbering.points, problem.body("master").patch
+    slave, master = (numbers[name][problem.body(name).patch.face_points(face)] for name, face in (("slave", "w0"), ("master", "w1")))
+    results, wrong = list(simulation.run()), []
+    for result in results:
+        (state,), (measured,), x = result.state.contacts, result.contacts, result.state.positions
+        feet = on_surface(Surface(patch, "w1"), x[master], functions @ x[slave])
+        apart = np.abs(state.projection - feet.xi)[feet.found].max()
+        wrong.append([abs(measured.excluded - np.sum(~feet.found)), np.sum((state.projected > 0) != feet.found), apart])
+    away = [result.contacts[0].excluded for result in results]
+    found = dict(zip(("excluded", "remembered", "foot"), np.max(wrong, axis=0).tolist(), strict=True))
+    found |= {"away": float(max(away)), "left": float(away[-1])}
+    change = float(np.abs(results[-1].state.positions - results[0].state.positions).max())
+    return found if friction else found | {"change": change}
