@@ -20,7 +20,7 @@ from isomortar.cli.commands import app
 from isomortar.errors import InputError
 from isomortar.harness import history, store
 from isomortar.harness.collection import collect, find
-from isomortar.harness.measurement import Measurement
+from isomortar.harness.measurement import Measurement, measure
 from isomortar.harness.references import Reference, finder, write_reference
 from isomortar.harness.runner import dask_cluster, local_processes, run, select, start
 from isomortar.harness.store import Store, cell_key
@@ -440,6 +440,26 @@ def test_dask_gives_the_same_bits(root):
     with distributed.LocalCluster(**options) as cluster, dask_cluster(cluster.scheduler_address) as submit:
         results = run(start(select(collect(root), "gate"), store, submit), finder(root.parent / "references"), store)
     assert {r.cell.name.partition("/")[2]: r.measurement.numbers for r in results} == {n: r.measurement.numbers for n, r in local.items()}
+
+
+IN_A_CHILD = """
+import subprocess
+import sys
+
+from isomortar.harness import Bound, case
+
+@case(claim="Works in a process of its own.", bounds={"status": Bound(at_most=0.0, reason="definition: it ends well")})
+def elsewhere():
+    work = "import time\\nwhile time.process_time() < 0.5: pass"
+    return {"status": float(subprocess.run([sys.executable, "-c", work]).returncode)}
+"""
+
+
+def test_what_child_processes_take_is_counted(root):
+    """A limit by the seconds of a cell is none for what it leaves to others."""
+    next(root.glob("family_*/good.py")).write_text(IN_A_CHILD)
+    (cell,) = [cell for case in collect(root) for cell in case.cells]
+    assert measure(cell).cpu_seconds >= 0.5
 
 
 def test_a_line_that_was_cut_short_does_not_take_the_next_one_with_it(root, tmp_path):

@@ -32,7 +32,8 @@ Stored = float | list[Any] | dict[str, Any] | None
 class Measurement:
     """How a cell ended, its numbers (by name), what was said (skip reason or traceback), and what it cost.
 
-    `peak_memory`: the most that the measuring process held meanwhile, in bytes, what it had loaded before included; 0: not known.
+    `cpu_seconds`: those of child processes included. `peak_memory`: the most that the measuring process held meanwhile, in bytes, what it
+    had loaded before included; 0: not known.
     `sources`: hash of the program and of the case's files that the process found, on whatever machine.
     """
 
@@ -61,7 +62,7 @@ class Measurement:
 def measure(cell: Cell) -> Measurement:
     """Run a cell here and now."""
     forget_peak_memory()
-    start, cpu_start = time.perf_counter(), time.process_time()
+    start, cpu_start = time.perf_counter(), used()
     numbers: dict[str, Stored] = {}
     ending: Ending = "measured"
     message = ""
@@ -73,8 +74,14 @@ def measure(cell: Cell) -> Measurement:
         ending, message = "not converged", traceback.format_exc()
     except Exception:  # whatever a case raises is a failure of that cell, not of the run
         ending, message = "raised", traceback.format_exc()
-    seconds, cpu_seconds = time.perf_counter() - start, time.process_time() - cpu_start
+    seconds, cpu_seconds = time.perf_counter() - start, used() - cpu_start
     return Measurement(ending, numbers, message, seconds, cpu_seconds, peak_memory(), platform.node())
+
+
+def used() -> float:
+    """CPU seconds of this process so far, and of its children that have ended."""
+    usages = [resource.getrusage(whose) for whose in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    return sum(usage.ru_utime + usage.ru_stime for usage in usages)
 
 
 def forget_peak_memory() -> None:
