@@ -26,70 +26,13 @@ from isomortar.geometry.patch import Direction
 from isomortar.harness.paper.figures import Line, Panel, bodies, closeups, curves, flat, surfaces
 from isomortar.harness.paper.figures.sheet import Mark, Sheet
 from isomortar.harness.paper.figures.zones import corners_of, zones
-from isomortar.model.entities import Body, Material
 from isomortar.model.numbering import Numbering
-from isomortar.model.solid import Solid
 from isomortar.results import Results, ResultsWriter
 from isomortar.results import bodies as faces
 from isomortar.results.bezier import functions_at, sampling_matrix, sampling_places
 from isomortar.results.gaps import gaps
-from isomortar.results.stress import deformation_gradient, first_piola_stress
 from isomortar.solve.record import StepResult
-from results_samples import box, problem, ring, step_result
-
-F = np.array([[1.3, 0.2, -0.1], [0.05, 0.8, 0.3], [0.1, -0.2, 1.1]])
-
-
-def energy(material: Material, f: np.ndarray) -> float:
-    """W (theory 1.1)."""
-    j = float(np.linalg.det(f))
-    return 0.5 * material.bulk * np.log(j) ** 2 + 0.5 * material.shear * (j ** (-2 / 3) * float((f * f).sum()) - 3)
-
-
-def test_stress_is_the_derivative_of_the_energy() -> None:
-    material, h = Material(young=3.0, poisson=0.2), 1e-5
-    steps = h * np.eye(9).reshape(9, 3, 3)
-    slopes = [(energy(material, F + d) - energy(material, F - d)) / (2 * h) for d in steps]
-    assert first_piola_stress(material, F).ravel() == pytest.approx(slopes, abs=1e-8)
-
-
-def test_stress_of_uniform_stretches() -> None:
-    material, stretch = Material(), 1.4
-    swollen = 3 * material.bulk * np.log(stretch) / stretch * np.eye(3)
-    assert first_piola_stress(material, stretch * np.eye(3)) == pytest.approx(swollen, abs=1e-13)
-    along = material.bulk * np.log(stretch) / stretch + material.shear * stretch ** (-2 / 3) * (stretch - (stretch**2 + 2) / (3 * stretch))
-    assert first_piola_stress(material, np.diag([stretch, 1, 1]))[0, 0] == pytest.approx(along)
-
-
-def test_stress_balances_the_forces_of_the_kernel() -> None:
-    """Of a uniform deformation of a box the nodal forces on its end sum to P N times the end's area."""
-    made = problem()
-    (body,) = (b for b in made.bodies if b.name == "road")
-    alone = replace(made, bodies=(body,), contacts=(), supports=())
-    numbering = Numbering(alone)
-    forces = Solid(alone, numbering).forces(numbering.reference @ F.T)
-    end = numbering.points["road"][body.patch.face_points("u1")]
-    assert np.abs(forces[end].sum(axis=0)) == pytest.approx(np.abs(first_piola_stress(body.material, F)[:, 0]) * 1.0 * 0.5, rel=1e-10)
-
-
-@pytest.mark.parametrize("patch", [ring(), box()], ids=["ring", "box"])
-def test_deformation_gradient_of_a_uniform_deformation(patch: Any) -> None:
-    body = Body("body", patch, Material(), (2, 2, 2))
-    parameters = [np.linspace(*d.boundaries[[0, -1]], 5) for d in patch.directions]
-    found = deformation_gradient(body, patch.control_points @ F.T + [1.0, 2.0, 3.0], parameters)
-    assert found == pytest.approx(np.broadcast_to(F, (125, 3, 3)), abs=1e-12)
-
-
-def test_deformation_gradient_is_where_it_is_asked_for() -> None:
-    """Of x = X + (0, 0, Z^2), F33 = 1 + 2 Z: exactly, as the box is quadratic along w and linear in Z."""
-    patch = box()
-    knots = patch.directions[2].knots
-    blossom = 0.5**2 * (knots[1:-2] - 1) * (knots[2:-1] - 1)  # control values of Z^2 with Z = (w - 1) / 2
-    points = patch.control_points + np.outer(np.repeat(blossom, 20), [0.0, 0.0, 1.0])
-    heights = np.array([0.0, 0.2, 0.3, 0.7, 1.0])
-    parameters = [np.array([0.5]), np.array([0.1, 0.2]), heights]
-    found = deformation_gradient(Body("road", patch, Material(), (2, 2, 2)), points, parameters)
-    assert found[:, 2, 2] == pytest.approx(np.repeat(1 + (heights - 1), 2))
+from results_samples import problem, step_result
 
 
 @given(st.integers(1, 5), st.integers(0, 2**32 - 1))
