@@ -19,12 +19,14 @@ from vtkmodules.vtkCommonDataModel import vtkBezierHexahedron
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 from isomortar.geometry.patch import Direction
+from isomortar.model.entities import Problem
 from isomortar.model.numbering import Numbering
 from isomortar.results import ResultsWriter
 from isomortar.results.bezier import bernstein, bezier_matrix, sampling_matrix
 from isomortar.results.fields import body_points, contact_surfaces
 from isomortar.results.paraview import export
 from isomortar.results.vtu import _places
+from isomortar.solve.record import StepResult
 from results_samples import INNER, OUTER, WIDTH, problem, step_result
 
 
@@ -169,3 +171,75 @@ def test_places_are_counted_as_vtk_does(orders: tuple[int, int, int]) -> None:
     cell = vtkBezierHexahedron()
     counted = [cell.PointIndexFromIJK(i, j, k, [*orders, 0]) for i, j, k in _places(*orders)]
     assert counted == list(range(int(np.prod(np.add(orders, 1)))))
+
+
+def functions_of(direction: Direction, place: float) -> np.ndarray:
+    """All functions of a direction at a place, by SciPy alone."""
+    return np.array([reference_value(direction, unit, place) for unit in np.eye(direction.count)])
+
+
+def field_at(directions: tuple[Direction, ...], weights: np.ndarray, values: np.ndarray, places: list[float]) -> np.ndarray:
+    """A rational field: the sum over all control points, first direction fastest."""
+    product = np.ones(1)
+    for direction, place in zip(directions, places, strict=True):
+        product = np.outer(functions_of(direction, place), product).ravel()
+    return (product * weights) @ values / (product @ weights)
+
+
+def seen(grid: Any, number: int, local: np.ndarray) -> dict[str, np.ndarray]:
+    """What VTK interpolates in a cell at its own coordinates: the place and all point data."""
+    cell = grid.GetCell(number)
+    point, weights = [0.0] * 3, [0.0] * cell.GetNumberOfPoints()
+    cell.EvaluateLocation(mutable(0), list(local), point, weights)
+    data = grid.GetPointData()
+    arrays = {data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}
+    ids = [cell.GetPointId(i) for i in range(cell.GetNumberOfPoints())]
+    return {"place": np.array(point)} | {name: np.asarray(weights) @ values[ids] for name, values in arrays.items() if name != "weights"}
+
+
+def expected_patches(made: Problem, step: StepResult) -> dict[str, list[tuple[tuple[Direction, ...], np.ndarray, dict[str, np.ndarray]]]]:
+    """Directions, weights and control values of every body and slave face, put together by hand."""
+    points = body_points(made, step.state.positions)
+    bodies, faces = [], []
+    for body in made.bodies:
+        place = points[body.name]
+        bodies.append((body.patch.directions, body.patch.weights, {"place": place, "displacement": place - body.patch.control_points}))
+    tyre = made.bodies[0].patch
+    outer = tyre.face_points("v1")
+    twice = np.concatenate([np.arange(16).reshape(8, 2), [[0, 1]]])  # along u the last control points are the first ones; w runs first
+    for state, measured in zip(step.state.contacts, step.contacts, strict=True):
+        control = {"place": points["tyre"][outer], "displacement": points["tyre"][outer] - tyre.control_points[outer]}
+        control |= {"pressure": state.pressure[twice.ravel()], "traction": measured.traction_norm[twice.ravel()]}
+        faces.append((tyre.face_directions("v1"), tyre.weights[outer], control))
+    return {"bodies": bodies, "contacts": faces}
+
+
+def test_vtk_sees_every_field_of_every_step_at_any_place(tmp_path: Path) -> None:
+    """In each cell VTK's interpolation of place, displacement, pressure and traction is the sum over the control points of its patch."""
+    made, random = problem(), np.random.default_rng(3)
+    writer = ResultsWriter(tmp_path / "run.h5", made, "", "0")
+    steps = [step_result(number) for number in (1, 2)]
+    for step in steps:
+        writer.recorded(step)
+    collection = export(tmp_path / "run.h5", tmp_path)
+    entries = ElementTree.parse(collection).getroot().findall(".//DataSet")
+    told = [(float(str(e.get("timestep"))), e.get("name"), e.get("part"), e.get("file")) for e in entries]
+    kinds = ("bodies", "contacts")
+    assert told == [(s.time, kind, str(i), f"run/{kind}-{s.step:04d}.vtu") for s in steps for i, kind in enumerate(kinds)]
+    for step in steps:
+        for kind, patches in expected_patches(made, step).items():
+            grid = read(tmp_path / "run" / f"{kind}-{step.step:04d}.vtu")
+            numbers = vtk_to_numpy(grid.GetCellData().GetArray("number"))
+            assert numbers.tolist() == [i for i, (lines, *_) in enumerate(patches) for _ in range(np.prod([d.elements for d in lines]))]
+            cell = 0
+            for directions, weights, fields in patches:
+                for reverse in np.ndindex(*[d.elements for d in reversed(directions)]):
+                    local = np.zeros(3)
+                    local[: len(directions)] = random.uniform(0.05, 0.95, len(directions))
+                    ends = [d.boundaries[e : e + 2] for d, e in zip(directions, reverse[::-1], strict=True)]
+                    places = [float(begin + x * (end - begin)) for (begin, end), x in zip(ends, local, strict=False)]
+                    found = seen(grid, cell, local)
+                    assert set(found) == set(fields)
+                    for name, values in fields.items():
+                        assert found[name] == pytest.approx(field_at(directions, weights, values, places), abs=1e-12), (kind, cell, name)
+                    cell += 1
