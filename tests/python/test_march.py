@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, is_dataclass, replace
 
 import numpy as np
 import pytest
 
+from isomortar import run
 from isomortar.errors import ConvergenceError
 from isomortar.model.entities import Motion, Problem, Stage
 from isomortar.scene import Scene
 from isomortar.solve.method import Increment
-from isomortar.solve.record import AugmentationRecord, IterationRecord, State, StepResult
+from isomortar.solve.record import AugmentationRecord, IterationRecord, Observer, State, StepResult
 from isomortar.solve.simulation import EASY_ITERATIONS, HARD_TANGENTS, Simulation
 
 SCENE = """
@@ -147,6 +148,53 @@ def test_a_resumed_run_goes_on_with_the_increment_that_came_next(step):
     for one, other in zip(whole[step:], again, strict=True):
         np.testing.assert_allclose(one.state.positions, other.state.positions, atol=1e-11)
         assert (one.cuts, one.substeps, one.next_increment, one.stage) == (other.cuts, other.substeps, other.next_increment, other.stage)
+
+
+#: Settings by which increments of the scene, on a coarse mesh, are cut for reasons of its own, and grow back.
+CUTTING = {"monolithic": ["solver.max_iterations=4"], "uzawa": ["solver.max_iterations=3", "solver.method=uzawa"]}
+COARSE = ["bodies.block.mesh.order=[1,1,1]", "bodies.block.mesh.elements=[2,2,1]", "solver.newton_tolerance=1e-9"]
+
+
+class Stops(Observer):
+    """Ends a run after a load step."""
+
+    def __init__(self, after: int) -> None:
+        self.after = after
+
+    def recorded(self, result: StepResult) -> None:
+        if result.step == self.after:
+            raise KeyboardInterrupt
+
+
+def apart(one: object, other: object) -> float:
+    """Largest relative difference of results of a load step; all that is not an array of numbers is the same. Not what it cost."""
+    if isinstance(one, np.ndarray) and one.dtype.kind == "f":
+        return float(np.abs(one - other).max(initial=0.0) / max(np.abs(one).max(initial=0.0), 1e-12))
+    if isinstance(one, np.ndarray):
+        assert np.array_equal(one, other)
+        return 0.0
+    if isinstance(one, tuple):
+        return max([apart(a, b) for a, b in zip(one, other, strict=True)], default=0.0)
+    if is_dataclass(one):
+        told = [f.name for f in fields(one) if f.name not in ("timings", "counters", "augmentations", "newton_order")]
+        return max(apart(getattr(one, name), getattr(other, name)) for name in told)
+    assert one == other
+    return 0.0
+
+
+@pytest.mark.parametrize("method", list(CUTTING))
+def test_a_run_that_was_stopped_after_cuts_goes_on_from_its_file_as_if_it_had_not_been(tmp_path, method):
+    scene, path = Scene.from_toml(SCENE, overrides=[*COARSE, *CUTTING[method]]), tmp_path / "stopped.h5"
+    with run(scene, tmp_path / "whole.h5") as whole:
+        expected = [whole.step(int(number)) for number in whole.steps]
+    assert expected[1].cuts > 0
+    assert max(result.substeps for result in expected) > 1 == expected[3].substeps
+    with pytest.raises(KeyboardInterrupt):
+        run(scene, path, Stops(2))
+    with run(scene, path, resume=True) as resumed:
+        assert list(resumed.steps) == [1, 2, 3, 4]
+        found = [resumed.step(int(number)) for number in resumed.steps]
+    assert max(apart(one, other) for one, other in zip(expected, found, strict=True)) <= 1e-11
 
 
 def test_what_failed_leaves_no_trace():

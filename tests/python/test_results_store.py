@@ -16,6 +16,7 @@ import pytest
 
 from isomortar.errors import ResultsError
 from isomortar.model.entities import Motion
+from isomortar.results import layout
 from isomortar.results.files import sealed
 from isomortar.results.reader import Results
 from isomortar.results.writer import ResultsWriter
@@ -96,6 +97,42 @@ def test_curves(tmp_path: Path) -> None:
                 results.curve(**bad)
         with pytest.raises(ResultsError, match="steps 1 to 3"):
             results.step(4)
+
+
+@pytest.mark.parametrize("states", ["every", "last"])
+def test_every_row_of_every_curve_is_that_of_its_step(tmp_path: Path, states: str) -> None:
+    """Also where the run was resumed: all that steps are said to hold, of each support and contact by its name."""
+    path = tmp_path / "run.h5"
+    write(path, range(1, 4), states=states)
+    write(path, range(4, 6), states=states, resume=True)
+    steps = [step_result(k) for k in range(1, 6)]
+    with Results(path) as results:
+        for quantity in layout.STEP.keys() - {"stage"}:
+            assert np.array_equal(results.curve(quantity), [getattr(s, quantity) for s in steps], equal_nan=True), quantity
+        assert results.stages == [s.stage for s in steps]
+        for i, support in enumerate(results.problem.supports):
+            for quantity in layout.REACTION:
+                expected = np.array([getattr(s.reactions[i], quantity) for s in steps])
+                assert np.array_equal(results.curve(quantity, support=support.name), expected), (support.name, quantity)
+                for axis, letter in enumerate("xyz"):
+                    assert np.array_equal(results.curve(quantity, support=support.name, component=letter), expected[:, axis])
+        kept = [s for s in steps if s.step in results.kept_states]
+        assert [s.step for s in kept] == ([1, 2, 3, 4, 5] if states == "every" else [5])
+        for i, contact in enumerate(results.problem.contacts):
+            for quantity in layout.CONTACT:
+                expected = np.array([getattr(s.contacts[i], quantity) for s in steps])
+                assert np.array_equal(results.curve(quantity, contact=contact.name), expected), (contact.name, quantity)
+            history = results.contact(contact.name)
+            for quantity in ("pressure", "traction"):
+                assert np.array_equal(getattr(history, quantity), [getattr(s.state.contacts[i], quantity) for s in kept])
+            for quantity in layout.CONTACT_VALUES:
+                assert np.array_equal(getattr(history, quantity), [getattr(s.contacts[i], quantity) for s in kept])
+            assert np.array_equal(history.steps, [s.step for s in kept])
+            assert history.contact == contact
+        for name, values in results.timings().items():
+            assert np.array_equal(values, [s.timings.get(name, np.nan) for s in steps], equal_nan=True)
+        for name, counts in results.counters().items():
+            assert np.array_equal(counts, [s.counters.get(name, -1) for s in steps])
 
 
 def test_every_dataset_has_unit_and_description(tmp_path: Path) -> None:
