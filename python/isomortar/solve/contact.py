@@ -204,8 +204,10 @@ class PairMechanics:
         """Metric norm of control tractions, shape (..., slave control points)."""
         return np.sqrt(self.traction_squares(control, traction))
 
-    def apart(self, control: Control, some: Multipliers, others: Multipliers) -> tuple[float, float]:
-        """Distance of some control pressures and tractions from others, over the norms of these (theory 5.8).
+    def apart(
+        self, control: Control, some: Multipliers, others: Multipliers, round_off: tuple[float, float] = (0.0, 0.0)
+    ) -> tuple[float, float]:
+        """Distance of some control pressures and tractions from others, over the norms of these; round-off is none (theory 5.8).
 
         Tractions count for no less than a hundredth of the cone, or of the pressures where the cone is wider: where nothing pulls they
         are round-off.
@@ -213,10 +215,23 @@ class PairMechanics:
         (p, t), (q, s) = some, others
         size = float(q @ q)
         squares = self.traction_squares(control, np.stack([t - s, s])).sum(axis=1)
-        least = (0.01 * min(self.friction, 1.0)) ** 2 * size
-        return ratio(float((p - q) @ (p - q)), size), ratio(float(squares[0]), float(np.maximum(squares[1], least)))
+        noise = np.square(round_off)
+        changes = np.maximum(np.array([(p - q) @ (p - q), squares[0]]) - noise, 0.0)
+        least = np.maximum((0.01 * min(self.friction, 1.0)) ** 2 * size, noise[1])
+        return ratio(float(changes[0]), size), ratio(float(changes[1]), float(np.maximum(squares[1], least)))
 
-    def off_conditions(self, kinematics: Kinematics, law: Law, response: Response, scales: Scales) -> tuple[float, float]:
+    def round_off(self, positions: FloatArray, law: Law, response: Response) -> tuple[float, float]:
+        """Norms of what the last bits of positions make of pressures and tractions where gap and slip are nothing (theory 5.8).
+
+        No iteration can remove them: where nothing pulls, friction is next to none or the bodies just touch, all is round-off.
+        """
+        last_bit = float(np.spacing(np.abs(positions[self.pair.slave.point]).max()))
+        normal, tangential = law.penalties * last_bit * np.sqrt(np.count_nonzero(response.state))
+        return float(normal), float(tangential)
+
+    def off_conditions(
+        self, positions: FloatArray, kinematics: Kinematics, law: Law, response: Response, scales: Scales
+    ) -> tuple[float, float]:
         """Relative distance of a response's pressures and tractions from what the contact conditions make of them (theory 7.4).
 
         Gap and slip count here with the stiffness of the whole face, traction per length, for they leave forces off by as much: small
@@ -229,7 +244,12 @@ class PairMechanics:
         again = replace(law, penalties=np.array([whole, whole]), pressure=response.pressure, traction=response.traction)
         with self._ledger.phase("contact"):
             target = _bindings.augmented_multipliers(self.pair.slave, kinematics.control, again)
-        return self.apart(kinematics.control, (target.pressure, target.traction), (response.pressure, response.traction))
+        return self.apart(
+            kinematics.control,
+            (target.pressure, target.traction),
+            (response.pressure, response.traction),
+            self.round_off(positions, again, response),
+        )
 
     def result(self, positions: FloatArray, kinematics: Kinematics, response: Response) -> ContactResult:
         """Measured quantities at the end of a load step (theory 8.2)."""

@@ -140,12 +140,15 @@ class Monolithic(Method):
             pair.add_forces(positions, kinematics[-1], currents[-1], total)
         balance = Balance(positions, internal, total, tuple(kinematics), tuple(currents))
         residual = relative_residual(equilibrium, balance, scales)
-        return Iterate(balance, tuple(laws), tuple(targets), residual, *self._gaps(balance, targets))
+        return Iterate(balance, tuple(laws), tuple(targets), residual, *self._gaps(balance, laws, targets))
 
-    def _gaps(self, balance: Balance, targets: Sequence[Response]) -> tuple[float, float]:
+    def _gaps(self, balance: Balance, laws: Sequence[Law], targets: Sequence[Response]) -> tuple[float, float]:
         """Relative distance of pressures and tractions from the contact conditions, of the pair where it is largest (theory 6.6)."""
-        pairs = zip(self._equilibrium.pairs, balance.kinematics, balance.responses, targets, strict=True)
-        return largest(pair.apart(k.control, (now.pressure, now.traction), (to.pressure, to.traction)) for pair, k, now, to in pairs)
+        pairs = zip(self._equilibrium.pairs, balance.kinematics, balance.responses, laws, targets, strict=True)
+        return largest(
+            pair.apart(k.control, (now.pressure, now.traction), (to.pressure, to.traction), pair.round_off(balance.positions, law, to))
+            for pair, k, now, law, to in pairs
+        )
 
     def _converged(self, iterate: Iterate) -> bool:
         """Whether forces are in balance and the contact conditions are met (theory 5.6, 6.6)."""

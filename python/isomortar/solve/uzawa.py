@@ -74,10 +74,19 @@ class Uzawa(Method):
                 mixed = ratio(float(np.sum(new_p**2) + np.sum(new_t**2)), float(np.sum(law.pressure**2) + np.sum(law.traction**2)))
                 changes.append((mixed, mixed))
             else:
-                changes.append(pair.apart(kinematics.control, (response.pressure, response.traction), (law.pressure, law.traction)))
+                changes.append(
+                    pair.apart(
+                        kinematics.control,
+                        (response.pressure, response.traction),
+                        (law.pressure, law.traction),
+                        pair.round_off(balance.positions, law, response),
+                    )
+                )
         return largest(changes)
 
     def _distances(self, laws: list[Law], balance: Balance, scales: Scales) -> tuple[float, float]:
         """Relative distance of pressures and tractions from the contact conditions, of the pair where it is largest (theory 7.4)."""
         pairs = zip(self._equilibrium.pairs, laws, balance.kinematics, balance.responses, strict=True)
-        return largest(pair.off_conditions(kinematics, law, response, scales) for pair, law, kinematics, response in pairs)
+        return largest(
+            pair.off_conditions(balance.positions, kinematics, law, response, scales) for pair, law, kinematics, response in pairs
+        )
