@@ -52,6 +52,20 @@ def turned_sector(major: float, inner: float, outer: float, section: tuple[float
     return Patch((_ARC, _LINE, _ARC), np.array(points), np.array(weights))
 
 
+def dome(inner: float, outer: float, start: float) -> Patch:
+    """Spherical shell about the z-axis from a latitude to the pole, all round; u along the latitude, v along the radius, w round the axis.
+
+    Its last row along w is the first one; at the end of u, the pole, all control points along w are one.
+    """
+    quarter = turned_sector(0.0, inner, outer, (start, np.pi / 2), np.pi / 2)
+    points, weights = quarter.control_points.reshape(3, 6, 3).copy(), quarter.weights.reshape(3, 6)
+    points[:, 2::3, :2] = 0.0
+    turn = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    slices = [points[k % 2] @ np.linalg.matrix_power(turn, k // 2) for k in range(9)]
+    round_it = Direction("N", 2, np.array([0.0, 0.0, 0.0, 1.0, 1.0, 2.0, 2.0, 3.0, 3.0, 4.0, 4.0, 4.0]))
+    return Patch((_ARC, _LINE, round_it), np.concatenate(slices), np.concatenate([weights[k % 2] for k in range(9)]))
+
+
 def turned_volume(major: float, inner: float, outer: float, section: tuple[float, float], turn: float) -> float:
     """Volume of `turned_sector`."""
     flat = major * (outer**2 - inner**2) / 2 * (section[1] - section[0])

@@ -19,7 +19,7 @@ end subroutine slave_tables
 
 !> Project every slave quadrature point (isomortar_contact_control). `xi` holds starts where `started` is 1.
 subroutine project_points(nodes, basis, area, point, nlocal, nelements, nquad, nslave, kind, knots, nknots, master_point, &
-    master_weight, nmaster, x, n, started, origin, had, xi, element, fixed, found, slip, slips, status, place)
+    master_weight, nmaster, x, n, started, origin, had, xi, element, fixed, found, doubt, slip, slips, status, place)
   use iso_c_binding, only: c_double, c_int
   use isomortar_api_unpack, only: unpack_master, unpack_slave
   use isomortar_contact_control, only: project => project_points, projections_t
@@ -30,23 +30,25 @@ subroutine project_points(nodes, basis, area, point, nlocal, nelements, nquad, n
   real(c_double), intent(in) :: basis(nlocal, nquad), area(nquad), knots(nknots), master_weight(nmaster), x(3, n)
   real(c_double), intent(in) :: origin(2, nquad)
   real(c_double), intent(inout) :: xi(2, nquad)
-  integer(c_int), intent(out) :: element(2, nquad), fixed(2, nquad), found(nquad), slips(nquad)
+  integer(c_int), intent(out) :: element(2, nquad), fixed(2, nquad), found(nquad), doubt(nquad), slips(nquad)
   real(c_double), intent(out) :: slip(2, nquad)
   integer(c_int), intent(out) :: status, place
   type(projections_t) :: projections
 
-  allocate (projections%place(2, nquad), projections%fixed(2, nquad), projections%found(nquad), projections%slip(2, nquad), &
-    projections%slips(nquad))
+  allocate (projections%place(2, nquad), projections%fixed(2, nquad), projections%found(nquad), projections%doubt(nquad), &
+    projections%slip(2, nquad), projections%slips(nquad))
   projections%xi = xi
   projections%place = 0
   projections%fixed = .false.
   projections%found = .false.
+  projections%doubt = 0
   call project(unpack_slave(nodes, basis, area, point), unpack_master(kind, knots, master_point, master_weight), x, &
     started /= 0, origin, had /= 0, projections, status, place)
   xi = projections%xi
   element = projections%place - 1
   fixed = merge(1, 0, projections%fixed)
   found = merge(1, 0, projections%found)
+  doubt = projections%doubt
   slip = 0.0_c_double
   slips = 0
   if (status /= 0) return

@@ -64,8 +64,8 @@ contains
     n = fixed%slave%count
     points = size(fixed%slave%area)
     allocate (quantities%projections%place(2, points), quantities%projections%fixed(2, points), &
-      quantities%projections%found(points), quantities%projections%slip(2, points), quantities%projections%slips(points), &
-      started(points), field_slip(2, points))
+      quantities%projections%found(points), quantities%projections%doubt(points), quantities%projections%slip(2, points), &
+      quantities%projections%slips(points), started(points), field_slip(2, points))
     quantities%projections%xi = fixed%start
     quantities%projections%place = 0
     started = .true.

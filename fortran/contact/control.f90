@@ -7,6 +7,7 @@ module isomortar_contact_control
   use isomortar_contact_kinematics, only: contact_point, contact_point_t, plane_point
   use isomortar_contact_kink, only: hold_on_lines
   use isomortar_contact_master, only: master_t
+  use isomortar_contact_pole, only: gather_at_pole, hold_at_pole, is_at_pole, pole_of
   use isomortar_contact_projection, only: descend, is_isolated, is_too_deep, look_round, projection_degenerate, &
     projection_inside, projection_lost, projection_outside, search_t, start_at, start_nearest
   use isomortar_contact_slave, only: integrate_functions, slave_t
@@ -28,6 +29,8 @@ module isomortar_contact_control
     !> Coordinates that stay while the point moves (on C0 lines; of points that are found), shape (2, points).
     logical, allocatable :: fixed(:, :)
     logical, allocatable :: found(:)
+    !> Of a point that is found: status_ok, or why its foot does not follow it. Then its distance alone means something.
+    integer, allocatable :: doubt(:)
     !> Slip increment since the last converged load step; zero without a history.
     real(wp), allocatable :: slip(:, :)
     !> The slip follows the motion: found now and at the last converged load step.
@@ -85,6 +88,7 @@ contains
           projections%xi(:, q) = matmul(slave_position(slave, positions, q) - master%origin, master%tangent)
           projections%fixed(:, q) = .false.
           projections%found(q) = .true.
+          projections%doubt(q) = status_ok
         end do
       else
         call project_element(slave, master, hulls, positions, started, had, shallow, last - per_element, projections, status, place)
@@ -110,7 +114,7 @@ contains
     integer, intent(inout) :: status, place
     type(search_t) :: here(size(slave%area) / size(slave%nodes, 2))
     real(wp) :: x(3, size(here)), middle(3), reach
-    integer :: count, list(size(hulls%radius)), q
+    integer :: count, doubt, list(size(hulls%radius)), q
 
     do q = 1, size(here)
       x(:, q) = slave_position(slave, positions, before + q)
@@ -123,9 +127,12 @@ contains
     call within_reach(hulls, middle, reach, list, count)
     do q = 1, size(here)
       call look_round(master%surface, hulls, positions, x(:, q), list(:count), here(q))
-      if (here(q)%outcome == projection_inside .and. .not. is_isolated(here(q))) here(q)%outcome = projection_degenerate
-      if (here(q)%outcome == projection_lost .or. here(q)%outcome == projection_degenerate) then
-        status = merge(status_lost_projection, status_degenerate_surface, here(q)%outcome == projection_lost)
+      doubt = status_ok
+      if (here(q)%outcome == projection_inside .and. .not. is_isolated(here(q))) doubt = status_degenerate_surface
+      if (here(q)%outcome == projection_lost) doubt = status_lost_projection
+      if (doubt /= status_ok) here(q)%outcome = projection_inside
+      if (here(q)%outcome == projection_degenerate) then
+        status = status_degenerate_surface
         place = before + q
         return
       end if
@@ -141,6 +148,7 @@ contains
       projections%place(:, before + q) = here(q)%place
       projections%fixed(:, before + q) = here(q)%fixed
       projections%found(before + q) = here(q)%outcome == projection_inside
+      projections%doubt(before + q) = merge(doubt, status_ok, projections%found(before + q))
     end do
   end subroutine project_element
 
@@ -196,6 +204,7 @@ contains
     integer, intent(out) :: nodes(:)
     real(wp), intent(out) :: functions(:, :)
     real(wp) :: x(3)
+    integer :: pole
 
     x = slave_position(slave, positions, q)
     if (master%is_plane) then
@@ -205,6 +214,12 @@ contains
     associate (surface => master%surface, columns => derivative_columns(order))
       call surface_nodes(surface, projections%place(:, q), nodes)
       call surface_basis(surface, projections%place(:, q), nodes, projections%xi(:, q), order, functions(:, 1:columns))
+      pole = pole_of(surface, projections%place(:, q), projections%xi(:, q))
+      if (pole /= 0) call gather_at_pole(surface, pole, functions(:, 1:columns))
+      if (is_at_pole(surface, projections%place(:, q), projections%xi(:, q))) then
+        call hold_at_pole(surface, positions, x, pole, point)
+        return
+      end if
       point = contact_point(x, matmul(positions(:, surface%point(nodes)), functions(:, 1:columns)), surface%outward)
       if (.not. any(projections%fixed(:, q))) return
       call hold_on_lines(surface, positions, x, projections%xi(:, q), projections%place(:, q), projections%fixed(:, q), point)

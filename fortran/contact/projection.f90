@@ -9,6 +9,7 @@ module isomortar_contact_projection
   use isomortar_base_algebra, only: cross
   use isomortar_base_kinds, only: wp
   use isomortar_contact_hulls, only: hulls_t, is_farther, nearest_sample
+  use isomortar_contact_pole, only: look_from_pole, net_about_pole, pole_bound, pole_of, view_t
   use isomortar_nurbs_direction, only: element_at, is_kink
   use isomortar_nurbs_surface, only: homogeneous_net, step_across, surface_element_count, surface_element_of, surface_point, &
     surface_t
@@ -35,6 +36,8 @@ module isomortar_contact_projection
 
   !> Squared length or sine below which two tangents span no surface: a place on a collapsed edge, say.
   real(wp), parameter :: flat_metric = epsilon(1.0_wp)
+  !> The same beside a pole, where lengths are exact: a place within this of it (the square of its share of the element) is the pole.
+  real(wp), parameter :: at_pole = epsilon(1.0_wp)**1.5_wp
   !> Share of the metric below which the distance has no curvature but round-off.
   real(wp), parameter :: flat_distance = epsilon(1.0_wp)**0.75_wp
 
@@ -97,9 +100,10 @@ contains
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :), x(3)
     type(search_t), intent(inout) :: here
-    logical :: moved
+    logical :: left, moved
     integer :: visit
 
+    left = .false.
     call search_element(surface, positions, x, here)
     do visit = 1, 8 + 2 * surface_element_count(surface)
       here%outcome = merge(projection_degenerate, projection_lost, here%degenerate)
@@ -109,10 +113,20 @@ contains
         here%outcome = projection_outside
         return
       end if
-      if (here%degenerate) return
+      if (here%degenerate) then
+        if (.not. collapses(surface, here)) return
+        if (.not. left) call leave_pole(surface, positions, x, here, left)
+        if (.not. here%degenerate) cycle
+        call stay_at_pole(surface, positions, x, here)
+        return
+      end if
       here%outcome = projection_inside
       if (all(here%pressing == 0)) return
       call cross_boundary(surface, positions, x, here, moved)
+      if (.not. moved .and. .not. left) then ! beside a pole round-off may hide that the distance falls farther round it
+        call leave_pole(surface, positions, x, here, left)
+        moved = left
+      end if
       if (moved) cycle
       if (any(on_edge(surface, here))) here%outcome = projection_outside
       call settle_on_lines(surface, here)
@@ -255,6 +269,61 @@ contains
     grid_size = surface%direction(direction)%order + 6
   end function grid_size
 
+  !> Whether a search has come to a pole.
+  pure logical function collapses(surface, here)
+    type(surface_t), intent(in) :: surface
+    type(search_t), intent(in) :: here
+    integer :: pole
+
+    pole = pole_of(surface, here%place, here%xi)
+    collapses = pole /= 0
+    if (collapses) collapses = here%collapsed(3 - abs(pole))
+  end function collapses
+
+  !> Go on from the pole of an element along the line on which the distance falls most, if that ends no farther away.
+  pure subroutine leave_pole(surface, positions, x, here, left)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in) :: positions(:, :), x(3)
+    type(search_t), intent(inout) :: here
+    logical, intent(out) :: left
+    type(search_t) :: there
+    type(view_t) :: view
+    integer :: pole
+
+    left = .false.
+    pole = pole_of(surface, here%place, here%xi)
+    if (pole == 0) return
+    call look_from_pole(surface, positions, x, pole, view)
+    if (.not. view%fall > 0.0_wp) return
+    there%place = view%place
+    there%xi = view%xi
+    call search_element(surface, positions, x, there)
+    left = there%settled .and. .not. there%degenerate .and. there%distance <= here%distance * same_distance
+    if (left) here = there
+  end subroutine leave_pole
+
+  !> Take the pole of an element for the foot.
+  pure subroutine stay_at_pole(surface, positions, x, here)
+    type(surface_t), intent(in) :: surface
+    real(wp), intent(in) :: positions(:, :), x(3)
+    type(search_t), intent(inout) :: here
+    type(view_t) :: view
+    integer :: pole
+
+    pole = pole_of(surface, here%place, here%xi)
+    call look_from_pole(surface, positions, x, pole, view)
+    here%place(3 - abs(pole)) = 1
+    here%xi(3 - abs(pole)) = surface%direction(3 - abs(pole))%boundary(0)
+    here%xi(abs(pole)) = pole_bound(surface, pole)
+    here%way = view%centre - x
+    here%distance = 0.5_wp * dot_product(here%way, here%way)
+    here%across = view%across
+    here%outcome = projection_inside
+    here%fixed = .true.
+    here%pressing = 0
+    here%bend = merge(1.0_wp, view%bend, view%vertex)
+  end subroutine stay_at_pole
+
   !> Whether a foot is nearer than another one, or as near and in a lower element.
   pure logical function is_preferred(there, here)
     type(search_t), intent(in) :: there, here
@@ -271,7 +340,7 @@ contains
   pure logical function is_isolated(here)
     type(search_t), intent(in) :: here
 
-    is_isolated = all(here%fixed .or. here%bend > flat_distance)
+    is_isolated = all(here%bend > flat_distance .or. (here%fixed .and. .not. here%degenerate))
     if (.not. any(here%fixed)) is_isolated = is_isolated .and. here%bend_both > flat_distance
   end function is_isolated
 
@@ -360,10 +429,18 @@ contains
     real(wp), intent(in) :: positions(:, :), x(3)
     type(search_t), intent(inout) :: here
     real(wp) :: net(4, surface%direction(1)%order + 1, surface%direction(2)%order + 1)
-    real(wp) :: low(2), high(2), slope(2), hessian(2, 2), metric(2, 2), step(2)
-    integer :: a, iteration
+    real(wp) :: low(2), high(2), slope(2), hessian(2, 2), metric(2, 2), step(2), target(3), centre(3), lengths(2), flat
+    integer :: a, iteration, pole
 
     call homogeneous_net(surface, positions, here%place, net)
+    target = x
+    flat = flat_metric
+    pole = pole_of(surface, here%place, here%xi)
+    if (pole /= 0) then
+      call net_about_pole(surface, positions, pole, net, centre)
+      target = x - centre
+      flat = at_pole
+    end if
     do a = 1, 2
       low(a) = surface%direction(a)%boundary(here%place(a) - 1)
       high(a) = surface%direction(a)%boundary(here%place(a))
@@ -371,23 +448,28 @@ contains
     here%xi = min(max(here%xi, low), high)
     here%settled = .false.
     do iteration = 1, 100
-      call distance_derivatives(surface, net, x, high - low, here, slope, hessian, metric)
+      call distance_derivatives(surface, net, target, flat, high - low, here, slope, hessian, metric)
       call find_pressing(here, slope, metric, low, high)
       step = newton_step(here, slope, hessian, metric)
       if (maxval(abs(step) / (high - low)) > 1.0e-3_wp) then
-        call limit_step(surface, here, net, x, slope, low, high, step)
+        call limit_step(surface, here, net, target, slope, low, high, step)
       end if
       step = min(max(here%xi + step, low), high) - here%xi
       here%xi = here%xi + step
       here%settled = all(abs(step) <= last_step * (high - low))
+      if (pole /= 0 .and. .not. here%settled) then ! a coordinate of no length is known to round-off of the distance over that length
+        lengths = abs(step) * sqrt([metric(1, 1), metric(2, 2)])
+        here%settled = all(abs(step) <= last_step * (high - low) .or. lengths <= 4.0_wp * epsilon(1.0_wp) * norm2(here%way))
+      end if
+      if (here%degenerate) here%settled = all(abs(step) <= sqrt(flat) * (high - low))
       if (here%settled) return
     end do
   end subroutine search_element
 
   !> Way and distance of a search, the distance's slope and Hessian, and the metric of the surface (theory 3.15).
-  pure subroutine distance_derivatives(surface, net, x, span, here, slope, hessian, metric)
+  pure subroutine distance_derivatives(surface, net, x, flat, span, here, slope, hessian, metric)
     type(surface_t), intent(in) :: surface
-    real(wp), intent(in) :: net(:, :, :), x(3), span(2)
+    real(wp), intent(in) :: net(:, :, :), x(3), flat, span(2)
     type(search_t), intent(inout) :: here
     real(wp), intent(out) :: slope(2), hessian(2, 2), metric(2, 2)
     real(wp) :: s(3, 6), length(2)
@@ -406,12 +488,12 @@ contains
     hessian(2, 1) = hessian(1, 2)
     hessian(2, 2) = metric(2, 2) + dot_product(here%way, s(:, 6))
     length = [metric(1, 1), metric(2, 2)]
-    here%collapsed = .not. length * span**2 > flat_metric * maxval(length * span**2)
+    here%collapsed = .not. length * span**2 > flat * maxval(length * span**2)
     here%degenerate = any(here%collapsed) .or. .not. dot_product(here%across, here%across) > flat_metric * product(length)
     where (here%collapsed) slope = 0.0_wp
     if (here%degenerate) return
     here%bend = [hessian(1, 1), hessian(2, 2)] / length
-    here%bend_both = (hessian(1, 1) * hessian(2, 2) - hessian(1, 2)**2) / product(length)
+    here%bend_both = (hessian(1, 1) * hessian(2, 2) - hessian(1, 2)**2) / dot_product(here%across, here%across)
   end subroutine distance_derivatives
 
   !> Note the bounds across which the distance falls by more than round-off.
@@ -458,14 +540,15 @@ contains
     type(search_t), intent(in) :: here
     real(wp), intent(in) :: net(:, :, :), x(3), slope(2), low(2), high(2)
     real(wp), intent(inout) :: step(2)
-    real(wp) :: d(3), s(3, 6), target(2)
+    real(wp) :: d(3), s(3, 6), target(2), promised
     integer :: halving
 
     do halving = 1, 40
       target = min(max(here%xi + step, low), high)
       call surface_point(surface, here%place, net, target, s)
       d = x - s(:, 1)
-      if (0.5_wp * dot_product(d, d) <= here%distance + 1.0e-4_wp * dot_product(slope, target - here%xi)) return
+      promised = 1.0e-4_wp * dot_product(slope, target - here%xi)
+      if (0.5_wp * dot_product(d, d) <= here%distance * same_distance + promised) return
       step = 0.5_wp * step
     end do
   end subroutine limit_step

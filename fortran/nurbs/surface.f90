@@ -25,6 +25,8 @@ module isomortar_nurbs_surface
     real(wp) :: outward = 1.0_wp
     !> Directions whose first and last row of control points are the same: there the last element meets the first one at a seam.
     logical :: closed(2) = .false.
+    !> Poles at the start and the end of each direction, shape (2, directions): edges that are one control point, closed round it.
+    logical :: pole(2, 2) = .false.
   end type surface_t
 
 contains
@@ -59,6 +61,10 @@ contains
     associate (count => self%direction%count)
       self%closed(1) = all(self%point(1::count(1)) == self%point(count(1)::count(1)))
       self%closed(2) = all(self%point(:count(1)) == self%point(size(self%point) - count(1) + 1:))
+      self%pole(1, 1) = self%closed(2) .and. all(self%point(1::count(1)) == self%point(1))
+      self%pole(2, 1) = self%closed(2) .and. all(self%point(count(1)::count(1)) == self%point(count(1)))
+      self%pole(1, 2) = self%closed(1) .and. all(self%point(:count(1)) == self%point(1))
+      self%pole(2, 2) = self%closed(1) .and. all(self%point(size(self%point) - count(1) + 1:) == self%point(size(self%point)))
     end associate
   end function face_of
 

@@ -128,6 +128,8 @@ class Pattern:
 class Projections:
     """Slave quadrature points on the master: coordinates, element, whether found, slip increment and whether it counts.
 
+    `doubt`: 0, or for a point that is found, but whose foot does not follow it, a status (isomortar_base_status) that says why: then its
+    distance alone means something.
     `fixed`: 1 for coordinates that stay while the point moves, on lines across which the master is only continuous, shape (points, 2).
     """
 
@@ -135,6 +137,7 @@ class Projections:
     element: IntArray
     fixed: IntArray
     found: IntArray
+    doubt: IntArray
     slip: FloatArray
     slips: IntArray
 
@@ -143,8 +146,14 @@ class Projections:
         check.array("xi", self.xi, np.float64, points, 2)
         check.array("element", self.element, np.int32, points, 2)
         check.array("fixed", self.fixed, np.int32, points, 2)
+        check.array("doubt", self.doubt, np.int32, points)
         check.array("slip", self.slip, np.float64, points, 2)
         check.array("slips", self.slips, np.int32, points)
+
+    @property
+    def followed(self) -> IntArray:
+        """1 for points that have a foot which follows them: slips count from there."""
+        return np.where(self.doubt == 0, self.found, np.int32(0))
 
     @cached_property
     def range(self) -> tuple[int, int, int]:

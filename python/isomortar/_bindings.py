@@ -37,8 +37,7 @@ def _raise(status: int, place: int) -> NoReturn:
     sentences: dict[int, tuple[type[KernelError], str]] = {
         1: (FoldedElementError, f"element {place} is folded (J <= 0)"),
         2: (FoldedElementError, f"element {place} is folded (J <= 0) in the reference configuration"),
-        3: (LostProjectionError, f"the closest-point projection of slave quadrature point {place} did not settle"),
-        4: (LostProjectionError, f"the master's closest point to slave quadrature point {place} is at a pole, or not the only one"),
+        4: (LostProjectionError, f"the master has no normal at the closest point of slave quadrature point {place}"),
         9: (KernelError, f"a pattern does not fit what is added to it: block missing in row {place} (-1: it has other rows)"),
         10: (LostProjectionError, f"the position of control point {place} is not finite"),
         11: (LostProjectionError, f"slave quadrature point {place} has passed through the master's body"),
@@ -212,13 +211,13 @@ def project_points(slave: SlaveArrays, master: MasterArrays, positions: FloatArr
     check.finite("origin", check.array("origin", origin, np.float64, q, 2))
     check.array("had", had, np.int32, q)
     xi = origin.copy()
-    element, fixed, found, slip, slips, status, place = _kernel.project_points(
+    element, fixed, found, doubt, slip, slips, status, place = _kernel.project_points(
         slave.nodes.T, slave.basis.T, slave.area, slave.point, master.kind, master.knots, master.point, master.weight, positions.T,
         had, origin.T, had, xi.T,
     )  # fmt: skip
     if status:
         _raise(status, place - 1)
-    return Projections(xi, element.T, fixed.T, found, slip.T, slips)
+    return Projections(xi, element.T, fixed.T, found, doubt, slip.T, slips)
 
 
 def control_quantities(slave: SlaveArrays, master: MasterArrays, positions: FloatArray, projections: Projections) -> Control:

@@ -1,4 +1,4 @@
-"""Global numbers of control points: bodies one after the other, the repeated row of a closed ring counted once."""
+"""Global numbers of control points: bodies one after the other, a closed ring's repeated row, and a pole, counted once."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ from isomortar.errors import InputError
 from isomortar.geometry.patch import FloatArray, IntArray, Patch
 from isomortar.model.entities import Body, Problem
 
+#: Share of a body's size within which control points are the same.
+SAME = 1e-9
 _FAMILY_CODE = {"N": 1, "L": 2}
 
 
@@ -38,7 +40,7 @@ class Numbering:
         self.count = 0
         positions = []
         for body in problem.bodies:
-            local, kept = _ring_numbers(body)
+            local, kept = _numbers(body)
             self.points[body.name] = (local + self.count).astype(np.int32)
             self.offsets[body.name] = self.count
             self.count += len(kept)
@@ -62,21 +64,37 @@ def patch_arrays(patch: Patch, points: IntArray) -> PatchArrays:
     return PatchArrays(np.asarray(layout, np.int32), knots, points, patch.weights)
 
 
-def _ring_numbers(body: Body) -> tuple[IntArray, IntArray]:
+def same_points(patch: Patch, closed: str | None) -> IntArray:
+    """For each control point of a patch the first one that is the same: across a ring's seam, and on a line that is one point.
+
+    Such a line is on the body's faces, as round the pole of a sphere: its points are one, or the body would open there.
+    """
+    first = np.arange(len(patch.weights), dtype=np.int32)
+    if closed is not None:
+        first[patch.face_points(closed + "1")] = patch.face_points(closed + "0")
+    size = np.linalg.norm(np.ptp(patch.control_points, axis=0))
+    numbers = np.arange(len(first), dtype=np.int32).reshape(patch.shape[::-1])
+    for axis in range(3):
+        lines = np.moveaxis(numbers, axis, 0).reshape(numbers.shape[axis], -1)
+        of_no_length = np.linalg.norm(np.ptp(patch.control_points[lines], axis=0), axis=1) <= SAME * size
+        first[lines[:, of_no_length]] = first[lines[0, of_no_length]]
+    return first[first]
+
+
+def _numbers(body: Body) -> tuple[IntArray, IntArray]:
     """For each control point of a body its number among those kept, and the kept ones."""
-    total = len(body.patch.weights)
-    twin = np.arange(total, dtype=np.int32)
+    patch = body.patch
     if body.closed is not None:
-        first, last = body.patch.face_points(body.closed + "0"), body.patch.face_points(body.closed + "1")
-        apart = np.linalg.norm(body.patch.control_points[first] - body.patch.control_points[last], axis=1).max()
-        size = np.linalg.norm(np.ptp(body.patch.control_points, axis=0))
-        if not apart <= 1e-9 * size or not np.allclose(body.patch.weights[first], body.patch.weights[last], rtol=1e-9):
+        start, end = patch.face_points(body.closed + "0"), patch.face_points(body.closed + "1")
+        apart = np.linalg.norm(patch.control_points[start] - patch.control_points[end], axis=1).max()
+        size = np.linalg.norm(np.ptp(patch.control_points, axis=0))
+        if not apart <= SAME * size or not np.allclose(patch.weights[start], patch.weights[end], rtol=SAME):
             raise InputError(
                 f"the first and last row of control points of a closed ring must coincide; they are {apart:.3g} apart",
                 f"bodies.{body.name}.closed",
             )
-        twin[last] = first
-    kept = np.flatnonzero(twin == np.arange(total)).astype(np.int32)
-    number = np.empty(total, dtype=np.int32)
+    first = same_points(patch, body.closed)
+    kept = np.flatnonzero(first == np.arange(len(first))).astype(np.int32)
+    number = np.empty(len(first), dtype=np.int32)
     number[kept] = np.arange(len(kept), dtype=np.int32)
-    return number[twin], kept
+    return number[first], kept

@@ -12,6 +12,7 @@ from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.geometry.refinement import surface_samples
 from isomortar.model.entities import Body, Contact, Face, Problem, Support
 from isomortar.model.memory import memory_needed, memory_of_machine
+from isomortar.model.numbering import same_points
 from isomortar.scene.contacts import check_contacts
 
 #: Sizes of bodies, and forces and force densities (Young's modulus times the square of the size, and over the size) whose squares and
@@ -136,11 +137,8 @@ def _check_agreement(body: Body, one: Support, other: Support) -> None:
 
 
 def _unknowns(body: Body, support: Support) -> IntArray:
-    """Numbers of the control points of a support, those of a closed seam by their first number."""
-    numbers = np.arange(len(body.patch.control_points), dtype=np.int32)
-    if body.closed:
-        numbers[body.patch.face_points(f"{body.closed}1")] = body.patch.face_points(f"{body.closed}0")
-    return numbers[body.patch.face_points(support.place.face)]
+    """Numbers of the control points of a support, those that are the same by their first number."""
+    return same_points(body.patch, body.closed)[body.patch.face_points(support.place.face)]
 
 
 def _agree(one: Support, other: Support, component: int) -> bool:

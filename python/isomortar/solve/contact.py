@@ -10,11 +10,13 @@ import numpy as np
 
 from isomortar import _bindings
 from isomortar._bindings import ROW_KINDS, Control, Law, Pattern, Projections, Response
+from isomortar.errors import LostProjectionError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import SolverSettings
 from isomortar.model.held import held_by, nothing_held
 from isomortar.model.pairs import Pair
 from isomortar.model.supports import Supports
+from isomortar.solve.feet import Feet
 from isomortar.solve.reach import ContactPatterns, Reach
 from isomortar.solve.record import ContactResult, ContactState
 from isomortar.solve.scales import Scales
@@ -76,8 +78,9 @@ def largest(distances: Iterable[tuple[float, float]]) -> tuple[float, float]:
 class PairMechanics:
     """A contact pair with what stays for a whole computation."""
 
-    def __init__(self, pair: Pair, settings: SolverSettings, ledger: Ledger) -> None:
+    def __init__(self, pair: Pair, settings: SolverSettings, ledger: Ledger, origin: FloatArray) -> None:
         self.pair = pair
+        self._feet = Feet(pair, origin)
         self.friction = pair.contact.friction
         self.summed = settings.slip_sum == "paper" and self.friction > 0
         self.reach = Reach(pair, self.summed, settings.method == "uzawa")
@@ -102,13 +105,22 @@ class PairMechanics:
         n, q = len(self.pair.slave.point), len(self.pair.slave.area)
         nowhere = ContactState(np.zeros(n), np.zeros((n, 2)), np.zeros((q, 2)), np.zeros(q, dtype=np.int32))
         projections = self.kinematics(positions, nowhere).projections
-        return replace(nowhere, projection=projections.xi, projected=projections.found)
+        return replace(nowhere, projection=projections.xi, projected=projections.followed)
 
     def kinematics(self, positions: FloatArray, start: ContactState) -> Kinematics:
-        """Project and integrate the control quantities; slips count from `start`."""
+        """Project and integrate the control quantities; slips count from `start`.
+
+        Raises
+        ------
+        LostProjectionError
+            A point has passed through its master, or the master has no normal there.
+        """
         pair = self.pair
         with self._ledger.phase("projection"):
-            projections = _bindings.project_points(pair.slave, pair.master, positions, start.projection, start.projected)
+            try:
+                projections = _bindings.project_points(pair.slave, pair.master, positions, start.projection, start.projected)
+            except LostProjectionError as error:
+                raise self._feet.named(error, positions) from error
         with self._ledger.phase("contact"):
             control = _bindings.control_quantities(pair.slave, pair.master, positions, projections)
         self._ledger.counts["projections"] += len(pair.slave.area)
@@ -150,7 +162,14 @@ class PairMechanics:
             return _bindings.augmented_multipliers(self.pair.slave, kinematics.control, law)
 
     def add_forces(self, positions: FloatArray, kinematics: Kinematics, response: Response, forces: FloatArray) -> None:
-        """Add the contact forces of both sides to `forces`, shape (control points, 3)."""
+        """Add the contact forces of both sides to `forces`, shape (control points, 3).
+
+        Raises
+        ------
+        LostProjectionError
+            Contact acts at a point whose foot does not follow it.
+        """
+        self._feet.check(positions, kinematics.projections, response)
         with self._ledger.phase("contact"):
             _bindings.contact_forces(self.pair.slave, self.pair.master, positions, kinematics.projections, self.friction, response, forces)
 
@@ -277,4 +296,4 @@ class PairMechanics:
     def state(self, kinematics: Kinematics, response: Response) -> ContactState:
         """State to go on from."""
         projections = kinematics.projections
-        return ContactState(response.pressure, response.traction, projections.xi, projections.found)
+        return ContactState(response.pressure, response.traction, projections.xi, projections.followed)

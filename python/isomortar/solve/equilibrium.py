@@ -71,7 +71,7 @@ class Equilibrium:
         self.supports = Supports(problem, self.numbering)
         self.solid = Solid(problem, self.numbering)
         self.measures = BodyMeasures(self.numbering, self.supports, self.solid)
-        self.pairs = [PairMechanics(Pair(c, problem, self.numbering), problem.settings, ledger) for c in problem.contacts]
+        self.pairs = [PairMechanics(Pair(c, problem, self.numbering), problem.settings, ledger, self.origin) for c in problem.contacts]
         self.solid_source = Source(self.solid.pattern, self.supports.equation, self.supports.equation)
         self._solid_entries: sparse.csr_array | None = None
         self._system: LinearSystem | None = None

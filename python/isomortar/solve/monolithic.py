@@ -14,6 +14,7 @@ from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.solve.bordered import Border, Correction, solve_bordered, solve_with_kept_factors
 from isomortar.solve.contact import largest
 from isomortar.solve.equilibrium import Balance
+from isomortar.solve.feet import beside_poles
 from isomortar.solve.method import Increment, Method
 from isomortar.solve.newton import KEPT_FACTORS, KEPT_SHARE, observed_order, relative_residual, residual_round_off
 from isomortar.solve.record import AugmentationRecord, IterationRecord, State
@@ -103,7 +104,14 @@ class Monolithic(Method):
         raise ConvergenceError(
             f"Newton's method stopped at a relative residual of {iterate.residual:.2e} and "
             f"{max(iterate.gap_pressure, iterate.gap_traction):.2e} off the contact conditions after {iteration} iterations"
-            + _toggling(seen, visited, self._settings.slip_sum == "paper")
+            + _toggling(seen, visited, self._beside_poles(iterate), self._settings.slip_sum == "paper")
+        )
+
+    def _beside_poles(self, iterate: Iterate) -> np.ndarray:
+        """Which slave quadrature points, of all pairs, have their feet in elements of the master that end at a pole."""
+        pairs = zip(self._equilibrium.pairs, iterate.balance.kinematics, strict=True)
+        return np.concatenate(
+            [beside_poles(pair.pair, kinematics.projections) for pair, kinematics in pairs] or [np.zeros(0, dtype=np.bool_)]
         )
 
     def _first(self, start: State, scales: Scales) -> Iterate:
@@ -237,7 +245,7 @@ def _moved(iterate: Iterate, correction: Correction, share: float) -> tuple[Floa
     return iterate.balance.positions + share * correction.positions, multipliers
 
 
-def _toggling(seen: Sequence[bytes], visited: Sequence[IntArray], summed: bool) -> str:
+def _toggling(seen: Sequence[bytes], visited: Sequence[IntArray], by_poles: np.ndarray, summed: bool) -> str:
     """What changed to and fro in the last iterations, as a part of a sentence."""
     states = np.array([np.frombuffer(s, dtype=np.int32) for s in seen[-6:]])
     points = np.flatnonzero(np.any(states != states[0], axis=0))
@@ -246,6 +254,12 @@ def _toggling(seen: Sequence[bytes], visited: Sequence[IntArray], summed: bool) 
         return f"; slave control points {_first_few(points)} change their states from iteration to iteration{hint}"
     elements = np.array(visited[-6:])
     crossing = np.flatnonzero(np.any(elements != elements[0], axis=(0, 2)))
+    about = crossing[by_poles[crossing]]
+    if about.size:
+        return (
+            f"; nearest points of slave quadrature points {_first_few(about)} go round a pole of the master: pressed in, it is a hollow "
+            "vertex, and what is above one has no nearest point of its own. Press beside it, or take a mesh without a pole there"
+        )
     if crossing.size:
         return (
             f"; slave quadrature points {_first_few(crossing)} cross a knot line of the master from iteration to iteration, where a master "

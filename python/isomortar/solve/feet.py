@@ -1,0 +1,95 @@
+"""Feet on the master under slave points that carry pressure: they have to follow their points, and with friction to slip.
+
+A point that is open may have any foot, also one of many that are as near: of such a point the distance alone counts.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from isomortar import _bindings
+from isomortar._bindings import Projections, Response, SlaveArrays
+from isomortar.errors import LostProjectionError
+from isomortar.geometry.patch import FloatArray
+from isomortar.model.pairs import Pair
+
+#: Beside a pole, a doubt of its own with friction.
+_SLIPS_AT_POLE = -1
+#: By the kernel's status (isomortar_base_status): what is the matter with a foot, and what to do.
+_DOUBTS = {
+    3: "the search for its nearest point on the master does not settle, as near a centre of curvature. "
+    "Take smaller load steps, or a master whose centres of curvature are farther away",
+    4: "other points of the master are as near as the nearest one, as from a ring's axis: it has no direction to press in. "
+    "Keep the slave nearer to the master than its centres of curvature, or take a master that is less hollow",
+    _SLIPS_AT_POLE: "its nearest point is beside a pole of the master, an edge that is one point, where slips have no coordinates. "
+    "Set friction = 0, or take a mesh without a pole there",
+}
+
+
+class Feet:
+    """What is asked of the feet of a contact pair.
+
+    Parameters
+    ----------
+    pair : Pair
+    origin : ndarray, shape (3,)
+        Where the coordinates of positions count from, in those that messages name.
+    """
+
+    def __init__(self, pair: Pair, origin: FloatArray) -> None:
+        self._pair, self._origin = pair, origin
+        self._slips = pair.contact.friction > 0
+
+    def check(self, positions: FloatArray, projections: Projections, response: Response) -> None:
+        """Refuse feet that do not follow their points, or cannot slip, under active control points.
+
+        Raises
+        ------
+        LostProjectionError
+            Naming contact, point, place and gap.
+        """
+        doubt = projections.doubt
+        if self._slips:
+            doubt = np.where(beside_poles(self._pair, projections) & (doubt == 0), _SLIPS_AT_POLE, doubt)
+        if not doubt.any():
+            return
+        active = np.any(response.state[self._pair.slave.nodes] > 0, axis=1)
+        bad = np.flatnonzero((doubt != 0) & np.repeat(active, self._pair.points_per_element))
+        if bad.size:
+            q = int(bad[0])
+            raise LostProjectionError(
+                f"contact {self._pair.contact.name!r}: slave quadrature point {q} at {self._place(positions, q)}, with a gap of "
+                f"{self._gap(positions, projections, q):.3g}, is where contact acts, but {_DOUBTS[int(doubt[q])]}", q
+            )  # fmt: skip
+
+    def named(self, error: LostProjectionError, positions: FloatArray) -> LostProjectionError:
+        """An error of the kernel's projection with the contact, and the place of its slave point, in its words."""
+        where = f", at {self._place(positions, error.place)}" if np.isfinite(positions).all() else ""
+        return LostProjectionError(f"contact {self._pair.contact.name!r}: {error}{where}", error.place)
+
+    def _point(self, positions: FloatArray, q: int) -> FloatArray:
+        slave = self._pair.slave
+        point: FloatArray = slave.basis[q] @ positions[slave.point[slave.nodes[q // self._pair.points_per_element]]]
+        return point
+
+    def _place(self, positions: FloatArray, q: int) -> str:
+        point = self._point(positions, q)
+        point[np.abs(point) <= 1e-12 * np.abs(positions).max()] = 0.0  # round-off is no place
+        return "({:.4g}, {:.4g}, {:.4g})".format(*(point + self._origin))
+
+    def _gap(self, positions: FloatArray, projections: Projections, q: int) -> float:
+        """The gap of one quadrature point, negative where it is open: the kernel gives averages, here of this point alone."""
+        slave = SlaveArrays(np.zeros((1, 1), np.int32), np.ones((1, 1)), np.ones(1), np.array([len(positions)], np.int32))
+        one = slice(q, q + 1)
+        foot = Projections(*(np.ascontiguousarray(getattr(projections, name)[one]) for name in Projections.__dataclass_fields__))
+        return float(_bindings.control_quantities(slave, self._pair.master, np.vstack([positions, self._point(positions, q)]), foot).gap[0])
+
+
+def beside_poles(pair: Pair, projections: Projections) -> np.ndarray:
+    """Which slave quadrature points have their feet in elements of the master that end at an edge that is one control point."""
+    beside = np.zeros(len(projections.found), dtype=np.bool_)
+    for number, (direction, points) in enumerate(pair.master_edges):
+        if np.all(points == points[0]):
+            edge = 0 if number % 2 == 0 else pair.master_elements[direction] - 1
+            beside |= (projections.element[:, direction] == edge) & (projections.found > 0)
+    return beside

@@ -1,0 +1,114 @@
+"""Poles of a master: feet beside and at the point into which an edge is collapsed, and targets above it without a foot of their own."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from projection.closest_points import Surface
+from projection.nearest import exhaustive
+from shapes import dome
+
+from isomortar.geometry.patch import FloatArray
+from isomortar.geometry.refinement import mesh
+from isomortar.harness import Bound, case
+
+INNER, OUTER = 0.4, 0.7
+#: Latitude, counted from the pole as a share of the patch, at which feet are.
+OFF = (1e-1, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-14)
+
+
+def face(kind: str, side: str = "v1", raised: float = 0.0) -> Surface:
+    """The outer (v1) or inner face of a dome; `raised`: its pole, which is a cone's vertex then."""
+    family, order = kind[0], int(kind[1:])
+    patch = mesh(dome(INNER, OUTER, -0.3), (family, family, family), (order, 1, order), (3, 1, 8))  # type: ignore[arg-type]
+    points = patch.control_points.copy()
+    points[patch.face_points("u1"), 2] += raised
+    return Surface(replace(patch, control_points=points), side, closed="w")
+
+
+def starts(surface: Surface, count: int, seed: int) -> FloatArray:
+    """Random coordinates, and every third one at the pole."""
+    low, high = surface.ends
+    xi = low + np.random.default_rng(seed).uniform(0, 1, (count, 2)) * (high - low)
+    xi[::3, 1] = high[1]
+    return xi
+
+
+@case(
+    claim="Feet beside a pole are those of the exact sphere, however near it and from any start, the pole too.",
+    tier="gate",
+    grid={"kind": ["N2", "N3"], "side": ["v0", "v1"], "off": list(OFF)},
+    bounds={
+        "foot": Bound(at_most=2e-14, reason="round-off: of the surface's points; Newton's method ends below it"),
+        "found": Bound(at_least=1.0, at_most=1.0, reason="definition: round the pole there is no edge"),
+        "followed": Bound(at_least=1.0, at_most=1.0, reason="definition: the sphere is smooth at its pole, a foot beside it follows"),
+    },
+)
+def beside_a_pole(kind: str, side: str, off: float) -> dict[str, float]:
+    """Largest distance from the exact foot, shares found and followed; feet all round, on C0 lines too, on both sides of the face."""
+    surface = face(kind, side)
+    low, high = surface.ends
+    random = np.random.default_rng(2)
+    angle = np.concatenate([random.uniform(0.0, 2 * np.pi, 40), np.arange(8) * np.pi / 4])
+    latitude = (high[1] - low[1]) * off
+    radius = INNER if side == "v0" else OUTER
+    normals = np.column_stack([np.sin(latitude) * np.cos(angle), np.sin(latitude) * np.sin(angle), np.full(len(angle), np.cos(latitude))])
+    feet = radius * normals
+    targets = feet + random.uniform(-0.25, 0.25, (len(feet), 1)) * normals
+    worst, found, followed = 0.0, [], []
+    for xi in (None, starts(surface, len(feet), 3), starts(surface, len(feet), 4)):
+        projections = surface.project(targets, xi)
+        worst = float(np.maximum(worst, np.linalg.norm(surface.points(projections.xi) - feet, axis=1).max()))
+        found.append(projections.found)
+        followed.append(projections.followed)
+    return {"foot": worst, "found": float(np.mean(found)), "followed": float(np.mean(followed))}
+
+
+@case(
+    claim="Where the pole is a vertex, targets within its cone have it for a foot, others the nearest point of the whole face.",
+    tier="gate",
+    grid={"kind": ["N2", "N3"], "raised": [1e-6, 1e-3, 0.1]},
+    bounds={
+        "pole": Bound(at_most=0.0, reason="definition: within the cone of normals nothing is nearer than the vertex"),
+        "nearer": Bound(at_most=1e-9, reason="definition: no point of the master may be nearer; half the digits of a least distance"),
+        "fixed": Bound(at_least=1.0, at_most=1.0, reason="definition: the vertex stays the foot of what moves within its cone"),
+    },
+)
+def at_a_vertex(kind: str, raised: float) -> dict[str, float]:
+    """Distance of feet from the vertex, for targets within its cone; how much nearer a point is to others; share fixed of the first."""
+    surface = face(kind, raised=raised)
+    high = surface.ends[1]
+    pole = surface.points(high[None])[0]
+    random = np.random.default_rng(5)
+    slope = np.linalg.norm(surface.points(np.array([[0.0, high[1] - 1e-7]]))[0, :2])
+    slope = (pole - surface.points(np.array([[0.0, high[1] - 1e-7]]))[0])[2] / slope
+    angle, share = random.uniform(0, 2 * np.pi, 60), random.uniform(0.0, 0.9, 60)
+    above = np.column_stack([share * slope * np.cos(angle), share * slope * np.sin(angle), np.ones(60)]) * random.uniform(
+        0.01, 0.3, (60, 1)
+    )
+    within = surface.project(pole + above, starts(surface, 60, 6))
+    around = pole + random.uniform(-0.2, 0.2, (60, 3))
+    return {
+        "pole": float(np.linalg.norm(surface.points(within.xi) - pole, axis=1).max()),
+        "nearer": float(np.maximum(0.0, exhaustive(surface, around, surface.project(around).xi).max())),
+        "fixed": float(np.mean(within.fixed)),
+    }
+
+
+@case(
+    claim="Beyond the centre of curvature a target above the pole has no foot that follows it; nearer to the face it has.",
+    tier="gate",
+    grid={"kind": ["N2", "N3"]},
+    bounds={
+        "centre": Bound(at_most=0.0, reason="definition: from the centre of the sphere all its points are as near"),
+        "above": Bound(at_least=1.0, at_most=1.0, reason="definition: off the centre the pole is the nearest point"),
+    },
+)
+def above_a_pole(kind: str) -> dict[str, float]:
+    """Share of followed targets at the sphere's centre, and on the axis from there to the pole and beyond."""
+    surface = face(kind, "v0")
+    heights = np.array([0.001, 0.05, 0.39, 0.4, 0.41, 0.6])
+    axis = np.column_stack([np.zeros((6, 2)), heights])
+    found = [surface.project(axis, xi).followed for xi in (None, starts(surface, 6, 7))]
+    return {"centre": float(np.mean(surface.project(np.zeros((1, 3))).followed)), "above": float(np.mean(found))}
