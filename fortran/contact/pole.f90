@@ -162,7 +162,7 @@ contains
     end associate
   end subroutine look_from_pole
 
-  !> Kinematics of a foot at a pole: the pole stays the foot of what moves about it if the distance rises in all directions.
+  !> Kinematics of a foot at a pole (theory 3.11): it stays the foot of what moves about it if the distance rises in all directions.
   pure subroutine hold_at_pole(surface, positions, x, pole, point)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :), x(3)
