@@ -1,7 +1,7 @@
 !> Poles of a master: edges of one control point, round which the surface is closed. There a coordinate has no length.
 !>
-!> Feet beside a pole are as any others, if what is a difference of nearly equal numbers there is formed about the pole itself. At the
-!> pole the foot is the control point, as on a corner of C0 lines: the pole of a body that deforms is a cone's vertex.
+!> Feet beside a pole are as any others, if what is a difference of nearly equal numbers there is formed about the pole itself. At
+!> the pole the foot is the control point, as on a corner of C0 lines: the pole of a body that deforms is a cone's vertex.
 module isomortar_contact_pole
   use isomortar_base_algebra, only: cross
   use isomortar_base_kinds, only: wp
@@ -14,18 +14,18 @@ module isomortar_contact_pole
 
   !> Share of the distance by which it has to fall along a tangent from the pole: less is round-off.
   real(wp), parameter :: least_fall = 16.0_wp * epsilon(1.0_wp)
-  !> The distance rises from the pole in all directions as from a vertex if it rises by more than this share; else it is smooth there.
+  !> The distance rises from the pole as from a vertex if it rises by more than this share in all directions; else it is smooth there.
   real(wp), parameter :: sharp = sqrt(epsilon(1.0_wp))
 
   !> What a point sees of a surface from its pole.
   type, public :: view_t
     !> The pole, and the mean of the unit normals about it along a_1 x a_2.
     real(wp) :: centre(3), across(3)
-    !> The most that the distance falls along unit tangents from the pole (times the distance), and the place and coordinates of that.
+    !> The most that the distance falls along unit tangents from the pole (times the distance); place and coordinates of that.
     real(wp) :: fall
     integer :: place(2)
     real(wp) :: xi(2)
-    !> Least curvature of the distance along those tangents: one near the surface, zero or less at or beyond its centre of curvature.
+    !> Least curvature of the distance along those tangents: one near the surface, zero or less beyond its centre of curvature.
     real(wp) :: bend
     !> Whether the distance rises along all of them, as from a vertex.
     logical :: vertex
@@ -141,7 +141,7 @@ contains
             / real(2 * direction%order, wp)
           call surface_point(surface, place, net, xi, s)
           inwards = sign(1.0_wp, -real(pole, wp)) * s(:, 1 + across)
-          normal = cross(s(:, 5), s(:, 1 + across)) ! a_1 grows with S,12 from the pole of direction 2, as a_2 from that of direction 1
+          normal = cross(s(:, 5), s(:, 1 + across)) ! a_1 grows with S,12 from a pole of direction 2, a_2 from one of direction 1
           if (across == 1) normal = -normal
           view%across = view%across + sign(1.0_wp, -real(pole, wp)) * normal / norm2(normal)
           associate (fall => dot_product(x - view%centre, inwards) / norm2(inwards), square => dot_product(inwards, inwards))

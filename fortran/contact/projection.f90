@@ -36,7 +36,7 @@ module isomortar_contact_projection
 
   !> Squared length or sine below which two tangents span no surface: a place on a collapsed edge, say.
   real(wp), parameter :: flat_metric = epsilon(1.0_wp)
-  !> The same beside a pole, where lengths are exact: a place within this of it (the square of its share of the element) is the pole.
+  !> The same beside a pole, where lengths are exact: what is nearer to it, as the square of a share of the element, is the pole.
   real(wp), parameter :: at_pole = epsilon(1.0_wp)**1.5_wp
   !> Share of the metric below which the distance has no curvature but round-off.
   real(wp), parameter :: flat_distance = epsilon(1.0_wp)**0.75_wp
@@ -457,7 +457,7 @@ contains
       step = min(max(here%xi + step, low), high) - here%xi
       here%xi = here%xi + step
       here%settled = all(abs(step) <= last_step * (high - low))
-      if (pole /= 0 .and. .not. here%settled) then ! a coordinate of no length is known to round-off of the distance over that length
+      if (pole /= 0 .and. .not. here%settled) then ! a coordinate is known to round-off of the distance over its length
         lengths = abs(step) * sqrt([metric(1, 1), metric(2, 2)])
         here%settled = all(abs(step) <= last_step * (high - low) .or. lengths <= 4.0_wp * epsilon(1.0_wp) * norm2(here%way))
       end if
