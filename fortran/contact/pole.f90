@@ -14,7 +14,7 @@ module isomortar_contact_pole
 
   !> Share of the distance by which it has to fall along a tangent from the pole: less is round-off.
   real(wp), parameter :: least_fall = 16.0_wp * epsilon(1.0_wp)
-  !> The distance rises from the pole as from a vertex if it rises by more than this share in all directions; else it is smooth there.
+  !> The distance rises from the pole as from a vertex if it rises by more than this share all round; else it is smooth there.
   real(wp), parameter :: sharp = sqrt(epsilon(1.0_wp))
 
   !> What a point sees of a surface from its pole.
