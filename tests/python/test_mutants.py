@@ -21,6 +21,7 @@ from isomortar.harness.mutants.journal import Journal
 from isomortar.harness.mutants.layers import LAYERS
 from isomortar.harness.mutants.meaning import meaning
 from isomortar.harness.mutants.score import Classification, Score, Share, read_classified
+from isomortar.harness.mutants.tests.as_cells import tests_as_cells
 
 ROOT = Path(__file__).parents[2]
 TEXT = "!> Doubles - it.\nfunction twice(x)\n  real :: x, twice\n  twice = 2 * x - 1\n  twice = 2 * x - 1\nend function\n"
@@ -68,7 +69,7 @@ class Oracle:
     def measure(self, kernel, cell, seconds):
         self.asked.append((cell.name, seconds))
         if cell.name != self.red or kernel not in self.on:
-            return Measurement("measured", {"zero": 0.0})
+            return Measurement("measured", dict.fromkeys(cell.case.bounds, 0.0))
         return Measurement(self.ending, {"zero": math.nan} if self.ending == "measured" else {}, "gone")
 
 
@@ -179,6 +180,19 @@ def test_a_survivor_met_the_whole_gate_or_as_much_as_asked_for(cells):
     assert [name for name, _ in bench.asked] == ["mutants_family/cheap[k=2]", "mutants_family/cheap[k=1]", "mutants_family/dear"]
     assert [seconds for _, seconds in bench.asked] == [20.0, 20.0, 100.0]
     assert not tried.is_whole(tried.attack(Oracle(), FAULTY, "solid", (), 0.15))
+
+
+def test_a_file_of_tests_that_passed_says_nothing_of_the_others(cells, tmp_path):
+    """Cells of one case do: after two of three the third would come behind a case that takes three times as long."""
+    for name in ("test_one", "test_two", "test_three"):
+        (tmp_path / f"{name}.py").write_text("")
+    files = tests_as_cells(tmp_path)
+    dear = next(cell for cell in cells if "dear" in cell.name)
+    bench = Oracle()
+    Gate({dear.name: 3.0} | {cell.name: 1.0 for cell in files}, [dear, *files], lambda *_: None, SOUND).attack(
+        bench, FAULTY, "solid", (), math.inf
+    )
+    assert [name for name, _ in bench.asked][-1] == dear.name
 
 
 def test_cells_passed_before_are_not_asked_again(cells):

@@ -59,7 +59,8 @@ class Gate:
 
     def __init__(self, seconds: Mapping[str, float], cells: Sequence[Cell], lookup: Lookup, sound: Path) -> None:
         self._cells = {cell.name: cell for cell in cells if cell.name in seconds}
-        self._case = {name: f"{cell.case.name}, any settings" for name, cell in self._cells.items()}
+        # A file of tests is a case for itself: they have little in common.
+        self._case = {name: f"{cell.case.name} {cell.case.files}, any settings" for name, cell in self._cells.items()}
         self._seconds = seconds
         self._lookup = lookup
         self._sound = sound
