@@ -72,10 +72,10 @@ REACTION = {
 
 #: Resultants and counts of a contact pair, named as in `ContactResult`.
 CONTACT = {
-    "force_slave": _real("force", "resultant of the contact forces on the slave side", (3,)),
-    "force_master": _real("force", "resultant of the contact forces on the master side", (3,)),
-    "moment_slave": _real("force*length", "moment of the contact forces on the slave side about the origin", (3,)),
-    "moment_master": _real("force*length", "moment of the contact forces on the master side about the origin", (3,)),
+    "force_slave": _real("force", "resultant of the contact forces that the slave side exerts", (3,)),
+    "force_master": _real("force", "resultant of the contact forces that the master side exerts", (3,)),
+    "moment_slave": _real("force*length", "moment of the contact forces that the slave side exerts, about the origin", (3,)),
+    "moment_master": _real("force*length", "moment of the contact forces that the master side exerts, about the origin", (3,)),
     "active": _count("active slave control points"),
     "slip": _count("slipping slave control points"),
     "pressure_field": _real("force/area", "smallest and largest contact pressure p = sum R^I p^I at the contact quadrature points", (2,)),

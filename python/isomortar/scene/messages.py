@@ -23,7 +23,7 @@ def input_error(error: ValidationError, data: Any) -> InputError:
     data : dict
         What was validated.
     """
-    faults = [(_field(fault, data), _sentence(fault)) for fault in error.errors()]
+    faults = list(dict.fromkeys((_field(fault, data), _sentence(fault)) for fault in error.errors()))  # one value, three directions
     field, message = faults[0]
     return InputError("\n".join([message, *(f"{path}: {sentence}" for path, sentence in faults[1:])]), field)
 

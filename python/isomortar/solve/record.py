@@ -74,7 +74,7 @@ class Reaction:
 class ContactResult:
     """Measured quantities of one contact pair at the end of a load step.
 
-    `force_slave`, `force_master`: resultants of the contact forces on each side, `moment_*` about the origin, shape (3,).
+    `force_slave`, `force_master`: resultants of the contact forces that each side exerts, `moment_*` about the origin, shape (3,).
     `active`, `slip`: numbers of control points. `traction_norm`: metric norm of each control traction, shape (n,).
     `status`: per slave control point 0 open, 1 stick, 2 slip, shape (n,). `gap`: control gap g^I, shape (n,);
     positive is penetration. `pressure_field`: smallest and largest p at the contact quadrature points, shape (2,).

@@ -32,8 +32,13 @@ def tests_as_cells(folder: Path) -> list[Cell]:
     InputError
         There are no tests in the folder.
     """
-    helpers = tuple(sorted(path for path in folder.glob("*.py") if not path.name.startswith("test_")))
+    helpers = tuple(sorted(path for path in folder.iterdir() if path.is_file() and not path.name.startswith("test_")))
     files = [path for path in sorted(folder.glob("test_*.py")) if _HARNESS not in path.read_text()]
     if not files:
         raise InputError(f"there are none in {folder}", "tests")
-    return [Cell(replace(passed, files=(path, *helpers)), {"of": path.as_posix()}) for path in files]
+    return [Cell(replace(passed, files=(path, *_imported(path), *helpers)), {"of": path.as_posix()}) for path in files]
+
+
+def _imported(path: Path) -> list[Path]:
+    """Other files of tests that one takes things from."""
+    return [other for other in sorted(path.parent.glob("test_*.py")) if f"from {other.stem} import" in path.read_text()]

@@ -1,0 +1,185 @@
+"""What the program says, word by word: refusals, warnings, causes, what a results file says of itself. `sentences.toml` is to be read."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+from isomortar.errors import IsomortarError, SingularSystemError
+from isomortar.results.reader import Results
+from isomortar.results.writer import ResultsWriter
+from isomortar.scene import Scene
+from isomortar.solve import doubts
+from isomortar.solve.advice import StepAdvice
+from isomortar.solve.monolithic import _toggling
+from isomortar.solve.simulation import Simulation
+from results_samples import problem, step_result
+from test_advice import DOUBTFUL, PLATE, PRESS, Warned, _of_weights, material, rational, warnings
+from test_causes import said, scene
+from test_scene_contacts import WRONG
+from test_scene_errors import CASES, GOOD
+from test_singular import BLOCK, error, explained
+
+SENTENCES: dict[str, dict[str, str]] = tomllib.loads((Path(__file__).parent / "sentences.toml").read_text(encoding="utf-8"))
+
+#: Name and sentence of each case of a kind.
+Told = Iterator[tuple[str, str]]
+
+
+def refusal(action: Callable[[], object]) -> str:
+    """What an error says."""
+    with pytest.raises(IsomortarError) as raised:
+        action()
+    return str(raised.value)
+
+
+def refused(text: str) -> str:
+    """What is said of a scene that is wrong."""
+    return refusal(lambda: Scene.from_toml(text).problem())
+
+
+def bad_scenes(_: pytest.MonkeyPatch) -> Told:
+    """Refused for one wrong key."""
+    for name, (old, new, *_) in CASES.items():
+        yield name, refused(GOOD.replace(old, new, 1))
+
+
+def bad_contacts(_: pytest.MonkeyPatch) -> Told:
+    """Refused for what cannot be meant."""
+    for name, (text, old, new, *_) in WRONG.items():
+        yield name, refused(text.replace(old, new))
+
+
+def bad_words(_: pytest.MonkeyPatch) -> Told:
+    """Refused on the command line, or as a whole."""
+    for name, override in {
+        "no value": "bodies.slave.mesh",
+        "no body": "bodies.slav.mesh.order=3",
+        "no stage": "stages.darg.steps=3",
+        "no number": "stages.2.steps=3",
+        "a single value": "name.first=3",
+    }.items():
+        yield name, refusal(partial(Scene.load, "iron", [override]))
+    yield "no scene", refusal(lambda: Scene.load("irn"))
+    yield "seam", refusal(lambda: Scene.load("tire", ["contacts.road.slave=tire.u0"]).problem())
+
+
+def doubtful(patch: pytest.MonkeyPatch) -> Told:
+    """Warnings on scenes that run."""
+    for name, (text, old, new, _) in DOUBTFUL.items():
+        (yield name, *warnings(text.replace(old, new)))
+    rubber = PRESS.replace("[bodies.block]", "[materials.rubber]\n[bodies.block]")
+    (yield "locks", *warnings(rubber, material(0.4999, "N", 3)))
+    (yield "locks at any order", *warnings(rubber, material(0.5 - 1e-13, "N", 3)))
+    (yield "weights", *_of_weights(rational(30.0)))
+    (yield "weights without a cure", *_of_weights(rational(1e6)))
+    patch.setattr(doubts, "memory_of_machine", lambda: 1e6)
+    (yield "memory", *warnings(PRESS))
+
+
+def along_the_way(_: pytest.MonkeyPatch) -> Told:
+    """Warnings before, at and after load steps."""
+    yield "stiff and fine slave", _before_the_first_step(scene(HARD=150, SLAVE=4))
+    yield "few points", _before_the_first_step(scene(SLAVE=1, MASTER=8))
+    advice, result = StepAdvice(problem()), step_result(2)
+    measured = tuple(replace(c, active=9, pressure_field=np.array([0.0, 0.5]), excluded=3) for c in result.contacts)
+    calm, wild = [np.full(16, 0.5)] * 2, [np.full(16, 0.5), np.full(16, 0.8)]
+    assert list(advice.after_step(1, measured, calm)) == []
+    left = (replace(measured[0], excluded=7), measured[1])
+    yield from zip(("left the master", "oscillates"), advice.after_step(2, left, wild), strict=True)
+    assert list(advice.after_step(3, left, wild)) == list(advice.at_the_end()) == []
+    (yield "never closed", *[list(StepAdvice(problem()).at_the_end())[1]])
+    text = PLATE.replace("THICKNESS", "1e-4").replace("TIP", '[supports.tip]\nface = "b.u1"\ncomponents = ["z"]')
+    observer = Warned()
+    list(Simulation(Scene.from_toml(text.replace("MOTION", "motions.tip.translate = [0, 0, 1e-7]")).problem(), observer).run())
+    yield "lost in round-off", without_digits(observer.said[0])
+
+
+def _before_the_first_step(simulation: Simulation) -> str:
+    observer = Warned()
+    next(Simulation(simulation.problem, observer).run())
+    return observer.said[0]
+
+
+def without_digits(sentence: str) -> str:
+    """Numbers with an exponent, which are round-off, in short."""
+    return re.sub(r"\d(\.\d+)?e[+-]\d+", "#", sentence)
+
+
+def given_up(_: pytest.MonkeyPatch) -> Told:
+    """Causes of a load step that is given up."""
+    (yield "thin", *said(scene(TOP=1.000001)))
+    (yield "thin, bent", *said(scene(TOP=1.0004), SingularSystemError("")))
+    (yield "incompressible", *said(scene(POISSON=0.499999)))
+    (yield "stiffness", *said(scene(HARD=1e12)))
+    (yield "penalty", *said(scene(METHOD="uzawa", PENALTY=1e4)))
+    (yield "points", *said(scene(SLAVE=1, MASTER=8)))
+    yield "slides", without_digits(error(BLOCK + 'supports.top = { face = "block.w1", components = ["y", "z"] }'))
+    yield "held", explained([4], [])
+    yield "repeated", explained([], [3, 5])
+    yield "left", explained([], [3, 5], found=0)
+    states = [np.array(s, dtype=np.int32).tobytes() for s in ([0, 1, 2], [0, 2, 2])]
+    places = [np.zeros((2, 4), dtype=np.int32), np.array([[0, 0, 0, 0], [1, 0, 0, 0]], dtype=np.int32)]
+    yield "changing states", _toggling(states, places, summed=False)
+    yield "changing states, paper's sum", _toggling(states, places, summed=True)
+    yield "knot lines", _toggling(states[:1] * 2, places, summed=True)
+    yield "nothing changes", _toggling(states[:1] * 2, places[:1] * 2, summed=True)
+    few = ["solver.method=uzawa", "solver.max_augmentations=2", "solver.max_cuts=0"]
+    yield "augmentations", without_digits(error(PRESS, *few))
+
+
+def of_results(_: pytest.MonkeyPatch) -> Told:
+    """Refused by a results file; beside it stands what it is not."""
+    writer = ResultsWriter("run.h5", problem(), "", "0")
+    writer.recorded(step_result(1))
+    yield "recorded twice", refusal(lambda: writer.recorded(step_result(1)))
+    yield "there already", refusal(lambda: ResultsWriter("run.h5", problem(), "", "0"))
+    other = replace(problem(), name="other", stages=problem().stages[:1])
+    yield "another scene", refusal(lambda: ResultsWriter("run.h5", other, "", "0", resume=True))
+    yield "none there", refusal(lambda: Results("none.h5"))
+    with Results("run.h5") as results:
+        yield "no step", refusal(lambda: results.step(3))
+        yield "no curve", refusal(lambda: results.curve("weight"))
+        yield "no support", refusal(lambda: results.curve("force", support="roof"))
+        yield "no component", refusal(lambda: results.curve("time", component="x"))
+    whole = Path("run.h5").read_bytes()
+    Path("cut.h5").write_bytes(whole[:-1])
+    yield "damaged", refusal(lambda: Results("cut.h5"))
+    Path("text.h5").write_text("curves")
+    yield "something else", refusal(lambda: Results("text.h5"))
+
+
+def in_results(_: pytest.MonkeyPatch) -> Told:
+    """Unit and description of every dataset, once for all bodies, supports, contacts and directions."""
+    ResultsWriter("described.h5", problem(), "", "0").recorded(step_result(1))
+    found: dict[str, str] = {}
+
+    def look(name: str, entry: h5py.Dataset | h5py.Group) -> None:
+        if isinstance(entry, h5py.Dataset):
+            found.setdefault("/".join(_general(part) for part in name.split("/")), f"{entry.attrs['description']} [{entry.attrs['unit']}]")
+
+    with h5py.File("described.h5") as file:
+        file.visititems(look)
+    yield from found.items()
+
+
+def _general(part: str) -> str:
+    names = {"rim": "SUPPORT", "bed": "SUPPORT", "tread": "CONTACT", "ground": "CONTACT"}
+    return "NUMBER" if part.isdigit() else names.get(part, part)
+
+
+KINDS = (bad_scenes, bad_contacts, bad_words, doubtful, along_the_way, given_up, of_results, in_results)
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.__name__)
+def test_every_word(kind: Callable[[pytest.MonkeyPatch], Told], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert dict(kind(monkeypatch)) == SENTENCES[kind.__name__]
