@@ -128,10 +128,12 @@ def given_up(_: pytest.MonkeyPatch) -> Told:
     yield "left", explained([], [3, 5], found=0)
     states = [np.array(s, dtype=np.int32).tobytes() for s in ([0, 1, 2], [0, 2, 2])]
     places = [np.zeros((2, 4), dtype=np.int32), np.array([[0, 0, 0, 0], [1, 0, 0, 0]], dtype=np.int32)]
-    yield "changing states", _toggling(states, places, summed=False)
-    yield "changing states, paper's sum", _toggling(states, places, summed=True)
-    yield "knot lines", _toggling(states[:1] * 2, places, summed=True)
-    yield "nothing changes", _toggling(states[:1] * 2, places[:1] * 2, summed=True)
+    away, near = np.zeros(2, dtype=bool), np.ones(2, dtype=bool)
+    yield "changing states", _toggling(states, places, away, summed=False)
+    yield "changing states, paper's sum", _toggling(states, places, away, summed=True)
+    yield "knot lines", _toggling(states[:1] * 2, places, away, summed=True)
+    yield "poles", _toggling(states[:1] * 2, places, near, summed=True)
+    yield "nothing changes", _toggling(states[:1] * 2, places[:1] * 2, near, summed=True)
     few = ["solver.method=uzawa", "solver.max_augmentations=2", "solver.max_cuts=0"]
     yield "augmentations", without_digits(error(PRESS, *few))
 
