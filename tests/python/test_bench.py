@@ -136,6 +136,16 @@ def test_limits_are_met_missed_or_not_measured() -> None:
     assert states(1.0, math.nan)[0][0] == states()[0][0] == states(ASIDE)[0][0] == "not measured"
 
 
+@pytest.mark.parametrize(
+    ("rows", "message"),
+    [([{"kind": "N2", "unknowns": 1, "time": 1.0}], "it broke off"), ([{"kind": "N2", "unknowns": 1, "note": "no"}], "x"), ([], "")],
+)
+def test_a_benchmark_that_did_not_come_to_its_end_or_measured_nothing_meets_nothing(rows: list[Row], message: str) -> None:
+    outcome = Outcome(declared([], limits={"time": (2.0, "why")}), tuple(rows), Cost(message=message))  # type: ignore[arg-type]
+    assert outcome.failed
+    assert [verdict.state for verdict in verdicts(outcome)] == ["not measured"]
+
+
 def test_slope_is_the_power() -> None:
     assert slope([1, 2, 5], [3.0, 12.0, 75.0]) == pytest.approx(2.0)
     assert math.isnan(slope([4, 4], [1.0, 2.0]))

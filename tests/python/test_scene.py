@@ -17,6 +17,7 @@ from isomortar.geometry.primitives import ring
 from isomortar.model.entities import Face, Motion, Problem, RigidPlane, SolverSettings
 from isomortar.scene import Scene, bundled_scenes, json_schema
 from isomortar.scene.schema import SolverTable
+from isomortar.scene.source import read_source
 
 ROOT = Path(__file__).parents[2]
 PATCHES = json.loads((ROOT / "reference_data/scene_patches/patches.json").read_text())
@@ -152,6 +153,14 @@ def assert_same(one: Problem, other: Problem) -> None:
 def test_text_of_a_changed_scene_gives_the_same_problem() -> None:
     scene = Scene.load("tire", ["bodies.tire.mesh.order=[3,1,1]", "stages.roll.steps=3", "solver.max_cuts=2"])
     assert_same(Scene.from_toml(scene.to_toml()).problem(), scene.problem())
+
+
+@pytest.mark.parametrize("stem", ["my scene", "Größe", "v1.2", "$x^$"])
+def test_a_file_of_any_name_gives_a_scene_whose_text_can_be_read(tmp_path: Path, stem: str) -> None:
+    path = tmp_path / f"{stem}.toml"
+    path.write_text(read_source("press")[0].replace('name = "press"\n', "", 1), encoding="utf-8")
+    scene = Scene.load(path)
+    assert Scene.from_toml(scene.to_toml()).name == scene.name == scene.problem().name
 
 
 def test_text_holds_the_geometry_of_files(tmp_path: Path) -> None:

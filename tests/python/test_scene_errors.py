@@ -239,6 +239,8 @@ def test_supports_that_agree_may_share_control_points() -> None:
         ("bodies.slave.mesh.elements.3=3", "bodies.slave.mesh.elements.3", "allowed: 0 to 2"),
         ("name.first=3", "name.first", "name is the single value 'iron'"),
         ("solver.max_cuts=[3", None, "is not a TOML value"),
+        ("solver.max_cuts=3\nsolver.max_iterations = 5", None, "is not a TOML value"),
+        ("solver.max_cuts=3\n[solver]", None, "is not a TOML value"),
         ("solver.max_cut=3", "solver.max_cut", "unknown key; allowed here: max_cuts"),
         ("bodies.slave.mesh.odrer=3", "bodies.slave.mesh.odrer", "unknown key; allowed here: order"),
     ],

@@ -76,3 +76,32 @@ def test_no_direction_says_nothing() -> None:
     equilibrium = Equilibrium(Scene.from_toml(BLOCK + 'supports.top.face = "block.w1"').problem(), Ledger())
     said = str(explain(0.0, null, np.arange(3), equilibrium.numbering.reference, equilibrium.numbering, []))
     assert "nothing can be said" in said
+
+
+CORNER = """
+format = 1
+bodies.block = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }, mesh.elements = [3, 3, 2] }
+contacts.floor = { slave = "block.w0", plane = { point = [0, 0, 0] }, friction = 0.2 }
+contacts.wall = { slave = "block.u0", plane = { point = [0, 0, 0], normal = [1, 0, 0] }, friction = 0.2 }
+solver.max_cuts = 1
+supports.top.face = "block.w1"
+stages = [{ name = "press", steps = 1, motions.top.translate = [-0.05, 0, -0.05] }]
+"""
+
+
+@pytest.mark.parametrize(
+    ("overrides", "both"),
+    [
+        ([], ("floor", "wall")),  # what sticks in the corner has six conditions for three components
+        (["contacts.wall.slave='block.w0'", "contacts.wall.plane={ point = [1, 0, 0] }"], ("floor", "wall")),  # the same plane twice
+    ],
+)
+def test_conditions_of_two_contacts_on_the_same_control_points(overrides: list[str], both: tuple[str, str]) -> None:
+    said = error(CORNER, *overrides)
+    assert all(f"contact '{name}'" in said for name in both), said
+    assert "slave control points are slave control points of contact" in said
+
+
+def test_a_corner_without_friction_is_no_such_thing() -> None:
+    scene = Scene.from_toml(CORNER, overrides=["contacts.floor.friction=0.0", "contacts.wall.friction=0.0"])
+    assert len(list(Simulation(scene.problem()).run())) == 1

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from small_scenes import bowl
@@ -10,7 +11,7 @@ from transforms import mirrored, moved, relabelled, scaled, turned, with_knots, 
 
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, case
-from isomortar.model.entities import Problem
+from isomortar.model.entities import Problem, RigidPlane
 from isomortar.solve.record import StepResult
 from isomortar.solve.simulation import Simulation
 
@@ -94,6 +95,24 @@ def place(master: str, distance: float) -> dict[str, float]:
     near, far = (np.array([_contact_wrench(result) for result in Simulation(p).run()]) for p in (problem, away))
     back = far[:, 1] - np.cross(by, far[:, 0])
     return found | {"contact": float(np.abs(back - near[:, 1]).max() / distance / np.abs(near[:, 0]).max())}
+
+
+@case(
+    claim="A plane is the same by whichever of its points it is given.",
+    tier="gate",
+    grid={"distance": (1.0, 1e4, 1e8, 1e12)},
+    bounds=BOUNDS,
+)
+def point_of_plane(distance: float) -> dict[str, float]:
+    """The plane z = 0 of the scene by a point that is so many units of length aside."""
+
+    def elsewhere(problem: Problem) -> Problem:
+        (contact,) = problem.contacts
+        assert isinstance(contact.master, RigidPlane)
+        plane = replace(contact.master, point=(distance, -0.3 * distance, 0.0))
+        return replace(problem, contacts=(replace(contact, master=plane),))
+
+    return change("plane", elsewhere)
 
 
 def _contact_wrench(result: StepResult) -> tuple[FloatArray, FloatArray]:

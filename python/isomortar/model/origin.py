@@ -7,9 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from isomortar.geometry.patch import FloatArray
-from isomortar.model.entities import Body, Contact, Problem, RigidPlane, Support
+from isomortar.model.entities import Body, Contact, Problem, RigidPlane, Support, unit
 
-#: Bodies that are centred within so many times their size of the origin are computed as they are, to the last bit.
+#: Bodies that are centred within so many times their size of the origin, and planes given by points as near to them, are computed as they
+#: are, to the last bit.
 NEAR = 16.0
 
 Point = tuple[float, float, float]
@@ -33,6 +34,24 @@ def about(problem: Problem, origin: FloatArray) -> Problem:
         contacts=tuple(_contact(contact, origin) for contact in problem.contacts),
         supports=tuple(_support(support, origin) for support in problem.supports),
     )
+
+
+def by_near_points(problem: Problem) -> Problem:
+    """The problem with each rigid plane given by a point near the slave's body: far from it, coordinates of feet have few digits left."""
+    return replace(problem, contacts=tuple(_by_near_point(problem, contact) for contact in problem.contacts))
+
+
+def _by_near_point(problem: Problem, contact: Contact) -> Contact:
+    """The contact, with the foot of the body's centre for the point of its plane, if that is farther aside than bodies may be."""
+    if not isinstance(contact.master, RigidPlane):
+        return contact
+    body, normal = problem.body(contact.slave.body), unit(contact.master.normal)
+    low, high = body.patch.control_points.min(axis=0), body.patch.control_points.max(axis=0)
+    arm = np.asarray(contact.master.point) - (low + 0.5 * (high - low))
+    aside = arm - arm @ normal * normal
+    if np.linalg.norm(aside) <= NEAR * body.size:
+        return contact
+    return replace(contact, master=replace(contact.master, point=_point(contact.master.point, aside)))
 
 
 def _body(body: Body, origin: FloatArray) -> Body:

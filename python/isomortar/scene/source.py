@@ -26,7 +26,7 @@ def bundled_scenes() -> tuple[str, ...]:
 
 
 def read_source(source: str | Path) -> tuple[str, str, Path]:
-    """Text, short name and folder of a scene file or of a bundled scene.
+    """Text, short name and folder of a scene file or of a bundled scene; in the name _ stands for what names of scenes cannot have.
 
     Raises
     ------
@@ -40,7 +40,7 @@ def read_source(source: str | Path) -> tuple[str, str, Path]:
     if not path.is_file():
         raise InputError(f"there is no scene file {str(source)!r}, and the bundled scenes are: {listed(str(source), names)}")
     try:
-        return path.read_text(encoding="utf-8"), path.stem, path.parent
+        return path.read_text(encoding="utf-8"), re.sub(r"[^\w-]", "_", path.stem, flags=re.ASCII), path.parent
     except UnicodeDecodeError as error:
         raise InputError(f"{path} is not a text file in UTF-8: {error}") from error
 
@@ -82,6 +82,8 @@ def apply_overrides(data: dict[str, Any], overrides: Iterable[str]) -> None:
 
 def _value(text: str, override: str) -> Any:
     try:
+        if "\n" in text:
+            raise tomllib.TOMLDecodeError("more than one line")
         return tomllib.loads(f"value = {text}")["value"]
     except tomllib.TOMLDecodeError as error:
         if re.fullmatch(r"[A-Za-z][\w./-]*", text):

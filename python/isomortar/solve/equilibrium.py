@@ -14,7 +14,7 @@ from isomortar.errors import SingularSystemError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Problem
 from isomortar.model.numbering import Numbering
-from isomortar.model.origin import about, origin_of
+from isomortar.model.origin import about, by_near_points, origin_of
 from isomortar.model.pairs import Pair
 from isomortar.model.solid import Solid
 from isomortar.model.supports import Supports
@@ -65,7 +65,7 @@ class Equilibrium:
 
     def __init__(self, problem: Problem, ledger: Ledger) -> None:
         self.origin = origin_of(problem)
-        self.problem = problem = about(problem, self.origin)
+        self.problem = problem = by_near_points(about(problem, self.origin))
         self.ledger = ledger
         self.numbering = Numbering(problem)
         self.supports = Supports(problem, self.numbering)

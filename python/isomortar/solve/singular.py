@@ -52,7 +52,7 @@ def explain(
     moved = motion.reshape(-1, 3)
     if shares and max(float(np.abs(share).max()) for share in shares) > np.abs(moved).max():
         largest = int(np.argmax([np.abs(share).max() for share in shares]))
-        return _repeated(said, contacts[largest], shares[largest])
+        return _repeated(said, contacts[largest], shares[largest], contacts)
     return _moving(said, moved, positions, numbering)
 
 
@@ -63,7 +63,7 @@ def _of_pair(contact: Multipliers, null: FloatArray) -> FloatArray:
     return np.abs(values).reshape(-1, 3).max(axis=1)
 
 
-def _repeated(said: str, contact: Multipliers, share: FloatArray) -> SingularSystemError:
+def _repeated(said: str, contact: Multipliers, share: FloatArray, contacts: Sequence[Multipliers]) -> SingularSystemError:
     """Contact conditions without effect: too few points on the master, or too few unknowns that they bear on."""
     pair = contact.pair.pair
     worst = int(np.argmax(share))
@@ -72,10 +72,18 @@ def _repeated(said: str, contact: Multipliers, share: FloatArray) -> SingularSys
     elements = np.isin(pair.slave.nodes, among).any(axis=1)
     there, total = int(np.count_nonzero(found[elements])), found[elements].size
     where = f"contact {pair.contact.name!r}: the conditions of {len(among)} slave control points, the first of them {int(among[0])}"
+    others = {other.pair.pair.contact.name: _shared(contact, among, other) for other in contacts if other is not contact}
+    twice = max(others, key=lambda name: others[name], default="")
     if 2 * there < total:
         reason = (
             f"rest on {there} of the {total} quadrature points around them; the others have left the master. Use a larger master, or end "
             "the motion earlier"
+        )
+    elif others.get(twice):
+        reason = (
+            f"repeat others: {others[twice]} of the slave control points are slave control points of contact {twice!r} as well, and what "
+            "sticks to one master can neither stick to another one nor press on it in the same direction. Take friction from one of the two "
+            'contacts, remove one, keep their faces apart, or try solver.method = "uzawa"'
         )
     else:
         reason = (
@@ -83,6 +91,12 @@ def _repeated(said: str, contact: Multipliers, share: FloatArray) -> SingularSys
             "held by supports there (hold fewer components)"
         )
     return SingularSystemError(f"{said}. {where}, {reason}", worst)
+
+
+def _shared(contact: Multipliers, among: NDArray[np.intp], other: Multipliers) -> int:
+    """How many of some slave control points of a contact are active slave control points of another one."""
+    theirs = other.pair.pair.slave.point[other.equation.reshape(-1, 3)[:, 0] >= 0]
+    return int(np.isin(contact.pair.pair.slave.point[among], theirs).sum())
 
 
 def _moving(said: str, moved: FloatArray, positions: FloatArray, numbering: Numbering) -> SingularSystemError:

@@ -49,8 +49,8 @@ class Outcome:
 
     @property
     def failed(self) -> bool:
-        """Whether it ended before its end."""
-        return bool(self.cost.message)
+        """Whether it ended before its end, or measured nothing."""
+        return bool(self.cost.message) or not self.rows
 
 
 def fresh(arguments: Sequence[str], errors: Any = None) -> subprocess.Popen[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
 from isomortar.harness.bench.declaration import ASIDE, Row
@@ -38,8 +38,12 @@ def state(value: object, at_most: float) -> State:
 
 
 def verdicts(outcome: Outcome) -> list[Verdict]:
-    """How the limits stand. One missed row misses the limit, one that lacks the column leaves it open, and so does one without a number."""
-    return [_verdict(outcome.rows, column, *limit) for column, limit in outcome.benchmark.limits.items()]
+    """How the limits stand. One missed row misses the limit, one that lacks the column leaves it open, and so does one without a number.
+
+    What a benchmark that failed has not missed so far it might have missed.
+    """
+    found = [_verdict(outcome.rows, column, *limit) for column, limit in outcome.benchmark.limits.items()]
+    return [replace(v, state="not measured") if outcome.failed and v.state != "missed" else v for v in found]
 
 
 def _verdict(rows: Sequence[Row], column: str, at_most: float, why: str) -> Verdict:
