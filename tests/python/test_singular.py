@@ -105,3 +105,21 @@ def test_conditions_of_two_contacts_on_the_same_control_points(overrides: list[s
 def test_a_corner_without_friction_is_no_such_thing() -> None:
     scene = Scene.from_toml(CORNER, overrides=["contacts.floor.friction=0.0", "contacts.wall.friction=0.0"])
     assert len(list(Simulation(scene.problem()).run())) == 1
+
+
+FROM_BESIDE = """
+format = 1
+bodies.slave = { geometry = { kind = "box", lower = [1.2, -0.25, -0.1], upper = [1.7, 0.25, 0.4] }, mesh.elements = [3, 3, 2] }
+bodies.master = { geometry = { kind = "box", lower = [-0.5, -0.5, -0.5], upper = [1, 0.5, 0] }, mesh.elements = [4, 4, 2] }
+contacts.interface = { slave = "slave.w0", master = "master.w1", friction = 0.3 }
+solver.max_cuts = 1
+supports = { top.face = "slave.w1", base.face = "master.w0" }
+stages = [{ name = "onto", steps = 4, motions.top.translate = [-0.9, 0, 0] }]
+"""
+
+
+def test_a_slave_that_comes_onto_its_master_from_beside() -> None:
+    """A row of quadrature points is over the edge, a tenth deep: far more conditions than points."""
+    said = error(FROM_BESIDE)
+    assert "contact 'interface': the conditions of" in said
+    assert "the others are beside the master" in said

@@ -52,8 +52,14 @@ def explain(
     moved = motion.reshape(-1, 3)
     if shares and max(float(np.abs(share).max()) for share in shares) > np.abs(moved).max():
         largest = int(np.argmax([np.abs(share).max() for share in shares]))
-        return _repeated(said, contacts[largest], shares[largest], contacts)
-    return _moving(said, moved, positions, numbering)
+        return _repeated(said, contacts[largest], np.flatnonzero(shares[largest] > _PART * shares[largest].max()), contacts)
+    place, sentence = _rigid(moved, positions, numbering)
+    for contact in contacts if not sentence else ():
+        active = _active(contact)
+        there, total = _points_around(contact, active)
+        if 2 * there < total:
+            return _repeated(said, contact, active, contacts)
+    return SingularSystemError(f"{said}: {sentence or _soft(place, numbering)}", place)
 
 
 def _of_pair(contact: Multipliers, null: FloatArray) -> FloatArray:
@@ -63,44 +69,51 @@ def _of_pair(contact: Multipliers, null: FloatArray) -> FloatArray:
     return np.abs(values).reshape(-1, 3).max(axis=1)
 
 
-def _repeated(said: str, contact: Multipliers, share: FloatArray, contacts: Sequence[Multipliers]) -> SingularSystemError:
+def _active(contact: Multipliers) -> NDArray[np.intp]:
+    """Slave control points that have conditions."""
+    return np.flatnonzero(contact.equation.reshape(-1, 3)[:, 0] >= 0)
+
+
+def _points_around(contact: Multipliers, among: NDArray[np.intp]) -> tuple[int, int]:
+    """How many quadrature points around some slave control points are on the master, and how many there are."""
+    nodes = contact.pair.pair.slave.nodes
+    found = contact.kinematics.projections.found.reshape(len(nodes), -1) > 0
+    around = found[np.isin(nodes, among).any(axis=1)]
+    return int(np.count_nonzero(around)), around.size
+
+
+def _repeated(said: str, contact: Multipliers, among: NDArray[np.intp], contacts: Sequence[Multipliers]) -> SingularSystemError:
     """Contact conditions without effect: too few points on the master, or too few unknowns that they bear on."""
-    pair = contact.pair.pair
-    worst = int(np.argmax(share))
-    among = np.flatnonzero(share > _PART * share[worst])
-    found = contact.kinematics.projections.found.reshape(len(pair.slave.nodes), -1) > 0
-    elements = np.isin(pair.slave.nodes, among).any(axis=1)
-    there, total = int(np.count_nonzero(found[elements])), found[elements].size
-    where = f"contact {pair.contact.name!r}: the conditions of {len(among)} slave control points, the first of them {int(among[0])}"
+    there, total = _points_around(contact, among)
+    where = f"contact {contact.pair.pair.contact.name!r}: the conditions of {len(among)} slave control points, the first of them {among[0]}"
     others = {other.pair.pair.contact.name: _shared(contact, among, other) for other in contacts if other is not contact}
     twice = max(others, key=lambda name: others[name], default="")
     if 2 * there < total:
         reason = (
-            f"rest on {there} of the {total} quadrature points around them; the others have left the master. Use a larger master, or end "
-            "the motion earlier"
+            f"rest on {there} of the {total} quadrature points around them; the others are beside the master. Use a larger master, end the "
+            "motion earlier, or bring the slave onto its master from above"
         )
     elif others.get(twice):
         reason = (
-            f"repeat others: {others[twice]} of the slave control points are slave control points of contact {twice!r} as well, and what "
-            "sticks to one master can neither stick to another one nor press on it in the same direction. Take friction from one of the two "
-            'contacts, remove one, keep their faces apart, or try solver.method = "uzawa"'
+            f"repeat others: {others[twice]} of the slave control points are slave control points of contact {twice!r} as well, and "
+            "what sticks to one master can neither stick to another one nor press on it in the same direction. Take friction from one of "
+            'the two contacts, remove one, keep their faces apart, or try solver.method = "uzawa"'
         )
     else:
         reason = (
             "repeat each other; the slave may be finer and stiffer than its master (swap the two, or refine the master), or both may be "
             "held by supports there (hold fewer components)"
         )
-    return SingularSystemError(f"{said}. {where}, {reason}", worst)
+    return SingularSystemError(f"{said}. {where}, {reason}", int(among[0]))
 
 
 def _shared(contact: Multipliers, among: NDArray[np.intp], other: Multipliers) -> int:
     """How many of some slave control points of a contact are active slave control points of another one."""
-    theirs = other.pair.pair.slave.point[other.equation.reshape(-1, 3)[:, 0] >= 0]
-    return int(np.isin(contact.pair.pair.slave.point[among], theirs).sum())
+    return int(np.isin(contact.pair.pair.slave.point[among], other.pair.pair.slave.point[_active(other)]).sum())
 
 
-def _moving(said: str, moved: FloatArray, positions: FloatArray, numbering: Numbering) -> SingularSystemError:
-    """A body that moves without forces: as a rigid one, or by a field that round-off lets pass."""
+def _rigid(moved: FloatArray, positions: FloatArray, numbering: Numbering) -> tuple[int, str]:
+    """The control point that moves most, and how its body moves without forces; empty if it deforms."""
     point = int(np.argmax(np.linalg.norm(moved, axis=1)))
     body = numbering.body_of(point)
     own = np.unique(numbering.points[body])
@@ -115,9 +128,13 @@ def _moving(said: str, moved: FloatArray, positions: FloatArray, numbering: Numb
         axis = amounts[3:] if turning else amounts[:3]
         along = ", ".join(f"{value:g}" for value in np.round(axis / axis[np.argmax(np.abs(axis))], 2) + 0.0)
         how = f"turn about an axis along ({along})" if turning else f"move along ({along})"
-        return SingularSystemError(f"{said}: body {body!r} can {how} freely; hold it by a support, or bring it into contact", point)
-    return SingularSystemError(
-        f"{said}: body {body!r} is held, but next to nothing resists a deformation that is largest at control point {point}. Look there "
-        "for elements, weights or moduli too different for double precision, and for a body that buckles",
-        point,
+        return point, f"body {body!r} can {how} freely; hold it by a support, or bring it into contact"
+    return point, ""
+
+
+def _soft(point: int, numbering: Numbering) -> str:
+    """A body that deforms without forces: by a field that round-off lets pass."""
+    return (
+        f"body {numbering.body_of(point)!r} is held, but next to nothing resists a deformation that is largest at control point {point}. "
+        "Look there for elements, weights or moduli too different for double precision, and for a body that buckles"
     )
