@@ -4,7 +4,7 @@ module isomortar_base_algebra
   implicit none
   private
 
-  public :: cross, determinant, inverse, inverse2, identity, trace, log1p
+  public :: cross, determinant, determinant2, inverse, inverse2, identity, trace, log1p
 
   !> 3x3 unit matrix.
   real(wp), parameter :: identity(3, 3) = reshape([1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [3, 3])
@@ -41,6 +41,14 @@ contains
     b(3, :) = cross(a(:, 1), a(:, 2)) * scale
   end function inverse
 
+  !> Determinant of a 2x2 matrix.
+  pure function determinant2(a) result(d)
+    real(wp), intent(in) :: a(2, 2)
+    real(wp) :: d
+
+    d = a(1, 1) * a(2, 2) - a(1, 2) * a(2, 1)
+  end function determinant2
+
   !> Inverse of a 2x2 matrix.
   pure function inverse2(a) result(b)
     real(wp), intent(in) :: a(2, 2)
@@ -50,7 +58,7 @@ contains
     b(2, 2) = a(1, 1)
     b(1, 2) = -a(1, 2)
     b(2, 1) = -a(2, 1)
-    b = b / (a(1, 1) * a(2, 2) - a(1, 2) * a(2, 1))
+    b = b / determinant2(a)
   end function inverse2
 
   !> Trace of a 3x3 matrix.

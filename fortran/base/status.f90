@@ -28,5 +28,7 @@ module isomortar_base_status
   integer, parameter, public :: status_not_finite = 10
   !> A point that was in contact's reach is deeper than the master's body; the place is the slave quadrature point.
   integer, parameter, public :: status_passed_through = 11
+  !> Slips at a foot on a C0 line do not follow the point, beyond the centre of curvature of the element beside it.
+  integer, parameter, public :: status_no_slip = 12
 
 end module isomortar_base_status

@@ -1,8 +1,8 @@
 !> First pass over the slave quadrature points: projection and control quantities (theory 4.1).
 module isomortar_contact_control
   use isomortar_base_kinds, only: wp
-  use isomortar_base_status, only: status_degenerate_surface, status_lost_projection, status_not_finite, status_ok, &
-    status_passed_through
+  use isomortar_base_status, only: status_degenerate_surface, status_lost_projection, status_no_slip, status_not_finite, &
+    status_ok, status_passed_through
   use isomortar_contact_hulls, only: enclose, hulls_t, within_reach
   use isomortar_contact_kinematics, only: contact_point, contact_point_t, plane_point
   use isomortar_contact_kink, only: hold_on_lines
@@ -114,7 +114,9 @@ contains
     integer, intent(inout) :: status, place
     type(search_t) :: here(size(slave%area) / size(slave%nodes, 2))
     real(wp) :: x(3, size(here)), middle(3), reach
-    integer :: count, doubt, list(size(hulls%radius)), q
+    type(contact_point_t) :: point
+    integer :: count, doubt, list(size(hulls%radius)), nodes(product_of_orders(master)), q
+    real(wp) :: functions(size(nodes), derivative_columns(2))
 
     do q = 1, size(here)
       x(:, q) = slave_position(slave, positions, before + q)
@@ -149,6 +151,10 @@ contains
       projections%fixed(:, before + q) = here(q)%fixed
       projections%found(before + q) = here(q)%outcome == projection_inside
       projections%doubt(before + q) = merge(doubt, status_ok, projections%found(before + q))
+      if (projections%found(before + q) .and. doubt == status_ok .and. any(here(q)%fixed)) then
+        call point_on_master(slave, master, positions, projections, before + q, 2, point, nodes, functions)
+        if (.not. point%slips) projections%doubt(before + q) = status_no_slip
+      end if
     end do
   end subroutine project_element
 

@@ -35,6 +35,8 @@ module isomortar_contact_kinematics
     logical :: fixed(2) = .false.
     !> The normal turns about such a line with the slave point.
     logical :: turns = .false.
+    !> Slips across such a line follow the slave point: H of the face that goes on is positive.
+    logical :: slips = .true.
     !> Surface derivatives by column (derivative_column), up to the order that is needed.
     real(wp) :: surface(3, 10)
   end type contact_point_t

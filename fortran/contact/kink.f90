@@ -2,7 +2,7 @@
 !>
 !> Gap and normal are continuous from a face onto the line, along it, and onto the next face.
 module isomortar_contact_kink
-  use isomortar_base_algebra, only: cross, inverse2
+  use isomortar_base_algebra, only: cross, determinant2, inverse2
   use isomortar_base_kinds, only: wp
   use isomortar_contact_kinematics, only: contact_point_t
   use isomortar_nurbs_surface, only: derivative_columns, step_across, surface_basis, surface_nodes, surface_t
@@ -14,6 +14,9 @@ module isomortar_contact_kink
   !> A distance below this share of the element's size has no direction.
   real(wp), parameter :: least_distance = 1.0e-10_wp
 
+  !> Share of the metric below which H is zero or negative but for round-off.
+  real(wp), parameter :: least_h = epsilon(1.0_wp)**0.75_wp
+
 contains
 
   !> Kinematics at a foot with fixed coordinates, from those of the lower element's face at the same place (theory 3.11, 3.14).
@@ -23,7 +26,7 @@ contains
     integer, intent(in) :: place(2)
     logical, intent(in) :: fixed(2)
     type(contact_point_t), intent(inout) :: point
-    real(wp) :: d(3), facing(3)
+    real(wp) :: d(3), facing(3), h(2, 2)
     integer :: a, b
 
     d = x - point%surface(:, 1)
@@ -40,7 +43,11 @@ contains
       end do
       if (.not. fixed(a)) point%inverse_metric(a, a) = 1.0_wp / point%metric(a, a)
     end do
-    point%inverse_h = inverse2(point%metric + point%gap * point%curvature)
+    h = point%metric + point%gap * point%curvature
+    point%slips = minval([h(1, 1) / point%metric(1, 1), h(2, 2) / point%metric(2, 2)]) > least_h
+    if (point%slips) point%slips = determinant2(h) > least_h * determinant2(point%metric)
+    point%inverse_h = 0.0_wp
+    if (point%slips) point%inverse_h = inverse2(h)
   end subroutine hold_on_lines
 
   !> Mean of the outward unit normals of the faces that meet on the lines: `place` is the lowest of their elements (theory 3.11).

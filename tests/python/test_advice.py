@@ -14,12 +14,13 @@ from rich.console import Console
 import isomortar
 from isomortar import cli
 from isomortar.cli.progress import Progress
+from isomortar.errors import InputError
 from isomortar.geometry.patch import Direction, Patch
 from isomortar.model.entities import Body, Face, Material, Motion, Problem, Stage, Support
-from isomortar.model.rational import points_enough
+from isomortar.model.rational import QUADRATURE_TOLD, points_enough
 from isomortar.scene import Scene
 from isomortar.scene.source import bundled_scenes
-from isomortar.solve.doubts import QUADRATURE_ERROR, doubts
+from isomortar.solve.doubts import doubts
 from isomortar.solve.record import Observer
 from isomortar.solve.simulation import Simulation
 from test_scene_contacts import PAIR, PRESS, RINGS, TYRE, UNUSUAL
@@ -112,14 +113,20 @@ def rational(contrast: float) -> Body:
 
 def test_weights_that_the_points_do_not_follow_are_told_with_a_cure_that_cures() -> None:
     assert not any("quadrature" in said for said in _of_weights(rational(2.0)))
-    (said,) = _of_weights(rational(30.0))
-    assert "its weights, from 1 to 30, differ too much for the quadrature with 4 x 4 x 4" in said
-    enough = points_enough(rational(30.0), QUADRATURE_ERROR)
+    (said,) = _of_weights(rational(8.0))
+    assert "its weights, from 1 to 8, differ too much for the quadrature with 4 x 4 x 4" in said
+    enough = points_enough(rational(8.0), QUADRATURE_TOLD)
     assert enough is not None
     assert f"mesh.quadrature = {list(enough)}" in said
-    assert _of_weights(replace(rational(30.0), quadrature=enough)) == []
-    (said,) = _of_weights(rational(1e6))
-    assert said.endswith("Bring the weights nearer to each other")
+    assert _of_weights(replace(rational(8.0), quadrature=enough)) == []
+
+
+def test_weights_that_the_points_miss_are_refused_with_a_cure_that_cures() -> None:
+    with pytest.raises(InputError, match=r"quadrature = \[16, 16, 16\]"):
+        _of_weights(rational(30.0))
+    assert _of_weights(replace(rational(30.0), quadrature=(16, 16, 16))) == []
+    with pytest.raises(InputError, match=r"Bring the weights nearer to each other$"):
+        _of_weights(rational(1e6))
 
 
 PLATE = """

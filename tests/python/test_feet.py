@@ -40,7 +40,9 @@ def loaded(problem: Problem) -> None:
     n = len(pair.pair.slave.point)
     kinematics = pair.kinematics(state.positions, state.contacts[0])
     response = pair.respond(kinematics, pair.law(np.array([1e-9, 1e-9]), np.ones(n), np.zeros((n, 2))))
-    pair.add_forces(state.positions, kinematics, response, np.zeros_like(state.positions))
+    forces = np.zeros_like(state.positions)
+    pair.add_forces(state.positions, kinematics, response, forces)
+    assert 0.0 < np.abs(forces).max() < 10.0
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.3])
@@ -107,3 +109,42 @@ def test_a_body_that_passes_through_is_named_with_its_place() -> None:
     below[equilibrium.numbering.points["block"], 2] -= 0.8
     with pytest.raises(LostProjectionError, match=r"contact 'top': slave quadrature point 0 has passed.*, at \(-0.25.*, -0.25.*, 0.2\)"):
         pair.kinematics(below, state.contacts[0])
+
+
+def ridge(friction: float, height: float) -> Problem:
+    """A block's lower face above a ridge between hollow quadratic elements: its middle points have their feet on the ridge.
+
+    At a height of 0.41 they are at the centre of curvature of the elements beside it.
+    """
+    text = """
+format = 1
+bodies.hills.geometry = { kind = "box", lower = [-1, -1, -1], upper = [1, 1, 0] }
+bodies.hills.mesh = { family = "L", order = 2, elements = [2, 2, 1] }
+bodies.block.geometry = { kind = "box", lower = [-0.1, -0.9, 0.0], upper = [0.1, -0.1, 0.4] }
+contacts.top = { slave = "block.w0", master = "hills.w1", quadrature = 3, friction = FRICTION }
+supports.under.face = "hills.w0"
+supports.top.face = "block.w1"
+stages = [{ name = "down", steps = 1, motions.top.translate = [0, 0, -0.02] }]
+"""
+    problem = Scene.from_toml(text.replace("FRICTION", str(friction))).problem()
+    hills, block = problem.body("hills"), problem.body("block")
+    points, above = hills.patch.control_points.copy(), block.patch.control_points + np.array([0.0, 0.0, height])
+    top = hills.patch.face_points("w1")
+    points[top, 2] = -0.8 * np.abs(points[top, 0]) + 2.0 * points[top, 0] ** 2
+    bodies = (
+        replace(hills, patch=replace(hills.patch, control_points=points)),
+        replace(block, patch=replace(block.patch, control_points=above)),
+    )
+    return replace(problem, bodies=bodies)
+
+
+@pytest.mark.parametrize("height", [0.3, 0.41, 0.45])
+def test_without_friction_a_line_needs_its_own_curvature_alone(height: float) -> None:
+    loaded(ridge(0.0, height))
+
+
+@pytest.mark.parametrize("height", [0.41, 0.45])
+def test_friction_on_a_line_beyond_the_centre_of_curvature_beside_it_is_refused(height: float) -> None:
+    loaded(ridge(0.3, 0.3))
+    with pytest.raises(LostProjectionError, match=r"on a C0 line of the master.*slips have no measure"):
+        loaded(ridge(0.3, height))

@@ -14,6 +14,9 @@ CONIC = 2.0
 #: Most quadrature points that a body is tried with, a second of work, and most along a direction of an element.
 MOST_POINTS, MOST_ALONG = 500_000, 64
 
+#: Share of the forces that the quadrature of rational functions may be off; more is told.
+QUADRATURE_TOLD = 0.01
+
 Rule = tuple[int, int, int]
 
 
@@ -31,6 +34,17 @@ def quadrature_error(body: Body) -> float:
     if not weights.max() > CONIC * weights.min():
         return 0.0
     return _error(body, _stretched(body, body.quadrature), _stretched(body, _twice(body.quadrature)))
+
+
+def too_few_points(body: Body, error: float, least: float) -> str:
+    """A sentence on a body whose quadrature is off by an error, with the number of Gauss points that leave at most another one."""
+    enough = points_enough(body, least)
+    cure = f"Take bodies.{body.name}.mesh.quadrature = {list(enough)} and as many in its contacts, or bring" if enough else "Bring"
+    return (
+        f"body {body.name!r}: its weights, from {body.patch.weights.min():g} to {body.patch.weights.max():g}, differ too much for the "
+        f"quadrature with {' x '.join(map(str, body.quadrature))} Gauss points an element: forces are off by {100 * error:.2g} % or "
+        f"more. {cure} the weights nearer to each other"
+    )
 
 
 def points_enough(body: Body, error: float) -> Rule | None:

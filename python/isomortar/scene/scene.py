@@ -9,9 +9,9 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from isomortar.model.checks import check
 from isomortar.model.entities import Problem
 from isomortar.scene.build import build, coarse_patch
-from isomortar.scene.checks import check
 from isomortar.scene.geometry_file import patch_table
 from isomortar.scene.messages import input_error
 from isomortar.scene.schema import CurveTable, RecordTable, SceneTable

@@ -13,14 +13,16 @@ from isomortar.errors import LostProjectionError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.pairs import Pair
 
-#: Beside a pole, a doubt of its own with friction.
-_SLIPS_AT_POLE = -1
+#: Doubts with friction alone: the kernel's about a foot on a C0 line, and one of ours beside a pole.
+_NO_SLIP, _SLIPS_AT_POLE = 12, -1
 #: By the kernel's status (isomortar_base_status): what is the matter with a foot, and what to do.
 _DOUBTS = {
     3: "the search for its nearest point on the master does not settle, as near a centre of curvature. "
     "Take smaller load steps, or a master whose centres of curvature are farther away",
     4: "other points of the master are as near as the nearest one, as from a ring's axis: it has no direction to press in. "
     "Keep the slave nearer to the master than its centres of curvature, or take a master that is less hollow",
+    _NO_SLIP: "its nearest point is on a C0 line of the master, and slips have no measure there: the element beside it has its centre of "
+    "curvature nearer. Set friction = 0, or take a master that is less hollow beside its lines",
     _SLIPS_AT_POLE: "its nearest point is beside a pole of the master, an edge that is one point, where slips have no coordinates. "
     "Set friction = 0, or take a mesh without a pole there",
 }
@@ -51,6 +53,8 @@ class Feet:
         doubt = projections.doubt
         if self._slips:
             doubt = np.where(beside_poles(self._pair, projections) & (doubt == 0), _SLIPS_AT_POLE, doubt)
+        else:
+            doubt = np.where(doubt == _NO_SLIP, 0, doubt)
         if not doubt.any():
             return
         active = np.any(response.state[self._pair.slave.nodes] > 0, axis=1)

@@ -9,6 +9,7 @@ import numpy as np
 
 from isomortar.errors import ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError
 from isomortar.geometry.patch import FloatArray
+from isomortar.model.checks import check
 from isomortar.model.entities import Problem
 from isomortar.solve.advice import StepAdvice, advice_on_problem
 from isomortar.solve.causes import causes
@@ -42,6 +43,11 @@ class Simulation:
     resume_from : StepResult, optional
         Last recorded step of an earlier run of the same problem.
 
+    Raises
+    ------
+    InputError
+        The problem cannot have a solution, or not a single one (`isomortar.model.checks`), folded elements among that.
+
     Attributes
     ----------
     state : State
@@ -54,6 +60,7 @@ class Simulation:
     """
 
     def __init__(self, problem: Problem, observer: Observer | None = None, resume_from: StepResult | None = None) -> None:
+        check(problem)
         self.problem = problem
         self.ledger = Ledger()
         self.equilibrium = Equilibrium(problem, self.ledger)

@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
 
-from isomortar.errors import InputError
+from isomortar.errors import FoldedElementError, InputError
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.geometry.refinement import surface_samples
+from isomortar.model.contact_checks import check_contacts
 from isomortar.model.entities import Body, Contact, Face, Problem, Support
 from isomortar.model.memory import memory_needed, memory_of_machine
 from isomortar.model.numbering import same_points
-from isomortar.scene.contacts import check_contacts
+from isomortar.model.rational import QUADRATURE_TOLD, quadrature_error, too_few_points
 
 #: Sizes of bodies, and forces and force densities (Young's modulus times the square of the size, and over the size) whose squares and
 #: cubes are normal numbers.
 SIZES, FORCES = (1e-76, 1e76), (1e-153, 1e153)
 #: Share of a body's size that the last bit of its coordinates may be.
 LAST_BIT = 1e-3
+
+#: Share of the forces by which the quadrature of rational functions makes them nonsense.
+QUADRATURE_LOST = 0.1
 
 
 def check(problem: Problem) -> None:
@@ -29,10 +34,11 @@ def check(problem: Problem) -> None:
     ------
     InputError
         Units that no number holds; more memory than there is; a body that nothing holds; supports that contradict each other;
-        contacts that cannot be meant.
+        contacts that cannot be meant; too few Gauss points for a body's weights.
     """
     for body in problem.bodies:
         _check_units(body)
+        _check_weights(body)
     _check_memory(problem)
     check_contacts(problem)
     _check_held(problem)
@@ -62,6 +68,14 @@ def _check_units(body: Body) -> None:
             "that; move the whole scene nearer to the origin",
             f"bodies.{body.name}",
         )
+
+
+def _check_weights(body: Body) -> None:
+    """Rational functions that the Gauss points miss altogether; what they follow better is warned of."""
+    with suppress(FoldedElementError):  # between the Gauss points: told by a warning, or by the run where it is at them
+        error = quadrature_error(body)
+        if not error <= QUADRATURE_LOST:
+            raise InputError(too_few_points(body, error, QUADRATURE_TOLD), f"bodies.{body.name}.mesh.quadrature")
 
 
 def _check_memory(problem: Problem) -> None:

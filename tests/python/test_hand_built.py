@@ -1,0 +1,62 @@
+"""Problems that are built in Python are refused as those of scene files are, before any work."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import pytest
+
+from isomortar.errors import InputError
+from isomortar.model.entities import Face, Problem, Support
+from isomortar.scene import Scene
+from isomortar.solve.simulation import Simulation
+from test_advice import rational
+from test_scene_contacts import PAIR
+
+
+def _without_supports(problem: Problem) -> Problem:
+    return replace(problem, supports=())
+
+
+def _contradicting(problem: Problem) -> Problem:
+    top = next(support for support in problem.supports if support.name == "top")
+    still = Support("still", top.place, tuple(replace(motion, translate=(0.0, 0.0, 0.0)) for motion in top.motions))
+    return replace(problem, supports=(*problem.supports, still))
+
+
+def _looking_away(problem: Problem) -> Problem:
+    return replace(problem, contacts=(replace(problem.contacts[0], slave=Face("upper", "w1")),))
+
+
+def _twice(problem: Problem) -> Problem:
+    return replace(problem, contacts=(*problem.contacts, replace(problem.contacts[0], name="again")))
+
+
+def _in_another_unit(problem: Problem) -> Problem:
+    bodies = [replace(body, patch=replace(body.patch, control_points=1e-90 * body.patch.control_points)) for body in problem.bodies]
+    return replace(problem, bodies=tuple(bodies))
+
+
+def _of_far_weights(problem: Problem) -> Problem:
+    body = replace(rational(30.0), name="aside")
+    held = Support("aside", Face("aside", "w1"), problem.supports[-1].motions)
+    return replace(problem, bodies=(*problem.bodies, body), supports=(*problem.supports, held))
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (_without_supports, "is free"),
+        (_contradicting, "moves differently"),
+        (_looking_away, "looks away|passed through"),
+        (_twice, "the same faces"),
+        (_in_another_unit, "unit of length"),
+        (_of_far_weights, r"mesh.quadrature = \[16, 16, 16\]"),
+    ],
+)
+def test_what_a_scene_is_refused_for_a_problem_is(change: Callable[[Problem], Problem], said: str) -> None:
+    sound = Scene.from_toml(PAIR).problem()
+    Simulation(sound)
+    with pytest.raises(InputError, match=said):
+        Simulation(change(sound))
