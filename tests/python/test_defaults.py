@@ -9,8 +9,10 @@ from pydantic import BaseModel
 from isomortar.geometry.patch import Direction
 from isomortar.geometry.quadrature import contact_points, volume_points
 from isomortar.model import entities
-from isomortar.scene import schema
+from isomortar.scene import Scene, schema
 from isomortar.solve import simulation
+from isomortar.solve.record import StepResult
+from isomortar.solve.simulation import Simulation
 
 SOLVER = {
     "method": "monolithic",
@@ -104,6 +106,88 @@ def test_defaults_of_a_scene_file():
 def test_gauss_points_by_order(family, rule, points):
     found = [rule(Direction(family, order, [0, 1] if family == "L" else [0] * (order + 1) + [1] * (order + 1))) for order in ORDERS[family]]
     assert tuple(found) == points
+
+
+#: Contact with friction that opens, sticks and slips; no word on the solver, the material or quadrature.
+SILENT = """
+format = 1
+[bodies.block]
+geometry = { kind = "bowl", half_width = 0.5, bottom = 0.0, rise = 0.1, top = 0.6 }
+mesh = { order = [2, 2, 1], elements = [3, 3, 1] }
+[contacts.floor]
+slave = "block.w0"
+plane = {}
+[supports.top]
+face = "block.w1"
+[[stages]]
+name = "press"
+steps = 1
+motions.top.translate = [0, 0, -0.1]
+[[stages]]
+name = "drag"
+steps = 1
+motions.top = { translate = [0.1, 0.02, 0], rotate = 6 }
+"""
+#: The same as docs say that it is.
+SPOKEN = (
+    SILENT.replace("elements = [3, 3, 1] }", 'elements = [3, 3, 1], family = "N", quadrature = [4, 4, 2] }')
+    .replace(
+        "plane = {}",
+        "friction = 0.3\nquadrature = [6, 6]\nplane = { point = [0, 0, 0], normal = [0, 0, 1], tangent = [1, 0, 0] }",
+    )
+    .replace('face = "block.w1"', 'face = "block.w1"\ncomponents = ["x", "y", "z"]\ncentre = [0, 0, 0]\naxis = [0, 0, 1]')
+    + """
+[materials.m]
+young = 10.0
+poisson = 0.3
+[solver]
+method = "monolithic"
+slip_sum = "local"
+newton_tolerance = 1e-9
+complementarity_tolerance = 1e-8
+max_iterations = 30
+max_cuts = 8
+measures = ["forgiving", "margin", "reversal", "halving", "keeping"]
+"""
+)
+
+
+def ends(text: str, *overrides: str) -> StepResult:
+    return list(Simulation(Scene.from_toml(text, overrides=overrides).problem()).run())[-1]
+
+
+def test_who_says_nothing_gets_what_is_documented_to_the_last_bit():
+    silent, spoken = ends(SILENT), ends(SPOKEN)
+    assert {0, 2} <= set(silent.contacts[0].status.tolist())
+    assert silent.state.positions.tobytes() == spoken.state.positions.tobytes()
+    assert silent.contacts[0].force_slave.tobytes() == spoken.contacts[0].force_slave.tobytes()
+    assert silent.augmentations == spoken.augmentations
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        'solver.method="uzawa"', 'solver.slip_sum="paper"', "solver.newton_tolerance=1e-4", "contacts.floor.friction=0.31",
+        "contacts.floor.quadrature=[5,6]", "contacts.floor.plane.normal=[0.01,0,1]", "contacts.floor.plane.point=[0,0,0.001]",
+        "bodies.block.mesh.quadrature=[3,4,2]", "materials.m.young=10.1", "materials.m.poisson=0.31", "supports.top.centre=[0.1,0,0]",
+        "supports.top.axis=[0,0.1,1]", 'solver.measures=["forgiving","margin","reversal","halving"]',
+    ],
+)  # fmt: skip
+def test_each_of_them_counts(other):
+    spoken, changed = ends(SPOKEN), ends(SPOKEN, other)
+    assert changed.augmentations != spoken.augmentations or changed.state.positions.tobytes() != spoken.state.positions.tobytes()
+
+
+def test_uzawa_has_the_penalties_and_tolerances_that_are_documented():
+    said = ["solver.method=uzawa"]
+    documented = {name: value for name, value in SOLVER.items() if "penalty" in name or "augmentation" in name}
+    silent, spoken = ends(SILENT, *said), ends(SILENT, *said, *(f"solver.{name}={value}" for name, value in documented.items()))
+    assert silent.augmentations == spoken.augmentations
+    base = silent.augmentations[0].penalty_normal
+    found = [(record.penalty_normal / base, record.penalty_tangential / base) for record in silent.augmentations]
+    assert found == [(pytest.approx(2.0**k), pytest.approx(0.1 * 2.0**k)) for k in range(len(found))]
+    assert max(silent.augmentations[-1].change_pressure, silent.augmentations[-1].change_traction) <= 0.01
+    assert max(silent.augmentations[-2].change_pressure, silent.augmentations[-2].change_traction) > 0.01
 
 
 def test_when_increments_grow_back():

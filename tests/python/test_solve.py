@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -10,7 +12,9 @@ import pytest
 from isomortar.errors import ConvergenceError
 from isomortar.model.entities import Motion, Problem, Stage
 from isomortar.scene import Scene
-from isomortar.solve.record import Observer, StepResult
+from isomortar.solve import bordered, monolithic
+from isomortar.solve.newton import KEPT_FACTORS, KEPT_SHARE
+from isomortar.solve.record import IterationRecord, Observer, StepResult
 from isomortar.solve.simulation import Simulation
 
 TWO_BODIES = [
@@ -72,6 +76,14 @@ def test_measures_on_the_way_do_not_change_the_solution(left_out: str) -> None:
     np.testing.assert_allclose(a.state.positions, b.state.positions, atol=1e-9)
 
 
+def iterations_by_kept_factors(results: list[StepResult]) -> Iterator[tuple[int, IterationRecord, IterationRecord]]:
+    """Number of the augmentation, iteration before, iteration by kept factors."""
+    for augmentation in (a for result in results for a in result.augmentations):
+        for before, now in pairwise(augmentation.iterations):
+            if KEPT_FACTORS in now.notes:
+                yield augmentation.augmentation, before, now
+
+
 @pytest.mark.parametrize("method", ["monolithic", "uzawa"])
 def test_factors_are_kept_while_they_serve(method: str) -> None:
     keeping = small_iron(method=method)
@@ -82,6 +94,10 @@ def test_factors_are_kept_while_they_serve(method: str) -> None:
     assert any("kept factors" in i.notes for r in one for a in r.augmentations for i in a.iterations)
     factors = [sum(r.counters["factorisations"] for r in results) for results in (one, other)]
     assert factors[0] < 0.8 * factors[1]
+    for augmentation, before, now in iterations_by_kept_factors(one):
+        assert now.residual <= KEPT_SHARE * before.residual, "after a change of penalties, or of states, others are made"
+        assert augmentation > 1 or now.iteration > 1, "an increment begins with a tangent of its own"
+        assert method == "uzawa" or (before.active, before.slip) == (now.active, now.slip)
     np.testing.assert_allclose(one[-1].state.positions, other[-1].state.positions, atol=1e-8)
 
 
@@ -93,6 +109,40 @@ def test_iterations_by_kept_factors_do_not_count_as_tangents(method: str) -> Non
     assert any(len(loop) > needed for loop in loops)
     limited = run(small_iron(method=method, max_iterations=needed))
     assert [r.cuts for r in limited] == [r.cuts for r in plain]
+
+
+class Factors:
+    """Stands between the monolithic method and its linear solves: what was factorised, and how often it served again."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.made_of: object = None
+        self.borders: object = None
+        self.increment = self.again = 0
+        begin = monolithic.Monolithic._begin
+        monkeypatch.setattr(monolithic, "solve_bordered", self.solved)
+        monkeypatch.setattr(monolithic, "solve_with_kept_factors", self.kept)
+        monkeypatch.setattr(monolithic.Monolithic, "_begin", lambda method, *start: (self.begun(), begin(method, *start))[1])
+
+    def begun(self) -> None:
+        self.increment += 1
+
+    def solved(self, equilibrium, balance, laws, targets, prescribed):
+        self.made_of = self.increment, [target.state.tobytes() for target in targets]
+        correction, self.borders = bordered.solve_bordered(equilibrium, balance, laws, targets, prescribed)
+        return correction, self.borders
+
+    def kept(self, equilibrium, balance, targets, borders):
+        self.again += 1
+        assert self.made_of == (self.increment, [target.state.tobytes() for target in targets])
+        assert borders is self.borders
+        return bordered.solve_with_kept_factors(equilibrium, balance, targets, borders)
+
+
+def test_kept_factors_are_those_of_the_same_increment_and_states(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The right-hand side has the rows that were factorised: with others its solution is that of no system."""
+    factors = Factors(monkeypatch)
+    run(small_iron())
+    assert factors.again > 10
 
 
 def test_contact_conditions_after_every_step() -> None:
