@@ -97,7 +97,7 @@ class PairMechanics:
 
     def begin(self, supports: Supports, start: FloatArray, time: float) -> None:
         """Begin a load increment from positions `start` to a load time."""
-        self.reach.begin_step()
+        self.reach.begin()
         self.held = held_by(supports, self.pair, start, time)
 
     def initial(self, positions: FloatArray) -> ContactState:

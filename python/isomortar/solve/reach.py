@@ -25,9 +25,10 @@ class ContactPatterns:
 class Reach:
     """Which control points the constraint rows of a pair reach.
 
-    `update` keeps the patterns while everything needed is in them; else it rebuilds them, with what the same load step
-    needed before, so that Newton's iterations do not trade one pattern for another. A `condensed` tangent couples all that
-    the rows of a control point reach; else it couples the control points of an element alone.
+    `update` keeps the patterns while everything needed is in them; else it rebuilds them, with what the same load increment
+    needed before, so that Newton's iterations do not trade one pattern for another. The next increment begins with none: what an
+    earlier one needed would change the order of elimination, and a run that is resumed would differ in its last bits.
+    A `condensed` tangent couples all that the rows of a control point reach; else it couples the control points of an element alone.
     """
 
     def __init__(self, pair: Pair, summed: bool, condensed: bool) -> None:
@@ -39,9 +40,9 @@ class Reach:
         self._fresh = True
         self.patterns: ContactPatterns | None = None
 
-    def begin_step(self) -> None:
-        """Forget, at the next rebuild, what earlier load steps needed."""
-        self._fresh = True
+    def begin(self) -> None:
+        """Begin a load increment: forget what earlier ones needed."""
+        self._fresh, self.patterns = True, None
 
     def update(self, projections: Projections, state: IntArray) -> ContactPatterns:
         """The patterns for the given projections and states of the control points."""
