@@ -11,7 +11,7 @@ from isomortar.harness import case
 from isomortar.harness.extremes import digits, endings, judge
 
 _TIGHT = {"solver.newton_tolerance": 1e-12, "solver.complementarity_tolerance": 1e-11}
-_GATE_STIFFNESSES = ((1e-3, "1:1"), (1e3, "1:1"), (1e4, "1:8"), (1e12, "2:1"))
+_GATE_STIFFNESSES = ((1e-3, "1:1"), (1e3, "1:1"), (1e12, "2:1"))
 _POISSONS = (-0.999999, -0.99, 0.0, 0.49, 0.4999, 0.49999, 0.499999, 0.4999999, 0.499999999, 0.4999999999999)
 
 
@@ -88,7 +88,7 @@ def bystander(ratio: float) -> dict[str, Any]:
 
 @case(
     claim="A body may be compressed to a small share of its height, or the program says that an element folds.",
-    tier=lambda stretch: "gate" if stretch in (0.1, 0.0) else "nightly",
+    tier=lambda stretch: "gate" if stretch == 0.1 else "nightly",
     grid={"stretch": (0.9, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 1e-3, 1e-4, 0.0, -0.5)},
     bounds=lambda stretch: endings(stretch >= 0.1),
 )
