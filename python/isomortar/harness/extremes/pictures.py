@@ -23,8 +23,8 @@ COLOURS = {
     Ending.RIGHT: "#66C2A5",
 }
 _LETTERS = {Ending.STOPPED: "s", Ending.REFUSED: "r"}
-#: Inches of a square, and of what stands round a panel.
-_SQUARE, _MARGIN = 0.34, 1.0
+#: Inches of a square, of what stands beside a panel, above and below it, and of a letter of the names of its values.
+_SQUARE, _BESIDE, _ROUND, _LETTER = 0.34, 1.6, 0.95, 0.075
 
 
 def picture(sweep: Sweep) -> str:
@@ -37,7 +37,7 @@ def picture(sweep: Sweep) -> str:
 def _line(sweep: Sweep) -> Figure:
     (name,) = sweep.case.grid
     values = [settings[name] for settings in sweep.settings]
-    figure = Figure(figsize=(_SQUARE * len(values) + 1.6 * _MARGIN, 2 * _SQUARE + _MARGIN), layout="constrained")
+    figure = Figure(figsize=(_SQUARE * len(values) + _BESIDE, 2 * _SQUARE + _ROUND + _names(values)), layout="constrained")
     axes = figure.subplots()
     _squares(axes, [sweep.now, sweep.before])
     axes.set_yticks([0, 1], ["now", "before"])
@@ -49,7 +49,7 @@ def _pair(sweep: Sweep) -> Figure:
     first, second = sweep.case.grid
     across = list(dict.fromkeys(settings[first] for settings in sweep.settings))
     up = list(dict.fromkeys(settings[second] for settings in sweep.settings))
-    size = (2 * _SQUARE * len(across) + 2 * _MARGIN, _SQUARE * len(up) + 1.2 * _MARGIN)
+    size = (2 * (_SQUARE * len(across) + _names(across)) + _names(up) + _BESIDE, _SQUARE * len(up) + _ROUND + _names(across))
     figure = Figure(figsize=size, layout="constrained")
     panels = figure.subplots(1, 2, sharey=True)
     found: list[tuple[str, Sequence[Point | None]]] = [("before", sweep.before), ("now", sweep.now)]
@@ -78,6 +78,11 @@ def _squares(axes: Axes, rows: Sequence[Sequence[Point | None]]) -> None:
     axes.grid(which="minor", color="white", linewidth=1.2)
     axes.tick_params(which="both", length=0)
     axes.spines[:].set_visible(False)
+
+
+def _names(values: Sequence[Any]) -> float:
+    """Inches that the longest of the names of values takes."""
+    return _LETTER * max(len(_short(value)) for value in values)
 
 
 def _name(axes: Axes, values: Sequence[Any], name: str) -> None:
