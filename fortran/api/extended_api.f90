@@ -1,26 +1,32 @@
 !> Directional derivative of one body's internal forces, by a central difference (isomortar_solid_assembly).
-subroutine solid_difference(layout, knots, nknots, point, weight, npoints, gauss, bulk, shear, x, along, step, reference, n, &
-    forces, status, place)
+subroutine solid_difference(layout, knots, nknots, point, weight, npoints, gauss, law, parameters, nparameters, x, along, step, &
+    reference, n, forces, status, place)
   use iso_c_binding, only: c_double, c_int
   use isomortar_api_difference, only: difference
   use isomortar_api_unpack, only: unpack_patch
   use isomortar_base_kinds, only: wp
   use isomortar_solid_assembly, only: add_body
+  use isomortar_solid_material_law, only: material_t
+  use isomortar_solid_material_table, only: material_of
   implicit none
-  integer(c_int), intent(in) :: nknots, npoints, n
-  integer(c_int), intent(in) :: layout(9), gauss(3), point(npoints)
-  real(c_double), intent(in) :: knots(nknots), weight(npoints), bulk, shear, x(3, n), along(3, n), step, reference(3, n)
+  integer(c_int), intent(in) :: nknots, npoints, nparameters, n
+  integer(c_int), intent(in) :: layout(9), gauss(3), law, point(npoints)
+  real(c_double), intent(in) :: knots(nknots), weight(npoints), parameters(nparameters), x(3, n), along(3, n), step, reference(3, n)
   real(c_double), intent(out) :: forces(3, n)
   integer(c_int), intent(out) :: status, place
+  class(material_t), allocatable :: material
   real(wp), allocatable :: sides(:, :, :)
   real(wp) :: smallest_jacobian
   integer :: side
 
   forces = 0.0_c_double
+  place = law
+  call material_of(law, real(parameters, wp), material, status)
+  if (status /= 0) return
   allocate (sides(3, n, 2))
   sides = 0.0_wp
   do side = 1, 2
-    call add_body(unpack_patch(layout, knots, point, weight), gauss, real(bulk, wp), real(shear, wp), &
+    call add_body(unpack_patch(layout, knots, point, weight), gauss, material, &
       real(x, wp) + (2 * side - 3) * real(step, wp) * real(along, wp), real(reference, wp), sides(:, :, side), smallest_jacobian, &
       status, place)
     if (status /= 0) return

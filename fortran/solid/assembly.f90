@@ -7,7 +7,8 @@ module isomortar_solid_assembly
   use isomortar_base_status, only: status_ok, status_pattern
   use isomortar_nurbs_patch, only: element_count, element_nodes, element_of, line_rule, line_rule_t, patch_t
   use isomortar_nurbs_tensor_product, only: line_pairs, line_pairs_t
-  use isomortar_solid_element, only: component_pairs, element_residual, element_tangent, sample_element, samples_t
+  use isomortar_solid_element, only: element_residual, element_tangent, sample_element, samples_t
+  use isomortar_solid_material_law, only: component_pairs, material_t
   use isomortar_sparse_blocks, only: lacks, mark_row, pattern_t
 !$ use omp_lib, only: omp_get_max_threads
   implicit none
@@ -37,11 +38,11 @@ contains
   !> Blocks of the tangent are stored as (column component, row component, block). On failure `place` is the element
   !> (from 1). `smallest_jacobian` is the least J met, of an
   !> element folded initially the determinant of its map.
-  subroutine add_body(patch, points, bulk, shear, positions, references, residual, smallest_jacobian, status, place, &
+  subroutine add_body(patch, points, material, positions, references, residual, smallest_jacobian, status, place, &
       pattern, tangent)
     type(patch_t), intent(in) :: patch
     integer, intent(in) :: points(3)
-    real(wp), intent(in) :: bulk, shear
+    class(material_t), intent(in) :: material
     real(wp), intent(in) :: positions(:, :), references(:, :)
     real(wp), intent(inout) :: residual(:, :)
     real(wp), intent(out) :: smallest_jacobian
@@ -65,13 +66,13 @@ contains
     smallest_jacobian = huge(1.0_wp)
     do first = 0, element_count(patch) - 1, size(batch)
       many = min(size(batch), element_count(patch) - first)
-      !$omp parallel do default(none) private(at) shared(batch, bulk, first, many, patch, positions, references, shear, tangent) &
+      !$omp parallel do default(none) private(at) shared(batch, first, many, material, patch, positions, references, tangent) &
       !$omp shared(u, uu, v, vv, w, ww) schedule(dynamic)
       do k = 1, many
         at = element_of(patch, first + k)
-        call take_element(patch, at, u(at(1)), v(at(2)), w(at(3)), bulk, shear, positions, references, batch(k))
+        call take_element(patch, at, u(at(1)), v(at(2)), w(at(3)), material, positions, references, batch(k))
         if (present(tangent) .and. batch(k)%status == status_ok) then
-          call element_tangent(uu(at(1)), vv(at(2)), ww(at(3)), batch(k)%samples, bulk, shear, batch(k)%block)
+          call element_tangent(uu(at(1)), vv(at(2)), ww(at(3)), batch(k)%samples, material, batch(k)%block)
         end if
       end do
       !$omp end parallel do
@@ -107,11 +108,12 @@ contains
   end subroutine reserve
 
   !> Sample one element and compute its forces.
-  pure subroutine take_element(patch, at, u, v, w, bulk, shear, positions, references, element)
+  pure subroutine take_element(patch, at, u, v, w, material, positions, references, element)
     type(patch_t), intent(in) :: patch
     integer, intent(in) :: at(3)
     type(line_rule_t), intent(in) :: u, v, w
-    real(wp), intent(in) :: bulk, shear, positions(:, :), references(:, :)
+    class(material_t), intent(in) :: material
+    real(wp), intent(in) :: positions(:, :), references(:, :)
     type(element_t), intent(inout) :: element
 
     call element_nodes(patch, at, element%local)
@@ -120,7 +122,7 @@ contains
     call sample_element(u, v, w, element%weight, positions(:, element%nodes), references(:, element%nodes), element%samples, &
       element%status)
     if (element%status /= status_ok) return
-    call element_residual(u, v, w, element%weight, element%samples, bulk, shear, element%forces)
+    call element_residual(u, v, w, element%weight, element%samples, material, element%forces)
   end subroutine take_element
 
   !> Add the forces of an element; a control point may stand twice in an element of a closed ring.

@@ -5,14 +5,11 @@ module isomortar_solid_element
   use isomortar_base_status, only: status_folded, status_folded_initially, status_ok
   use isomortar_nurbs_patch, only: line_rule_t
   use isomortar_nurbs_tensor_product, only: integrate, integrate_pairs, interpolate, line_pairs_t
-  use isomortar_solid_material, only: kirchhoff_stress, stretch, stretch_t, tangent_coefficients
+  use isomortar_solid_material_law, only: component_pairs, material_t, stretch, stretch_t
   implicit none
   private
 
-  public :: component_pairs, element_residual, element_tangent, sample_element
-
-  !> Components i, k of the six tangents K_ik that are integrated; K_ki of control points a, b is K_ik of b, a.
-  integer, parameter :: component_pairs(2, 6) = reshape([1, 1, 2, 2, 3, 3, 1, 2, 1, 3, 2, 3], [2, 6])
+  public :: element_residual, element_tangent, sample_element
 
   !> Everything at the quadrature points of an element that residual and tangent are made of.
   type, public :: samples_t
@@ -61,7 +58,7 @@ contains
             return
           end if
           grown = quotient(values(1, q, :), values(5:7, q, :))
-          samples%state(q) = stretch(matmul(grown, inverse(reference_map, det)))
+          call stretch(matmul(grown, inverse(reference_map, det)), samples%state(q))
           samples%volume(q) = u%weight(i) * v%weight(j) * w%weight(k) * det
           samples%smallest_jacobian = min(samples%smallest_jacobian, samples%state(q)%jacobian)
           if (.not. samples%state(q)%jacobian > 0.0_wp) then
@@ -102,17 +99,18 @@ contains
   end subroutine reserve
 
   !> Internal forces, shape (3, control points) (theory 1.7).
-  pure subroutine element_residual(u, v, w, weight, samples, bulk, shear, residual)
+  pure subroutine element_residual(u, v, w, weight, samples, material, residual)
     type(line_rule_t), intent(in) :: u, v, w
     real(wp), intent(in) :: weight(:)
     type(samples_t), intent(in) :: samples
-    real(wp), intent(in) :: bulk, shear
+    class(material_t), intent(in) :: material
     real(wp), intent(out) :: residual(:, :)
-    real(wp) :: densities(size(samples%volume), 3, 4), sums(3, size(weight))
+    real(wp) :: densities(size(samples%volume), 3, 4), stress(3, 3), sums(3, size(weight))
     integer :: a, q
 
     do q = 1, size(samples%volume)
-      densities(q, :, :) = matmul(samples%volume(q) * kirchhoff_stress(samples%state(q), bulk, shear), samples%gradient(q, :, :))
+      call material%stress(samples%state(q), stress)
+      densities(q, :, :) = matmul(samples%volume(q) * stress, samples%gradient(q, :, :))
     end do
     call integrate(u, v, w, 3, densities, sums)
     do a = 1, size(weight)
@@ -122,30 +120,31 @@ contains
 
   !> The tangents K_ik of `component_pairs` without the weights of the control points: (pair, u, v, w), where each of u, v, w
   !> runs over pairs of functions (theory 1.8).
-  pure subroutine element_tangent(u, v, w, samples, bulk, shear, tangent)
+  pure subroutine element_tangent(u, v, w, samples, material, tangent)
     type(line_pairs_t), intent(in) :: u, v, w
     type(samples_t), intent(in) :: samples
-    real(wp), intent(in) :: bulk, shear
+    class(material_t), intent(in) :: material
     real(wp), intent(out) :: tangent(:)
-    real(wp), allocatable :: c(:, :), densities(:, :, :, :), h(:, :, :)
-    integer :: d, e, i, k, m, pair, q
+    real(wp), allocatable :: along(:, :), densities(:, :, :, :), moduli(:, :, :, :)
+    real(wp) :: point(3, 3, 6)
+    integer :: d, e, j, m, pair, q
 
     m = size(samples%volume)
-    allocate (c(m, 4), h(m, 3, 4), densities(m, 6, 4, 4))
+    allocate (along(m, 3), densities(m, 6, 4, 4), moduli(m, 3, 3, 6))
     do q = 1, m
-      c(q, :) = samples%volume(q) * tangent_coefficients(samples%state(q), bulk, shear)
-      h(q, :, :) = matmul(samples%state(q)%left_cauchy_green, samples%gradient(q, :, :))
+      call material%tangent(samples%state(q), point)
+      moduli(q, :, :, :) = samples%volume(q) * point
     end do
     associate (g => samples%gradient)
       do e = 1, 4
-        do d = 1, 4
-          do pair = 1, 6
-            i = component_pairs(1, pair)
-            k = component_pairs(2, pair)
-            densities(:, pair, d, e) = g(:, i, d) * (c(:, 1) * g(:, k, e) - c(:, 4) * h(:, k, e)) &
-              + c(:, 2) * g(:, k, d) * g(:, i, e) - c(:, 4) * h(:, i, d) * g(:, k, e)
-            if (i == k) densities(:, pair, d, e) = densities(:, pair, d, e) &
-              + c(:, 3) * (g(:, 1, d) * h(:, 1, e) + g(:, 2, d) * h(:, 2, e) + g(:, 3, d) * h(:, 3, e))
+        do pair = 1, 6
+          do j = 1, 3
+            along(:, j) = moduli(:, j, 1, pair) * g(:, 1, e) + moduli(:, j, 2, pair) * g(:, 2, e) &
+              + moduli(:, j, 3, pair) * g(:, 3, e)
+          end do
+          do d = 1, merge(e, 4, pair <= 3) ! K_ii is symmetric
+            densities(:, pair, d, e) = g(:, 1, d) * along(:, 1) + g(:, 2, d) * along(:, 2) + g(:, 3, d) * along(:, 3)
+            if (pair <= 3) densities(:, pair, e, d) = densities(:, pair, d, e)
           end do
         end do
       end do

@@ -8,12 +8,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Literal, get_args
 
 import numpy as np
 
 from isomortar import _arguments as check
 from isomortar._arguments import FloatArray, IntArray
 from isomortar.errors import InputError
+
+#: Material laws in the order of their numbers in the kernel (isomortar_solid_material_table), from 1.
+MaterialLaw = Literal["neo-hookean"]
+LAWS = {name: number for number, name in enumerate(get_args(MaterialLaw), start=1)}
 
 
 @dataclass(frozen=True)
@@ -45,6 +50,19 @@ class PatchArrays:
         """Functions of an element and elements by direction of the faces across an axis (1 to 3)."""
         first, second = axis % 3, (axis + 1) % 3
         return int(self.layout[3 + first]) + 1, int(self.layout[3 + second]) + 1, self.elements[first], self.elements[second]
+
+
+@dataclass(frozen=True)
+class MaterialArrays:
+    """A material: number of its law (isomortar_solid_material_table) and what that takes, the moduli A1 and A2."""
+
+    law: int
+    parameters: FloatArray
+
+    def __post_init__(self) -> None:
+        check.whole("law", self.law, 1, len(LAWS))
+        for modulus in check.array("parameters", self.parameters, np.float64, 2):
+            check.real("parameters", float(modulus), lambda value: value > 0, "numbers above 0")
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from isomortar import _arguments as check
 from isomortar._arguments import FloatArray, IntArray
-from isomortar._arrays import Control, Law, MasterArrays, PatchArrays, Pattern, Projections, Response, SlaveArrays
+from isomortar._arrays import Control, Law, MasterArrays, MaterialArrays, PatchArrays, Pattern, Projections, Response, SlaveArrays
 from isomortar._compiled import kernel as _kernel
 from isomortar.errors import FoldedElementError, InputError, KernelError, LostProjectionError
 
@@ -21,9 +21,10 @@ LongArray = NDArray[np.int64]
 
 # With the arrays, which those who call take from here.
 __all__ = [
-    "ROW_KINDS", "Control", "FloatArray", "IntArray", "Law", "LongArray", "MasterArrays", "PatchArrays", "Pattern", "Projections",
-    "Response", "SlaveArrays", "add_body", "add_values", "augmented_multipliers", "condense_multipliers", "contact_blocks",
-    "contact_forces", "control_quantities", "find_places", "multiplier_rows", "project_points", "slave_tables", "surface_functions",
+    "ROW_KINDS", "Control", "FloatArray", "IntArray", "Law", "LongArray", "MasterArrays", "MaterialArrays", "PatchArrays", "Pattern",
+    "Projections", "Response", "SlaveArrays", "add_body", "add_values", "augmented_multipliers", "condense_multipliers", "contact_blocks",
+    "contact_forces", "control_quantities", "find_places", "material_stress", "multiplier_rows", "project_points", "slave_tables",
+    "surface_functions",
 ]  # fmt: skip
 
 #: Kinds of constraint rows with friction, without, and with the paper's slip sum (isomortar_contact_blocks).
@@ -41,6 +42,7 @@ def _raise(status: int, place: int) -> NoReturn:
         9: (KernelError, f"a pattern does not fit what is added to it: block missing in row {place} (-1: it has other rows)"),
         10: (LostProjectionError, f"the position of control point {place} is not finite"),
         11: (LostProjectionError, f"slave quadrature point {place} has passed through the master's body"),
+        13: (KernelError, f"no material law has the number {place + 1} and so many parameters"),
     }
     kind, sentence = sentences.get(status, (KernelError, f"the kernel returned status {status} at {place}"))
     raise kind(sentence, place)
@@ -120,8 +122,7 @@ def _check_face(axis: int, side: int) -> None:
 def add_body(
     patch: PatchArrays,
     gauss: tuple[int, int, int],
-    bulk: float,
-    shear: float,
+    material: MaterialArrays,
     positions: FloatArray,
     reference: FloatArray,
     forces: FloatArray,
@@ -145,19 +146,32 @@ def add_body(
     check.array("forces", forces, np.float64, n, 3)
     check.below("patch.point", patch.highest, n, "control point")
     rule = check.gauss("gauss", gauss, 3)
-    check.real("bulk", bulk, lambda value: value > 0, "a number above 0")
-    check.real("shear", shear, lambda value: value > 0, "a number above 0")
     start, column, values = _NO_START, _NO_COLUMN, _NO_BLOCKS
     if pattern is not None and tangent is not None:
         _check_pattern("pattern", pattern, n, n)
         start, column, values = pattern.start, pattern.column, check.array("tangent", tangent, np.float64, len(pattern.column), 3, 3)
     jacobian, status, place = _kernel.add_body(
-        patch.layout, patch.knots, patch.point, patch.weight, rule, bulk, shear, positions.T, reference.T,
-        forces.T, int(values is not _NO_BLOCKS), start, column, values.T,
+        patch.layout, patch.knots, patch.point, patch.weight, rule, material.law, material.parameters, positions.T,
+        reference.T, forces.T, int(values is not _NO_BLOCKS), start, column, values.T,
     )  # fmt: skip
     if status:
         _raise(status, place - 1)
     return float(jacobian)
+
+
+def material_stress(material: MaterialArrays, gradient: FloatArray) -> FloatArray:
+    """First Piola stresses, force per reference area, at displacement gradients F - 1, both of shape (points, 3, 3).
+
+    Raises
+    ------
+    FoldedElementError
+        det F <= 0, with the number of the first such gradient.
+    """
+    check.finite("gradient", check.array("gradient", gradient, np.float64, None, 3, 3))
+    stress, status, place = _kernel.material_stress(material.law, material.parameters, np.asfortranarray(gradient.transpose(1, 2, 0)))
+    if status:
+        _raise(status, place - 1)
+    return np.ascontiguousarray(stress.transpose(2, 0, 1))
 
 
 def surface_functions(patch: PatchArrays, axis: int, side: int, xi: FloatArray) -> tuple[IntArray, FloatArray]:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from isomortar import _extended
-from isomortar._bindings import FloatArray, Law, MasterArrays, PatchArrays, Projections, Response, SlaveArrays
+from isomortar._bindings import FloatArray, Law, MasterArrays, MaterialArrays, PatchArrays, Projections, Response, SlaveArrays
 from isomortar.errors import KernelError
 
 #: Step of the differences, times the direction: errors of its square and of quadruple round-off over it, both about 1e-22.
@@ -40,8 +40,7 @@ class ContactChange:
 def solid_difference(
     patch: PatchArrays,
     gauss: tuple[int, int, int],
-    bulk: float,
-    shear: float,
+    material: MaterialArrays,
     positions: FloatArray,
     along: FloatArray,
     reference: FloatArray,
@@ -55,8 +54,8 @@ def solid_difference(
         An element is folded.
     """
     forces, status, place = _extended.solid_difference(
-        patch.layout, patch.knots, patch.point, patch.weight, np.asarray(gauss, np.int32), bulk, shear, positions.T, along.T, step,
-        reference.T,
+        patch.layout, patch.knots, patch.point, patch.weight, np.asarray(gauss, np.int32), material.law, material.parameters, positions.T,
+        along.T, step, reference.T,
     )  # fmt: skip
     _check(status, place)
     return np.ascontiguousarray(forces.T)

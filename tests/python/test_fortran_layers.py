@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 FORTRAN = Path(__file__).parents[2] / "fortran"
-FILES = sorted(FORTRAN.glob("*/*.f90"))
+FILES = sorted(FORTRAN.rglob("*.f90"))
 
 #: The layers that each layer may use besides itself.
 BELOW = {
@@ -20,25 +20,25 @@ BELOW = {
 
 
 def test_every_layer_is_known():
-    assert {path.parent.name for path in FILES} == set(BELOW)
+    assert {path.relative_to(FORTRAN).parts[0] for path in FILES} == set(BELOW)
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: f"{path.parent.name}/{path.name}")
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.relative_to(FORTRAN).as_posix())
 def test_file_uses_only_layers_below(path):
-    layer = path.parent.name
+    layer = path.relative_to(FORTRAN).parts[0]
     used = set(re.findall(r"^\s*use isomortar_([a-z]+)_", path.read_text(), re.MULTILINE))
     assert used <= BELOW[layer] | {layer}
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: f"{path.parent.name}/{path.name}")
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.relative_to(FORTRAN).as_posix())
 def test_module_is_named_by_its_path(path):
     names = re.findall(r"^module (\w+)", path.read_text(), re.MULTILINE)
     # The kind module of the other precision bears the same name; API files are bare subroutines.
-    wanted = f"isomortar_{path.parent.name}_{path.stem.removesuffix('_extended')}"
+    wanted = "_".join(["isomortar", *path.relative_to(FORTRAN).parent.parts, path.stem.removesuffix("_extended")])
     assert names == ([] if path.stem.endswith("_api") else [wanted])
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: f"{path.parent.name}/{path.name}")
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.relative_to(FORTRAN).as_posix())
 def test_every_parallel_loop_says_of_each_variable_whether_threads_share_it(path):
     joined = re.sub(r"&\s*\n\s*!\$omp", "", path.read_text(), flags=re.IGNORECASE)
     regions = re.findall(r"^\s*!\$omp\s+(?!end\b)(.*\b(?:parallel|task|taskloop|teams)\b.*)$", joined, re.MULTILINE | re.IGNORECASE)

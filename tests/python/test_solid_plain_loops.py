@@ -80,7 +80,7 @@ def test_forces_and_tangent(order: tuple[int, int, int], elements: tuple[int, in
     positions = patch.control_points + 0.03 * rng.standard_normal((n, 3))
     pattern = Pattern(np.arange(0, n * n + 1, n, dtype=np.int32), np.tile(np.arange(n, dtype=np.int32), n))
     forces, blocks = np.zeros((n, 3)), np.zeros((n * n, 3, 3))
-    _bindings.add_body(arrays, points, MATERIAL.bulk, MATERIAL.shear, positions, patch.control_points, forces, pattern, blocks)
+    _bindings.add_body(arrays, points, MATERIAL.arrays, positions, patch.control_points, forces, pattern, blocks)
     tangent = blocks.reshape(n, n, 3, 3).transpose(0, 2, 1, 3).reshape(3 * n, 3 * n)
 
     samples = gradients(patch, points)

@@ -14,13 +14,15 @@ from isomortar import _bindings
 from isomortar._bindings import Pattern
 from isomortar.geometry.primitives import box
 from isomortar.geometry.refinement import mesh
+from isomortar.model.entities import Material
 from isomortar.model.numbering import patch_arrays
 patch = mesh(box((0.0, 0.0, 0.0), (1.0, 2.0, 1.0)), ("N", "N", "N"), (2, 3, 2), (4, 4, 4))
 reference, n = patch.control_points, len(patch.weights)
 pattern = Pattern(np.arange(0, n * n + 1, n, dtype=np.int32), np.tile(np.arange(n, dtype=np.int32), n))
 forces, tangent = np.zeros_like(reference), np.zeros((n * n, 3, 3))
 positions = reference + np.random.default_rng(3).uniform(-0.02, 0.02, reference.shape)
-_bindings.add_body(patch_arrays(patch, np.arange(n, dtype=np.int32)), (3, 4, 3), 8.0, 4.0, positions, reference, forces, pattern, tangent)
+arrays = patch_arrays(patch, np.arange(n, dtype=np.int32))
+_bindings.add_body(arrays, (3, 4, 3), Material().arrays, positions, reference, forces, pattern, tangent)
 assert np.abs(tangent).max() > 0
 print(hashlib.sha256(forces.tobytes() + tangent.tobytes()).hexdigest())
 """

@@ -61,7 +61,7 @@ def volume(patch: Patch, gauss: tuple[int, int, int]) -> float:
     reference, s = patch.control_points, 1.5
     forces = np.zeros_like(reference)
     arrays = patch_arrays(patch, np.arange(len(reference), dtype=np.int32))
-    _bindings.add_body(arrays, gauss, MATERIAL.bulk, MATERIAL.shear, s * reference, reference, forces)
+    _bindings.add_body(arrays, gauss, MATERIAL.arrays, s * reference, reference, forces)
     return float(np.vdot(forces, reference)) / (9 * MATERIAL.bulk * np.log(s) / s)
 
 

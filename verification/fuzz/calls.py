@@ -24,7 +24,7 @@ from isomortar.solve.simulation import Simulation
 
 #: Every routine of the kernel's interface; those of the sparse LU at the end.
 ROUTINES = (
-    *("add_body", "surface_functions", "slave_tables", "project_points", "control_quantities", "augmented_multipliers"),
+    *("add_body", "material_stress", "surface_functions", "slave_tables", "project_points", "control_quantities", "augmented_multipliers"),
     *("contact_forces", "contact_blocks", "multiplier_rows", "condense_multipliers", "find_places", "add_values"),
     *("analyse", "factorise", "solve"),
 )
@@ -53,6 +53,8 @@ def sound() -> dict[str, tuple[Callable[..., Any], dict[str, Any]]]:
     face = heard["slave_tables"][1]
     points = np.random.default_rng(1).random((5, 2))
     heard["surface_functions"] = _bindings.surface_functions, {"patch": face["patch"], "axis": 3, "side": 0, "xi": points}
+    gradients = 0.1 * np.random.default_rng(2).standard_normal((4, 3, 3))
+    heard["material_stress"] = _bindings.material_stress, {"material": heard["add_body"][1]["material"], "gradient": gradients}
     heard |= _sparse()
     assert heard.keys() == {*ROUTINES}
     return heard

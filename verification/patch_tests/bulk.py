@@ -51,7 +51,7 @@ def residual(patch: Patch, gauss: tuple[int, int, int]) -> float:
     positions: FloatArray = np.ascontiguousarray(reference @ GRADIENT.T + SHIFT)
     forces = np.zeros_like(reference)
     arrays = patch_arrays(patch, np.arange(len(reference), dtype=np.int32))
-    _bindings.add_body(arrays, gauss, MATERIAL.bulk, MATERIAL.shear, positions, reference, forces)
+    _bindings.add_body(arrays, gauss, MATERIAL.arrays, positions, reference, forces)
     return float(np.abs(forces[interior(patch)]).max() / np.abs(forces).max())
 
 

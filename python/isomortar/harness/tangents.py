@@ -323,8 +323,7 @@ def solid_twin(equilibrium: Equilibrium, positions: FloatArray, along: FloatArra
             _twin.solid_difference(
                 numbering.patch_arrays(body),
                 body.quadrature,
-                body.material.bulk,
-                body.material.shear,
+                body.material.arrays,
                 positions,
                 along,
                 numbering.reference,

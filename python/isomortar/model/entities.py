@@ -7,12 +7,13 @@ from typing import Literal
 
 import numpy as np
 
+from isomortar._arrays import LAWS, MaterialArrays, MaterialLaw
 from isomortar.geometry.patch import FloatArray, Patch
 
 
 @dataclass(frozen=True)
 class Material:
-    """Neo-Hookean solid (theory 1).
+    """A material: its law, and the moduli that all laws have in common where strains are small (theory 1).
 
     Parameters
     ----------
@@ -20,10 +21,18 @@ class Material:
         Young's modulus E, force per area.
     poisson : float
         Poisson's ratio, -1 < nu < 0.5.
+    law : str
+        "neo-hookean": the paper's, W = A1/2 (ln J)^2 + A2/2 (J^(-2/3) tr C - 3).
     """
 
     young: float = 10.0
     poisson: float = 0.3
+    law: MaterialLaw = "neo-hookean"
+
+    @property
+    def arrays(self) -> MaterialArrays:
+        """What the kernel takes for it."""
+        return MaterialArrays(LAWS[self.law], np.array([self.bulk, self.shear]))
 
     @property
     def bulk(self) -> float:

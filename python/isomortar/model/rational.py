@@ -79,5 +79,5 @@ def _stretched(body: Body, rule: Rule) -> FloatArray:
     points = body.patch.control_points - body.patch.control_points.mean(axis=0)
     forces = np.zeros_like(points)
     patch = patch_arrays(body.patch, np.arange(len(points), dtype=np.int32))
-    _bindings.add_body(patch, rule, body.material.bulk, body.material.shear, 1.01 * points, points, forces)
+    _bindings.add_body(patch, rule, body.material.arrays, 1.01 * points, points, forces)
     return forces

@@ -83,8 +83,7 @@ class Solid:
                 jacobian = _bindings.add_body(
                     patch,
                     body.quadrature,
-                    body.material.bulk,
-                    body.material.shear,
+                    body.material.arrays,
                     positions,
                     self._numbering.reference,
                     forces,

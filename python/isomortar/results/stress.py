@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from isomortar import _bindings
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Body, Material
 from isomortar.results.bezier import functions_at, rational_gradient
@@ -34,7 +35,7 @@ def deformation_gradient(body: Body, points: FloatArray, parameters: Sequence[Fl
 
 
 def first_piola_stress(material: Material, deformation: FloatArray) -> FloatArray:
-    """P = A1 ln J F^-T + A2 J^(-2/3) (F - tr C/3 F^-T) (theory 8.3), force per reference area.
+    """P of the material's law (theory 8.3), force per reference area.
 
     Parameters
     ----------
@@ -46,8 +47,5 @@ def first_piola_stress(material: Material, deformation: FloatArray) -> FloatArra
     -------
     ndarray, shape (..., 3, 3)
     """
-    f = deformation
-    inverse = np.linalg.inv(f).swapaxes(-1, -2)
-    j = np.linalg.det(f)[..., None, None]
-    trace = (f * f).sum(axis=(-1, -2))[..., None, None]
-    return material.bulk * np.log(j) * inverse + material.shear * j ** (-2 / 3) * (f - trace / 3 * inverse)
+    gradient = np.ascontiguousarray(deformation.reshape(-1, 3, 3) - np.eye(3))
+    return _bindings.material_stress(material.arrays, gradient).reshape(deformation.shape)

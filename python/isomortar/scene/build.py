@@ -129,7 +129,7 @@ def _material(scene: SceneTable, body: str) -> Material:
     if not names:
         return Material()
     table = scene.materials[wanted or names[0]]
-    return Material(table.young, table.poisson)
+    return Material(table.young, table.poisson, table.law)
 
 
 def _face(text: str, bodies: dict[str, Body], field: str) -> Face:

@@ -9,6 +9,7 @@ from pydantic import Field, field_validator, model_validator
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import PydanticCustomError, core_schema
 
+from isomortar._arrays import MaterialLaw
 from isomortar.geometry.patch import Direction, Family, Patch
 from isomortar.geometry.primitives import bowl, box, ring
 from isomortar.model.entities import Material, Measure, Motion, SolverSettings
@@ -36,12 +37,14 @@ _SOLVER = SolverSettings()
 
 
 class MaterialTable(Table):
-    """Neo-Hookean solid; the defaults are the paper's."""
+    """A solid; the defaults are the paper's."""
 
     young: Positive = _PAPER.young
     """Young's modulus, force per area."""
     poisson: Annotated[Real, Field(gt=-1, lt=0.5)] = _PAPER.poisson
     """Poisson's ratio, above -1 and below 0.5."""
+    law: MaterialLaw = _PAPER.law
+    """Stored energy (docs/method.md): the paper's."""
 
 
 class BoxTable(Table):

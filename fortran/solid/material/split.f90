@@ -1,0 +1,60 @@
+!> Neo-Hookean energies that split into volume and shape, W = U(J) + A2/2 (J^(-2/3) tr C - 3): what laws of that kind share.
+module isomortar_solid_material_split
+  use isomortar_base_kinds, only: wp
+  use isomortar_solid_material_law, only: component_pairs, stretch_t
+  implicit none
+  private
+
+  public :: split_stress, split_tangent
+
+contains
+
+  !> Kirchhoff stress J U' 1 + A2 J^(-2/3) dev b. `spherical` is J U' (theory 1.6).
+  pure subroutine split_stress(state, spherical, shear, stress)
+    type(stretch_t), intent(in) :: state
+    real(wp), intent(in) :: spherical, shear
+    real(wp), intent(out) :: stress(3, 3)
+    integer :: i
+
+    stress = isochoric(state, shear) * state%deviator
+    do i = 1, 3
+      stress(i, i) = spherical + stress(i, i)
+    end do
+  end subroutine split_stress
+
+  !> Moduli c1 delta_ij delta_kl + c2 delta_il delta_jk + c3 delta_ik b_jl - c4 (b_ij delta_kl + delta_ij b_kl).
+  !> `spherical` is J U', `slope` J (J U')' (theory 1.9, 1.10).
+  pure subroutine split_tangent(state, spherical, slope, shear, moduli)
+    type(stretch_t), intent(in) :: state
+    real(wp), intent(in) :: spherical, slope, shear
+    real(wp), intent(out) :: moduli(3, 3, 6)
+    real(wp) :: c(4)
+    integer :: i, k, pair
+
+    c(3) = isochoric(state, shear)
+    c(1) = slope + 2.0_wp / 9.0_wp * c(3) * state%trace
+    c(2) = c(3) * state%trace / 3.0_wp - spherical
+    c(4) = 2.0_wp / 3.0_wp * c(3)
+    moduli = 0.0_wp
+    associate (b => state%left_cauchy_green)
+      do pair = 1, 6
+        i = component_pairs(1, pair)
+        k = component_pairs(2, pair)
+        if (i == k) moduli(:, :, pair) = c(3) * b
+        moduli(i, :, pair) = moduli(i, :, pair) - c(4) * b(k, :)
+        moduli(:, k, pair) = moduli(:, k, pair) - c(4) * b(i, :)
+        moduli(i, k, pair) = moduli(i, k, pair) + c(1)
+        moduli(k, i, pair) = moduli(k, i, pair) + c(2)
+      end do
+    end associate
+  end subroutine split_tangent
+
+  !> A2 J^(-2/3).
+  pure real(wp) function isochoric(state, shear)
+    type(stretch_t), intent(in) :: state
+    real(wp), intent(in) :: shear
+
+    isochoric = shear * exp(-2.0_wp / 3.0_wp * state%log_jacobian)
+  end function isochoric
+
+end module isomortar_solid_material_split
