@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
+from typing import get_args
 
 import numpy as np
 from scipy import sparse
@@ -19,6 +20,7 @@ from scipy.interpolate import BSpline
 from scipy.sparse.linalg import SuperLU, splu
 from shapes import cylinder_sector
 
+from isomortar._arrays import MaterialLaw
 from isomortar.geometry.patch import FACES, Direction, FloatArray, IntArray, Patch
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Convergence, Order, case
@@ -74,7 +76,8 @@ def stress(gradient: FloatArray, material: Material) -> FloatArray:
     j = np.linalg.det(f)[:, None, None]
     inverse = np.swapaxes(np.linalg.inv(f), 1, 2)
     square = np.einsum("nij,nij->n", f, f)[:, None, None]
-    return material.bulk * np.log(j) * inverse + material.shear * j ** (-2 / 3) * (f - square / 3 * inverse)
+    swelling = np.log(j) if material.law == "neo-hookean" else j * (j - 1)
+    return material.bulk * swelling * inverse + material.shear * j ** (-2 / 3) * (f - square / 3 * inverse)
 
 
 def lines(direction: Direction, count: int) -> list[tuple[FloatArray, FloatArray, FloatArray]]:
@@ -241,3 +244,14 @@ def orders(kind: str) -> dict[str, Convergence]:
 def orders_in_space(kind: str) -> dict[str, Convergence]:
     """Errors of a solution that varies along the axis too."""
     return convergence(Solution(solid, deep=True), kind, DEEP_MESHES[kind])
+
+
+@case(
+    claim="So it does with every material law.",
+    tier=lambda kind, **_: "gate" if kind == "N1" else "nightly",
+    grid={"kind": ["N1", "N2", "L2"], "law": [law for law in get_args(MaterialLaw) if law != Material().law]},
+    bounds=lambda kind, law: best_orders(kind),  # noqa: ARG005
+)
+def orders_of_law(kind: str, law: MaterialLaw) -> dict[str, Convergence]:
+    """Errors of the solution that is the same at every height."""
+    return convergence(Solution(plane, Material(law=law)), kind, MESHES[kind])

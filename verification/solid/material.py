@@ -45,6 +45,7 @@ def energy(f: NDArray[np.complex128], material: Material) -> complex:
     isochoric = material.shear / 2 * (volume ** (-2 / 3) * (f**2).sum() - 3)
     return {
         "neo-hookean": material.bulk / 2 * np.log(volume) ** 2 + isochoric,
+        "neo-hookean-j": material.bulk / 2 * (volume - 1) ** 2 + isochoric,
     }[material.law]
 
 
@@ -164,7 +165,7 @@ def many_digits(f: mpmath.matrix, material: Material) -> mpmath.matrix:
     """P at a deformation gradient with as many digits as mpmath works with."""
     volume, inverse = mpmath.det(f), (f**-1).T
     shape = material.shear * volume ** (mpmath.mpf(-2) / 3) * (f - mpmath.fsum(x**2 for x in f) / 3 * inverse)
-    return shape + material.bulk * mpmath.log(volume) * inverse
+    return shape + material.bulk * (mpmath.log(volume) if material.law == "neo-hookean" else volume * (volume - 1)) * inverse
 
 
 @case(
