@@ -17,7 +17,7 @@ from isomortar._arguments import FloatArray, IntArray
 from isomortar.errors import InputError
 
 #: Material laws in the order of their numbers in the kernel (isomortar_solid_material_table), from 1.
-MaterialLaw = Literal["neo-hookean", "neo-hookean-j"]
+MaterialLaw = Literal["neo-hookean", "neo-hookean-j", "linear-elastic"]
 LAWS = {name: number for number, name in enumerate(get_args(MaterialLaw), start=1)}
 
 

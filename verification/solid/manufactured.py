@@ -73,6 +73,10 @@ def solid(x: FloatArray) -> tuple[FloatArray, FloatArray]:
 def stress(gradient: FloatArray, material: Material) -> FloatArray:
     """First Piola stress (theory 8.3) of displacement gradients, shape (n, 3, 3)."""
     f = np.eye(3) + gradient
+    if material.law == "linear-elastic":
+        strain = (gradient + np.swapaxes(gradient, 1, 2)) / 2
+        spherical = np.trace(strain, axis1=1, axis2=2)[:, None, None] * np.eye(3)
+        return (material.bulk - 2 / 3 * material.shear) * spherical + 2 * material.shear * strain
     j = np.linalg.det(f)[:, None, None]
     inverse = np.swapaxes(np.linalg.inv(f), 1, 2)
     square = np.einsum("nij,nij->n", f, f)[:, None, None]

@@ -3,6 +3,7 @@ module isomortar_solid_material_table
   use isomortar_base_kinds, only: wp
   use isomortar_base_status, only: status_no_such_law, status_ok
   use isomortar_solid_material_law, only: material_t
+  use isomortar_solid_material_linear_elastic, only: linear_elastic_t
   use isomortar_solid_material_neo_hookean, only: neo_hookean_t
   use isomortar_solid_material_neo_hookean_j, only: neo_hookean_j_t
   implicit none
@@ -11,7 +12,7 @@ module isomortar_solid_material_table
   public :: material_of
 
   !> Numbers of the laws, here and in Python (isomortar.model.materials). Each has the parameters A1, A2.
-  integer, parameter, public :: law_neo_hookean = 1, law_neo_hookean_j = 2
+  integer, parameter, public :: law_neo_hookean = 1, law_neo_hookean_j = 2, law_linear_elastic = 3
 
 contains
 
@@ -29,6 +30,8 @@ contains
       allocate (material, source=neo_hookean_t(parameters(1), parameters(2)))
     case (law_neo_hookean_j)
       allocate (material, source=neo_hookean_j_t(parameters(1), parameters(2)))
+    case (law_linear_elastic)
+      allocate (material, source=linear_elastic_t(parameters(1), parameters(2)))
     case default
       return
     end select

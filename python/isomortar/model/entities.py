@@ -23,7 +23,7 @@ class Material:
         Poisson's ratio, -1 < nu < 0.5.
     law : str
         "neo-hookean": the paper's, W = A1/2 (ln J)^2 + A2/2 (J^(-2/3) tr C - 3); "neo-hookean-j": that of Abaqus and CalculiX,
-        with A1/2 (J - 1)^2.
+        with A1/2 (J - 1)^2; "linear-elastic": Hooke's law of small strain, for small turns alone.
     """
 
     young: float = 10.0

@@ -44,7 +44,7 @@ class MaterialTable(Table):
     poisson: Annotated[Real, Field(gt=-1, lt=0.5)] = _PAPER.poisson
     """Poisson's ratio, above -1 and below 0.5."""
     law: MaterialLaw = _PAPER.law
-    """Stored energy (docs/method.md): the paper's, or that of Abaqus and CalculiX."""
+    """Stored energy (docs/method.md): the paper's, that of Abaqus and CalculiX, or small strains' for turns that are small too."""
 
 
 class BoxTable(Table):
