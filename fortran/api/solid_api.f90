@@ -30,8 +30,8 @@ subroutine add_body(layout, knots, nknots, point, weight, npoints, gauss, law, p
   end if
 end subroutine add_body
 
-!> First Piola stresses P of a material (see `add_body`) at displacement gradients F - 1, force per reference area. On failure `place` is
-!> the first gradient (from 1) with det F <= 0.
+!> First Piola stresses P of a material (see `add_body`) at displacement gradients F - 1, force per reference area. On failure
+!> `place` is the first gradient (from 1) with det F <= 0.
 subroutine material_stress(law, parameters, nparameters, gradient, n, stress, status, place)
   use iso_c_binding, only: c_double, c_int
   use isomortar_base_algebra, only: identity, inverse

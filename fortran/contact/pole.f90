@@ -115,7 +115,7 @@ contains
     functions(row(1), 1) = 1.0_wp + functions(row(1), 1)
   end subroutine gather_at_pole
 
-  !> What a point sees from the pole, looking along lines of all elements round it.
+  !> What a point sees from the pole, looking along lines of all elements round it (theory 3.11).
   pure subroutine look_from_pole(surface, positions, x, pole, view)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :), x(3)

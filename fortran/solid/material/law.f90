@@ -32,7 +32,8 @@ module isomortar_solid_material_law
   end type material_t
 
   abstract interface
-    !> P Fᵀ, force per reference area turned to the current configuration: of an objective law the Kirchhoff stress J sigma (theory 1.6).
+    !> P Fᵀ, force per reference area turned to the current configuration: of an objective law the Kirchhoff stress J sigma
+    !> (theory 1.6).
     pure subroutine stress_of(self, state, kirchhoff)
       import :: material_t, stretch_t, wp
       implicit none
