@@ -8,8 +8,9 @@ module isomortar_contact_control
   use isomortar_contact_kink, only: hold_on_lines
   use isomortar_contact_master, only: master_t
   use isomortar_contact_pole, only: gather_at_pole, hold_at_pole, is_at_pole, pole_of
-  use isomortar_contact_projection, only: descend, is_isolated, is_too_deep, look_round, projection_degenerate, &
-    projection_inside, projection_lost, projection_outside, search_t, start_at, start_nearest
+  use isomortar_contact_projection, only: is_too_deep, look_round, start_nearest
+  use isomortar_contact_search, only: descend, is_isolated, projection_degenerate, projection_inside, projection_lost, &
+    projection_outside, search_t, start_at
   use isomortar_contact_slave, only: integrate_functions, slave_t
   use isomortar_nurbs_surface, only: derivative_columns, shortest_way, surface_basis, surface_nodes
   implicit none
