@@ -13,8 +13,8 @@ import pytest
 
 from isomortar.errors import InputError
 from isomortar.geometry.patch import Direction
-from isomortar.model import memory
-from isomortar.scene import Scene, checks
+from isomortar.model import checks, memory
+from isomortar.scene import Scene
 from isomortar.solve import doubts as doubting
 from isomortar.solve.simulation import Simulation
 from isomortar.solve.system import LinearSystem
