@@ -21,7 +21,7 @@ from isomortar.harness.mutants.journal import Journal
 from isomortar.harness.mutants.layers import LAYERS
 from isomortar.harness.mutants.meaning import meaning
 from isomortar.harness.mutants.score import Classification, Score, Share, read_classified
-from isomortar.harness.mutants.tests.as_cells import tests_as_cells
+from isomortar.harness.mutants.tests.as_cells import cells_of_tests
 
 ROOT = Path(__file__).parents[2]
 TEXT = "!> Doubles - it.\nfunction twice(x)\n  real :: x, twice\n  twice = 2 * x - 1\n  twice = 2 * x - 1\nend function\n"
@@ -186,7 +186,7 @@ def test_a_file_of_tests_that_passed_says_nothing_of_the_others(cells, tmp_path)
     """Cells of one case do: after two of three the third would come behind a case that takes three times as long."""
     for name in ("test_one", "test_two", "test_three"):
         (tmp_path / f"{name}.py").write_text("")
-    files = tests_as_cells(tmp_path)
+    files = cells_of_tests(tmp_path)
     dear = next(cell for cell in cells if "dear" in cell.name)
     bench = Oracle()
     Gate({dear.name: 3.0} | {cell.name: 1.0 for cell in files}, [dear, *files], lambda *_: None, SOUND).attack(

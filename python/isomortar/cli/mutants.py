@@ -56,7 +56,7 @@ def mutants(
     from isomortar.harness.mutants.generate import draw
     from isomortar.harness.mutants.layers import LAYERS
     from isomortar.harness.mutants.score import Score, read_classified
-    from isomortar.harness.mutants.tests.as_cells import tests_as_cells
+    from isomortar.harness.mutants.tests.as_cells import cells_of_tests
     from isomortar.harness.references import finder
     from isomortar.harness.runner import select
 
@@ -66,7 +66,7 @@ def mutants(
     planted = read_planted(cases / "planted_faults.toml", sources, where.suffix)
     classified = read_classified(cases / "surviving_mutants.toml")
     drawn = draw(where, sources, seed) if sample else []
-    cells = select(collect(cases), "gate") + (tests_as_cells(Path("tests/python")) if layer == "python" else [])
+    cells = select(collect(cases), "gate") + (cells_of_tests(Path("tests/python")) if layer == "python" else [])
     console = Console(stderr=True, highlight=False)
     columns = (BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TextColumn("{task.description}", markup=False))
     with Progress(*columns, console=console, transient=True) as progress:

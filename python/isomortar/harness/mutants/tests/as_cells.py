@@ -24,7 +24,7 @@ def passed(of: str) -> dict[str, int]:
     return {"status": int(pytest.main(["-q", "-x", "-p", "no:cacheprovider", of]))}
 
 
-def tests_as_cells(folder: Path) -> list[Cell]:
+def cells_of_tests(folder: Path) -> list[Cell]:
     """A cell for each file of tests, but those of the harness.
 
     Raises
