@@ -33,7 +33,7 @@ SOLVER = {
 }
 #: By entity of a problem; those that are not named have none.
 ENTITIES = {
-    "Material": {"young": 10.0, "poisson": 0.3},
+    "Material": {"young": 10.0, "poisson": 0.3, "law": "neo-hookean"},
     "Body": {"closed": None},
     "Contact": {"reference_area": None},
     "Motion": {"translate": (0.0, 0.0, 0.0), "rotate": 0.0},
@@ -45,7 +45,7 @@ _MESH = {"family": ("N", "N", "N"), "order": None, "elements": None, "quadrature
 _RECORD = {"states": "every", "curves": None}
 #: By table of a scene file.
 TABLES = {
-    "MaterialTable": {"young": 10.0, "poisson": 0.3},
+    "MaterialTable": {"young": 10.0, "poisson": 0.3, "law": "neo-hookean"},
     "BowlTable": {"centre": (0.0, 0.0)},
     "RingTable": {"centre": (0.0, 0.0, 0.0)},
     "PatchTable": {"family": ("N", "N", "N"), "weights": None},
