@@ -17,7 +17,8 @@ from isomortar.errors import ConvergenceError, InputError
 LAUNCH = Path(__file__).parents[2] / "tools" / "launch.py"
 # A shell starts background jobs with SIGINT ignored, and children inherit that.
 HEARS = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); print('ready', flush=True); "
-RUNS = HEARS + f"import runpy; runpy.run_path({str(LAUNCH)!r})"
+# Compiled before: a traceback of what loads the program is not the program's.
+RUNS = f"launch = compile(open({str(LAUNCH)!r}).read(), 'launch', 'exec'); " + HEARS + "exec(launch, {'__name__': '__main__'})"
 
 
 @pytest.mark.parametrize(
