@@ -95,3 +95,31 @@ subroutine contact_difference(nodes, basis, area, point, nlocal, nelements, nqua
   tangential_forces = real(difference(sides(2)%tangential_forces, sides(1)%tangential_forces, h), c_double)
   forces = real(difference(sides(2)%forces, sides(1)%forces, h), c_double)
 end subroutine contact_difference
+
+!> Hulls of the elements of a master's face (isomortar_contact_hulls): spheres, boxes, Bezier points, samples, curvatures.
+subroutine surface_hulls(kind, knots, nknots, point, weight, npoints, x, n, nelements, nlocal, centre, radius, frame, half, &
+    corner, sample, curvature)
+  use iso_c_binding, only: c_double, c_int
+  use isomortar_api_unpack, only: unpack_master
+  use isomortar_base_kinds, only: wp
+  use isomortar_contact_hulls, only: enclose, hulls_t
+  use isomortar_contact_master, only: master_t
+  implicit none
+  integer(c_int), intent(in) :: nknots, npoints, n, nelements, nlocal
+  integer(c_int), intent(in) :: kind(11), point(npoints)
+  real(c_double), intent(in) :: knots(nknots), weight(npoints), x(3, n)
+  real(c_double), intent(out) :: centre(nelements, 3), radius(nelements), frame(3, 3, nelements), half(3, nelements)
+  real(c_double), intent(out) :: corner(3, nlocal, nelements), sample(3, nlocal, nelements), curvature(nelements)
+  type(hulls_t) :: hulls
+  type(master_t) :: master
+
+  master = unpack_master(kind, knots, point, weight)
+  call enclose(master%surface, real(x, wp), hulls)
+  centre = real(hulls%centre, c_double)
+  radius = real(hulls%radius, c_double)
+  frame = real(hulls%frame, c_double)
+  half = real(hulls%half, c_double)
+  corner = real(hulls%corner, c_double)
+  sample = real(hulls%sample, c_double)
+  curvature = real(min(hulls%curvature, real(huge(1.0_c_double), wp)), c_double)
+end subroutine surface_hulls

@@ -37,6 +37,23 @@ class ContactChange:
     forces: FloatArray
 
 
+@dataclass(frozen=True)
+class Hulls:
+    """Where the elements of a face can be at most (isomortar_contact_hulls).
+
+    Spheres, (elements, 3) and (elements,); boxes about the same centres by unit vectors, (elements, 3, 3), and half lengths,
+    (elements, 3); Bezier points and points on a regular grid, (elements, points, 3); bounds of the curvature, (elements,).
+    """
+
+    centre: FloatArray
+    radius: FloatArray
+    frame: FloatArray
+    half: FloatArray
+    corner: FloatArray
+    sample: FloatArray
+    curvature: FloatArray
+
+
 def solid_difference(
     patch: PatchArrays,
     gauss: tuple[int, int, int],
@@ -107,6 +124,23 @@ def contact_difference(
     )  # fmt: skip
     _check(status, place)
     return ContactChange(*[np.ascontiguousarray(change.T) for change in changes]), switched
+
+
+def surface_hulls(master: MasterArrays, positions: FloatArray) -> Hulls:
+    """Hulls of the elements of a master's face, the first direction fastest.
+
+    Raises
+    ------
+    ValueError
+        The master is a plane.
+    """
+    if master.elements is None:
+        raise ValueError("a plane has no hulls")
+    local = np.prod(PatchArrays(master.kind[2:], master.knots, master.point, master.weight).face(int(master.kind[0]))[:2])
+    centre, radius, frame, half, corner, sample, curvature = _extended.surface_hulls(
+        master.kind, master.knots, master.point, master.weight, positions.T, int(np.prod(master.elements)), int(local)
+    )
+    return Hulls(centre, radius, frame.T.transpose(0, 2, 1), half.T, corner.T, sample.T, curvature)
 
 
 def _check(status: int, place: int) -> None:
