@@ -76,6 +76,7 @@ def step_result(number: int) -> StepResult:
         next_increment=random.random(),
         timings={"solid": random.random(), "contact": random.random()} | ({"other": 0.25} if number > 1 else {}),
         counters={"solves": number} | ({"analyses": 3} if number == 1 else {}),
+        orderings={5: "amd"} | ({1: "metis"} if number > 1 else {}),
     )
 
 

@@ -133,6 +133,8 @@ def test_limits_are_met_missed_or_not_measured() -> None:
     assert states(ASIDE, None)[0][0] == states(None)[0][0] == "not compared"
     assert states(ASIDE, 3.0, None) == [("missed", 3.0)]
     assert states(3.0, math.nan) == [("missed", 3.0)]
+    assert states(3.0, -0.1) == [("missed", 3.0)]
+    assert states(1.0, -0.1) == states(1.0, -math.inf) == [("not measured", 1.0)]  # no cost, share or error is below zero
     assert states(1.0, math.nan)[0][0] == states()[0][0] == states(ASIDE)[0][0] == "not measured"
 
 

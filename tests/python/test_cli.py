@@ -129,6 +129,17 @@ def test_interrupted_run_resumes_to_the_same_numbers(tmp_path: Path) -> None:
     assert_same(last(tmp_path / "parts.h5"), last(tmp_path / "whole.h5"))
 
 
+def test_a_scene_file_that_was_renamed_moved_or_commented_on_is_resumed(invoke: Invoke) -> None:
+    text = isomortar.Scene.load("press").to_toml().replace('name = "press"\ntitle', "title")
+    Path("one.toml").write_text(text)
+    small = settings(SMALL)
+    assert invoke("run", "one.toml", *small, "--output", "one.h5")[0] == 0
+    Path("elsewhere").mkdir()
+    Path("elsewhere/two.toml").write_text(f"# said later\n{text}")
+    code, _, err = invoke("run", "elsewhere/two.toml", *small, "--output", "one.h5", "--resume")
+    assert (code, "all 3 load steps are there already" in err) == (0, True)
+
+
 def test_ctrl_c_says_how_to_go_on(tmp_path: Path) -> None:
     # A shell starts background jobs with SIGINT ignored, and children inherit that.
     heard = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); from isomortar.cli import main; main()"

@@ -69,6 +69,6 @@ def test_in_doubt_the_ordering_with_fewer_operations_is_kept() -> None:
     refusing._rivals[["amd", "metis"].index(system.ordering)].factorise = refuse  # type: ignore[method-assign]
     refusing.factorise([blocks])
     assert refusing.ordering != system.ordering
-    told = LinearSystem(n, [Source(pattern, equation, equation)], Ledger(), tried=("amd",))
+    told = LinearSystem(n, [Source(pattern, equation, equation)], Ledger(), ordering="amd")
     told.factorise([blocks])
     assert told.ordering == "amd"

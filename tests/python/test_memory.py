@@ -35,7 +35,7 @@ def test_blocks_are_counted_and_factors_estimated(family: str, order: int, eleme
     equilibrium = simulation.equilibrium
     patch = problem.bodies[0].patch
     assert memory.blocks(patch) == len(equilibrium.solid.pattern.column)
-    system = LinearSystem(len(equilibrium.supports.free), [equilibrium.solid_source], simulation.ledger, tried=("metis",))
+    system = LinearSystem(len(equilibrium.supports.free), [equilibrium.solid_source], simulation.ledger, ordering="metis")
     system.factorise([equilibrium.solid.forces_and_tangent(simulation.state.positions)[1]])
     statistics = system._rivals[0].statistics
     assert statistics is not None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -186,6 +187,17 @@ def test_resume_refuses_another_scene_and_names_the_difference(tmp_path: Path) -
     assert "bodies.tyre.material.young: 0.3333333333333333 in the file, 0.25 in the scene" in str(raised.value)
     assert "supports.rim.motions.0.translate" in str(raised.value)
     assert path.read_bytes() == before
+
+
+def test_resume_asks_for_what_is_computed_not_for_names_of_files(tmp_path: Path) -> None:
+    """Numbers in a results file stand in the order of the scene: that is a part of what must agree, the scene's own name is not."""
+    path, given = tmp_path / "run.h5", problem()
+    write(path, range(1, 3))
+    ResultsWriter(path, dataclasses.replace(given, name="renamed"), SCENE, "0.1", resume=True).recorded(step_result(3))
+    for kind in ("bodies", "contacts", "supports", "stages"):
+        names = [entry.name for entry in getattr(given, kind)]
+        with pytest.raises(ResultsError, match=re.escape(f"{kind}: {names} in the file, {names[::-1]} in the scene")):
+            ResultsWriter(path, dataclasses.replace(given, **{kind: getattr(given, kind)[::-1]}), SCENE, "0.1", resume=True)
 
 
 def test_an_existing_file_is_not_overwritten(tmp_path: Path) -> None:

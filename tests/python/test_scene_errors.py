@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 from pathlib import Path
 
 import pytest
@@ -267,9 +268,35 @@ def test_sources_that_are_no_scene(tmp_path: Path) -> None:
     (tmp_path / "a.toml").write_text("format = = 1")
     with pytest.raises(InputError, match=r"a is not valid TOML: .*line 1"):
         Scene.load(tmp_path / "a.toml")
-    (tmp_path / "b.toml").write_bytes(b"\xff\xfe")
-    with pytest.raises(InputError, match="not a text file in UTF-8"):
-        Scene.load(tmp_path / "b.toml")
+
+
+#: By the name that a message is to give it: how editors save what they call "Unicode" or "ANSI".
+OTHERS = {
+    "UTF-16": [codecs.BOM_UTF16_LE + "ö".encode("utf-16-le"), codecs.BOM_UTF16_BE + "a".encode("utf-16-be"), "# a".encode("utf-16-le")],
+    "UTF-32": [codecs.BOM_UTF32_LE + "a".encode("utf-32-le"), codecs.BOM_UTF32_BE + "a".encode("utf-32-be")],
+    "Latin-1 or Windows-1252": ["# Höhe".encode("latin-1"), "# 5 €".encode("cp1252")],
+}
+
+
+@pytest.mark.parametrize("kind", ["scene", "geometry"])
+def test_text_of_another_encoding_is_named_with_its_place_and_the_cure(tmp_path: Path, kind: str) -> None:
+    """In every file of text that a scene is made of. A byte-order mark before UTF-8 says nothing, and is no part of it."""
+    start, stop = GOOD.index("[bodies.lower.patch]"), GOOD.index("[contacts.pair]")
+    patch = GOOD[start:stop].replace("[bodies.lower.patch]", "").encode()
+    scene = (GOOD[:start] + GOOD[stop:]).replace('material = "cork"', 'material = "cork"\nfile = "lower.toml"', 1).encode()
+    files = {"scene": tmp_path / "scene.toml", "geometry": tmp_path / "lower.toml"}
+    for name, content in (("scene", scene), ("geometry", patch)):
+        files[name].write_bytes(codecs.BOM_UTF8 + content if name == kind else content)
+    assert len(Scene.load(files["scene"]).problem().bodies) == 2
+    assert Scene.from_toml(Scene.load(files["scene"]).to_toml()).problem().name == "good"
+    for encoding, contents in OTHERS.items():
+        for content in contents:
+            files[kind].write_bytes(content)
+            with pytest.raises(InputError, match=rf"{files[kind].name} is {encoding} text.*save it as UTF-8"):
+                Scene.load(files["scene"]).problem()
+    files[kind].write_bytes(b"# one\n# t\xf6")
+    with pytest.raises(InputError, match="byte 0xf6 in line 2"):
+        Scene.load(files["scene"]).problem()
 
 
 def test_faults_of_a_geometry_file_name_the_file(tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ Patches are datasets; all else is JSON (which keeps every bit of a float) in att
 from __future__ import annotations
 
 import json
-from dataclasses import fields, is_dataclass
+from dataclasses import fields, is_dataclass, replace
 from typing import Any, Literal
 
 import h5py
@@ -53,8 +53,8 @@ def read_problem(group: h5py.Group) -> Problem:
 
 
 def differences(stored: Problem, given: Problem) -> list[str]:
-    """Where two problems differ: one sentence a field, by its dotted path."""
-    old, new = _flat(stored), _flat(given)
+    """Where two problems differ: one sentence a field, by its dotted path. Their own names, which may be those of files, are no part."""
+    old, new = (_flat(replace(problem, name="")) | _order(problem) for problem in (stored, given))
     missing = object()
     paths = [path for path in {**old, **new} if old.get(path, missing) != new.get(path, missing)]
     return [f"{path}: {_shown(old, path)} in the file, {_shown(new, path)} in the scene" for path in paths]
@@ -108,6 +108,11 @@ def _flat(value: Any, path: str = "") -> dict[str, Any]:
     else:
         return {path: plain}
     return {p: v for key, entry in entries for p, v in _flat(entry, f"{path}.{key}".lstrip(".")).items()}
+
+
+def _order(problem: Problem) -> dict[str, Any]:
+    """Names in the order in which numbers of the results file stand."""
+    return {kind: [entry.name for entry in getattr(problem, kind)] for kind in ("bodies", "contacts", "supports", "stages")}
 
 
 def _shown(leaves: dict[str, Any], path: str) -> str:

@@ -10,6 +10,7 @@ The program knows no units; `unit` names the dimension in terms of the scene's o
     /curves/contacts/<name>/...  resultants and counts of a contact pair
     /timings/<phase>             seconds, one row a recorded step
     /counters/<name>             kernel counters, one row a recorded step
+    /orderings/<matrices>        orderings of the unknowns, one row a recorded step: part of what a restart needs
     /log/augmentations           one row an augmentation, in the order in which they happened
     /log/iterations              one row a Newton iteration, in the order in which they happened
     /log/notes                   one row a note of a Newton iteration
@@ -24,7 +25,7 @@ import h5py
 import numpy as np
 
 FORMAT = "isomortar results"
-FORMAT_VERSION = 2
+FORMAT_VERSION = 3
 
 
 @dataclass(frozen=True)
@@ -35,7 +36,7 @@ class Quantity:
     unit: str
     description: str
     row: tuple[int, ...] = ()
-    missing: float | None = None
+    missing: float | str | None = None
 
 
 def _real(unit: str, description: str, row: tuple[int, ...] = ()) -> Quantity:
@@ -100,6 +101,9 @@ CONTACT_VALUES = {
 STATE_STEP = _count("number of the load step whose state this row is")
 POSITIONS = _real("length", "positions of all control points, bodies one after the other, shared points once")
 TIMING = Quantity(np.dtype(np.float64), "s", "time spent in the phase within the load step", missing=np.nan)
+ORDERING = Quantity(
+    TEXT, "text", "ordering of the unknowns in use since it was chosen, by the number of matrices in the system", missing=""
+)
 COUNTER = Quantity(np.dtype(np.int64), "1", "kernel counter within the load step", missing=-1)
 
 _AUGMENTATIONS = Quantity(

@@ -244,6 +244,7 @@ def _step_result(file: h5py.File, problem: Problem, number: int, row: int, kept:
         augmentations=_augmentations(file, number),
         timings={name: float(data[row]) for name, data in file["timings"].items() if not np.isnan(data[row])},
         counters={name: int(data[row]) for name, data in file["counters"].items() if data[row] >= 0},
+        orderings={int(matrices): data.asstr()[row] for matrices, data in file["orderings"].items() if data[row]},
     )
 
 

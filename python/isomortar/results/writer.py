@@ -98,6 +98,7 @@ class ResultsWriter(Observer):
             _make_all(file, "states", {"step": layout.STATE_STEP})
             file.create_group("timings")
             file.create_group("counters")
+            file.create_group("orderings")
 
     def _check_same_scene(self) -> None:
         with Results(self.path) as stored:
@@ -130,6 +131,7 @@ class ResultsWriter(Observer):
             _put(file, f"curves/contacts/{contact.name}", layout.CONTACT, measured, row)
         _put_named(file["timings"], layout.TIMING, result.timings, row)
         _put_named(file["counters"], layout.COUNTER, result.counters, row)
+        _put_named(file["orderings"], layout.ORDERING, {str(matrices): name for matrices, name in result.orderings.items()}, row)
         _log(file, result.step, result.augmentations)
         self._put_state(file, result)
 
@@ -159,7 +161,7 @@ def _put_row(file: h5py.Group, path: str, quantity: layout.Quantity, value: Any,
     dataset[row] = value[()]
 
 
-def _put_named(group: h5py.Group, quantity: layout.Quantity, values: Mapping[str, float], row: int) -> None:
+def _put_named(group: h5py.Group, quantity: layout.Quantity, values: Mapping[str, float] | Mapping[str, str], row: int) -> None:
     """Write one row of each dataset of a group; a name that only some steps have is filled up."""
     for name in {*group, *values}:
         _put_row(group, name, quantity, values.get(name, quantity.missing), row)

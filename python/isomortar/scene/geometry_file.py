@@ -14,6 +14,7 @@ from isomortar.geometry.patch import Patch
 from isomortar.scene.messages import input_error
 from isomortar.scene.schema import PatchTable
 from isomortar.scene.source import parse
+from isomortar.scene.text import read_text
 
 
 def read_geometry(path: Path) -> Patch:
@@ -28,7 +29,7 @@ def read_geometry(path: Path) -> Patch:
         return read_spline(path)
     if not path.is_file():
         raise InputError(f"there is no file {path}")
-    data = parse(path.read_text(encoding="utf-8"), path.name)
+    data = parse(read_text(path), path.name)
     try:
         return PatchTable.model_validate(data).patch()
     except ValidationError as error:

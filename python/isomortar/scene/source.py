@@ -12,6 +12,7 @@ from typing import Any
 import tomlkit
 
 from isomortar.errors import InputError
+from isomortar.scene.text import read_text
 from isomortar.scene.types import listed
 
 _BUNDLED = resources.files("isomortar.scene") / "bundled"
@@ -31,7 +32,7 @@ def read_source(source: str | Path) -> tuple[str, str, Path]:
     Raises
     ------
     InputError
-        Neither a file nor the name of a bundled scene.
+        Neither a file nor the name of a bundled scene, or no text in UTF-8.
     """
     names = bundled_scenes()
     if str(source) in names:
@@ -39,10 +40,7 @@ def read_source(source: str | Path) -> tuple[str, str, Path]:
     path = Path(source)
     if not path.is_file():
         raise InputError(f"there is no scene file {str(source)!r}, and the bundled scenes are: {listed(str(source), names)}")
-    try:
-        return path.read_text(encoding="utf-8"), re.sub(r"[^\w-]", "_", path.stem, flags=re.ASCII), path.parent
-    except UnicodeDecodeError as error:
-        raise InputError(f"{path} is not a text file in UTF-8: {error}") from error
+    return read_text(path), re.sub(r"[^\w-]", "_", path.stem, flags=re.ASCII), path.parent
 
 
 def parse(text: str, name: str) -> dict[str, Any]:

@@ -56,6 +56,8 @@ class Equilibrium:
         Where all coordinates in here count from, in those of the problem given: zero unless its bodies are far from the origin.
     problem : Problem
         In coordinates about `origin`.
+    orderings : dict
+        Orderings of the unknowns that are in use, by the number of sources: with each pair that is in contact the matrix differs.
 
     Raises
     ------
@@ -76,7 +78,7 @@ class Equilibrium:
         self._solid_entries: sparse.csr_array | None = None
         self._system: LinearSystem | None = None
         self._system_patterns: list[object] = []
-        self._orderings: dict[int, tuple[Ordering]] = {}  # by the number of sources: with each pair that is in contact the matrix differs
+        self.orderings: dict[int, Ordering] = {}
 
     def initial_state(self) -> State:
         """The reference configuration without contact."""
@@ -160,7 +162,7 @@ class Equilibrium:
             system.factorise(values)
         except SingularSystemError as error:
             raise explain(system.rcond, system.near_null(), self.supports.free, positions, self.numbering, multipliers) from error
-        self._orderings[len(sources)] = (system.ordering,)
+        self.orderings[len(sources)] = system.ordering
         return system.solve(right)
 
     def solve_again(self, right: FloatArray) -> FloatArray:
@@ -178,8 +180,7 @@ class Equilibrium:
         ):
             if self._solid_entries is None:
                 self._solid_entries = entries([self.solid_source], len(self.supports.free))
-            tried = self._orderings.get(len(sources))
             self._system = None  # its factors go before others come
-            self._system = LinearSystem(size, sources, self.ledger, self._solid_entries, tried)
+            self._system = LinearSystem(size, sources, self.ledger, self._solid_entries, self.orderings.get(len(sources)))
             self._system_patterns = patterns
         return self._system

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from isomortar._sparse import Ordering
 from isomortar.geometry.patch import FloatArray, IntArray
 
 
@@ -124,6 +125,9 @@ class StepResult:
         Seconds by phase within the step: solid, projection, contact, factor, solve, other.
     counters : dict
         Kernel counters within the step: solves, factorisations, analyses, projections, ...
+    orderings : dict
+        Orderings of the unknowns that are in use, by the number of matrices that make up the system (part of the restart state: which
+        one is better was tried on the first of them).
     """
 
     step: int
@@ -139,6 +143,7 @@ class StepResult:
     next_increment: float
     timings: dict[str, float]
     counters: dict[str, int]
+    orderings: dict[int, Ordering]
 
 
 class Observer:

@@ -69,6 +69,7 @@ class Simulation:
         self._lost = LostDigits(self.equilibrium)
         self._step = resume_from.step if resume_from else 0
         self._increment = resume_from.next_increment if resume_from else 1.0
+        self.equilibrium.orderings = dict(resume_from.orderings) if resume_from else {}
         self.state = self._from_record(resume_from) if resume_from else self.equilibrium.initial_state()
 
     def run(self) -> Iterator[StepResult]:
@@ -210,6 +211,7 @@ class Simulation:
             next_increment=self._increment,
             timings=timings,
             counters=counters,
+            orderings=dict(self.equilibrium.orderings),
         )
 
 

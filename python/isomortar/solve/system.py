@@ -64,12 +64,12 @@ class LinearSystem:
         sources: Sequence[Source],
         ledger: Ledger,
         known: sparse.csr_array | None = None,
-        tried: Sequence[Ordering] | None = None,
+        ordering: Ordering | None = None,
     ) -> None:
         """Analyse the pattern of all sources together.
 
-        `known` is that of the first source in its own rows and columns, where it is at hand already. Of the orderings `tried` (default:
-        those of the size) the one is kept whose first factors take the fewest operations.
+        `known` is that of the first source in its own rows and columns, where it is at hand already. Without an `ordering` that one of
+        the size is kept whose first factors take the fewest operations.
         """
         self._ledger = ledger
         first = entries(sources[:1], size) if known is None else known
@@ -84,7 +84,7 @@ class LinearSystem:
             self._places = [
                 _bindings.find_places(s.pattern, s.row_of, s.column_of, s.transposed, self._start, self._column) for s in sources
             ]
-            self._rivals = [SparseLU(self._start, self._column, ordering=name) for name in tried or orderings(size)]
+            self._rivals = [SparseLU(self._start, self._column, ordering=name) for name in ((ordering,) if ordering else orderings(size))]
         ledger.counts["analyses"] += len(self._rivals)
 
     def factorise(self, sources: Sequence[FloatArray]) -> None:

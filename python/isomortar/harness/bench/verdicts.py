@@ -29,10 +29,10 @@ class Verdict:
 
 
 def state(value: object, at_most: float) -> State:
-    """How one value stands; where there is none nothing was compared, and what is no number was not measured."""
+    """How one value stands; where there is none nothing was compared, and no number, or one below zero, was not measured."""
     if value is None:
         return "not compared"
-    if not isinstance(value, int | float) or not math.isfinite(value):
+    if not isinstance(value, int | float) or not 0 <= value < math.inf:
         return "not measured"
     return "met" if value <= at_most else "missed"
 
