@@ -196,6 +196,54 @@ def test_a_shrink_fit_runs_with_a_word() -> None:
     assert "overlap by 0.02" in said[0]
 
 
+def staged(text: str, *stages: tuple[int, str, str]) -> str:
+    """A scene with other stages: load steps, and the translation and turn of its top."""
+    text = text.replace('face = "block.w1"', 'face = "block.w1"\naxis = [0, 1, 0]\ncentre = [0, 0, 0.8]')
+    tables = [f'name = "{k}"\nsteps = {n}\nmotions.top = {{ translate = {u}, rotate = {a} }}' for k, (n, u, a) in enumerate(stages)]
+    return text[: text.index("[[stages]]")] + "".join(f"[[stages]]\n{table}\n" for table in tables)
+
+
+WRONG_FACE = PAIR.replace('"lower.w1"', '"lower.w0"')
+OTHER_FACE = PRESS.replace('slave = "block.w0"', 'slave = "block.w1"').replace(
+    'face = "block.w1"', 'face = "block.w0"\naxis = [0, 1, 0]\ncentre = [0, 0, 0.8]'
+)
+DOWN, UP, STAY = "[0, 0, -0.1]", "[0, 0, 0.3]", "[0, 0, 0]"
+#: Scene, and the contact's and words of the warnings of a run of it: none for sound ones.
+RUNS = {
+    "pressed": (staged(PRESS, (2, DOWN, "0"), (2, STAY, "0")), []),
+    "lifted at the end": (staged(PRESS, (2, DOWN, "0"), (1, UP, "0")), []),
+    "lifted and pressed again": (staged(PRESS, (1, DOWN, "0"), (3, UP, "0"), (1, "[0, 0, -0.3]", "0")), []),
+    "lifted for good": (staged(PRESS, (2, DOWN, "0"), (3, UP, "0")), ["opened in load step 3 and stayed open"]),
+    "rolling": (TYRE.replace("normal = [0, 0, 1]", "point = [0, 0, 0.02], normal = [0, 0, 1]"), []),
+    "slid off": (
+        staged(PAIR, (2, "[0, 0, -0.05]", "0"), (10, "[2.5, 0, 0]", "0")),
+        ["left the master", "coefficients oscillate", "wholly beside", "opened in load step 8"],
+    ),
+    "slid off in one load step": (staged(PAIR, (1, DOWN, "0"), (1, "[0, 2.5, 0]", "0")), ["wholly beside"]),
+    "beside from the first load step on": (staged(PAIR, (1, "[0, 2.5, 0]", "0")), ["wholly beside", "never closed"]),
+    "turned over and pushed through": (staged(PRESS, (1, "[0, 0, 1]", "0"), (4, STAY, "180"), (4, "[0, 0, -2.7]", "0")), ["it pulls"]),
+    "turned over and pressed": (staged(OTHER_FACE, (4, "[0, 0, 0.5]", "180"), (2, "[0, 0, -1.35]", "0")), []),
+    "far side of the master": (WRONG_FACE.replace("-0.1]\n", "-0.7]\nmotions.top.rotate = 1\n"), ["it pulls"]),
+    "far side of the master, by Uzawa": (
+        WRONG_FACE.replace("-0.1]\n", "-0.7]\nmotions.top.rotate = 1\n") + '[solver]\nmethod = "uzawa"',
+        ["it pulls"],
+    ),
+    "outside of a ring": (RINGS.replace('"outside.v0"', '"outside.v1"'), ["it pulls"]),
+    "shrink fit": (RINGS, []),
+}
+
+
+@pytest.mark.parametrize("case", RUNS)
+def test_what_is_doubtful_of_a_run_is_told_once(case: str) -> None:
+    """Contact that pulls, that opens for good, or whose slave goes past its master; and nothing of a sound run."""
+    text, words = RUNS[case]
+    observer = Listens()
+    list(Simulation(Scene.from_toml(text).problem(), observer).run())
+    before = ("in each load step", "at the start", "nothing will happen")  # what is doubtful already before the first load step
+    said = [warning for warning in observer.said if not any(word in warning for word in before)]
+    assert [word in warning for word, warning in zip(words, said, strict=True)] == [True] * len(words), said
+
+
 class Listens(isomortar.Observer):
     """Keeps the warnings."""
 

@@ -17,7 +17,7 @@ from isomortar.errors import IsomortarError, SingularSystemError
 from isomortar.results.reader import Results
 from isomortar.results.writer import ResultsWriter
 from isomortar.scene import Scene
-from isomortar.solve import doubts
+from isomortar.solve import doubts, pulling
 from isomortar.solve.advice import StepAdvice
 from isomortar.solve.monolithic import _toggling
 from isomortar.solve.simulation import Simulation
@@ -90,14 +90,23 @@ def along_the_way(_: pytest.MonkeyPatch) -> Told:
     """Warnings before, at and after load steps."""
     yield "stiff and fine slave", _before_the_first_step(scene(HARD=150, SLAVE=4))
     yield "few points", _before_the_first_step(scene(SLAVE=1, MASTER=8))
-    advice, result = StepAdvice(problem()), step_result(2)
-    measured = tuple(replace(c, active=9, pressure_field=np.array([0.0, 0.5]), excluded=3) for c in result.contacts)
-    calm, wild = [np.full(16, 0.5)] * 2, [np.full(16, 0.5), np.full(16, 0.8)]
+    result = step_result(2)
+    nothing = [replace(state, pressure=np.zeros(16), projected=np.ones(96, dtype=np.int32)) for state in result.state.contacts]
+    calm = [replace(state, pressure=np.full(16, 0.5)) for state in nothing]
+    wild = [calm[0], replace(calm[1], pressure=np.full(16, 0.8))]
+    advice = StepAdvice(problem(), 0, calm)
+    measured = tuple(replace(c, active=9, pressure_field=np.array([0.0, 0.5]), excluded=0) for c in result.contacts)
     assert list(advice.after_step(1, measured, calm)) == []
     left = (replace(measured[0], excluded=7), measured[1])
     yield from zip(("left the master", "oscillates"), advice.after_step(2, left, wild), strict=True)
     assert list(advice.after_step(3, left, wild)) == list(advice.at_the_end()) == []
-    (yield "never closed", *[list(StepAdvice(problem()).at_the_end())[1]])
+    gone = (replace(measured[0], active=0, excluded=96), measured[1])
+    (yield "beside", *advice.after_step(4, gone, calm))
+    assert list(advice.after_step(5, gone, calm)) == []
+    (yield "opened", *advice.at_the_end())
+    yield "pulls", pulling._sentence(problem().contacts[0], 3)
+    yield "pulls, plane", pulling._sentence(problem().contacts[1], 3)
+    (yield "never closed", *[list(StepAdvice(problem(), 0, nothing).at_the_end())[1]])
     text = PLATE.replace("THICKNESS", "1e-4").replace("TIP", '[supports.tip]\nface = "b.u1"\ncomponents = ["z"]')
     observer = Warned()
     list(Simulation(Scene.from_toml(text.replace("MOTION", "motions.tip.translate = [0, 0, 1e-7]")).problem(), observer).run())

@@ -9,7 +9,7 @@ import numpy as np
 from isomortar.model.contrasts import element_lengths
 from isomortar.model.entities import Body, Contact, Face, Problem, RigidPlane
 from isomortar.solve.contact import PairMechanics
-from isomortar.solve.record import ContactResult
+from isomortar.solve.record import ContactResult, ContactState
 
 #: A slave this many times stiffer than its master, and finer, has nearly redundant constraints (theory 6).
 STIFFER = 10.0
@@ -66,38 +66,62 @@ def _area(points: np.ndarray) -> float:
 
 
 class StepAdvice:
-    """Warnings at recorded load steps; each is given once a contact."""
+    """Warnings at recorded load steps; each is given once a contact.
 
-    def __init__(self, problem: Problem) -> None:
-        self._names = [contact.name for contact in problem.contacts]
-        self._closed = set[str]()
+    Parameters
+    ----------
+    problem : Problem
+    step : int
+        Load step that the run goes on from; 0: a run from the beginning.
+    states : sequence of ContactState
+        Those of the contacts at its end.
+    """
+
+    def __init__(self, problem: Problem, step: int, states: Sequence[ContactState]) -> None:
+        self._slaves = {contact.name: f"{contact.slave.body}.{contact.slave.face}" for contact in problem.contacts}
+        self._begun = self._last = step
+        self._closed = {name: step for name, state in zip(self._slaves, states, strict=True) if np.any(state.pressure)}
         self._given: set[tuple[str, str]] = set()
-        self._excluded: list[int] | None = None
+        self._excluded = [int(np.count_nonzero(state.projected == 0)) for state in states]
 
-    def after_step(self, step: int, results: Sequence[ContactResult], pressures: Sequence[np.ndarray]) -> Iterator[str]:
+    def after_step(self, step: int, results: Sequence[ContactResult], states: Sequence[ContactState]) -> Iterator[str]:
         """Warnings that the end of a load step gives rise to."""
-        before = self._excluded or [result.excluded for result in results]
-        self._excluded = [result.excluded for result in results]
-        for name, result, pressure, excluded in zip(self._names, results, pressures, before, strict=True):
+        before, self._excluded, self._last = self._excluded, [result.excluded for result in results], step
+        for name, result, state, excluded in zip(self._slaves, results, states, before, strict=True):
             if result.active:
-                self._closed.add(name)
-            if result.active and result.excluded > excluded and self._first(name, "leaving"):
-                yield (
-                    f"contact {name!r}, load step {step}: {result.excluded - excluded} slave quadrature points have left the master; what "
-                    "they carried is gone in a jump. Use a larger master or smaller load steps"
-                )
-            largest, field = float(pressure.max()), float(result.pressure_field[1])
+                self._closed[name] = step
+            yield from self._leaving(name, step, result, excluded, len(state.projected))
+            largest, field = float(state.pressure.max()), float(result.pressure_field[1])
             if result.active > 3 and largest > OSCILLATION * field > 0.0 and self._first(name, "oscillation"):
                 yield (
                     f"contact {name!r}, load step {step}: control pressures reach {largest:.3g} where the pressure field reaches "
                     f"{field:.3g}; single coefficients oscillate (conditioning of the basis): look at the field, not at them"
                 )
 
+    def _leaving(self, name: str, step: int, result: ContactResult, excluded: int, points: int) -> Iterator[str]:
+        """Warnings of slave points that have left the master; of `points` so many were `excluded` before."""
+        if result.active and result.excluded > excluded and self._first(name, "leaving"):
+            yield (
+                f"contact {name!r}, load step {step}: {result.excluded - excluded} slave quadrature points have left the master; what "
+                "they carried is gone in a jump. Use a larger master or smaller load steps"
+            )
+        if result.excluded == points > excluded and self._first(name, "beside"):
+            yield (
+                f"contact {name!r}, load step {step}: the slave face {self._slaves[name]} is wholly beside its master now, and touches "
+                "nothing. Use a larger master, or look at the motions"
+            )
+
     def at_the_end(self) -> Iterator[str]:
-        """Warnings that the whole run gives rise to."""
-        for name in self._names:
-            if name not in self._closed:
+        """Warnings that the whole run gives rise to; what was closed before the step that it went on from is not known."""
+        for name in self._slaves:
+            closed = self._closed.get(name)
+            if closed is None and not self._begun:
                 yield f"contact {name!r} never closed: it was open at the end of every load step; check faces, places and motions"
+            if closed is not None and self._last - closed > 1:
+                yield (
+                    f"contact {name!r} opened in load step {closed + 1} and stayed open: all load steps after it computed bodies apart. "
+                    "If that is not meant, look at the directions of the motions"
+                )
 
     def _first(self, name: str, kind: str) -> bool:
         if (name, kind) in self._given:

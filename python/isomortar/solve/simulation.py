@@ -19,6 +19,7 @@ from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.lost import LostDigits
 from isomortar.solve.method import Increment, Method
 from isomortar.solve.monolithic import Monolithic
+from isomortar.solve.pulling import Pulling
 from isomortar.solve.record import AugmentationRecord, ContactResult, Observer, Reaction, State, StepResult
 from isomortar.solve.timing import Ledger
 from isomortar.solve.uzawa import Uzawa
@@ -66,7 +67,7 @@ class Simulation:
         self.equilibrium = Equilibrium(problem, self.ledger)
         self._observer = observer or Observer()
         self._method = _METHODS[problem.settings.method](self.equilibrium, self._observer)
-        self._lost = LostDigits(self.equilibrium)
+        self._lost, self._pulling = LostDigits(self.equilibrium), Pulling(self.equilibrium)
         self._step = resume_from.step if resume_from else 0
         self._increment = resume_from.next_increment if resume_from else 1.0
         self.equilibrium.orderings = dict(resume_from.orderings) if resume_from else {}
@@ -81,19 +82,17 @@ class Simulation:
             A load increment did not converge and could not be cut further. Steps yielded before stand.
         """
         self._observer.started(self.problem.total_steps, self._step + 1)
-        fresh = self._step == 0
-        if fresh:
+        if self._step == 0:
             self._warn(doubts(self.equilibrium.problem, self.state))
         self._warn(advice_on_problem(self.problem, self.equilibrium.pairs))
-        advice = StepAdvice(self.problem)
+        advice = StepAdvice(self.problem, self._step, self.state.contacts)
         while self._step < self.problem.total_steps:
             result = self._advance_step(self._step + 1)
             self._step, self.state = result.step, self._from_record(result)
             self._observer.recorded(result)
-            self._warn(advice.after_step(result.step, result.contacts, [contact.pressure for contact in self.state.contacts]))
+            self._warn(advice.after_step(result.step, result.contacts, self.state.contacts))
             yield result
-        if fresh:  # what was closed before a resume is not known
-            self._warn(advice.at_the_end())
+        self._warn(advice.at_the_end())
 
     def _warn(self, warnings: Iterator[str]) -> None:
         for warning in warnings:
@@ -123,6 +122,7 @@ class Simulation:
             self._grow(increment / longest, parts)
         result = self._result(step, state, parts[-1].balance, tuple(log), orders, substeps, cuts)
         self._warn(self._lost.after_step(parts[-1].balance, result))
+        self._warn(self._pulling.after_step(parts[-1].balance, step))
         return result
 
     def _advance(self, state: State, time: float, target: float, step: int) -> list[Increment]:
