@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from extremes.runs import Run, run
 from scipy.optimize import brentq
 
-from isomortar.harness.extremes import Run, run
 from isomortar.scene.source import dump, parse
 
 Data = dict[str, Any]

@@ -12,10 +12,12 @@ import argparse
 from collections.abc import Iterator
 from pathlib import Path
 
+from extremes import page, points
+from extremes.points import Earlier, point_of
+from extremes.runs import program
+
 from isomortar.harness.cases import Cell
 from isomortar.harness.collection import collect
-from isomortar.harness.extremes import page, points, program
-from isomortar.harness.extremes.points import Earlier, point_of
 from isomortar.harness.measurement import measure
 
 _CASES = Path(__file__).parent

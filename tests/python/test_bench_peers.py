@@ -19,7 +19,6 @@ from isomortar.harness.references import finder
 from isomortar.scene import Scene
 
 VERIFICATION = Path(__file__).parents[2] / "verification"
-sys.path.insert(0, str(VERIFICATION))
 
 calculix = runpy.run_path(str(VERIFICATION / "performance/peers/calculix.py"))
 bulk_work = runpy.run_path(str(VERIFICATION / "performance/peers/bulk_work.py"))

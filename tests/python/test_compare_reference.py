@@ -10,8 +10,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-
-sys.path.insert(0, str(Path(__file__).parents[2] / "verification"))
 from compare_reference import Comparison, compare, main
 from convert_reference import convert
 

@@ -6,10 +6,11 @@ import sys
 import textwrap
 
 import pytest
+from extremes.endings import Ending, digits, endings, judge
+from extremes.runs import Run, program, run
 
 from isomortar.harness.cases import Bound, Shown, Words, case
 from isomortar.harness.compare import judge as verdicts
-from isomortar.harness.extremes import Ending, Run, digits, endings, judge, program, run
 from isomortar.harness.measurement import Measurement, measure, stored
 
 #: Begins like the program: reads where its results are to go; `keep` leaves that many load steps there.

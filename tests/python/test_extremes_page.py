@@ -1,18 +1,19 @@
 """The page of the extremes: intervals, counts and words of sweeps, beside those of an earlier program."""
 
 import json
+from pathlib import Path
 
 import pytest
+from extremes.endings import Ending
+from extremes.points import Earlier, Point, read, right_in, write
 from typer.testing import CliRunner
 
 from isomortar.cli.commands import app
 from isomortar.errors import InputError
-from isomortar.harness.extremes import Ending
-from isomortar.harness.extremes.points import Earlier, Point, read, right_in, write
 
 CASES = """
 from isomortar.harness import Bound, Words, case
-from isomortar.harness.extremes import Ending, endings
+from extremes.endings import Ending, endings
 
 def ended(ending, words=""):
     return {"ending": float(ending), "digits": 8.0 if ending == Ending.RIGHT else 0.0, "words": Words(words)}
@@ -43,9 +44,11 @@ def point(ending: Ending) -> Point:
 def page(tmp_path, monkeypatch):
     """The page of a small family, its exit code, and the folder of its cases."""
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parents[2] / "verification"))  # for the measuring processes
     folder = tmp_path / "cases" / f"family_{tmp_path.name}"
     folder.mkdir(parents=True)
     (folder / "sweeps.py").write_text(CASES)
+    (folder / "page.py").write_text("from extremes.page import write\n")
     name = f"{folder.name}/sizes"
     before = {
         f"{name}[size=0.001]": point(Ending.WRONG),
@@ -54,8 +57,8 @@ def page(tmp_path, monkeypatch):
     }
     write(folder / "before.json", Earlier("0123456789abcdef", before))
     done = CliRunner().invoke(app, ["verify", "--cases", "cases", "--results", "out", "-j", "1"])
-    assert "extremes.html" in done.output
-    return (tmp_path / "out" / "extremes.html").read_text(), done.exit_code
+    assert f"{folder.name}.html" in done.output
+    return (tmp_path / "out" / f"{folder.name}.html").read_text(), done.exit_code
 
 
 def test_the_page_says_what_is_right_where_and_what_is_wrong(page):
@@ -75,11 +78,13 @@ def test_the_page_says_what_is_right_where_and_what_is_wrong(page):
 
 def test_a_run_without_sweeps_writes_no_page(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parents[2] / "verification"))  # for the measuring processes
     folder = tmp_path / "cases" / f"family_{tmp_path.name}"
     folder.mkdir(parents=True)
+    (folder / "page.py").write_text("from extremes.page import write\n")
     (folder / "plain.py").write_text(CASES[: CASES.index("def ended")] + CASES[CASES.index('@case(claim="Nothing') :])
     assert CliRunner().invoke(app, ["verify", "--cases", "cases", "--results", "out", "-j", "1"]).exit_code == 0
-    assert not (tmp_path / "out" / "extremes.html").exists()
+    assert not (tmp_path / "out" / f"{folder.name}.html").exists()
 
 
 @pytest.mark.parametrize(

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 import pytest
+from fuzz.child import Wrong, ending_of, program, tried
 
 from isomortar import Scene
-
-sys.path.insert(0, str(Path(__file__).parents[2] / "verification"))
-from fuzz.child import Wrong, ending_of, program, tried
 
 
 @pytest.mark.parametrize(("code", "kind"), [(0, "right"), (1, "stopped"), (2, "refused")])

@@ -272,7 +272,7 @@ def test_no_case_keeps_nan_out_of_its_numbers() -> None:
     text = "worst = max(worst, f(x))\nn = max(4, m)\ny = {'e': max(0.0, z)}\nmax(f(o) for o in runs)\nmin(found.values())\nmax(sizes)"
     assert keeps_nan_out(ast.parse(text)) == [1, 3, 4, 5]
     root = Path(__file__).parents[2]
-    measuring = [*(root / "verification").glob("*/*.py"), *(root / "python/isomortar/harness/paper/findings").glob("*.py")]
-    measuring += [root / "verification/bundled_scenes.py", root / "python/isomortar/harness/paper/measures.py"]
+    measuring = [*(root / "verification").glob("*/*.py"), *(root / "verification/paper/findings").glob("*.py")]
+    measuring += [root / "verification/bundled_scenes.py"]
     found = {p.name: lines for p in measuring if (lines := keeps_nan_out(ast.parse(p.read_text())))}
     assert not found

@@ -8,7 +8,6 @@ import pytest
 from isomortar.errors import InputError
 from isomortar.geometry.primitives import bowl, box, ring
 from isomortar.geometry.refinement import mesh
-from isomortar.harness.elevation.sampling import basis_matrix, body_grid, face_grid, values_at
 from isomortar.harness.measures import (
     curve_error,
     expected_order,
@@ -17,6 +16,7 @@ from isomortar.harness.measures import (
     relative_error,
     roughness,
 )
+from isomortar.harness.sampling import basis_matrix, body_grid, face_grid, values_at
 
 
 def test_relative_error_of_known_values():

@@ -4,10 +4,13 @@ import json
 import math
 import tomllib
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 import tomlkit
+from orders.analysis import analyse
+from orders.plan import Plan
 from typer.testing import CliRunner
 
 from isomortar.cli.commands import app
@@ -15,12 +18,11 @@ from isomortar.errors import InputError
 from isomortar.geometry.primitives import bowl
 from isomortar.geometry.refinement import mesh
 from isomortar.harness.discretisations import Discretisation, discretisation, mesh_overrides, overrides, sweep_of
-from isomortar.harness.elevation.analysis import analyse
-from isomortar.harness.elevation.study import Study
 from isomortar.harness.measurement import Measurement
 from isomortar.scene import Scene, bundled_scenes
 from isomortar.scene.geometry_file import patch_table
 
+CASES = Path(__file__).parents[2] / "verification"
 TINY = """
 format = 1
 [bodies.block]
@@ -77,11 +79,11 @@ def test_a_geometry_of_higher_order_leaves_lower_ones_out():
     del data["bodies"]["block"]["geometry"]
     data["bodies"]["block"]["patch"] = patch_table(cubic)
     data["bodies"]["block"]["mesh"] = {"order": [3, 3, 1], "elements": [4, 4, 1]}
-    study = Study.of(Scene.from_toml(tomlkit.dumps(data)))
-    assert study.kinds == ("N1", "N3", "N4", "N5", "L1", "L2", "L3", "L4")
-    assert study.sweep.reference == "N3"
+    plan = Plan.of(Scene.from_toml(tomlkit.dumps(data)))
+    assert plan.kinds == ("N1", "N3", "N4", "N5", "L1", "L2", "L3", "L4")
+    assert plan.sweep.reference == "N3"
     with pytest.raises(InputError, match="is 2 in direction u"):
-        Study.of(study.scene, ["N2"])
+        Plan.of(plan.scene, ["N2"])
 
 
 def test_a_lagrange_scene_counts_its_nodes():
@@ -94,37 +96,37 @@ def test_a_lagrange_scene_counts_its_nodes():
 def test_every_kind_gets_four_meshes_that_an_order_can_be_told_from():
     for name in bundled_scenes():
         for quick in (False, True):
-            study = Study.of(Scene.load(name), quick=quick)
-            for kind in study.kinds:
-                sizes = np.array([study.size(each) for each in study.meshes(kind)])
+            plan = Plan.of(Scene.load(name), quick=quick)
+            for kind in plan.kinds:
+                sizes = np.array([plan.size(each) for each in plan.meshes(kind)])
                 assert len(sizes) >= 4
                 assert (sizes[:-1] >= 1.2 * sizes[1:]).all()
-            coarse, medium, fine = map(study.size, study.reference)
+            coarse, medium, fine = map(plan.size, plan.reference)
             assert coarse == pytest.approx(2 * medium)
             assert medium == pytest.approx(2 * fine)
-            assert all(fine < 0.501 * study.size(mesh) for kind in study.kinds if kind[0] == "N" for mesh in study.meshes(kind))
+            assert all(fine < 0.501 * plan.size(mesh) for kind in plan.kinds if kind[0] == "N" for mesh in plan.meshes(kind))
 
 
 @pytest.mark.parametrize("kinds", [["N0"], ["N11"], ["L5"], ["Q2"], ["N"]])
 def test_unknown_kinds_are_refused(kinds):
     with pytest.raises(InputError, match="N1 to N10 and L1 to L4"):
-        Study.of(Scene.from_toml(TINY), kinds)
+        Plan.of(Scene.from_toml(TINY), kinds)
 
 
 def test_a_scene_at_rest_is_refused():
     with pytest.raises(InputError, match="no support of the scene moves"):
-        Study.of(Scene.from_toml(TINY, overrides=["stages.press.motions={}"]), ["N2"])
+        Plan.of(Scene.from_toml(TINY, overrides=["stages.press.motions={}"]), ["N2"])
 
 
-def synthetic(study: Study, error: dict, reference_order: float = 2.0) -> dict:
+def synthetic(plan: Plan, error: dict, reference_order: float = 2.0) -> dict:
     """Runs whose force is off by `error` (constant, order) times size**order from 1, nothing else varies."""
-    areas, volumes = study.grids()
+    areas, volumes = plan.grids()
     found = {}
-    for chosen in study.plan:
+    for chosen in plan.runs:
         constant, order = error.get(chosen.kind, (1.0, reference_order))
-        if chosen in study.reference:
+        if chosen in plan.reference:
             constant, order = 1.0, reference_order
-        force = 1.0 + constant * study.size(chosen) ** order
+        force = 1.0 + constant * plan.size(chosen) ** order
         numbers = {
             "time": [1.0, 2.0, 3.0],
             "stage": [0, 0, 0],
@@ -142,28 +144,28 @@ def synthetic(study: Study, error: dict, reference_order: float = 2.0) -> dict:
 
 
 @pytest.fixture(scope="module")
-def study():
+def plan():
     big = Scene.from_toml(TINY, overrides=["bodies.block.mesh.elements=[12,12,1]"])
-    return Study.of(big, ["N1", "N2", "N3"])
+    return Plan.of(big, ["N1", "N2", "N3"])
 
 
-def test_errors_verdicts_and_floor(study):
-    found = analyse(study, synthetic(study, {"N1": (400.0, 2.0), "N3": (0.02, 2.0)}, reference_order=3.0))
+def test_errors_verdicts_and_floor(plan):
+    found = analyse(plan, synthetic(plan, {"N1": (400.0, 2.0), "N3": (0.02, 2.0)}, reference_order=3.0))
     assert found.measures == ("force", "pressure", "displacement")  # the moment is round-off
     h = 1 / 24
     truth = 1 + h**3
-    fine = found.points[study.meshes("N1")[-1]]
+    fine = found.points[plan.meshes("N1")[-1]]
     assert fine.errors["force"] == pytest.approx((400 / 144 - h**3) / truth, rel=1e-12)
     assert found.uncertainty["force"] == pytest.approx(h**3, rel=2e-2)
     assert found.verdicts["N1"]["force"].judgement == "confirmed"
     assert fine.floor == ()
-    assert "force" in found.points[study.meshes("N3")[-1]].floor
+    assert "force" in found.points[plan.meshes("N3")[-1]].floor
     assert found.verdicts["N3"]["force"].judgement != "confirmed"
     assert fine.roughness["force"] == pytest.approx(((1 + 400 / 144) / truth) ** 2, rel=1e-12)
 
 
-def test_refinement_against_elevation(study):
-    found = analyse(study, synthetic(study, {"N2": (100.0, 1.0), "N3": (1.0, 1.0)}, reference_order=3.0))
+def test_refinement_against_elevation(plan):
+    found = analyse(plan, synthetic(plan, {"N2": (100.0, 1.0), "N3": (1.0, 1.0)}, reference_order=3.0))
     by_way = {(step.way, step.end.label): step for step in found.steps}
     assert sorted(by_way) == [("h", "N2 12x12x1"), ("h", "N2 8x8x1"), ("k", "N3 6x6x1")]
     # the reference's own meshes, 6 and 12, are what the reference says; 8 is 100 / 8 off
@@ -175,36 +177,36 @@ def test_refinement_against_elevation(study):
     assert step.gains["pressure"] == pytest.approx((1 / 6**3 - truth) / (100 / 8 - truth), rel=1e-12)
 
 
-def test_a_failed_run_leaves_the_others(study):
-    runs = synthetic(study, {})
-    lost = study.meshes("N1")[0]
+def test_a_failed_run_leaves_the_others(plan):
+    runs = synthetic(plan, {})
+    lost = plan.meshes("N1")[0]
     runs[lost] = Measurement("raised", message="Traceback\n  ...\nisomortar.errors.ConvergenceError: load step 2 does not converge")
-    found = analyse(study, runs)
+    found = analyse(plan, runs)
     assert [p.failure for p in found.failed] == ["load step 2 does not converge"]
     assert found.verdicts["N1"]["force"].why == "3 meshes; an order needs at least 4"
-    assert found.points[study.meshes("N1")[1]].errors
+    assert found.points[plan.meshes("N1")[1]].errors
 
 
-def test_a_run_with_numbers_that_are_not_finite_has_failed(study):
-    runs = synthetic(study, {})
-    lost = study.meshes("N1")[0]
+def test_a_run_with_numbers_that_are_not_finite_has_failed(plan):
+    runs = synthetic(plan, {})
+    lost = plan.meshes("N1")[0]
     runs[lost].numbers["force"][0][1][2] = math.nan
-    assert [p.failure for p in analyse(study, runs).failed] == ["not finite: force"]
+    assert [p.failure for p in analyse(plan, runs).failed] == ["not finite: force"]
 
 
-def test_without_its_coarser_meshes_the_reference_is_worth_nothing(study):
-    runs = synthetic(study, {"N1": (400.0, 2.0)})
-    runs[study.reference[0]] = replace(runs[study.reference[0]], ending="crashed")
-    found = analyse(study, runs)
+def test_without_its_coarser_meshes_the_reference_is_worth_nothing(plan):
+    runs = synthetic(plan, {"N1": (400.0, 2.0)})
+    runs[plan.reference[0]] = replace(runs[plan.reference[0]], ending="crashed")
+    found = analyse(plan, runs)
     assert found.uncertainty["force"] == math.inf
     assert found.verdicts["N1"]["force"].judgement == "at the floor"
     assert all("force" in p.floor for p in found.points.values() if p.errors)
 
 
-def test_without_a_reference_nothing_is_compared(study):
-    runs = synthetic(study, {})
-    runs[study.reference[2]] = Measurement("timed out", message="no result after 1 s")
-    found = analyse(study, runs)
+def test_without_a_reference_nothing_is_compared(plan):
+    runs = synthetic(plan, {})
+    runs[plan.reference[2]] = Measurement("timed out", message="no result after 1 s")
+    found = analyse(plan, runs)
     assert found.failed
     assert not any(p.errors for p in found.points.values())
 
@@ -215,7 +217,7 @@ def run_orders(tmp_path, monkeypatch):
 
     def call(*options: str, text: str = TINY):
         (tmp_path / "tiny.toml").write_text(text)
-        return CliRunner().invoke(app, ["report", "orders", "tiny.toml", "--quick", "--out", "out", *options])
+        return CliRunner().invoke(app, ["report", "orders", "tiny.toml", "--quick", "--out", "out", "--cases", str(CASES), *options])
 
     return call
 

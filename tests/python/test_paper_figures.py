@@ -19,13 +19,13 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.text import Text
+from paper.figures import Line, Panel, bodies, closeups, curves, flat, surfaces
+from paper.figures.sheet import Mark, Sheet
+from paper.figures.zones import corners_of, zones
 from scipy.interpolate import BSpline
 
 from isomortar.errors import InputError
 from isomortar.geometry.patch import Direction
-from isomortar.harness.paper.figures import Line, Panel, bodies, closeups, curves, flat, surfaces
-from isomortar.harness.paper.figures.sheet import Mark, Sheet
-from isomortar.harness.paper.figures.zones import corners_of, zones
 from isomortar.model.numbering import Numbering
 from isomortar.results import Results, ResultsWriter
 from isomortar.results import bodies as faces

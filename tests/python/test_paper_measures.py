@@ -6,15 +6,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
-from isomortar.harness.paper import measures
-from isomortar.harness.paper.catalogue import chosen
-from isomortar.harness.paper.findings import STATEMENTS
-from isomortar.harness.paper.outcome import Outcome, Outcomes
-from isomortar.harness.paper.page import Report
-from isomortar.harness.paper.settled import Settled, settled_curves
-from isomortar.harness.paper.statements import Evidence, NotMeasuredError, Statement, ratio, successive
-from isomortar.harness.paper.studies import METHODS
+from paper import measures
+from paper.catalogue import chosen
+from paper.findings import STATEMENTS
+from paper.outcome import Outcome, Outcomes
+from paper.page import Report
+from paper.settled import Settled, settled_curves
+from paper.statements import Evidence, NotMeasuredError, Statement, ratio, successive
+from paper.studies import METHODS
 
 STUDIES = {study.scene: study for study in chosen((), False)}
 IRON = STUDIES["iron"]

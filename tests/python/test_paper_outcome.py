@@ -5,14 +5,14 @@ from datetime import datetime
 from pathlib import Path
 
 import pytest
+from paper import run as cells
+from paper.outcome import Outcomes, cells_of, outcome
+from paper.page import Report, as_data, page
+from paper.quick import PRESS
+from paper.studies import Study
 
 from isomortar.errors import InputError
 from isomortar.harness.measurement import Measurement, measure
-from isomortar.harness.paper import run as cells
-from isomortar.harness.paper.outcome import Outcomes, cells_of, outcome
-from isomortar.harness.paper.page import Report, as_data, page
-from isomortar.harness.paper.quick import PRESS
-from isomortar.harness.paper.studies import Study
 from isomortar.harness.store import Store
 
 #: The block is 0.8 high.

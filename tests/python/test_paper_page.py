@@ -5,17 +5,20 @@ import os
 import re
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
+from paper.page import shown
 from typer.testing import CliRunner
 
 from isomortar.cli.commands import app
 from isomortar.errors import InputError
-from isomortar.harness.paper.page import shown
+
+CASES = Path(__file__).parents[2] / "verification"
 
 
 def test_the_quick_studies_from_end_to_end(tmp_path):
-    command = [sys.executable, "-m", "isomortar", "paper", "--quick", "-j", "1", "--out", str(tmp_path / "out")]
+    command = [sys.executable, "-m", "isomortar", "paper", "--quick", "-j", "1", "--out", str(tmp_path / "out"), "--cases", str(CASES)]
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
     first = subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
     assert first.returncode == 0, first.stdout + first.stderr
@@ -37,9 +40,18 @@ def test_the_quick_studies_from_end_to_end(tmp_path):
     assert "isomortar run iron --set" in page
 
 
+def test_outside_of_a_checkout_it_says_where_to_stand(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for command in (["paper", "--quick"], ["report", "orders", "press"]):
+        result = CliRunner().invoke(app, command)
+        assert isinstance(result.exception, InputError)
+        assert "studies are run in a checkout, from its folder; or give the folder with --cases" in str(result.exception)
+    assert not list(tmp_path.iterdir())
+
+
 def test_bad_input_runs_nothing(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    result = CliRunner().invoke(app, ["paper", "--quick", "--study", "press,iorn"])
+    result = CliRunner().invoke(app, ["paper", "--quick", "--study", "press,iorn", "--cases", str(CASES)])
     assert isinstance(result.exception, InputError)
     assert "'iorn'; allowed: press, twist, iron, tire" in str(result.exception)
     assert not list(tmp_path.iterdir())

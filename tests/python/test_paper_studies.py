@@ -3,11 +3,11 @@
 import shlex
 
 import pytest
+from paper.catalogue import chosen
+from paper.findings import STATEMENTS
+from paper.studies import METHODS, PAPER_METHOD, Study
 
 from isomortar.errors import InputError
-from isomortar.harness.paper.catalogue import chosen
-from isomortar.harness.paper.findings import STATEMENTS
-from isomortar.harness.paper.studies import METHODS, PAPER_METHOD, Study
 from isomortar.model.numbering import Numbering
 from isomortar.scene import Scene
 

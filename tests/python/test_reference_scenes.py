@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import json
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-
-sys.path.insert(0, str(Path(__file__).parents[2] / "verification"))
 from bundled_scenes import mesh_overrides
 from import_references import not_the_same, numbers, steps_of, uncertainties
 from other_code.agreement import GROUPS

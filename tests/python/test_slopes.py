@@ -2,13 +2,8 @@
 
 from __future__ import annotations
 
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
-
-sys.path.insert(0, str(Path(__file__).parents[2] / "verification"))
 from slopes import fall
 
 COUNTS = np.array([4.0, 6.0, 8.0, 12.0])

@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from rich.console import Console
+from tangents.blocks import PartBlocks
 
 from isomortar import _twin
 from isomortar.errors import InputError, KernelError
 from isomortar.harness import tangents
-from isomortar.harness.blocks import PartBlocks
 from isomortar.harness.tangents import PairTangent, TangentReport, check_tangent, measure
 from isomortar.harness.visits import Visit, visited_states
 from isomortar.model.entities import Problem

@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 from extreme_scenes import Data, changed, column_pressure, confined_pressure, loaded, press_of, ran, worst
+from extremes.endings import digits, endings, judge
+from extremes.runs import Run
 
 from isomortar.harness import case
-from isomortar.harness.extremes import Run, digits, endings, judge
 from isomortar.scene.geometry_file import patch_table
 from isomortar.scene.schema import BodyTable
 

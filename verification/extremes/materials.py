@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 from extreme_scenes import changed, column, column_pressure, loaded, press_of, ran, stack, stack_pressure
+from extremes.endings import digits, endings, judge
 
 from isomortar.harness import case
-from isomortar.harness.extremes import digits, endings, judge
 
 _TIGHT = {"solver.newton_tolerance": 1e-12, "solver.complementarity_tolerance": 1e-11}
 _GATE_STIFFNESSES = ((1e-3, "1:1"), (1e3, "1:1"), (1e12, "2:1"))

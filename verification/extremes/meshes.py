@@ -6,9 +6,10 @@ from typing import Any
 
 import numpy as np
 from extreme_scenes import Data, changed, column, column_pressure, press_of, ran, worst
+from extremes.endings import digits, endings, judge
+from extremes.runs import Run
 
 from isomortar.harness import case
-from isomortar.harness.extremes import Run, digits, endings, judge
 
 _TIGHT = {"solver.newton_tolerance": 1e-12, "solver.complementarity_tolerance": 1e-11}
 #: Pressures of the column after each of its two load steps.

@@ -6,9 +6,10 @@ from typing import Any
 
 import numpy as np
 from extreme_scenes import YOUNG, Data, changed, column, column_pressure, loaded, press_of, ran
+from extremes.endings import digits, endings, judge
+from extremes.runs import Run
 
 from isomortar.harness import case
-from isomortar.harness.extremes import Run, digits, endings, judge
 
 _TIGHT = {"solver.newton_tolerance": 1e-12, "solver.complementarity_tolerance": 1e-11}
 _FRICTIONS = (0.0, 1e-150, 1e-12, 1e-6, 1e-3, 0.1, 0.3, 1.0, 3.0, 10.0, 1e3, 1e6, 1e12, 1e50, 1e150, 1e156, 1e300)

@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 from extreme_scenes import changed, loaded
+from extremes.endings import digits
 from transforms import relabelled
 
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, case
-from isomortar.harness.extremes import digits
 from isomortar.model.entities import Problem
 from isomortar.scene import Scene
 from isomortar.scene.source import dump

@@ -6,10 +6,11 @@ from typing import Any
 
 import numpy as np
 from extreme_scenes import Data, changed, loaded, press_of, ran
+from extremes.endings import digits, endings, judge
+from extremes.runs import Run
 from numpy.typing import ArrayLike
 
 from isomortar.harness import case
-from isomortar.harness.extremes import Run, digits, endings, judge
 
 #: Lengths that change with the unit, as paths of ``coarse-press``.
 _LENGTHS = ("half_width", "bottom", "rise", "top")

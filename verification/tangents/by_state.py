@@ -8,10 +8,10 @@ from typing import Final
 
 import numpy as np
 from small_scenes import bowl
+from tangents.placed import placed
 
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.harness import Bound, case
-from isomortar.harness.placed import placed
 from isomortar.harness.tangents import BOUND, PARTS, SYMMETRY_BOUND, PairTangent, measure
 from isomortar.harness.visits import Visit, visited_states
 from isomortar.model.entities import Problem

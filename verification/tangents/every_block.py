@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from tangents.blocks import PartBlocks, tangent_blocks
+from tangents.placed import placed
 
 from isomortar.harness import Bound, case
-from isomortar.harness.blocks import PartBlocks, tangent_blocks
-from isomortar.harness.placed import placed
 from isomortar.harness.tangents import BOUND
 from isomortar.harness.visits import PairVisit, Visit
 from isomortar.scene import Scene

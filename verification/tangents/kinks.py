@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from tangents.placed import placed
 
 from isomortar.harness import Bound, case
-from isomortar.harness.placed import placed
 from isomortar.harness.tangents import BOUND, PARTS, SYMMETRY_BOUND, measure
 from isomortar.harness.visits import PairVisit, Visit
 from isomortar.scene import Scene

@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 from shapes import dome
+from tangents.placed import placed
 
 from isomortar import _bindings
 from isomortar.geometry.patch import FloatArray
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
-from isomortar.harness.placed import placed
 from isomortar.harness.tangents import BOUND, SYMMETRY_BOUND, measure
 from isomortar.harness.visits import PairVisit, Visit
 from isomortar.model.entities import Problem

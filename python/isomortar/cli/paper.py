@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import time
-from datetime import datetime
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from isomortar.cli.verification import CORES, FAILED, REFERENCES, ReferencesOption, measure_all
+from isomortar.cli.verification import CASES, CORES, REFERENCES, CasesOption, ReferencesOption, conduct
 
 
 def paper(
@@ -20,13 +18,14 @@ def paper(
         Path | None,
         typer.Option(file_okay=False, help="Folder of page, figures and runs.", show_default="results/paper or results/paper-quick"),
     ] = None,
+    cases: CasesOption = CASES,
     references: ReferencesOption = REFERENCES,
 ) -> None:
     """The paper's numerical section: every study, every figure, and every statement with the number that measures it.
 
     Runs the four scenes in all discretisations of Section 4, monolithic and by the paper's own method, and writes paper.html. A run that
     was killed goes on from its last load step when the command is repeated; what was run already is not run again. A run that
-    fails is shown with its reason, the others go on.
+    fails is shown with its reason, the others go on. Run it in a checkout, from its folder: the studies stand in verification/paper.
 
     Exit code 0 if every run of NURBS came to its end and every statement could be measured, if partly, whether it holds or not. That
     Lagrange elements do not converge is a result; a crash, or a lack of time or memory, is none and ends with exit code 1.
@@ -37,26 +36,8 @@ def paper(
     - `isomortar paper`
     - `isomortar paper --study press,twist -j 2 --out study`
     """
-    from isomortar.harness.paper import page
-    from isomortar.harness.paper.catalogue import chosen
-    from isomortar.harness.paper.findings import STATEMENTS
-    from isomortar.harness.paper.outcome import Outcomes, cells_of, outcome
-    from isomortar.harness.paper.settled import settled_curves
-    from isomortar.harness.runner import local_processes
+    from isomortar.harness.study import study_module
 
-    studies = chosen([name.strip() for name in study.split(",") if name.strip()], quick)
-    folder = out or Path("results") / ("paper-quick" if quick else "paper")
-    settled = {} if quick else settled_curves(references)
-    started, clock = datetime.now().astimezone(), time.perf_counter()
-    planned = cells_of(studies, folder)
-    results = measure_all([cell for *_, cell in planned], folder, lambda *_: None, local_processes(jobs), False)
-    outcomes = Outcomes(studies, tuple(outcome(*plan, result.measurement) for plan, result in zip(planned, results, strict=True)))
-    statements = [statement for statement in STATEMENTS if statement.concerns(studies)]
-    judgements = tuple(statement.judge(outcomes) for statement in statements)
-    report = page.Report(outcomes, judgements, len(STATEMENTS) - len(statements), quick, started, settled)
-    path = page.write(folder, report)
-    print(f"{len(results)} runs, {len(report.failed)} failed, {time.perf_counter() - clock:.0f} s")
-    print(", ".join(f"{count} {state}" for state, count in report.counts.items()))
-    print(path)
-    if not report.complete:
-        raise typer.Exit(FAILED)
+    names = [name.strip() for name in study.split(",") if name.strip()]
+    chosen = study_module(cases, "paper").Paper.of(names, quick, references)
+    conduct(chosen, out or Path("results") / ("paper-quick" if quick else "paper"), jobs)

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import time
-from datetime import datetime
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from isomortar.cli.verification import FAILED, measure_all
+from isomortar.cli.verification import CASES, CasesOption, conduct
 
 report = typer.Typer(no_args_is_help=True, rich_markup_mode="markdown", help="Reports that take many runs of a scene.")
 
@@ -31,11 +29,13 @@ def orders(
     out: Annotated[
         Path | None, typer.Option(file_okay=False, help="Folder of the report and its runs.", show_default="results/orders-NAME")
     ] = None,
+    cases: CasesOption = CASES,
 ) -> None:
     """What orders and meshes make of a scene: error of curves and fields, smoothness, against unknowns and cost.
 
     Runs the scene with NURBS and Lagrange elements of several orders on several meshes, and a finer one as the reference, whose own
     error is estimated too. What was run already is not run again. Exit code 1 if a run failed; the others are in the report all the same.
+    Run it in a checkout, from its folder: the study stands in verification/orders.
 
     For example:
 
@@ -43,20 +43,9 @@ def orders(
     - `isomortar report orders twist --orders N2,N3,N4 -j 2`
     - `isomortar report orders my_scene.toml --body lower`
     """
-    from isomortar.harness.elevation import page
-    from isomortar.harness.elevation.analysis import analyse
-    from isomortar.harness.elevation.study import Study
-    from isomortar.harness.runner import local_processes
+    from isomortar.harness.study import study_module
     from isomortar.scene import Scene
 
-    loaded = Scene.load(scene)
-    study = Study.of(loaded, [kind.strip() for kind in kinds.split(",") if kind.strip()], body, quick)
-    folder = out or Path("results") / f"orders-{loaded.name}"
-    started, clock = datetime.now().astimezone(), time.perf_counter()
-    results = measure_all(study.cells(folder / "scenes"), folder, lambda *_: None, local_processes(jobs), False)
-    analysis = analyse(study, {d: r.measurement for d, r in zip(study.plan, results, strict=True)})
-    path = page.write(folder, analysis, started)
-    print(f"{len(results)} runs, {len(analysis.failed)} failed, {time.perf_counter() - clock:.0f} s")
-    print(path)
-    if analysis.failed:
-        raise typer.Exit(FAILED)
+    loaded, names = Scene.load(scene), [kind.strip() for kind in kinds.split(",") if kind.strip()]
+    study = study_module(cases, "orders").Orders.of(loaded, names, body, quick)
+    conduct(study, out or Path("results") / f"orders-{loaded.name}", jobs)

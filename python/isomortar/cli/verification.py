@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from isomortar.harness.cases import Cell
     from isomortar.harness.compare import Lookup
     from isomortar.harness.runner import Result, Submit
+    from isomortar.harness.study import Study
 
 FAILED = 1
 
@@ -66,9 +67,9 @@ def verify(
     from isomortar.harness import report as reports
     from isomortar.harness.cases import TIERS
     from isomortar.harness.collection import collect
-    from isomortar.harness.extremes import page as extremes
     from isomortar.harness.references import finder
     from isomortar.harness.runner import not_measured, select
+    from isomortar.harness.study import family_pages
 
     if tier not in TIERS:
         raise InputError(f"is {tier!r}; allowed: {', '.join(TIERS)}", "tier")
@@ -87,8 +88,8 @@ def verify(
     counts = Counter(result.state for result in measured)
     print(", ".join(f"{count} {state}" for state, count in counts.items()))
     print(page)
-    if extremes.write(page.with_name("extremes.html"), measured):
-        print(page.with_name("extremes.html"))
+    for path in family_pages(cases, page.parent, measured):
+        print(path)
     if set(counts) != {"passed"}:
         raise typer.Exit(FAILED)
 
@@ -160,6 +161,19 @@ def measure_all(
 
         store = Store(folder / "cells")
         return run(start(cells, store, submit, fresh), lookup, store, finished)
+
+
+def conduct(study: Study, folder: Path, jobs: int) -> None:
+    """Run a study, and tell what it came to; what was run already in the folder is not run again."""
+    from isomortar.harness.runner import local_processes
+
+    started, clock = datetime.now().astimezone(), time.perf_counter()
+    results = measure_all(study.cells(folder), folder, lambda *_: None, local_processes(jobs), False)
+    found = study.conclude(folder, [result.measurement for result in results], started)
+    print(f"{len(results)} runs, {found.failed} failed, {time.perf_counter() - clock:.0f} s")
+    print("\n".join(filter(None, (found.summary, str(found.page)))))
+    if not found.complete:
+        raise typer.Exit(FAILED)
 
 
 def _table(found: Sequence[blessing.Change]) -> Table:

@@ -261,6 +261,15 @@ def case(
     return decorate
 
 
+def measured(*, claim: str, bounds: Mapping[str, Claim]) -> Callable[[Callable[..., Mapping[str, Any]]], Case]:
+    """Make a case of a function that measures a run of a study: it has no cells of its own, its settings are the study's to give."""
+
+    def decorate(function: Callable[..., Mapping[str, Any]]) -> Case:
+        return Case(function, claim, bounds, "weekly", dict.fromkeys(inspect.signature(function).parameters, ()), None, ())
+
+    return decorate
+
+
 def _check(made: Case) -> None:
     arguments = set(inspect.signature(made.function).parameters)
     if set(made.grid) != arguments:

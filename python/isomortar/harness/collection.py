@@ -1,4 +1,4 @@
-"""Finding cases: every Python file of every family folder that uses this package."""
+"""Finding what stands in files below a folder of families: cases, and whatever else a family has."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import importlib
 import re
 import sys
 from pathlib import Path
+from types import ModuleType
 
 from isomortar.errors import InputError
 from isomortar.harness.cases import Case
@@ -32,7 +33,7 @@ def collect(root: Path) -> list[Case]:
     """
     if not root.is_dir():
         raise InputError(f"there is no folder {root}", "cases")
-    cases = [found for path in sorted(root.glob("*/*.py")) if holds_cases(path) for found in cases_of(path)]
+    cases = [found for path in sorted(root.glob("*/*.py")) if holds_cases(path) for found in cases_of(path) if found.cells]
     if not cases:
         raise InputError(f"no cases below {root}: they stand in {root}/<family>/*.py", "cases")
     names = [found.name for found in cases]
@@ -43,7 +44,7 @@ def collect(root: Path) -> list[Case]:
 
 
 def cases_of(path: Path) -> list[Case]:
-    """The cases that a file defines, in its order. It is known as family and file, in a package by its full name.
+    """The cases that a file defines, in its order.
 
     Raises
     ------
@@ -54,6 +55,21 @@ def cases_of(path: Path) -> list[Case]:
     twice = sorted({name for name in functions if functions.count(name) > 1})
     if twice:
         raise InputError(f"defines {', '.join(twice)} twice: the first is lost", str(path))
+    cases = {name: value for name, value in vars(module_at(path)).items() if isinstance(value, Case)}
+    strangers = [name for name, value in cases.items() if value.path.parent.parent != path.resolve().parent.parent]
+    if strangers:
+        raise InputError(f"the functions of {', '.join(strangers)} stand in no family: define them in the file itself", str(path))
+    return [value for value in cases.values() if value.path == path.resolve()]
+
+
+def module_at(path: Path) -> ModuleType:
+    """The module of a file of a family. It is known as family and file, in a package by its full name.
+
+    Raises
+    ------
+    InputError
+        Another file of that name came first on the import path.
+    """
     root = path.resolve().parent.parent
     while (root / "__init__.py").is_file():
         root = root.parent
@@ -62,11 +78,7 @@ def cases_of(path: Path) -> list[Case]:
     module = importlib.import_module(".".join(path.resolve().relative_to(root).with_suffix("").parts))
     if Path(module.__file__ or "").resolve() != path.resolve():
         raise InputError(f"is taken from {module.__file__}, not from {path}: give the folder or the file another name", path.stem)
-    cases = {name: value for name, value in vars(module).items() if isinstance(value, Case)}
-    strangers = [name for name, value in cases.items() if value.path.parent.parent != path.resolve().parent.parent]
-    if strangers:
-        raise InputError(f"the functions of {', '.join(strangers)} stand in no family: define them in the file itself", str(path))
-    return [value for value in cases.values() if value.path == path.resolve()]
+    return module
 
 
 def find(root: Path, name: str) -> Case:

@@ -110,9 +110,16 @@ def number(value: float) -> str:
     return f"{value:.4g}" if math.isfinite(value) else "-"
 
 
-def template(name: str) -> jinja2.Template:
-    """A page of this package, with what all pages say numbers and times by."""
-    loader = jinja2.FileSystemLoader(Path(__file__).parent)
+def percent(value: float) -> str:
+    """A relative error as people read it."""
+    if not math.isfinite(value):
+        return "-"
+    return f"{100 * value:.3g} %" if value >= 1e-6 else f"{value:.1e}"
+
+
+def template(name: str, beside: Path = Path(__file__)) -> jinja2.Template:
+    """A page by its name in the folder of a source file, or of this package, with what all pages say numbers and times by."""
+    loader = jinja2.FileSystemLoader([beside.parent, Path(__file__).parent])
     environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined)
     environment.filters["number"] = number
     environment.filters["duration"] = duration

@@ -128,6 +128,11 @@ class Support:
     centre: tuple[float, float, float] = (0.0, 0.0, 0.0)
     axis: tuple[float, float, float] = (0.0, 0.0, 1.0)
 
+    @property
+    def moves(self) -> bool:
+        """Whether it moves in some stage."""
+        return any(any(motion.translate) or motion.rotate for motion in self.motions)
+
 
 @dataclass(frozen=True)
 class Stage:

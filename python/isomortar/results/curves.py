@@ -33,7 +33,7 @@ class Curve(Protocol):
 
 def moving_supports(results: Results) -> list[Support]:
     """The supports that move in some stage; all of them if none does."""
-    moving = [s for s in results.problem.supports if any(any(m.translate) or m.rotate for m in s.motions)]
+    moving = [s for s in results.problem.supports if s.moves]
     return moving or list(results.problem.supports)
 
 

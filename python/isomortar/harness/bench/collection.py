@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import importlib
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 
 from isomortar.errors import InputError
 from isomortar.harness.bench.declaration import Benchmark
+from isomortar.harness.collection import module_at
 
 #: Folder of the benchmarks, below that of the cases.
 FOLDER = "performance"
@@ -33,21 +32,8 @@ def collect(root: Path) -> list[Benchmark]:
 
 
 def benchmarks_of(path: Path) -> list[Benchmark]:
-    """The benchmarks that a file defines, in its order.
-
-    Raises
-    ------
-    InputError
-        Another file of that name came first on the import path.
-    """
-    path = path.resolve()
-    root = str(path.parent.parent)
-    if root not in sys.path:
-        sys.path.insert(0, root)
-    module = importlib.import_module(f"{path.parent.name}.{path.stem}")
-    if Path(module.__file__ or "").resolve() != path:
-        raise InputError(f"is taken from {module.__file__}, not from {path}: give the folder or the file another name", path.stem)
-    return [value for value in vars(module).values() if isinstance(value, Benchmark) and value.path == path]
+    """The benchmarks that a file defines, in its order."""
+    return [value for value in vars(module_at(path)).values() if isinstance(value, Benchmark) and value.path == path.resolve()]
 
 
 def select(benchmarks: Sequence[Benchmark], names: Sequence[str]) -> list[Benchmark]:

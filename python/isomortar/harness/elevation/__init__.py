@@ -1,1 +1,0 @@
-"""Order-elevation convergence: what orders and meshes make of a scene's error, smoothness and cost."""

@@ -1,7 +1,0 @@
-"""Figures of the paper's kinds: fields over the contact patch, deformed bodies, curves."""
-
-from isomortar.harness.paper.figures import bodies, closeups, curves, surfaces
-from isomortar.harness.paper.figures.curves import Line
-from isomortar.harness.paper.figures.picture import Panel, Picture
-
-__all__ = ["Line", "Panel", "Picture", "bodies", "closeups", "curves", "surfaces"]

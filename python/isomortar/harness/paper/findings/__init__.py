@@ -1,5 +1,0 @@
-"""The statements of the paper, section by section, in the order of its text."""
-
-from isomortar.harness.paper.findings import conclusion, iron, parameters, press, tire, twist
-
-STATEMENTS = (*parameters.STATEMENTS, *press.STATEMENTS, *twist.STATEMENTS, *iron.STATEMENTS, *tire.STATEMENTS, *conclusion.STATEMENTS)

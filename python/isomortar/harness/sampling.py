@@ -1,0 +1,104 @@
+"""Fields of different meshes at the same material points: cell centres of a fixed grid over the exact geometry."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from isomortar.geometry.patch import Direction, FloatArray, Patch
+from isomortar.harness.discretisations import coarse_geometry
+from isomortar.model.entities import Problem
+from isomortar.results.bezier import bernstein, bezier_matrix, rational
+from isomortar.scene.scene import Scene
+
+#: Cells of the grid that the fields of a slave face are compared on.
+FACE_CELLS = 4096
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Cell centres by direction (parameters, first direction fastest), and the cells' areas or volumes, shape (cells,)."""
+
+    places: tuple[FloatArray, ...]
+    weights: FloatArray
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Cells by direction."""
+        return tuple(len(p) for p in self.places)
+
+
+def face_grid(geometry: Patch, face: str, cells: int) -> Grid:
+    """A grid of about so many cells, nearly square, over a face of a body's exact geometry."""
+    numbers = geometry.face_points(face)
+    return _grid(geometry.face_directions(face), geometry.weights[numbers], geometry.control_points[numbers], cells)
+
+
+def slave_grid(scene: Scene, problem: Problem, contact: int) -> Grid:
+    """A grid over the slave face of a contact pair, the same for all discretisations of a scene."""
+    slave = problem.contacts[contact].slave
+    return face_grid(coarse_geometry(scene, slave.body), slave.face, FACE_CELLS)
+
+
+def body_grid(geometry: Patch, cells: int) -> Grid:
+    """A grid of about so many cells, nearly cubes, over a body's exact geometry."""
+    return _grid(geometry.directions, geometry.weights, geometry.control_points, cells)
+
+
+def values_at(directions: tuple[Direction, ...], weights: FloatArray, values: FloatArray, grid: Grid) -> FloatArray:
+    """A field given by the functions of a mesh at the cell centres.
+
+    Parameters
+    ----------
+    directions : tuple of Direction
+        Of the mesh, two (face) or three (body).
+    weights : ndarray, shape (n,)
+    values : ndarray, shape (n, k)
+        Coefficients at the control points.
+
+    Returns
+    -------
+    ndarray, shape (cells, k)
+    """
+    matrices = [basis_matrix(d, places) for d, places in zip(directions, grid.places, strict=True)]
+    return rational(matrices, weights, values)[0]
+
+
+def basis_matrix(direction: Direction, places: FloatArray) -> FloatArray:
+    """Matrix from the coefficients of a direction to values at parameters, shape (places, count)."""
+    ends, order = direction.boundaries, direction.order
+    element = np.clip(np.searchsorted(ends, places, side="right") - 1, 0, direction.elements - 1)
+    values = bernstein(order, (places - ends[element]) / np.diff(ends)[element])
+    rows = order * element[:, None] + np.arange(order + 1)
+    return np.einsum("ij,ijk->ik", values, bezier_matrix(direction)[rows])
+
+
+def _grid(directions: tuple[Direction, ...], weights: FloatArray, points: FloatArray, cells: int) -> Grid:
+    net = points.reshape(*(d.count for d in reversed(directions)), 3)
+    axes = range(len(directions) - 1, -1, -1)
+    lengths = np.array([np.linalg.norm(np.diff(net, axis=axis), axis=-1).sum(axis=axis).mean() for axis in axes])
+    parts = np.maximum(1, np.rint(lengths * (cells / lengths.prod()) ** (1 / len(lengths)) / [d.elements for d in directions])).astype(int)
+    edges = [_subdivided(d.boundaries, n) for d, n in zip(directions, parts, strict=True)]
+    corners = rational([basis_matrix(d, e) for d, e in zip(directions, edges, strict=True)], weights, points)[0]
+    measures = _measures(corners.reshape(*(len(e) for e in reversed(edges)), 3))
+    return Grid(tuple(0.5 * (e[1:] + e[:-1]) for e in edges), measures.ravel())
+
+
+def _subdivided(boundaries: FloatArray, parts: int) -> FloatArray:
+    return np.interp(np.arange(parts * (len(boundaries) - 1) + 1) / parts, np.arange(len(boundaries)), boundaries)
+
+
+def _measures(corners: FloatArray) -> FloatArray:
+    """Area of each cell of a surface grid, volume of each cell of a volume grid, by the edges through its middle."""
+    dimension = corners.ndim - 1
+    edges = []
+    for axis in range(dimension):
+        edge = np.diff(corners, axis=axis)
+        for other in set(range(dimension)) - {axis}:
+            first, last = (np.take(edge, np.arange(edge.shape[other] - 1) + k, axis=other) for k in (0, 1))
+            edge = 0.5 * (first + last)
+        edges.append(edge)
+    if dimension == 2:
+        return np.linalg.norm(np.cross(edges[0], edges[1]), axis=-1)
+    return np.abs(np.einsum("...i,...i->...", edges[0], np.cross(edges[1], edges[2])))

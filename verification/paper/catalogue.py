@@ -1,0 +1,26 @@
+"""The studies by name."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from paper.plans import FULL
+from paper.quick import QUICK
+from paper.studies import Study
+
+from isomortar.errors import InputError
+
+
+def chosen(names: Sequence[str], quick: bool) -> tuple[Study, ...]:
+    """The studies of these names, all if there are none, in full or as their quick variants.
+
+    Raises
+    ------
+    InputError
+        There is no such study.
+    """
+    known = {study.scene: study for study in (QUICK if quick else FULL)}
+    for name in names:
+        if name not in known:
+            raise InputError(f"is {name!r}; allowed: {', '.join(known)}", "study")
+    return tuple(study for name, study in known.items() if name in names or not names)

@@ -1,0 +1,149 @@
+"""The page of the paper's studies: one HTML file that needs nothing else, all its numbers as JSON, and its figures as files."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+from paper.outcome import Outcome, Outcomes
+from paper.plates import NAMES, Plate, gap_between_methods, plates
+from paper.settled import Settled
+from paper.statements import STATES, Judgement
+from paper.studies import METHODS, Study
+
+from isomortar.harness.report import percent, plain, template
+from isomortar.harness.store import compiler, kernel_hash, program_hash, write_whole
+
+
+@dataclass(frozen=True)
+class Report:
+    """All that the page shows.
+
+    `left_out` counts the statements that these studies have not the runs for; `settled` has over-refined curves by scene.
+    """
+
+    outcomes: Outcomes
+    judgements: tuple[Judgement, ...]
+    left_out: int
+    quick: bool
+    started: datetime
+    settled: Mapping[str, Settled]
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Statements by verdict."""
+        found = Counter(judgement.state for judgement in self.judgements)
+        return {state: found[state] for state in reversed(STATES)}
+
+    @property
+    def failed(self) -> list[Outcome]:
+        """Runs that did not come to their end."""
+        return [o for o in self.outcomes.entries if o.failure]
+
+    def off(self, outcome: Outcome) -> float | None:
+        """Distance of a run from the study's over-refined curve; None where there is none."""
+        settled = self.settled.get(outcome.study.scene)
+        return settled.distance(outcome) if settled else None
+
+    @property
+    def complete(self) -> bool:
+        """Whether all runs came to their end (Lagrange elements: or to where they do not converge) and all statements were measured."""
+        return all(o.run.lagrange and not o.lost for o in self.failed) and not self.counts["not measured"]
+
+
+def write(folder: Path, report: Report) -> Path:
+    """Write ``paper.html``, ``paper.json`` and ``figures/``; returns the path of the page."""
+    path = folder / "paper.html"
+    (folder / "figures").mkdir(parents=True, exist_ok=True)
+    drawn = {
+        study.scene: [_saved(folder / "figures", plate) for plate in plates(study, report.outcomes)] for study in report.outcomes.studies
+    }
+    write_whole(path, page(report, drawn))
+    write_whole(path.with_suffix(".json"), json.dumps(plain(as_data(report)), indent=1))
+    return path
+
+
+def as_data(report: Report) -> dict[str, Any]:
+    """All numbers of the page as plain data."""
+    return {
+        "started": report.started.isoformat(timespec="seconds"),
+        "quick": report.quick,
+        "program": program_hash(),
+        "kernel": kernel_hash(),
+        "compiler": compiler(),
+        "verdicts": report.counts,
+        "statements": [_statement(judgement) for judgement in report.judgements],
+        "runs": [_run(report, outcome) for outcome in report.outcomes.entries],
+    }
+
+
+def _saved(folder: Path, plate: Plate) -> dict[str, str]:
+    """What the page shows of a figure whose file is written; the figure itself is large and not kept. Plots have their title in them."""
+    plate.picture.save(folder / plate.name)
+    return {"title": "" if plate.picture.vector else plate.title, "caption": plate.caption, "html": plate.picture.html}
+
+
+def page(report: Report, drawn: Mapping[str, Sequence[Mapping[str, str]]]) -> str:
+    """The HTML page, with the figures by study."""
+    return template("page.html", Path(__file__)).render(
+        report=report,
+        studies=[
+            (study, _rows(report, study), drawn[study.scene], _seconds(report.outcomes.of(study))) for study in report.outcomes.studies
+        ],
+        names=NAMES,
+        total=_seconds(report.outcomes.entries),
+        percent=percent,
+        shown=shown,
+        program=program_hash()[:12],
+        kernel=kernel_hash()[:12],
+        compiler=compiler(),
+    )
+
+
+def shown(value: float, in_percent: bool) -> str:
+    """A number of a statement as people read it."""
+    if not value or not math.isfinite(value):
+        return f"{value:g}"
+    return f"{100 * value:.3g} %" if in_percent and abs(value) >= 1e-6 else f"{value:.3g}"
+
+
+def _rows(report: Report, study: Study) -> list[list[tuple[Outcome, float | None, float | None]]]:
+    """Runs of a study with their outcomes by method, how far these are from each other, and from the over-refined curve."""
+    outcomes = report.outcomes
+    found = [[outcomes.named(study, run.name, method) for method in METHODS] for run in study.runs]
+    return [[(o, gap_between_methods(outcomes, o), report.off(o)) for o in row if o] for row in found]
+
+
+def _seconds(outcomes: Sequence[Outcome]) -> float:
+    return float(sum(o.numbers["seconds"] for o in outcomes if o.numbers))
+
+
+def _statement(judgement: Judgement) -> dict[str, Any]:
+    statement = judgement.statement
+    fields = ("section", "text", "unit", "at_most", "at_least", "reason")
+    return {
+        **{name: getattr(statement, name) for name in fields},
+        "verdict": judgement.state,
+        "by_method": {v.method: {"verdict": v.state, "values": dict(v.values), "why": v.why} for v in judgement.verdicts},
+    }
+
+
+def _run(report: Report, outcome: Outcome) -> dict[str, Any]:
+    return {
+        "key": outcome.key,
+        "method": outcome.method,
+        "title": outcome.run.title,
+        "command": outcome.study.command(outcome.run, outcome.method),
+        "failure": outcome.failure or None,
+        "lost": outcome.lost,
+        "load_steps": [outcome.steps, outcome.total_steps],
+        "from_the_papers_method": gap_between_methods(report.outcomes, outcome),
+        "from_the_over_refined_curve": report.off(outcome),
+        **outcome.numbers,
+    }
