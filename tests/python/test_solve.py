@@ -13,6 +13,7 @@ from isomortar.errors import ConvergenceError
 from isomortar.model.entities import Motion, Problem, Stage
 from isomortar.scene import Scene
 from isomortar.solve import bordered, monolithic
+from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.newton import KEPT_FACTORS, KEPT_SHARE
 from isomortar.solve.record import IterationRecord, Observer, StepResult
 from isomortar.solve.simulation import Simulation
@@ -118,10 +119,10 @@ class Factors:
         self.made_of: object = None
         self.borders: object = None
         self.increment = self.again = 0
-        begin = monolithic.Monolithic._begin
+        begin = Equilibrium.begin
         monkeypatch.setattr(monolithic, "solve_bordered", self.solved)
         monkeypatch.setattr(monolithic, "solve_with_kept_factors", self.kept)
-        monkeypatch.setattr(monolithic.Monolithic, "_begin", lambda method, *start: (self.begun(), begin(method, *start))[1])
+        monkeypatch.setattr(Equilibrium, "begin", lambda equilibrium, *start: (self.begun(), begin(equilibrium, *start))[1])
 
     def begun(self) -> None:
         self.increment += 1

@@ -20,7 +20,7 @@ from isomortar.model.solid import Solid
 from isomortar.model.supports import Supports
 from isomortar.solve.contact import Kinematics, PairMechanics
 from isomortar.solve.record import State
-from isomortar.solve.scales import BodyMeasures
+from isomortar.solve.scales import BodyMeasures, Scales
 from isomortar.solve.singular import Multipliers, explain
 from isomortar.solve.system import LinearSystem, Source, block_product, entries
 from isomortar.solve.timing import Ledger
@@ -84,6 +84,27 @@ class Equilibrium:
         """The reference configuration without contact."""
         reference = self.numbering.reference
         return State(reference.copy(), tuple(pair.initial(reference) for pair in self.pairs))
+
+    def begin(self, start: State, time: float) -> tuple[FloatArray, Scales]:
+        """Begin a load increment from a converged state to a load time.
+
+        Returns
+        -------
+        ndarray, shape (control points, 3)
+            Increment of the prescribed positions.
+        Scales
+            What forces are measured against.
+        """
+        for pair in self.pairs:
+            pair.begin(self.supports, start.positions, time)
+        with self.ledger.phase("solid"):
+            scales = self.measures.scales(start.positions)
+        return self.supports.increment(start.positions, time), scales
+
+    def state(self, balance: Balance) -> State:
+        """The state that a balance leaves, to go on from."""
+        pairs = zip(self.pairs, balance.kinematics, balance.responses, strict=True)
+        return State(balance.positions, tuple(pair.state(kinematics, response) for pair, kinematics, response in pairs))
 
     def balance(self, positions: FloatArray, start: State, laws: Sequence[Law]) -> Balance:
         """Forces at given positions; slips count from `start`.

@@ -5,11 +5,9 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
-from isomortar.geometry.patch import FloatArray
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.newton import KEPT_FACTORS
 from isomortar.solve.record import AugmentationRecord, Observer, State
-from isomortar.solve.scales import Scales
 
 #: Depth inside its master, as a share of the bodies' size, from which a control point that supports hold along the normal bears on it.
 SUNK = 1e-6
@@ -57,12 +55,3 @@ class Method(ABC):
         """Whether control points that supports hold along the normal have ended inside their master, and now bear on it."""
         depth = SUNK * self._equilibrium.numbering.size
         return any(pair.bear(k, depth) for pair, k in zip(self._equilibrium.pairs, balance.kinematics, strict=True))
-
-    def _begin(self, start: State, time: float) -> tuple[FloatArray, Scales]:
-        """Increment of the prescribed positions, and what forces are measured against, at the start."""
-        equilibrium = self._equilibrium
-        for pair in equilibrium.pairs:
-            pair.begin(equilibrium.supports, start.positions, time)
-        with equilibrium.ledger.phase("solid"):
-            scales = equilibrium.measures.scales(start.positions)
-        return equilibrium.supports.increment(start.positions, time), scales

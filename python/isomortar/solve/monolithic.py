@@ -66,7 +66,7 @@ class Monolithic(Method):
 
     def advance(self, start: State, time: float, step: int) -> Increment:
         """Solve the increment; see `Method.advance`."""
-        prescribed, scales = self._begin(start, time)
+        prescribed, scales = self._equilibrium.begin(start, time)
         iterate = self._first(start, scales)
         moves = bool(np.any(prescribed))
         log: list[IterationRecord] = []

@@ -115,7 +115,7 @@ class Simulation:
                 cuts += 1
                 continue
             time, substeps = target, substeps + len(parts)
-            state = self._state_of(parts[-1].balance)
+            state = self.equilibrium.state(parts[-1].balance)
             for part in parts:
                 log += part.augmentations
                 orders += [order for order in part.orders if np.isfinite(order)]
@@ -132,7 +132,7 @@ class Simulation:
         if tolerance is None:
             return [whole]
         first = self._method.advance(state, 0.5 * (time + target), step)
-        second = self._method.advance(self._state_of(first.balance), target, step)
+        second = self._method.advance(self.equilibrium.state(first.balance), target, step)
         error = self._distance(whole.balance, second.balance)
         if not error <= tolerance:
             raise ConvergenceError(f"the path error of the multipliers is {error:.2e}, above solver.path_tolerance = {tolerance:g}")
@@ -166,10 +166,6 @@ class Simulation:
     def _stage_of(self, step: int) -> str:
         ends = np.cumsum([stage.steps for stage in self.problem.stages])
         return self.problem.stages[int(np.searchsorted(ends, step))].name
-
-    def _state_of(self, balance: Balance) -> State:
-        contacts = [pair.state(k, r) for pair, k, r in zip(self.equilibrium.pairs, balance.kinematics, balance.responses, strict=True)]
-        return State(balance.positions, tuple(contacts))
 
     def _from_record(self, result: StepResult) -> State:
         """The state of a recorded step, to the digits that are recorded: a run that is resumed there comes to the same numbers.

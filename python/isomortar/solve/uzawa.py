@@ -26,7 +26,7 @@ class Uzawa(Method):
     def advance(self, start: State, time: float, step: int) -> Increment:
         """Solve the increment; see `Method.advance` (theory 7.1, 7.2)."""
         equilibrium = self._equilibrium
-        prescribed, scales = self._begin(start, time)
+        prescribed, scales = equilibrium.begin(start, time)
         factors = np.array([self._settings.penalty_normal, self._settings.penalty_tangential])
         base = [factors * pair.stiffness(scales) / pair.penalty_area for pair in equilibrium.pairs]
         laws = [pair.law(b, s.pressure, s.traction) for pair, b, s in zip(equilibrium.pairs, base, start.contacts, strict=True)]
