@@ -135,7 +135,10 @@ def test_a_number_without_a_bound_fails():
 
 @pytest.mark.parametrize(
     ("ending", "expected"),
-    [("raised", "failed"), *((ending, ending) for ending in ("skipped", "crashed", "timed out", "not measured"))],
+    [
+        *((ending, "failed") for ending in ("not converged", "refused", "trouble")),
+        *((ending, ending) for ending in ("skipped", "crashed", "timed out", "not measured")),
+    ],
 )
 def test_what_did_not_end_well_does_not_pass(ending, expected):
     (check,) = judge(cell_of(Shown("to see")), Measurement(ending, message="why"), lambda *_: None)
@@ -163,7 +166,7 @@ ANY = {"value": Bound(at_least=-1e9, at_most=1e9, reason="theory: so")}
 )  # fmt: skip
 def test_a_case_that_returns_something_else_has_failed(value):
     made = case(claim="It holds.", bounds=ANY)(lambda: {"value": value})
-    assert measure(made.cells[0]).ending == "raised"
+    assert measure(made.cells[0]).ending == "crashed"
 
 
 def yields():
@@ -179,12 +182,12 @@ async def later():
 )
 def test_a_case_that_returns_no_names_has_failed(function):
     made = case(claim="It holds.", bounds=ANY)(function)
-    assert measure(made.cells[0]).ending == "raised"
+    assert measure(made.cells[0]).ending == "crashed"
 
 
 @pytest.mark.filterwarnings("ignore:coroutine")
 def test_a_case_that_returns_later_has_failed():
-    assert measure(case(claim="It holds.", bounds=ANY)(later).cells[0]).ending == "raised"
+    assert measure(case(claim="It holds.", bounds=ANY)(later).cells[0]).ending == "crashed"
 
 
 def test_what_is_measured_says_what_it_cost():

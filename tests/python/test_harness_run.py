@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 from concurrent.futures import Future
+from contextlib import ExitStack
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -227,7 +228,7 @@ def test_bad_cells_fail_and_the_run_goes_on(root, monkeypatch):
     states = {name: result.state for name, result in results.items() if "[" not in name}
     assert states == {
         "crash": "crashed", "leaving": "crashed",
-        "raising": "failed", "full": "failed", "unsolved": "failed", "skipping": "skipped", "nan": "failed", "late": "timed out",
+        "raising": "crashed", "full": "failed", "unsolved": "failed", "skipping": "skipped", "nan": "failed", "late": "timed out",
         "printing": "passed",
     }  # fmt: skip
     assert "SIGABRT" in results["crash"].measurement.message
@@ -427,7 +428,7 @@ def test_numbers_from_other_sources_are_not_taken(root, sources):
 
     cells = select(collect(root), "gate")[-1:]
     (result,) = run(start(cells, store, submit), finder(root.parent / "references"), store)
-    assert result.state == "crashed"
+    assert result.state == "failed"
     assert "node7 has other sources" in result.measurement.message
     assert store.get(cells[0]) is None
 
@@ -440,6 +441,52 @@ def test_dask_gives_the_same_bits(root):
     with distributed.LocalCluster(**options) as cluster, dask_cluster(cluster.scheduler_address) as submit:
         results = run(start(select(collect(root), "gate"), store, submit), finder(root.parent / "references"), store)
     assert {r.cell.name.partition("/")[2]: r.measurement.numbers for r in results} == {n: r.measurement.numbers for n, r in local.items()}
+
+
+SWEEP = """
+import time
+from isomortar.harness import Bound, case
+
+@case(claim="Takes its time.", grid={"number": list(range(200))}, bounds={"error": Bound(at_most=1.0, reason="theory: so")})
+def sleeping(number):
+    time.sleep(0.0 if number < 4 else 60.0)
+    return {"error": 0.0}
+"""
+
+
+def measuring(folder: Path) -> list[int]:
+    """Processes that measure cells, of runs that were started in a folder."""
+    psutil = pytest.importorskip("psutil")
+    found = []
+    for process in psutil.process_iter(["cmdline", "cwd"]):
+        if "isomortar.harness.worker" in (process.info["cmdline"] or ()) and process.info["cwd"] == str(folder):
+            found.append(process.pid)
+    return found
+
+
+@pytest.mark.parametrize("where", ["here", "on a cluster"])
+def test_ctrl_c_ends_a_sweep_at_once(root, where):
+    folder = Path.cwd()
+    next(root.glob("family_*/good.py")).write_text(SWEEP)
+    with ExitStack() as stack:
+        way = ["-j", "2"]
+        if where != "here":
+            distributed = pytest.importorskip("distributed")
+            options = {"n_workers": 2, "threads_per_worker": 1, "processes": True, "dashboard_address": None}
+            way = ["--dask", stack.enter_context(distributed.LocalCluster(**options)).scheduler_address]
+        command = [sys.executable, "-m", "isomortar", "verify", "--cases", str(root), "--results", "out", *way]
+        process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
+        end = time.monotonic() + 120
+        while len(list(Path("out/cells").rglob("*.json"))) < 4 and time.monotonic() < end:
+            time.sleep(0.05)
+        assert measuring(folder)
+        begin = time.monotonic()
+        process.send_signal(signal.SIGINT)
+        assert process.wait(timeout=60) == 130
+        assert time.monotonic() - begin < 2.0
+        while measuring(folder) and time.monotonic() < begin + 10:
+            time.sleep(0.1)
+        assert not measuring(folder)
 
 
 IN_A_CHILD = """

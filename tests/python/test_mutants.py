@@ -162,7 +162,7 @@ def test_the_gate_stops_at_the_first_red_cell_and_asks_it_first_next_time(cells)
     assert [name for name, _ in bench.asked] == [red]
 
 
-@pytest.mark.parametrize("ending", ["crashed", "timed out", "raised", "skipped"])
+@pytest.mark.parametrize("ending", ["crashed", "timed out", "trouble", "refused", "skipped"])
 def test_whatever_does_not_pass_kills(cells, ending):
     assert gate(cells).attack(Oracle("mutants_family/dear", ending), FAULTY, "solid", (), math.inf).killer == "mutants_family/dear"
 
@@ -344,7 +344,7 @@ why = "no case of this folder sees it"
 """
 
 
-@pytest.mark.parametrize("ending", ["raised", "crashed", "timed out"])
+@pytest.mark.parametrize("ending", ["trouble", "refused", "crashed", "timed out"])
 def test_that_the_machine_failed_is_not_kept_of_the_sound_program(tmp_path, monkeypatch, ending):
     family = tmp_path / "cases" / f"mutants_{ending[:6]}"
     family.mkdir(parents=True)

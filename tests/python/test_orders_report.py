@@ -180,7 +180,7 @@ def test_refinement_against_elevation(plan):
 def test_a_failed_run_leaves_the_others(plan):
     runs = synthetic(plan, {})
     lost = plan.meshes("N1")[0]
-    runs[lost] = Measurement("raised", message="Traceback\n  ...\nisomortar.errors.ConvergenceError: load step 2 does not converge")
+    runs[lost] = Measurement("not converged", message="Traceback\n  ...\nisomortar.errors.ConvergenceError: load step 2 does not converge")
     found = analyse(plan, runs)
     assert [p.failure for p in found.failed] == ["load step 2 does not converge"]
     assert found.verdicts["N1"]["force"].why == "3 meshes; an order needs at least 4"

@@ -3,10 +3,6 @@
 from __future__ import annotations
 
 import functools
-import os
-import resource
-import signal
-import subprocess
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -18,12 +14,12 @@ import h5py
 import numpy as np
 
 from isomortar.geometry.patch import FloatArray
+from isomortar.harness.process import ONE_THREAD, Limits, Process
 
 #: What one run may take: seconds of the processor (of the clock a few times that, as the machine may be busy), bytes of address space.
 SECONDS, PATIENCE, MEMORY = 30, 10, 4 << 30
 #: Whatever kernel this process has found, the program that it starts finds too.
 _START = "import sys; sys.path[:] = {path!r}; sys.argv[0] = 'isomortar'; from isomortar.cli import main; main()"
-_ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "COLUMNS": "1000"}
 
 _program: tuple[str, ...] = ()
 
@@ -89,30 +85,14 @@ def _this_program() -> tuple[str, ...]:
 def _run(scene: str, command: tuple[str, ...], seconds: int, memory: int) -> Run:
     with TemporaryDirectory() as folder:
         (Path(folder) / "scene.toml").write_text(scene, encoding="utf-8")
-        try:
-            done = subprocess.run(
-                [*command, "run", "scene.toml", "--output", "results.h5", "--quiet"],
-                cwd=folder,
-                env=_ONE_THREAD | {name: value for name, value in os.environ.items() if name not in _ONE_THREAD},
-                stdout=subprocess.DEVNULL,
-                stderr=subprocess.PIPE,
-                timeout=PATIENCE * seconds,
-                preexec_fn=functools.partial(_limit, seconds, memory),
-                check=False,
-            )
-        except subprocess.TimeoutExpired:
-            return Run(None, f"no end after {PATIENCE * seconds} s")
-        if done.returncode == -signal.SIGXCPU:
-            return Run(None, f"no end after {seconds} s of the processor")
+        command = (*command, "run", "scene.toml", "--output", "results.h5", "--quiet")
+        with Process(command, Limits(seconds, memory), Path(folder), ONE_THREAD | {"COLUMNS": "1000"}) as process:
+            end, said = process.wait(PATIENCE * seconds), process.said()
+        if end.ending == "timed out":
+            return Run(None, end.words)
         held = _read(Path(folder) / "results.h5")
         steps = None if held is None else len(held["curves/step"])
-        return Run(done.returncode, done.stderr.decode(errors="replace"), held or {}, steps)
-
-
-def _limit(seconds: int, memory: int) -> None:
-    """In the process that is to be limited. Past its soft limit of time it is sent a signal."""
-    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 5))
-    resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
+        return Run(end.status, said, held or {}, steps)
 
 
 def _read(path: Path) -> dict[str, FloatArray] | None:

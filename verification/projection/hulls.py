@@ -69,8 +69,8 @@ def curvature(face: Surface, xi: FloatArray, span: FloatArray) -> float:
         for a in (0, 1):
             change = (face.tangents(xi + shift, a) - face.tangents(xi - shift, a)) / (2 * step[b])
             lengths = np.linalg.norm(tangents[a], axis=1) * np.linalg.norm(tangents[b], axis=1)
-            worst = max(worst, float(np.max(np.linalg.norm(change, axis=1) / lengths)))
-    return worst
+            worst = np.maximum(worst, np.max(np.linalg.norm(change, axis=1) / lengths))
+    return float(worst)
 
 
 @case(

@@ -106,7 +106,7 @@ def judge(cell: Cell, measurement: Measurement, lookup: Lookup) -> list[Check]:
     claims = cell.case.bounds_of(cell.settings)
     ending = measurement.ending
     if ending != "measured":
-        state: State = "failed" if ending == "raised" or ending == "not converged" else ending
+        state: State = "failed" if ending == "not converged" or ending == "refused" or ending == "trouble" else ending
         line = measurement.message.strip().splitlines()[-1] if measurement.message.strip() else ending
         return [Check(name, state, np.nan, _limit(claim), line, claim.reason) for name, claim in claims.items()]
     checks = []

@@ -15,13 +15,12 @@ from typing import Any, Literal
 import numpy as np
 
 from isomortar._process import give_back_memory
-from isomortar.errors import ConvergenceError
+from isomortar.errors import ConvergenceError, InputError
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness.cases import Cell, Curve, SkippedError, Words
 from isomortar.harness.orders import Convergence
+from isomortar.harness.process import Ending
 
-#: ``not converged``: what a scene says of itself. All that is ``raised`` besides may be the machine's.
-Ending = Literal["measured", "skipped", "not converged", "raised", "crashed", "timed out", "not measured"]
 #: Up to here double precision holds every whole number.
 LARGEST_WHOLE = 2**53
 #: A measured value as it is stored: number, nested list, Convergence, Curve or Words as a dict, None where there is none.
@@ -37,7 +36,7 @@ class Measurement:
     `sources`: hash of the program and of the case's files that the process found, on whatever machine.
     """
 
-    ending: Ending
+    ending: Ending | Literal["skipped", "not measured"]
     numbers: dict[str, Stored] = field(default_factory=dict)
     message: str = ""
     seconds: float = 0.0
@@ -64,7 +63,7 @@ def measure(cell: Cell) -> Measurement:
     forget_peak_memory()
     start, cpu_start = time.perf_counter(), used()
     numbers: dict[str, Stored] = {}
-    ending: Ending = "measured"
+    ending: Ending | Literal["skipped"] = "measured"
     message = ""
     try:
         numbers = _named(cell.case.function(**cell.settings))
@@ -72,8 +71,12 @@ def measure(cell: Cell) -> Measurement:
         ending, message = "skipped", str(skipped)
     except ConvergenceError:
         ending, message = "not converged", traceback.format_exc()
+    except InputError:
+        ending, message = "refused", traceback.format_exc()
+    except (MemoryError, OSError):
+        ending, message = "trouble", traceback.format_exc()
     except Exception:  # whatever a case raises is a failure of that cell, not of the run
-        ending, message = "raised", traceback.format_exc()
+        ending, message = "crashed", traceback.format_exc()
     seconds, cpu_seconds = time.perf_counter() - start, used() - cpu_start
     return Measurement(ending, numbers, message, seconds, cpu_seconds, peak_memory(), platform.node())
 

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor, as_completed
-from contextlib import ExitStack, contextmanager
+from concurrent.futures import Future, as_completed
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
 from isomortar.errors import InputError
 from isomortar.harness.cases import TIERS, Case, Cell, Tier
 from isomortar.harness.compare import Check, Lookup, State, judge, worst
+from isomortar.harness.crew import Crew
 from isomortar.harness.measurement import Measurement
 from isomortar.harness.store import Store, sources_hash
 from isomortar.harness.worker import Worker, task_of
@@ -72,11 +72,11 @@ class Measuring:
     def result(self, lookup: Lookup, store: Store) -> Result:
         """Wait for the measurement, keep it and judge it. Whatever goes wrong with it is a failure of this cell."""
         error = self.future.exception()
-        measurement = Measurement("crashed", message=f"{type(error).__name__}: {error}") if error else self.future.result()
-        answered = measurement.ending not in ("crashed", "timed out")
-        if self.fresh and answered and measurement.sources != sources_hash(self.cell.case):
+        measurement = Measurement("trouble", message=f"{type(error).__name__}: {error}") if error else self.future.result()
+        told = measurement.lasts or measurement.sources  # one that ended with its process told nothing
+        if self.fresh and told and measurement.sources != sources_hash(self.cell.case):
             words = f"{measurement.host} has other sources: not the kernel, the package or the case of this run"
-            measurement = Measurement("crashed", message=words)
+            measurement = Measurement("trouble", message=words)
         if self.fresh:
             store.put(self.cell, measurement)
         return Result(self.cell, measurement, tuple(judge(self.cell, measurement, lookup)), self.fresh)
@@ -118,20 +118,8 @@ def local_processes(jobs: int) -> Iterator[Submit]:
     """A pool of `jobs` measuring processes on this machine."""
     if jobs < 1:
         raise InputError(f"is {jobs}; at least one process is needed", "jobs")
-    mine = threading.local()
-    with ExitStack() as workers, ThreadPoolExecutor(jobs) as threads:
-
-        def measure(task: dict[str, Any]) -> Measurement:
-            if not hasattr(mine, "worker"):
-                mine.worker = workers.enter_context(Worker())
-            return mine.worker.measure(task)
-
-        try:
-            yield lambda task: threads.submit(measure, task)
-        except BaseException:
-            threads.shutdown(wait=False, cancel_futures=True)
-            workers.close()
-            raise
+    with Crew([Worker() for _ in range(jobs)]) as crew:
+        yield lambda task: crew.submit(Worker.measure, task)
 
 
 @contextmanager
@@ -151,11 +139,40 @@ def dask_cluster(address: str) -> Iterator[Submit]:
         client = Client(address, timeout="10s")  # type: ignore[no-untyped-call]
     except OSError as error:
         raise InputError(f"no Dask scheduler answers at {address}: {error}", "dask") from None
-    with client, ThreadPoolExecutor(max_workers=64) as waiters:
-        yield lambda task: waiters.submit(client.submit(_measure_alone, task, pure=False).result)
+    sent = []  # kept, as the scheduler drops what nobody holds
+
+    def submit(task: dict[str, Any]) -> Future[Measurement]:
+        answer: Future[Measurement] = Future()
+        sent.append(client.submit(_measure_alone, task, pure=False))
+        sent[-1].add_done_callback(lambda done: _settle(answer, done))  # type: ignore[no-untyped-call]
+        return answer
+
+    with client:
+        try:
+            yield submit
+        except BaseException:  # Ctrl-C too: nothing goes on measuring behind
+            client.cancel(sent, force=True)  # type: ignore[no-untyped-call]
+            raise
+
+
+def _settle(answer: Future[Measurement], done: Any) -> None:
+    """Hand over what a future of Dask's came to."""
+    try:
+        answer.set_result(done.result())
+    except Exception as error:  # of the cluster: a worker that is gone, a task that was cancelled
+        answer.set_exception(error)
 
 
 def _measure_alone(task: dict[str, Any]) -> Measurement:
-    """On a Dask worker: a cell in a process of its own, whose crash leaves the Dask worker alive."""
+    """On a Dask worker: a cell in a process of its own, whose crash leaves the Dask worker alive, until the task is cancelled."""
+    from distributed import get_worker
+
+    here = get_worker()
+    key = here.get_current_task()
+
+    def wanted() -> bool:
+        known = here.state.tasks.get(key)
+        return known is not None and known.state == "executing"
+
     with Worker() as worker:
-        return worker.measure(task)
+        return worker.measure(task, wanted)

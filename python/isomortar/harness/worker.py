@@ -6,32 +6,27 @@ standard output.
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import queue
-import select
-import signal
-import subprocess
 import sys
-import tempfile
 import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
 from types import TracebackType
 from typing import Any
 
 from isomortar._process import own_process
+from isomortar.errors import IsomortarError
 from isomortar.harness.cases import TIMEOUTS, Cell
 from isomortar.harness.measurement import Measurement
+from isomortar.harness.process import GRACE, Limits, Process
 
 #: What starts a measuring process.
 COMMAND = (sys.executable, "-m", "isomortar.harness.worker")
-#: Lines of the standard error that a crash is reported with.
-_LAST_WORDS = 30
-#: Cores go to cells; who wants another share of them says so.
-_ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 
 
 def task_of(cell: Cell) -> dict[str, Any]:
@@ -40,84 +35,69 @@ def task_of(cell: Cell) -> dict[str, Any]:
 
 
 class Worker:
-    """A measuring process, started by `command` when it is first needed and again after it died. A context manager."""
+    """A measuring process, started by `command` when it is first needed and again after it ended. A context manager.
 
-    def __init__(self, command: Sequence[str] = COMMAND) -> None:
-        self._command = command
-        self._process: subprocess.Popen[bytes] | None = None
-        self._errors = tempfile.TemporaryFile()  # noqa: SIM115 (closed in __exit__)
+    It may be left while another thread waits for a measurement: that one is given up.
+    """
+
+    def __init__(self, command: Sequence[str] = COMMAND, limits: Limits | None = None) -> None:
+        self._command, self._limits = command, limits
+        self._process: Process | None = None
+        self._closed = False
+        self._starting, self._measuring = threading.Lock(), threading.Lock()
 
     def __enter__(self) -> Worker:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None) -> None:
-        self._end()
-        self._errors.close()
+        with self._starting:
+            self._closed = True
+            if self._process:
+                self._process.kill()
+        self.restart()
 
-    def measure(self, task: dict[str, Any]) -> Measurement:
-        """Measure a cell within its time."""
-        start = time.perf_counter()
-        process = self._started()
-        try:
-            answer = _ask(process, json.dumps(task).encode() + b"\n", task["seconds"])
-        except BrokenPipeError:
-            answer = b""
-        seconds = time.perf_counter() - start
-        if answer:
-            return Measurement(**json.loads(answer))
-        self._end()
-        if answer is None:
-            return Measurement("timed out", message=f"no result after {task['seconds']:.0f} s", seconds=seconds)
-        return Measurement("crashed", message=f"{self._last_words()}\n{_how_it_ended(process.returncode)}", seconds=seconds)
+    def restart(self) -> None:
+        """Let the next measurement begin with a new process."""
+        with self._measuring:
+            self._drop()
 
-    def _started(self) -> subprocess.Popen[bytes]:
-        if self._process is None:
-            self._errors.truncate(0)
-            pipe = subprocess.PIPE
-            # In a session of its own: Ctrl-C is for the run, which ends it; a process that dies by itself counts as crashed.
-            self._process = subprocess.Popen(
-                self._command, stdin=pipe, stdout=pipe, stderr=self._errors, env=_ONE_THREAD | os.environ, start_new_session=True
-            )
-        return self._process
+    def measure(self, task: dict[str, Any], wanted: Callable[[], bool] = lambda: True) -> Measurement:
+        """Measure a cell within its time, as long as it is `wanted`.
 
-    def _end(self) -> None:
+        Raises
+        ------
+        IsomortarError
+            It was given up: that its process ended then says nothing about it.
+        """
+        with self._measuring:
+            start = time.perf_counter()
+            process = self._started()
+            answer: bytes | None = b""
+            with contextlib.suppress(BrokenPipeError):
+                process.send(json.dumps(task).encode())
+                answer = process.line(task["seconds"], wanted)
+            if answer:
+                return Measurement(**json.loads(answer))
+            seconds = time.perf_counter() - start
+            end = process.wait(GRACE) if answer is not None else None
+            self._drop()
+            if self._closed or not wanted():
+                raise IsomortarError("the measurement was given up")
+            if end is None:
+                return Measurement("timed out", message=f"no result after {task['seconds']:.0f} s", seconds=seconds)
+            return Measurement("trouble" if end.ending == "trouble" else "crashed", message=end.words, seconds=seconds)
+
+    def _started(self) -> Process:
+        with self._starting:
+            if self._closed:
+                raise IsomortarError("the measurement was given up")
+            self._process = self._process or Process(self._command, self._limits)
+            return self._process
+
+    def _drop(self) -> None:
         process, self._process = self._process, None
         if process:
-            process.kill()
-            process.wait()
-            for pipe in (process.stdin, process.stdout):
-                if pipe:
-                    pipe.close()
-
-    def _last_words(self) -> str:
-        self._errors.seek(0)
-        return "\n".join(self._errors.read().decode(errors="replace").splitlines()[-_LAST_WORDS:])
-
-
-def _ask(process: subprocess.Popen[bytes], line: bytes, seconds: float) -> bytes | None:
-    assert process.stdin is not None
-    assert process.stdout is not None
-    process.stdin.write(line)
-    process.stdin.flush()
-    return _line(process.stdout.fileno(), seconds)
-
-
-def _line(descriptor: int, seconds: float) -> bytes | None:
-    """A line of a pipe; empty at its end, None when it took too long."""
-    received = b""
-    deadline = time.monotonic() + seconds
-    while not received.endswith(b"\n"):
-        if not select.select([descriptor], [], [], max(0.0, deadline - time.monotonic()))[0]:
-            return None
-        piece = os.read(descriptor, 1 << 16)
-        if not piece:
-            return b""
-        received += piece
-    return received
-
-
-def _how_it_ended(code: int) -> str:
-    return f"the process was ended by {signal.Signals(-code).name}" if code < 0 else f"the process ended with status {code}"
+            process.close()
 
 
 def _serve() -> None:

@@ -13,7 +13,7 @@ from statistics import median
 from typing import Any
 
 from isomortar.harness.bench.declaration import REPEATS, SHORT
-from isomortar.harness.bench.processes import ONE_THREAD
+from isomortar.harness.process import ONE_THREAD
 
 #: The interpreter that Debian's Python packages belong to, GetFEM among them.
 DEBIAN_PYTHON = "/usr/bin/python3"

@@ -69,9 +69,8 @@ def limits() -> Limits:
     """Measure in a process of its own, with one thread."""
     from isomortar.harness.bench.processes import fresh
 
-    with fresh(["-m", __name__]) as process:
-        said, _ = process.communicate()
-    return Limits(**json.loads(said))
+    with fresh("-m", __name__) as process:
+        return Limits(**json.loads(process.line() or b""))
 
 
 if __name__ == "__main__":

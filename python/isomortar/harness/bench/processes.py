@@ -8,26 +8,19 @@ from __future__ import annotations
 
 import json
 import os
-import subprocess
 import sys
-import tempfile
 import time
 import traceback
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from isomortar._process import own_process
 from isomortar.harness.bench.declaration import Benchmark, Row
 from isomortar.harness.measurement import peak_memory
-
-#: One thread each: OpenBLAS, OpenMP, MKL.
-ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
-#: Lines of the standard error that a crash is reported with.
-_LAST_WORDS = 30
+from isomortar.harness.process import GRACE, ONE_THREAD, Process
 
 
 @dataclass(frozen=True)
@@ -53,42 +46,24 @@ class Outcome:
         return bool(self.cost.message) or not self.rows
 
 
-def fresh(arguments: Sequence[str], errors: Any = None) -> subprocess.Popen[str]:
-    """A Python process with one thread, whose standard output can be read.
-
-    Parameters
-    ----------
-    arguments : sequence of str
-        Of the interpreter.
-    errors : file, optional
-        Takes the standard error.
-    """
-    return subprocess.Popen(
-        [sys.executable, *arguments], env={**os.environ, **ONE_THREAD}, stdout=subprocess.PIPE, stderr=errors, text=True
-    )
+def fresh(*arguments: str) -> Process:
+    """A Python process with one thread, given arguments of the interpreter."""
+    return Process([sys.executable, *arguments], environment=ONE_THREAD)
 
 
 def run(benchmark: Benchmark, quick: bool, found: Callable[[Row], None]) -> Outcome:
     """Run a benchmark in a process of its own; `found` is told of every row as it comes."""
     rows: list[Row] = []
     cost: Cost | None = None
-    with tempfile.TemporaryFile("w+") as errors:
-        arguments = ["-m", __name__, str(benchmark.path), benchmark.name, *(["quick"] if quick else [])]
-        with fresh(arguments, errors) as process:
-            try:
-                for line in process.stdout or ():
-                    entry = json.loads(line)
-                    if "cost" in entry:
-                        cost = Cost(**entry["cost"])
-                    else:
-                        rows.append(entry["row"])
-                        found(rows[-1])
-            except BaseException:  # Ctrl-C too: nothing goes on measuring behind
-                process.kill()
-                raise
-        errors.seek(0)
-        words = "\n".join(errors.read().splitlines()[-_LAST_WORDS:])
-    return Outcome(benchmark, tuple(rows), cost or Cost(message=f"{words}\nthe process ended with status {process.returncode}".strip()))
+    with fresh("-m", __name__, str(benchmark.path), benchmark.name, *(["quick"] if quick else [])) as process:
+        while line := process.line():
+            entry = json.loads(line)
+            if "cost" in entry:
+                cost = Cost(**entry["cost"])
+            else:
+                rows.append(entry["row"])
+                found(rows[-1])
+        return Outcome(benchmark, tuple(rows), cost or Cost(message=process.wait(GRACE).words))
 
 
 def measure(benchmark: Benchmark, quick: bool, found: Callable[[Row], None]) -> Cost:

@@ -13,16 +13,14 @@ import isomortar
 from isomortar.errors import IsomortarError
 from isomortar.harness.cases import Cell
 from isomortar.harness.measurement import Measurement
+from isomortar.harness.process import Limits
 from isomortar.harness.worker import Worker, task_of
 
 #: Most memory of a measuring process, bytes: a fault in a size must not take the machine down.
 _MEMORY = 8 << 30
 #: Starts a worker on the package of a bench. With `-S`: the import hook of an editable install would come first.
 _START = """
-import os, resource, runpy, sys
-resource.setrlimit(resource.RLIMIT_AS, ({memory}, {memory}))
-resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+import runpy, sys
 sys.dont_write_bytecode = True  # two faults of one second and size would be taken for one
 sys.path.insert(0, {package!r})
 sys.path.extend({installed!r})
@@ -66,17 +64,16 @@ class Bench:
         self._frozen, self._cases, self._folder = package, cases.resolve(), folder.resolve()
         self._program: Path | None = None
         self._laid: list[Path] = []
-        self._worker: Worker | None = None
-        self._closed = False
         shutil.rmtree(folder, ignore_errors=True)
         shutil.copytree(package, folder / "isomortar")
+        start = _START.format(package=str(self._folder), installed=[path for path in sys.path if path])
+        self._worker = Worker((sys.executable, "-S", "-c", start), Limits(memory=_MEMORY))
 
     def __enter__(self) -> Bench:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None) -> None:
-        self._closed = True
-        self._end()
+        self._worker.__exit__(kind, value, trace)
 
     def measure(self, program: Path, cell: Cell, seconds: float) -> Measurement:
         """Measure a cell on a program, a folder of files that take the place of the package's, within a time.
@@ -86,13 +83,9 @@ class Bench:
         IsomortarError
             The bench was closed meanwhile: that its process died then says nothing about the program.
         """
-        if self._worker is None or program != self._program:
-            self._worker, self._program = self._started(program), program
-        task = task_of(cell) | {"path": str(self._copy_of(cell.case.path)), "seconds": seconds}
-        measurement = self._worker.measure(task)
-        if self._closed:
-            raise IsomortarError("the measurement was given up")
-        return measurement
+        if program != self._program:
+            self._lay_out(program)
+        return self._worker.measure(task_of(cell) | {"path": str(self._copy_of(cell.case.path)), "seconds": seconds})
 
     def _copy_of(self, path: Path) -> Path:
         """The frozen copy of a case's file; a case of the package stands in the bench's own."""
@@ -100,21 +93,15 @@ class Bench:
             return self._folder / "isomortar" / path.relative_to(_PACKAGE)
         return self._cases / path.parent.name / path.name
 
-    def _end(self) -> None:
-        if self._worker:
-            self._worker.__exit__(None, None, None)
-
-    def _started(self, program: Path) -> Worker:
-        """A worker with a program; the one before is ended, and its files are replaced by sound ones."""
-        self._end()
+    def _lay_out(self, program: Path) -> None:
+        """Let a program be the one that is measured; the files of the one before are replaced by sound ones."""
+        self._worker.restart()
         for file in self._laid:
             self._lay(self._frozen, file)
         self._laid = [path.relative_to(program) for path in program.rglob("*") if path.is_file()]
         for file in self._laid:
             self._lay(program, file)
-        installed = [path for path in sys.path if path]
-        start = _START.format(memory=_MEMORY, package=str(self._folder), installed=installed)
-        return Worker((sys.executable, "-S", "-c", start))
+        self._program = program
 
     def _lay(self, program: Path, file: Path) -> None:
         """Put a file of a program into the package."""

@@ -13,13 +13,13 @@ from types import TracebackType
 from isomortar.errors import InputError
 from isomortar.harness.cases import TIMEOUTS, Cell
 from isomortar.harness.compare import Lookup, judge
+from isomortar.harness.crew import Crew
 from isomortar.harness.mutants.bench import Bench, freeze
 from isomortar.harness.mutants.build import content, workshop_of
 from isomortar.harness.mutants.faults import Fault
 from isomortar.harness.mutants.gate import Gate, Verdict
 from isomortar.harness.mutants.journal import Journal
 from isomortar.harness.mutants.layers import Layer
-from isomortar.harness.mutants.pool import Pool
 from isomortar.harness.report import sentence
 from isomortar.harness.store import cell_key
 
@@ -91,13 +91,13 @@ class Campaign:
         self._workshop = workshop_of(layer, project, folder)
         package, frozen = freeze(cases, folder / "frozen")
         self._keys = {cell.name: cell_key(cell, self._workshop.rest)[:20] for cell in cells}
-        self._pool = Pool(package, frozen, folder, jobs)
+        self._crew = Crew([Bench(package, frozen, folder / f"bench{i + 1}") for i in range(jobs)])
 
     def __enter__(self) -> Campaign:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None) -> None:
-        self._pool.__exit__(kind, value, trace)
+        self._crew.__exit__(kind, value, trace)
 
     def run(self, planted: Sequence[Fault], drawn: Iterable[Fault], sample: int, most: float) -> Outcome:
         """Attack the planted faults with the whole gate, and the first `sample` of those drawn that are distinct.
@@ -140,7 +140,7 @@ class Campaign:
             return known["seconds"], known["red"]
 
         seconds, unused = {}, []
-        for i, (cell, (taken, red)) in enumerate(self._pool.work(measured, self._cells)):
+        for i, (cell, (taken, red)) in enumerate(self._crew.each(measured, self._cells)):
             self._progress("the gate on the sound program", i + 1, len(self._cells))
             if red:
                 unused.append(f"{cell.name}: {red}")
@@ -155,7 +155,7 @@ class Campaign:
         found = 0
         if not count:
             return
-        for fault, program in self._pool.work(self._program_of, faults):
+        for fault, program in self._crew.each(self._program_of, faults):
             reason = _REJECTED if program is None else known.get(program)
             if program is None or reason:
                 dropped[str(reason)] += 1
@@ -193,7 +193,7 @@ class Campaign:
             return verdict
 
         survivors = 0
-        for i, ((fault, _), verdict) in enumerate(self._pool.work(attack, programs)):
+        for i, ((fault, _), verdict) in enumerate(self._crew.each(attack, programs)):
             survivors += verdict.killer is None
             self._progress(f"attacking faulty programs, {survivors} survived", i + 1, len(programs))
             yield Attacked(fault, verdict, gate.is_whole(verdict))
