@@ -10,6 +10,7 @@ import pytest
 from isomortar.errors import ConvergenceError
 from isomortar.scene import Scene
 from isomortar.solve.equilibrium import Equilibrium
+from isomortar.solve.record import Observer
 from isomortar.solve.simulation import Simulation
 from isomortar.solve.singular import Multipliers, explain
 from isomortar.solve.timing import Ledger
@@ -27,6 +28,20 @@ def error(text: str, *overrides: str) -> str:
     with pytest.raises(ConvergenceError) as caught:
         list(Simulation(Scene.from_toml(text, overrides=overrides).problem()).run())
     return str(caught.value)
+
+
+class Heard(Observer):
+    """Keeps warnings, and why increments were cut."""
+
+    def __init__(self) -> None:
+        self.said: list[str] = []
+        self.reasons: list[str] = []
+
+    def warned(self, message: str) -> None:
+        self.said.append(message)
+
+    def cut(self, step: int, time: float, increment: float, reason: str) -> None:
+        self.reasons.append(reason)
 
 
 def explained(directions: list[int], multipliers: list[int], found: int = 1) -> str:
@@ -92,7 +107,6 @@ stages = [{ name = "press", steps = 1, motions.top.translate = [-0.05, 0, -0.05]
 @pytest.mark.parametrize(
     ("overrides", "both"),
     [
-        ([], ("floor", "wall")),  # what sticks in the corner has six conditions for three components
         (["contacts.wall.slave='block.w0'", "contacts.wall.plane={ point = [1, 0, 0] }"], ("floor", "wall")),  # the same plane twice
     ],
 )
@@ -100,6 +114,57 @@ def test_conditions_of_two_contacts_on_the_same_control_points(overrides: list[s
     said = error(CORNER, *overrides)
     assert all(f"contact '{name}'" in said for name in both), said
     assert "slave control points are slave control points of contact" in said
+
+
+@pytest.mark.parametrize("friction", [0.2, 2.0])
+@pytest.mark.parametrize("elements", [[2, 2, 2], [3, 3, 2]])
+def test_a_corner_whose_support_pushes_its_edge_into_the_wall_says_so(elements: list[int], friction: float) -> None:
+    """Too few control points are free to keep the wall's face where its held edge does not let it be."""
+    scene = Scene.from_toml(CORNER, overrides=[f"bodies.block.mesh.elements={elements}", f"contacts.wall.friction={friction}"]).problem()
+    heard = Heard()
+    try:
+        list(Simulation(scene, heard).run())
+    except ConvergenceError as stopped:
+        heard.reasons.append(str(stopped))
+    assert any("behind the plane, by 0.05 at the end of stage 'press', and those cannot give way" in told for told in heard.said)
+    assert not any("slave control points of contact" in reason for reason in heard.reasons), heard.reasons
+
+
+STICKING = CORNER.replace("[-0.05, 0, -0.05]", "MOTION").replace("max_cuts = 1", "max_cuts = 0")
+
+
+@pytest.mark.parametrize(
+    ("elements", "friction", "motion"),
+    [
+        ([3, 3, 2], 0.5, [0.0, 0.0, -0.05]),
+        ([3, 3, 2], 0.9, [0.0, 0.0, -0.05]),
+        ([3, 3, 2], 0.9, [0.0, 0.03, -0.05]),
+        ([2, 2, 2], 0.9, [0.0, 0.0, -0.05]),
+        ([2, 2, 2], 0.5, [0.0, 0.03, -0.05]),
+    ],
+)
+def test_a_corner_that_sticks_to_two_planes(elements: list[int], friction: float, motion: list[float]) -> None:
+    """Six conditions for three components at the edge: all of them hold, forces are in balance, and what is left open is told."""
+    overrides = [f"contacts.{name}.friction={friction}" for name in ("floor", "wall")] + [f"bodies.block.mesh.elements={elements}"]
+    observer = Heard()
+    simulation = Simulation(Scene.from_toml(STICKING.replace("MOTION", str(motion)), overrides=overrides).problem(), observer)
+    start = simulation.state
+    (result,) = simulation.run()
+    for pair, before, found, state in zip(
+        simulation.equilibrium.pairs, start.contacts, result.contacts, result.state.contacts, strict=True
+    ):
+        control = pair.kinematics(result.state.positions, before).control
+        sticks, active = found.status == 1, found.status > 0
+        assert np.abs(control.gap[active] / control.weight[active]).max() <= 1e-9
+        assert np.abs(control.slip[sticks] / control.weight[sticks, None]).max(initial=0.0) <= 1e-9
+        cone = friction * state.pressure + 1e-8 * np.linalg.norm(state.pressure)  # solver.complementarity_tolerance
+        assert np.all(found.traction_norm <= cone)
+        assert np.all(state.pressure >= 0.0)
+    total = sum(found.force_slave for found in result.contacts)
+    assert np.abs(total - result.reactions[0].force).max() <= 1e-8
+    floor, wall = (found.status[pair.shared] for pair, found in zip(simulation.equilibrium.pairs, result.contacts, strict=True))
+    stuck = np.count_nonzero((floor > 0) & (wall > 0) & ((floor == 1) | (wall == 1)))
+    assert [f"{stuck} slave control points" in told for told in observer.said] == [True] * bool(stuck)
 
 
 def test_a_corner_without_friction_is_no_such_thing() -> None:

@@ -39,7 +39,8 @@ class RecordingPair(PairMechanics):
     """A contact pair that notes, in a list that all pairs share, every state it evaluates."""
 
     def __init__(self, pair: PairMechanics, problem: Problem, simulation: Simulation, notes: list[Note]) -> None:
-        super().__init__(pair.pair, problem.settings, simulation.ledger, simulation.equilibrium.origin)
+        others = [other.pair for other in simulation.equilibrium.pairs if other.pair is not pair.pair]
+        super().__init__(pair.pair, problem.settings, simulation.ledger, simulation.equilibrium.origin, others)
         self._notes = notes
 
     def kinematics(self, positions: FloatArray, start: ContactState) -> Kinematics:

@@ -21,6 +21,10 @@ from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.singular import Multipliers
 from isomortar.solve.system import Source, block_product
 
+#: What a traction resists its own change where its slave control point is one of another contact as well: what sticks to both has six
+#: conditions for three components. The redundant ones then stay as they are (theory 6.4); the conditions are the same.
+SHARED = 1e-6
+
 
 @dataclass(frozen=True)
 class Correction:
@@ -68,6 +72,7 @@ class Border:
         slope = self.target.traction_slope[active]  # (control points, pressure | trial | metric, component)
         own[active, 1:, 0] = -slope[:, 0]
         own[active, 1:, 1:] -= slope[:, 1:3].transpose(0, 2, 1)
+        own[active & self.pair.shared, 1:, 1:] += SHARED * np.eye(2)
         return own
 
     def trial_change(self, correction: FloatArray) -> FloatArray:

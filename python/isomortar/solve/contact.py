@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -76,9 +76,15 @@ def largest(distances: Iterable[tuple[float, float]]) -> tuple[float, float]:
 
 
 class PairMechanics:
-    """A contact pair with what stays for a whole computation."""
+    """A contact pair with what stays for a whole computation.
 
-    def __init__(self, pair: Pair, settings: SolverSettings, ledger: Ledger, origin: FloatArray) -> None:
+    Attributes
+    ----------
+    shared : ndarray of bool, shape (slave control points,)
+        Those that are slave control points of another pair as well.
+    """
+
+    def __init__(self, pair: Pair, settings: SolverSettings, ledger: Ledger, origin: FloatArray, others: Sequence[Pair]) -> None:
         self.pair = pair
         self._feet = Feet(pair, origin)
         self.friction = pair.contact.friction
@@ -87,6 +93,7 @@ class PairMechanics:
         n = len(pair.slave.point)
         self.diagonal = Pattern(np.arange(n + 1, dtype=np.int32), np.arange(n, dtype=np.int32))
         self.held = nothing_held(pair)
+        self.shared = np.isin(pair.slave.point, [point for other in others for point in other.slave.point])
         self._ledger = ledger
         self._kinds = ROW_KINDS["frictionless" if self.friction <= 0 else ("paper" if self.summed else "local")]
 

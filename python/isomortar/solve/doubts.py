@@ -10,10 +10,12 @@ import numpy as np
 from isomortar.errors import FoldedElementError
 from isomortar.geometry.patch import MAX_ORDER
 from isomortar.model.contrasts import element_lengths
-from isomortar.model.entities import Body, Contact, Face, Problem, RigidPlane, Support
+from isomortar.model.entities import Body, Contact, Face, Problem, RigidPlane, Support, unit
 from isomortar.model.memory import memory_needed, memory_of_machine
+from isomortar.model.numbering import Numbering
 from isomortar.model.rational import QUADRATURE_TOLD, quadrature_error, too_few_points
 from isomortar.model.stance import Stance, stance
+from isomortar.model.supports import Supports
 from isomortar.solve.record import State
 
 #: An overlap of less than this share of the thinner body may be round-off of the geometry; what is more is told.
@@ -22,6 +24,8 @@ TOLD_OVERLAP = 0.02
 NEAR = 0.5
 #: Faces whose sizes (square roots of their areas) differ by more were given in different units, most likely.
 SIZE_RATIO = 100.0
+#: Share of a unit vector, or of a body's size, that is round-off.
+BESIDE = 1e-6
 #: Coefficients of friction above this one were meant in per cent, or to make things stick.
 HIGH_FRICTION = 10.0
 #: Bulk over shear modulus above which elements of order 1 lock; a tenfold of it for every order more (docs/method.md).
@@ -50,6 +54,7 @@ def doubts(problem: Problem, state: State) -> Iterator[str]:
     for support in problem.supports:
         yield from _far_steps(problem, support)
         yield from _idle_motions(problem, support)
+    yield from _pushed_in(problem)
     stances = [stance(problem, contact) for contact in problem.contacts]
     travel = _travel(problem)
     if travel == 0.0 and not any(_overlaps(found) for found in stances):
@@ -119,6 +124,26 @@ def _idle_motions(problem: Problem, support: Support) -> Iterator[str]:
                 f"support {support.name!r} is to move along {', '.join(idle)} in stage {stage.name!r}, but prescribes only {held}: "
                 "that motion does nothing"
             )
+
+
+def _pushed_in(problem: Problem) -> Iterator[str]:
+    """Slave control points that supports put behind a rigid plane: they cannot give way."""
+    numbering = Numbering(problem)
+    supports = Supports(problem, numbering)
+    for contact in problem.contacts:
+        if isinstance(contact.master, RigidPlane):
+            body, normal = problem.body(contact.slave.body), unit(contact.master.normal)
+            points = np.unique(numbering.points[body.name][body.patch.face_points(contact.slave.face)])
+            points = points[np.all(supports.held[points] | (np.abs(normal) < BESIDE), axis=1)]
+            ends = np.cumsum([stage.steps for stage in problem.stages])
+            depths = [-((supports.place(float(end))[points] - contact.master.point) @ normal).min(initial=np.inf) for end in ends]
+            if max(depths) > BESIDE * body.size:
+                stage = problem.stages[int(np.argmax(depths))].name
+                yield (
+                    f"contact {contact.name!r}: supports put {len(points)} of its slave control points behind the plane, by "
+                    f"{max(depths):.3g} at the end of stage {stage!r}, and those cannot give way. Hold fewer components, or end the motion "
+                    "at the plane"
+                )
 
 
 def _seam(body: Body) -> Iterator[str]:

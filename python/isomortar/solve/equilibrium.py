@@ -73,7 +73,10 @@ class Equilibrium:
         self.supports = Supports(problem, self.numbering)
         self.solid = Solid(problem, self.numbering)
         self.measures = BodyMeasures(self.numbering, self.supports, self.solid)
-        self.pairs = [PairMechanics(Pair(c, problem, self.numbering), problem.settings, ledger, self.origin) for c in problem.contacts]
+        pairs = [Pair(c, problem, self.numbering) for c in problem.contacts]
+        self.pairs = [
+            PairMechanics(pair, problem.settings, ledger, self.origin, pairs[:k] + pairs[k + 1 :]) for k, pair in enumerate(pairs)
+        ]
         self.solid_source = Source(self.solid.pattern, self.supports.equation, self.supports.equation)
         self._solid_entries: sparse.csr_array | None = None
         self._system: LinearSystem | None = None

@@ -21,6 +21,7 @@ from isomortar.solve.method import Increment, Method
 from isomortar.solve.monolithic import Monolithic
 from isomortar.solve.pulling import Pulling
 from isomortar.solve.record import AugmentationRecord, ContactResult, Observer, Reaction, State, StepResult
+from isomortar.solve.sharing import Sharing
 from isomortar.solve.timing import Ledger
 from isomortar.solve.uzawa import Uzawa
 
@@ -67,7 +68,7 @@ class Simulation:
         self.equilibrium = Equilibrium(problem, self.ledger)
         self._observer = observer or Observer()
         self._method = _METHODS[problem.settings.method](self.equilibrium, self._observer)
-        self._lost, self._pulling = LostDigits(self.equilibrium), Pulling(self.equilibrium)
+        self._lost, self._pulling, self._sharing = LostDigits(self.equilibrium), Pulling(self.equilibrium), Sharing(self.equilibrium)
         self._step = resume_from.step if resume_from else 0
         self._increment = resume_from.next_increment if resume_from else 1.0
         self.equilibrium.orderings = dict(resume_from.orderings) if resume_from else {}
@@ -123,6 +124,7 @@ class Simulation:
         result = self._result(step, state, parts[-1].balance, tuple(log), orders, substeps, cuts)
         self._warn(self._lost.after_step(parts[-1].balance, result))
         self._warn(self._pulling.after_step(parts[-1].balance, step))
+        self._warn(self._sharing.after_step(result))
         return result
 
     def _advance(self, state: State, time: float, target: float, step: int) -> list[Increment]:

@@ -50,15 +50,17 @@ def explain(
     motion = np.zeros(positions.size)
     motion[free] = null[: len(free)]
     moved = motion.reshape(-1, 3)
+    held = np.ones(positions.size, dtype=np.bool_)
+    held[free] = False
     if shares and max(float(np.abs(share).max()) for share in shares) > np.abs(moved).max():
         largest = int(np.argmax([np.abs(share).max() for share in shares]))
-        return _repeated(said, contacts[largest], np.flatnonzero(shares[largest] > _PART * shares[largest].max()), contacts)
+        return _repeated(said, contacts[largest], np.flatnonzero(shares[largest] > _PART * shares[largest].max()), contacts, held)
     place, sentence = _rigid(moved, positions, numbering)
     for contact in contacts if not sentence else ():
         active = _active(contact)
         there, total = _points_around(contact, active)
         if 2 * there < total:
-            return _repeated(said, contact, active, contacts)
+            return _repeated(said, contact, active, contacts, held)
     return SingularSystemError(f"{said}: {sentence or _soft(place, numbering)}", place)
 
 
@@ -82,8 +84,11 @@ def _points_around(contact: Multipliers, among: NDArray[np.intp]) -> tuple[int, 
     return int(np.count_nonzero(around)), around.size
 
 
-def _repeated(said: str, contact: Multipliers, among: NDArray[np.intp], contacts: Sequence[Multipliers]) -> SingularSystemError:
+def _repeated(
+    said: str, contact: Multipliers, among: NDArray[np.intp], contacts: Sequence[Multipliers], held: NDArray[np.bool_]
+) -> SingularSystemError:
     """Contact conditions without effect: too few points on the master, or too few unknowns that they bear on."""
+    prescribed = int(np.count_nonzero(held.reshape(-1, 3)[contact.pair.pair.slave.point[among]].any(axis=1)))
     there, total = _points_around(contact, among)
     where = f"contact {contact.pair.pair.contact.name!r}: the conditions of {len(among)} slave control points, the first of them {among[0]}"
     others = {other.pair.pair.contact.name: _shared(contact, among, other) for other in contacts if other is not contact}
@@ -93,6 +98,12 @@ def _repeated(said: str, contact: Multipliers, among: NDArray[np.intp], contacts
             f"rest on {there} of the {total} quadrature points around them; the others are beside the master. Use a larger master, end the "
             "motion earlier, or bring the slave onto its master from above"
         )
+    elif prescribed:
+        reason = (
+            f"repeat what supports prescribe: {prescribed} of these control points are held by supports, and the others cannot make good "
+            "what is prescribed there. Keep supports off the edge of the contact face, hold fewer components, or do not move the edge into "
+            "the master"
+        )
     elif others.get(twice):
         reason = (
             f"repeat others: {others[twice]} of the slave control points are slave control points of contact {twice!r} as well, and "
@@ -100,10 +111,7 @@ def _repeated(said: str, contact: Multipliers, among: NDArray[np.intp], contacts
             'the two contacts, remove one, keep their faces apart, or try solver.method = "uzawa"'
         )
     else:
-        reason = (
-            "repeat each other; the slave may be finer and stiffer than its master (swap the two, or refine the master), or both may be "
-            "held by supports there (hold fewer components)"
-        )
+        reason = "repeat each other; the slave may be finer and stiffer than its master: swap the two, or refine the master"
     return SingularSystemError(f"{said}. {where}, {reason}", int(among[0]))
 
 
