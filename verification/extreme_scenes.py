@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from extremes.runs import Run, run
+from extremes.trials import Trial, run
 from scipy.optimize import brentq
 
 from isomortar.scene.source import dump, parse
@@ -36,7 +36,7 @@ def changed(data: Data, changes: Data) -> Data:
     return data
 
 
-def ran(data: Data, **limits: int) -> Run:
+def ran(data: Data, **limits: int) -> Trial:
     """The run of a scene given as data."""
     return run(dump(data), **limits)
 

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from extremes import page, points
 from extremes.points import Earlier, point_of
-from extremes.runs import program
+from extremes.trials import program
 
 from isomortar.harness.cases import Cell
 from isomortar.harness.collection import collect

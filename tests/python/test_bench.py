@@ -17,8 +17,8 @@ from isomortar.harness.bench import ASIDE, Plot, Row, benchmark, cpu_seconds, hi
 from isomortar.harness.bench.collection import collect, select
 from isomortar.harness.bench.declaration import Benchmark
 from isomortar.harness.bench.page import slope
-from isomortar.harness.bench.processes import Cost, Outcome, measure, run
-from isomortar.harness.bench.verdicts import verdicts
+from isomortar.harness.bench.processes import Answer, Cost, measure, run
+from isomortar.harness.bench.standings import standings
 
 COLUMNS = {"kind": "", "unknowns": "", "time": "ms"}
 
@@ -98,12 +98,12 @@ def test_a_row_must_fit_its_columns(row: Row) -> None:
 def test_a_process_of_its_own_gives_the_rows(cases: Path) -> None:
     crashing, steady = collect(cases)
     told: list[Row] = []
-    outcome = run(steady, True, told.append)
-    assert outcome.rows == tuple(told)
+    answer = run(steady, True, told.append)
+    assert answer.rows == tuple(told)
     assert len(told) == 5
     assert told[-1] == {"kind": "1", "note": "apt-get install other"}
-    assert not outcome.failed
-    assert outcome.cost.peak_memory > 1e6
+    assert not answer.failed
+    assert answer.cost.peak_memory > 1e6
     crashed = run(crashing, True, told.append)
     assert crashed.rows == ({"n": 1},)
     assert "the last words" in crashed.cost.message
@@ -123,8 +123,8 @@ def test_names_select(cases: Path) -> None:
 def test_limits_are_met_missed_or_not_measured() -> None:
     def states(*times: float | str | None) -> list[tuple[str, float]]:
         rows = [{"kind": "N2", "unknowns": k, **({"note": "no"} if time is None else {"time": time})} for k, time in enumerate(times)]
-        outcome = Outcome(declared([], limits={"time": (2.0, "why")}), tuple(rows), Cost())  # type: ignore[arg-type]
-        return [(verdict.state, verdict.worst) for verdict in verdicts(outcome)]
+        answer = Answer(declared([], limits={"time": (2.0, "why")}), tuple(rows), Cost())  # type: ignore[arg-type]
+        return [(standing.state, standing.worst) for standing in standings(answer)]
 
     assert states(1.0, 2.0) == [("met", 2.0)]
     assert states(1.0, 2.5, None) == [("missed", 2.5)]
@@ -143,9 +143,9 @@ def test_limits_are_met_missed_or_not_measured() -> None:
     [([{"kind": "N2", "unknowns": 1, "time": 1.0}], "it broke off"), ([{"kind": "N2", "unknowns": 1, "note": "no"}], "x"), ([], "")],
 )
 def test_a_benchmark_that_did_not_come_to_its_end_or_measured_nothing_meets_nothing(rows: list[Row], message: str) -> None:
-    outcome = Outcome(declared([], limits={"time": (2.0, "why")}), tuple(rows), Cost(message=message))  # type: ignore[arg-type]
-    assert outcome.failed
-    assert [verdict.state for verdict in verdicts(outcome)] == ["not measured"]
+    answer = Answer(declared([], limits={"time": (2.0, "why")}), tuple(rows), Cost(message=message))  # type: ignore[arg-type]
+    assert answer.failed
+    assert [standing.state for standing in standings(answer)] == ["not measured"]
 
 
 def test_slope_is_the_power() -> None:
@@ -207,7 +207,7 @@ def test_history_survives_a_line_that_was_cut_short(tmp_path: Path) -> None:
     path.write_text(path.read_text() + "\n")
     whole = len(path.read_text().splitlines())
     path.write_text(path.read_text()[:-1])
-    ran = Outcome(declared([]), ({"kind": "N2", "time": 2.0},), Cost())
+    ran = Answer(declared([]), ({"kind": "N2", "time": 2.0},), Cost())
     history.append(path, ran, datetime.now().astimezone())
     assert len(path.read_text().splitlines()) == whole + 1
     assert history.read(path, ran.benchmark.name).values("N2", "time") == [2.0]

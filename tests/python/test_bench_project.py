@@ -9,13 +9,13 @@ import pytest
 
 from isomortar.harness.bench import ASIDE
 from isomortar.harness.bench.collection import collect
-from isomortar.harness.bench.processes import Outcome, run
-from isomortar.harness.bench.verdicts import verdicts
+from isomortar.harness.bench.processes import Answer, run
+from isomortar.harness.bench.standings import standings
 
 BENCHMARKS = {one.name: one for one in collect(Path(__file__).parents[2] / "verification")}
 
 
-def tried(name: str) -> Outcome:
+def tried(name: str) -> Answer:
     return run(BENCHMARKS[name], True, lambda _: None)
 
 
@@ -23,20 +23,20 @@ def tried(name: str) -> Outcome:
     "name", ["cost_of_unknowns", "iteration_phases", "linear_solves", "load_steps", "memory", "solid_assembly", "threads"]
 )
 def test_every_column_is_measured(name: str) -> None:
-    outcome = tried(name)
-    assert not outcome.failed, outcome.cost.message
-    assert outcome.rows
-    for row in outcome.rows:
+    answer = tried(name)
+    assert not answer.failed, answer.cost.message
+    assert answer.rows
+    for row in answer.rows:
         assert set(row) == set(BENCHMARKS[name].columns)
         assert all(math.isfinite(value) for value in row.values() if not isinstance(value, str))
 
 
 @pytest.mark.parametrize("name", ["block", "bulk"])
 def test_programs_that_are_there_do_the_same_work_and_others_say_how_to_get_them(name: str) -> None:
-    outcome = tried(name)
-    assert not outcome.failed, outcome.cost.message
-    measured = [row for row in outcome.rows if row.keys() & {"CPU", "solve"}]
-    assert all("not installed" in str(row["note"]) for row in outcome.rows if row not in measured)
+    answer = tried(name)
+    assert not answer.failed, answer.cost.message
+    measured = [row for row in answer.rows if row.keys() & {"CPU", "solve"}]
+    assert all("not installed" in str(row["note"]) for row in answer.rows if row not in measured)
     assert "isomortar" in {row["program"] for row in measured}
     for row in measured:
         if name == "bulk":
@@ -44,15 +44,15 @@ def test_programs_that_are_there_do_the_same_work_and_others_say_how_to_get_them
         else:  # other contact laws on a coarse mesh: some per cent; a wrong material, friction or load step is far off
             own = next(one for one in measured if (one["stages"], one["program"]) == (row["stages"], "isomortar"))
             assert float(row["normal force"]) == pytest.approx(float(own["normal force"]), rel=0.08)
-    check_that_nothing_is_met_alone(outcome)
+    check_that_nothing_is_met_alone(answer)
 
 
-def check_that_nothing_is_met_alone(outcome: Outcome) -> None:
+def check_that_nothing_is_met_alone(answer: Answer) -> None:
     """Beside a program that is not there isomortar is not known to be as fast, nor to have the same numbers."""
-    (verdict,) = verdicts(outcome)
-    notes = [str(row.get("note")) for row in outcome.rows if row["program"] != "CalculiX"]
+    (standing,) = standings(answer)
+    notes = [str(row.get("note")) for row in answer.rows if row["program"] != "CalculiX"]
     if any("not installed" in note for note in notes):
-        assert verdict.state in ("not compared", "missed")
+        assert standing.state in ("not compared", "missed")
 
 
 def test_phases_add_up() -> None:
@@ -69,12 +69,12 @@ def test_every_benchmark_is_tried_here() -> None:
 
 
 def test_solvers_that_are_there_solve_and_others_say_how_to_get_them() -> None:
-    outcome = tried("factorisation")
-    assert not outcome.failed, outcome.cost.message
-    for row in outcome.rows:
+    answer = tried("factorisation")
+    assert not answer.failed, answer.cost.message
+    for row in answer.rows:
         if "note" in row:
             assert "install" in str(row["note"])
         else:
             assert float(row["residual"]) < 1e-8  # round-off times what pivots within a block lose; a wrong solve is of size one
-    assert {row["program"] for row in outcome.rows if "note" not in row} >= {"isomortar", "SciPy SuperLU"}
-    check_that_nothing_is_met_alone(outcome)
+    assert {row["program"] for row in answer.rows if "note" not in row} >= {"isomortar", "SciPy SuperLU"}
+    check_that_nothing_is_met_alone(answer)

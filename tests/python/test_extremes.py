@@ -7,7 +7,7 @@ import textwrap
 
 import pytest
 from extremes.endings import Ending, digits, endings, judge
-from extremes.runs import Run, program, run
+from extremes.trials import Trial, program, run
 
 from isomortar.harness.cases import Bound, Shown, Words, case
 from isomortar.harness.compare import judge as verdicts
@@ -47,7 +47,7 @@ ENDINGS = {
 }
 
 
-def _found(done: Run) -> float:
+def _found(done: Trial) -> float:
     return digits(done.force("top"), [[0.0, 0.0, 1.0]] * 2) if done.steps else math.nan
 
 
@@ -63,8 +63,8 @@ def test_every_ending_is_told(name, tmp_path):
 
 
 def test_without_a_cause_it_has_to_be_right():
-    assert judge(Run(2, "isomortar: no"), _found, needed=6.0)["ending"] == Ending.WRONG
-    assert judge(Run(1, "isomortar: load step 1: no"), _found, needed=6.0)["ending"] == Ending.WRONG
+    assert judge(Trial(2, "isomortar: no"), _found, needed=6.0)["ending"] == Ending.WRONG
+    assert judge(Trial(1, "isomortar: load step 1: no"), _found, needed=6.0)["ending"] == Ending.WRONG
 
 
 def test_the_program_that_runs_is_this_one():

@@ -13,9 +13,9 @@ from isomortar.harness.collection import collect
 from isomortar.harness.measurement import Measurement
 from isomortar.harness.mutants import report
 from isomortar.harness.mutants.bench import Bench, freeze
-from isomortar.harness.mutants.campaign import Attacked, Campaign, Outcome
+from isomortar.harness.mutants.campaign import Attacked, Campaign, Tally
 from isomortar.harness.mutants.faults import fault_at, read_planted
-from isomortar.harness.mutants.gate import Gate, Verdict
+from isomortar.harness.mutants.gate import Finding, Gate
 from isomortar.harness.mutants.generate import draw
 from isomortar.harness.mutants.journal import Journal
 from isomortar.harness.mutants.layers import LAYERS
@@ -49,11 +49,11 @@ def planted(folder: Path, **changes: str) -> Path:
 
 
 def attacked(number: int, killer: str | None = None, name: str = "") -> Attacked:
-    return Attacked(fault_at("solid/a.f90", TEXT, number, TEXT[number], "?", name), Verdict(killer, "red", ()), True)
+    return Attacked(fault_at("solid/a.f90", TEXT, number, TEXT[number], "?", name), Finding(killer, "red", ()), True)
 
 
 def score(*faults: Attacked, classified: dict[str, Classification] | None = None) -> Score:
-    return Score(Outcome(faults, {}, (), {"solid/a": 1.0}), classified or {}, 0.9)
+    return Score(Tally(faults, {}, (), {"solid/a": 1.0}), classified or {}, 0.9)
 
 
 #: Kernels of an oracle.
@@ -174,9 +174,9 @@ def test_a_cell_that_crashes_without_a_fault_too_is_no_catch(cells):
 
 def test_a_survivor_met_the_whole_gate_or_as_much_as_asked_for(cells):
     bench, tried = Oracle(), gate(cells)
-    verdict = tried.attack(bench, FAULTY, "solid", (), math.inf)
-    assert verdict.killer is None
-    assert tried.is_whole(verdict)
+    finding = tried.attack(bench, FAULTY, "solid", (), math.inf)
+    assert finding.killer is None
+    assert tried.is_whole(finding)
     assert [name for name, _ in bench.asked] == ["mutants_family/cheap[k=2]", "mutants_family/cheap[k=1]", "mutants_family/dear"]
     assert [seconds for _, seconds in bench.asked] == [20.0, 20.0, 100.0]
     assert not tried.is_whole(tried.attack(Oracle(), FAULTY, "solid", (), 0.15))

@@ -11,17 +11,17 @@ from paper.catalogue import chosen
 from paper.findings import STATEMENTS
 from paper.outcome import Outcome, Outcomes
 from paper.page import Report
+from paper.sections import METHODS
 from paper.settled import Settled, settled_curves
 from paper.statements import Evidence, NotMeasuredError, Statement, ratio, successive
-from paper.studies import METHODS
 
-STUDIES = {study.scene: study for study in chosen((), False)}
-IRON = STUDIES["iron"]
+SECTIONS = {section.scene: section for section in chosen((), False)}
+IRON = SECTIONS["iron"]
 PRESSED, DRAGGED = 10, 40
 
 
 def outcome(name: str, values, method="monolithic", failure="", lost=False, **numbers) -> Outcome:
-    """A run of the dragging study whose force along x is `values` in the drag and zero before."""
+    """A run of the dragging section whose force along x is `values` in the drag and zero before."""
     n = len(values)
     force = np.zeros((PRESSED + n, 3))
     force[PRESSED:, 0] = values
@@ -75,10 +75,10 @@ def test_distance_from_an_over_refined_curve():
 
 def test_stored_curves_are_of_the_studies_and_settled_far_below_what_is_compared():
     found = settled_curves(Path(__file__).parents[2] / "reference_data")
-    assert set(found) == set(STUDIES) - {"iron"}
+    assert set(found) == set(SECTIONS) - {"iron"}
     for scene, settled in found.items():
-        study = STUDIES[scene]
-        assert len(settled.curve) == study.load(study.runs[0], "monolithic").problem().total_steps
+        section = SECTIONS[scene]
+        assert len(settled.curve) == section.load(section.runs[0], "monolithic").problem().total_steps
         assert 0 < settled.uncertainty <= 0.02
 
 
@@ -193,7 +193,7 @@ def test_what_holds_by_one_method_and_partly_by_the_other_is_partly_measured():
 )
 def test_only_a_run_that_does_not_converge_needs_a_treatment(failure, lost, state):
     """A crash, a lack of time or of memory is the machine's, no finding of the paper."""
-    twist = STUDIES["twist"]
+    twist = SECTIONS["twist"]
     statement = next(s for s in STATEMENTS if "need a special treatment" in s.text)
     short = {name: value[: 35 if failure else None] for name, value in outcome("N2", STEPS).numbers.items() if isinstance(value, list)}
     runs = [Outcome(twist, twist.run(name), method, Path("none.h5"), failure, lost, short) for name in ("L1", "L2") for method in METHODS]
@@ -206,12 +206,12 @@ def test_only_a_run_that_does_not_converge_needs_a_treatment(failure, lost, stat
 @pytest.mark.parametrize("statement", STATEMENTS, ids=lambda s: s.text[:40])
 def test_no_statement_is_measured_on_what_a_machine_lost(statement):
     """Whatever a statement does with runs that fail: one that crashed or ran out of time says nothing, so that none of it is judged."""
-    studies = tuple(STUDIES.values())
+    sections = tuple(SECTIONS.values())
     crashed = [
-        Outcome(study, run, method, Path("none.h5"), "the process was ended by SIGKILL", True, {})
-        for study in studies for run in study.runs for method in run.methods
+        Outcome(section, run, method, Path("none.h5"), "the process was ended by SIGKILL", True, {})
+        for section in sections for run in section.runs for method in run.methods
     ]  # fmt: skip
-    assert statement.judge(Outcomes(studies, tuple(crashed))).state == "not measured"
+    assert statement.judge(Outcomes(sections, tuple(crashed))).state == "not measured"
 
 
 def test_of_lagrange_elements_those_that_ended_count_if_there_are_two():

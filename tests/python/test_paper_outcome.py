@@ -9,7 +9,7 @@ from paper import run as cells
 from paper.outcome import Outcomes, cells_of, outcome
 from paper.page import Report, as_data, page
 from paper.quick import PRESS
-from paper.studies import Study
+from paper.sections import Section
 
 from isomortar.errors import InputError
 from isomortar.harness.measurement import Measurement, measure
@@ -19,14 +19,14 @@ from isomortar.harness.store import Store
 IMPOSSIBLE = ("stages.press.motions.top.translate=[0,0,-0.9]", "stages.press.steps=8", "solver.max_cuts=0", "contacts.floor.friction=0.0")
 
 
-def study(*changes: str) -> Study:
+def section(*changes: str) -> Section:
     """One small run."""
     return replace(PRESS, runs=PRESS.runs[:1], changes=("stages.press.steps=2", *changes))
 
 
 def planned(folder: Path, *changes: str):
     """The plan of its monolithic run, with its cell."""
-    return cells_of([study(*changes)], folder)[0]
+    return cells_of([section(*changes)], folder)[0]
 
 
 def test_a_failed_run_keeps_what_had_converged_and_is_shown(tmp_path):

@@ -1,4 +1,4 @@
-"""``isomortar paper`` from end to end on its quick studies."""
+"""``isomortar paper`` from end to end on its quick sections."""
 
 import json
 import os

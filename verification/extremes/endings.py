@@ -9,7 +9,7 @@ from enum import IntEnum
 from typing import Any
 
 import numpy as np
-from extremes.runs import Run
+from extremes.trials import Trial
 from numpy.typing import ArrayLike
 
 from isomortar.harness.cases import Bound, Claim, Shown, Words
@@ -49,12 +49,12 @@ def endings(right: bool) -> Mapping[str, Claim]:
     }
 
 
-def judge(run: Run, found: Callable[[Run], float], needed: float, causes: Sequence[str] = ()) -> dict[str, Any]:
-    """How a run ended, as the numbers of a case.
+def judge(trial: Trial, found: Callable[[Trial], float], needed: float, causes: Sequence[str] = ()) -> dict[str, Any]:
+    """How a trial ended, as the numbers of a case.
 
     Parameters
     ----------
-    run : Run
+    trial : Trial
     found : callable
         Digits of a run that came to its end.
     needed : float
@@ -63,35 +63,35 @@ def judge(run: Run, found: Callable[[Run], float], needed: float, causes: Sequen
         Regular expressions, of which what the program says on refusing, stopping or warning must contain one: the true causes here.
         Without any it has to be right.
     """
-    ending, kept, words = _verdict(run, found, needed, causes)
+    ending, kept, words = _ended(trial, found, needed, causes)
     return {"ending": float(ending), "digits": kept, "words": Words(words)}
 
 
-def _verdict(run: Run, found: Callable[[Run], float], needed: float, causes: Sequence[str]) -> tuple[Ending, float, str]:
-    said = [line for line in run.said.splitlines() if line.strip()]
-    last = run.said.rpartition("isomortar: ")[2].strip() or "nothing was said"
-    if run.code is None:
+def _ended(trial: Trial, found: Callable[[Trial], float], needed: float, causes: Sequence[str]) -> tuple[Ending, float, str]:
+    said = [line for line in trial.said.splitlines() if line.strip()]
+    last = trial.said.rpartition("isomortar: ")[2].strip() or "nothing was said"
+    if trial.code is None:
         return Ending.WRONG, 0.0, last
-    if run.code < 0:
-        return Ending.WRONG, 0.0, f"{signal.Signals(-run.code).name}: {last}"
-    if "Traceback" in run.said or run.code > 2:
+    if trial.code < 0:
+        return Ending.WRONG, 0.0, f"{signal.Signals(-trial.code).name}: {last}"
+    if "Traceback" in trial.said or trial.code > 2:
         return Ending.WRONG, 0.0, f"a traceback: {said[-1]}"
-    if run.code == 0:
-        return _finished(run, found, needed, [line for line in said if line.startswith("warning: ") and _names(line, causes)])
+    if trial.code == 0:
+        return _finished(trial, found, needed, [line for line in said if line.startswith("warning: ") and _names(line, causes)])
     if not _names(last, causes):
         return Ending.WRONG, 0.0, f"not the true cause: {last}"
-    if run.code == 1:
+    if trial.code == 1:
         announced = re.search(r"load step (\d+)", last)
-        if announced and int(announced[1]) - 1 != (run.steps or 0):
-            return Ending.WRONG, 0.0, f"{run.steps} load steps are kept: {last}"
+        if announced and int(announced[1]) - 1 != (trial.steps or 0):
+            return Ending.WRONG, 0.0, f"{trial.steps} load steps are kept: {last}"
         return Ending.STOPPED, 0.0, last
-    if run.steps is not None:
+    if trial.steps is not None:
         return Ending.WRONG, 0.0, f"refused after it had begun: {last}"
     return Ending.REFUSED, 0.0, last
 
 
-def _finished(run: Run, found: Callable[[Run], float], needed: float, warnings: list[str]) -> tuple[Ending, float, str]:
-    kept = found(run)
+def _finished(trial: Trial, found: Callable[[Trial], float], needed: float, warnings: list[str]) -> tuple[Ending, float, str]:
+    kept = found(trial)
     if not np.isfinite(kept):
         return Ending.WRONG, 0.0, "the result is not finite, or not there"
     if kept >= needed:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from extreme_scenes import Data, changed, column_pressure, confined_pressure, loaded, press_of, ran, worst
 from extremes.endings import digits, endings, judge
-from extremes.runs import Run
+from extremes.trials import Trial
 
 from isomortar.harness import case
 from isomortar.scene.geometry_file import patch_table
@@ -20,7 +20,7 @@ _COLUMN = np.array([column_pressure(0.9), column_pressure(0.8)])
 _QUARTER = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
 
 
-def channel(done: Run) -> float:
+def channel(done: Trial) -> float:
     """The slave, started beside the wall that it ends in: without friction the way there does not count."""
     near = changed(
         loaded("channel"),
@@ -34,7 +34,7 @@ def channel(done: Run) -> float:
     return digits(done.force("push")[-1], ran(near).force("push")[-1])
 
 
-def seam(done: Run) -> float:
+def seam(done: Trial) -> float:
     """The same mesh, its seam turned away by a quarter."""
     data = loaded("seam")
     wheel = data["bodies"]["wheel"]
@@ -47,18 +47,18 @@ def seam(done: Run) -> float:
     return digits(done.force("hub"), ran(data).force("hub"))
 
 
-def pole(done: Run) -> float:
+def pole(done: Trial) -> float:
     """Quadrature of an even number of points, none of which lies over the pole, to the two digits that they have in common."""
     return digits(done.force("top"), ran(changed(loaded("pole"), {"contacts.f.quadrature": 6})).force("top"))
 
 
-def reactions(done: Run) -> float:
+def reactions(done: Trial) -> float:
     """What holds x or y alone carries nothing along z; the top carries the closed form of a column."""
     found = np.stack([done.force(support)[:, 2] for support in ("top", "x", "y")], axis=1)
     return digits(found, np.stack([-_COLUMN, 0 * _COLUMN, 0 * _COLUMN], axis=1))
 
 
-def bystander(done: Run) -> float:
+def bystander(done: Trial) -> float:
     """The same without the block that touches nothing."""
     alone = loaded("bystander")
     del alone["bodies"]["anvil"], alone["materials"]["steel"], alone["supports"]["anvilbase"], alone["supports"]["anviltop"]
@@ -66,11 +66,11 @@ def bystander(done: Run) -> float:
     return digits(done.force("top"), ran(alone).force("top"))
 
 
-def _beam(thickness: float, deflection: float) -> Callable[[Run], float]:
+def _beam(thickness: float, deflection: float) -> Callable[[Trial], float]:
     return lambda done: digits([done.force("tip")[-1, 2]], [3.0 * 10.0 * thickness**3 / 12.0 * deflection])
 
 
-def thin(done: Run) -> float:
+def thin(done: Trial) -> float:
     """Scaling law: forces of plates that are deflected by their thickness go with its fourth power; one thirty times as thick.
 
     It is no beam then, on this mesh: `bending`.
@@ -79,31 +79,31 @@ def thin(done: Run) -> float:
     return digits(done.force("tip")[-1, 2:] / 3e-4**4, ran(thick).force("tip")[-1, 2:] / 0.01**4)
 
 
-def uniform(done: Run) -> float:
+def uniform(done: Trial) -> float:
     """Patch test: the closed form of a column, in the force and at every point of the pressure."""
     pressure = done.held["curves/contacts/f/pressure_field"]
     return worst(digits(press_of()(done), _COLUMN), digits(pressure, np.stack([_COLUMN, _COLUMN], axis=1)))
 
 
-def graded(done: Run) -> float:
+def graded(done: Trial) -> float:
     """The same; of the pressure at a knot span of 1e-6 as many digits are lost as in `knot_spans`."""
     return worst(digits(press_of()(done), _COLUMN), 3.0 + uniform(done))
 
 
-def prescribed(done: Run) -> float:
+def prescribed(done: Trial) -> float:
     """Every point is prescribed: the closed form of a column that can not widen."""
     return digits(press_of()(done), [confined_pressure(0.1)])
 
 
-def _nothing(_: Run) -> float:
+def _nothing(_: Trial) -> float:
     """There is no right result: the run has to be refused or to stop."""
     return 0.0
 
 
-def _other_method(name: str, support: str = "top") -> Callable[[Run], float]:
+def _other_method(name: str, support: str = "top") -> Callable[[Trial], float]:
     """Augmentations to the end, which share no iteration with the monolithic loop."""
 
-    def found(done: Run) -> float:
+    def found(done: Trial) -> float:
         changes = {"solver.method": "uzawa", "solver.augmentation_tolerance": 1e-9, **_TIGHT}
         return digits(done.force(support), ran(changed(loaded(name), changes)).force(support))
 
@@ -111,7 +111,7 @@ def _other_method(name: str, support: str = "top") -> Callable[[Run], float]:
 
 
 #: By scene: digits of its run, digits needed, and causes that may be named instead of a result.
-RIGHT: dict[str, tuple[Callable[[Run], float], float, tuple[str, ...]]] = {
+RIGHT: dict[str, tuple[Callable[[Trial], float], float, tuple[str, ...]]] = {
     "channel": (channel, 6.0, ("master", "penetrat", "projection")),
     "seam": (seam, 6.0, ()),
     "pole": (pole, 2.0, ("pole", "degenerate", "collapsed")),

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from extreme_scenes import Data, changed, column, column_pressure, press_of, ran, worst
 from extremes.endings import digits, endings, judge
-from extremes.runs import Run
+from extremes.trials import Trial
 
 from isomortar.harness import case
 
@@ -16,13 +16,13 @@ _TIGHT = {"solver.newton_tolerance": 1e-12, "solver.complementarity_tolerance": 
 _PRESSURES = np.array([column_pressure(stretch) for stretch in (0.9, 0.8)])
 
 
-def uniform(done: Run) -> float:
+def uniform(done: Trial) -> float:
     """Digits of a column's force, and of the pressure at every quadrature point."""
     pressure = done.held["curves/contacts/f/pressure_field"]
     return worst(uniform_force(done), digits(pressure, np.stack([_PRESSURES, _PRESSURES], axis=1)))
 
 
-def uniform_force(done: Run) -> float:
+def uniform_force(done: Trial) -> float:
     """Digits of a column's force."""
     return digits(press_of()(done), _PRESSURES)
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from extreme_scenes import YOUNG, Data, changed, column, column_pressure, loaded, press_of, ran
 from extremes.endings import digits, endings, judge
-from extremes.runs import Run
+from extremes.trials import Trial
 
 from isomortar.harness import case
 
@@ -42,7 +42,7 @@ def friction(friction: float) -> dict[str, Any]:
     return judge(run, lambda done: digits(done.force("top"), right), needed=6.0, causes=["friction"])
 
 
-def _drag_per_friction(done: Run, friction: float) -> float:
+def _drag_per_friction(done: Trial, friction: float) -> float:
     """Digits of the press and of the drag over friction, against those at a friction of 1e-4.
 
     A drag that is less than the round-off of the press has none.

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from extreme_scenes import Data, changed, loaded, press_of, ran
 from extremes.endings import digits, endings, judge
-from extremes.runs import Run
+from extremes.trials import Trial
 from numpy.typing import ArrayLike
 
 from isomortar.harness import case
@@ -146,7 +146,7 @@ def cuts(cuts: int) -> dict[str, Any]:
     return judge(ran(data), _none_is_right, needed=1.0, causes=["max_cuts", "folded", "pressed flat"])
 
 
-def _none_is_right(_: Run) -> float:
+def _none_is_right(_: Trial) -> float:
     return 0.0
 
 

@@ -1,4 +1,4 @@
-"""Contact fields of a run at the points of one grid over the slave face's exact geometry, the same for all runs of a study."""
+"""Contact fields of a run at the points of one grid over the slave face's exact geometry, the same for all runs of a section."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class Fields:
 
 def fields(outcome: Outcome, step: int) -> Fields:
     """The fields of a run at the end of a load step."""
-    grid = _grid(outcome.study.scene)
+    grid = _grid(outcome.section.scene)
     with outcome.results() as results:
         surface = contact_surfaces(results.problem, results.step(step))[0]
     coefficients = np.column_stack([surface.pressure, surface.covariant[:, 0], surface.points[:, 2]])

@@ -1,4 +1,4 @@
-"""What became of the runs of a study: curves of those that ended, and of those that failed what had converged."""
+"""What became of the runs of a section: curves of those that ended, and of those that failed what had converged."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 from paper import run as cells
-from paper.studies import Method, Run, Study
+from paper.sections import Method, Run, Section
 
 from isomortar.errors import InputError, ResultsError
 from isomortar.geometry.patch import FloatArray
@@ -27,7 +27,7 @@ class Outcome:
 
     Parameters
     ----------
-    study : Study
+    section : Section
     run : Run
     method : {"monolithic", "paper"}
     path : Path
@@ -41,7 +41,7 @@ class Outcome:
         As of `paper.run.curves`, up to where it came; empty: no load step converged.
     """
 
-    study: Study
+    section: Section
     run: Run
     method: Method
     path: Path
@@ -51,13 +51,13 @@ class Outcome:
 
     @property
     def key(self) -> str:
-        """Study and run: ``twist-N3``."""
-        return f"{self.study.scene}-{self.run.name}"
+        """Section and run: ``twist-N3``."""
+        return f"{self.section.scene}-{self.run.name}"
 
     @cached_property
     def total_steps(self) -> int:
         """Load steps of the whole run."""
-        return self.study.load(self.run, self.method).problem().total_steps
+        return self.section.load(self.run, self.method).problem().total_steps
 
     @property
     def steps(self) -> int:
@@ -66,8 +66,8 @@ class Outcome:
 
     @property
     def curve(self) -> FloatArray:
-        """The study's quantity over the recorded load steps, shape (steps,)."""
-        return self.array(self.study.quantity.kind)[:, "xyz".index(self.study.quantity.component)]
+        """The section's quantity over the recorded load steps, shape (steps,)."""
+        return self.array(self.section.quantity.kind)[:, "xyz".index(self.section.quantity.component)]
 
     def array(self, name: str) -> FloatArray:
         """One of its numbers over the recorded load steps."""
@@ -75,9 +75,9 @@ class Outcome:
 
     @property
     def window(self) -> slice:
-        """The recorded load steps within the study's window."""
-        last = self.array("stage") == len(self.study.load(self.run, self.method).tables.stages) - 1
-        share, (begin, end) = self.array("share"), self.study.window
+        """The recorded load steps within the section's window."""
+        last = self.array("stage") == len(self.section.load(self.run, self.method).tables.stages) - 1
+        share, (begin, end) = self.array("share"), self.section.window
         within = np.flatnonzero(last & (share >= begin - 1e-9) & (share <= end + 1e-9))
         return slice(int(within[0]), int(within[-1]) + 1)
 
@@ -90,24 +90,24 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Outcomes:
-    """All runs of the chosen studies."""
+    """All runs of the chosen sections."""
 
-    studies: tuple[Study, ...]
+    sections: tuple[Section, ...]
     entries: tuple[Outcome, ...]
 
-    def of(self, study: Study, method: Method | None = None) -> list[Outcome]:
-        """The runs of a study, in its order, by one method or by both."""
-        return [o for o in self.entries if o.study == study and method in (None, o.method)]
+    def of(self, section: Section, method: Method | None = None) -> list[Outcome]:
+        """The runs of a section, in its order, by one method or by both."""
+        return [o for o in self.entries if o.section == section and method in (None, o.method)]
 
-    def named(self, study: Study, name: str, method: Method) -> Outcome | None:
-        """The run of a name by a method; None where the study does not have it."""
-        if not study.names(name):
+    def named(self, section: Section, name: str, method: Method) -> Outcome | None:
+        """The run of a name by a method; None where the section does not have it."""
+        if not section.names(name):
             return None
-        run = study.run(name)
-        return next((o for o in self.of(study, method) if o.run == run), None)
+        run = section.run(name)
+        return next((o for o in self.of(section, method) if o.run == run), None)
 
 
-def cells_of(studies: Sequence[Study], folder: Path) -> list[tuple[Study, Run, Method, Cell]]:
+def cells_of(sections: Sequence[Section], folder: Path) -> list[tuple[Section, Run, Method, Cell]]:
     """A cell a run and method; their scene files go to the folder, to be run by anyone.
 
     Raises
@@ -116,29 +116,29 @@ def cells_of(studies: Sequence[Study], folder: Path) -> list[tuple[Study, Run, M
         A scene is wrong, or the results file of a run that was measured is gone.
     """
     planned, store = [], Store(folder / "cells")
-    for study in studies:
-        for run in study.runs:
+    for section in sections:
+        for run in section.runs:
             for method in run.methods:
-                path = folder / "scenes" / f"{study.scene}-{run.name}-{method}.toml"
-                scene = study.load(run, method)
+                path = folder / "scenes" / f"{section.scene}-{run.name}-{method}.toml"
+                scene = section.load(run, method)
                 scene.problem()
                 write_whole(path, scene.to_toml())
                 cell = Cell(replace(cells.computed, files=(path.absolute(),)), {"scene": str(path)})
                 if store.get(cell) and not cells.results_file(path).exists():
                     raise InputError(f"{cells.results_file(path)} is gone; remove {store.folder} too, and what is missing is run again")
-                planned.append((study, run, method, cell))
+                planned.append((section, run, method, cell))
     return planned
 
 
-def outcome(study: Study, run: Run, method: Method, cell: Cell, measurement: Measurement) -> Outcome:
+def outcome(section: Section, run: Run, method: Method, cell: Cell, measurement: Measurement) -> Outcome:
     """How a run ended, with what its results file holds if it failed."""
     path = cells.results_file(Path(cell.settings["scene"]))
     if measurement.ending == "measured":
-        return Outcome(study, run, method, path, "", False, measurement.numbers)
+        return Outcome(section, run, method, path, "", False, measurement.numbers)
     numbers: dict[str, Stored]
     try:
         with Results(path) as results:
             numbers = {name: stored(value) for name, value in cells.curves(results).items()}
     except ResultsError:
         numbers = {}
-    return Outcome(study, run, method, path, measurement.reason, measurement.ending != "not converged", numbers)
+    return Outcome(section, run, method, path, measurement.reason, measurement.ending != "not converged", numbers)

@@ -1,4 +1,4 @@
-"""The page of the paper's studies: one HTML file that needs nothing else, all its numbers as JSON, and its figures as files."""
+"""The page of the paper's sections: one HTML file that needs nothing else, all its numbers as JSON, and its figures as files."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from typing import Any
 
 from paper.outcome import Outcome, Outcomes
 from paper.plates import NAMES, Plate, gap_between_methods, plates
+from paper.sections import METHODS, Section
 from paper.settled import Settled
 from paper.statements import STATES, Judgement
-from paper.studies import METHODS, Study
 
 from isomortar.harness.report import percent, plain, template
 from isomortar.harness.store import compiler, kernel_hash, program_hash, write_whole
@@ -25,7 +25,7 @@ from isomortar.harness.store import compiler, kernel_hash, program_hash, write_w
 class Report:
     """All that the page shows.
 
-    `left_out` counts the statements that these studies have not the runs for; `settled` has over-refined curves by scene.
+    `left_out` counts the statements that these sections have not the runs for; `settled` has over-refined curves by scene.
     """
 
     outcomes: Outcomes
@@ -47,8 +47,8 @@ class Report:
         return [o for o in self.outcomes.entries if o.failure]
 
     def off(self, outcome: Outcome) -> float | None:
-        """Distance of a run from the study's over-refined curve; None where there is none."""
-        settled = self.settled.get(outcome.study.scene)
+        """Distance of a run from the section's over-refined curve; None where there is none."""
+        settled = self.settled.get(outcome.section.scene)
         return settled.distance(outcome) if settled else None
 
     @property
@@ -62,7 +62,8 @@ def write(folder: Path, report: Report) -> Path:
     path = folder / "paper.html"
     (folder / "figures").mkdir(parents=True, exist_ok=True)
     drawn = {
-        study.scene: [_saved(folder / "figures", plate) for plate in plates(study, report.outcomes)] for study in report.outcomes.studies
+        section.scene: [_saved(folder / "figures", plate) for plate in plates(section, report.outcomes)]
+        for section in report.outcomes.sections
     }
     write_whole(path, page(report, drawn))
     write_whole(path.with_suffix(".json"), json.dumps(plain(as_data(report)), indent=1))
@@ -90,11 +91,12 @@ def _saved(folder: Path, plate: Plate) -> dict[str, str]:
 
 
 def page(report: Report, drawn: Mapping[str, Sequence[Mapping[str, str]]]) -> str:
-    """The HTML page, with the figures by study."""
+    """The HTML page, with the figures by section."""
     return template("page.html", Path(__file__)).render(
         report=report,
-        studies=[
-            (study, _rows(report, study), drawn[study.scene], _seconds(report.outcomes.of(study))) for study in report.outcomes.studies
+        sections=[
+            (section, _rows(report, section), drawn[section.scene], _seconds(report.outcomes.of(section)))
+            for section in report.outcomes.sections
         ],
         names=NAMES,
         total=_seconds(report.outcomes.entries),
@@ -113,10 +115,10 @@ def shown(value: float, in_percent: bool) -> str:
     return f"{100 * value:.3g} %" if in_percent and abs(value) >= 1e-6 else f"{value:.3g}"
 
 
-def _rows(report: Report, study: Study) -> list[list[tuple[Outcome, float | None, float | None]]]:
-    """Runs of a study with their outcomes by method, how far these are from each other, and from the over-refined curve."""
+def _rows(report: Report, section: Section) -> list[list[tuple[Outcome, float | None, float | None]]]:
+    """Runs of a section with their outcomes by method, how far these are from each other, and from the over-refined curve."""
     outcomes = report.outcomes
-    found = [[outcomes.named(study, run.name, method) for method in METHODS] for run in study.runs]
+    found = [[outcomes.named(section, run.name, method) for method in METHODS] for run in section.runs]
     return [[(o, gap_between_methods(outcomes, o), report.off(o)) for o in row if o] for row in found]
 
 
@@ -139,7 +141,7 @@ def _run(report: Report, outcome: Outcome) -> dict[str, Any]:
         "key": outcome.key,
         "method": outcome.method,
         "title": outcome.run.title,
-        "command": outcome.study.command(outcome.run, outcome.method),
+        "command": outcome.section.command(outcome.run, outcome.method),
         "failure": outcome.failure or None,
         "lost": outcome.lost,
         "load_steps": [outcome.steps, outcome.total_steps],

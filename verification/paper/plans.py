@@ -1,8 +1,8 @@
-"""The four studies in full: representative dimensions as in the paper, the last numbers as in the bundled scenes."""
+"""The four sections in full: representative dimensions as in the paper, the last numbers as in the bundled scenes."""
 
 from __future__ import annotations
 
-from paper.studies import Quantity, Run, Study
+from paper.sections import Quantity, Run, Section
 
 from isomortar.harness.discretisations import Elements
 
@@ -32,9 +32,9 @@ def own_method(name: str, kind: str, elements: Elements, title: str, *changes: s
     return Run(name, kind, elements, title, changes, ("paper",))
 
 
-PRESS = Study(
+PRESS = Section(
     scene="press",
-    section="4.2",
+    number="4.2",
     title="Local quality: contact tractions",
     quantity=FORCE,
     window=(0.0, 1.0),
@@ -50,9 +50,9 @@ PRESS = Study(
     ),
 )
 
-TWIST = Study(
+TWIST = Section(
     scene="twist",
-    section="4.3",
+    number="4.3",
     title="Global quality I: twisting moment",
     quantity=MOMENT,
     window=(0.25, 1.0),
@@ -84,9 +84,9 @@ TWIST = Study(
     ),
 )
 
-IRON = Study(
+IRON = Section(
     scene="iron",
-    section="4.4",
+    number="4.4",
     title="Global quality II: dragging force",
     quantity=DRAG,
     window=(0.25, 1.0),
@@ -109,9 +109,9 @@ IRON = Study(
 
 # Round the ring N^p on 32 elements has 4 (7 + p) control points: four arcs of 8 + p, joined C0. L^p on n elements has p n.
 # Matched with N^(p+1): L1 36 (36 elements), L2 40 (20), L4 48 (12); L3 would need 44 / 3 elements.
-TIRE = Study(
+TIRE = Section(
     scene="tire",
-    section="4.5",
+    number="4.5",
     title="Case study: tire traction",
     quantity=TORQUE,
     window=(1 / 6, 1 / 3),

@@ -11,7 +11,7 @@ from paper.figures import Line, Panel, Picture, bodies, closeups, curves, surfac
 from paper.figures.flat import Quantity
 from paper.measures import deviation
 from paper.outcome import Outcome, Outcomes
-from paper.studies import METHODS, Method, Study
+from paper.sections import METHODS, Method, Section
 
 from isomortar.geometry.patch import FloatArray
 
@@ -32,38 +32,38 @@ class Plate:
     picture: Picture
 
 
-def plates(study: Study, outcomes: Outcomes) -> Iterator[Plate]:
-    """The figures of a study. Runs that failed are drawn up to where they came; what never began is left out."""
-    return _PLATES[study.scene](_Studio(study, outcomes))
+def plates(section: Section, outcomes: Outcomes) -> Iterator[Plate]:
+    """The figures of a section. Runs that failed are drawn up to where they came; what never began is left out."""
+    return _PLATES[section.scene](_Studio(section, outcomes))
 
 
 def gap_between_methods(outcomes: Outcomes, outcome: Outcome) -> float | None:
     """Deviation of a monolithic run from that by the paper's method; None where one of them did not come to its end."""
-    other = outcomes.named(outcome.study, outcome.run.name, "paper")
+    other = outcomes.named(outcome.section, outcome.run.name, "paper")
     if outcome.method == "paper" or other is None or outcome.failure or other.failure:
         return None
     return deviation(outcome, other)
 
 
 class _Studio:
-    """Draws runs of a study by name."""
+    """Draws runs of a section by name."""
 
-    def __init__(self, study: Study, outcomes: Outcomes) -> None:
-        self.study, self._outcomes = study, outcomes
+    def __init__(self, section: Section, outcomes: Outcomes) -> None:
+        self.section, self._outcomes = section, outcomes
 
     def first(self, *names: str) -> Outcome | None:
-        """The first of these runs that the study has and that converged somewhere."""
+        """The first of these runs that the section has and that converged somewhere."""
         return next(iter(self._begun(names, "monolithic")), None)
 
     def bodies(self, title: str, name: str, outcome: Outcome | None, field: bodies.Field | None) -> Iterator[Plate]:
-        """Deformed bodies at the study's instances."""
+        """Deformed bodies at the section's instances."""
         steps = self._instances(outcome)
         if outcome and steps:
             with outcome.results() as results:
                 yield Plate(name, title, _words(outcome), bodies.draw(results, steps, field))
 
     def history(self, title: str, name: str, outcome: Outcome | None, quantity: Quantity, last: bool = False) -> Iterator[Plate]:
-        """A field over the contact patch at the study's instances, or the last of them."""
+        """A field over the contact patch at the section's instances, or the last of them."""
         steps = self._instances(outcome)[-1 if last else 0 :]
         if outcome and steps:
             with outcome.results() as results:
@@ -96,7 +96,7 @@ class _Studio:
         for method in methods:
             begun = self._begun(runs, method)
             if len(begun) > 1 and (method == methods[0] or self._differ(runs)):
-                picture = curves.draw([self._line(o) for o in begun], title, self.study.quantity.label)
+                picture = curves.draw([self._line(o) for o in begun], title, self.section.quantity.label)
                 yield Plate(f"{name}-{method}", title, NAMES[method], picture)
 
     def _differ(self, names: Sequence[str]) -> bool:
@@ -104,18 +104,18 @@ class _Studio:
 
     def _begun(self, names: Sequence[str], method: Method) -> list[Outcome]:
         """Runs of which something converged; the reference is meant by its own name too."""
-        found = [self._outcomes.named(self.study, name, method) for name in names]
+        found = [self._outcomes.named(self.section, name, method) for name in names]
         return [o for o in found if o and o.numbers]
 
     def _instances(self, outcome: Outcome | None) -> list[int]:
-        return [step for step in self.study.instances if step <= outcome.steps] if outcome else []
+        return [step for step in self.section.instances if step <= outcome.steps] if outcome else []
 
     def _line(self, outcome: Outcome) -> Line:
-        return Line(_label(outcome), self._times(outcome), outcome.curve, outcome.run.kind, outcome.run.name == self.study.reference)
+        return Line(_label(outcome), self._times(outcome), outcome.curve, outcome.run.kind, outcome.run.name == self.section.reference)
 
     def _times(self, outcome: Outcome) -> FloatArray:
-        """Load times as of the study's first run, whatever the size of the load steps."""
-        ends = np.cumsum([0, *(stage.steps for stage in self.study.load(self.study.runs[0], outcome.method).tables.stages)])
+        """Load times as of the section's first run, whatever the size of the load steps."""
+        ends = np.cumsum([0, *(stage.steps for stage in self.section.load(self.section.runs[0], outcome.method).tables.stages)])
         stage = outcome.array("stage").astype(int)
         return ends[stage] + outcome.array("share") * np.diff(ends)[stage]
 
@@ -134,13 +134,13 @@ def _twist(studio: _Studio) -> Iterator[Plate]:
     yield from studio.bodies("Fig. 4: pressed and twisted", "fig-4-bodies", fine, "stress")
     yield from studio.history("Fig. 5: tangential traction", "fig-5-traction", fine, "traction")
     yield from studio.history("Fig. 5: contact pressure at the end", "fig-5-pressure", fine, "pressure", last=True)
-    yield from studio.curves("Fig. 6: orders", "fig-6-orders", (*studio.study.series["N"], "reference"))
+    yield from studio.curves("Fig. 6: orders", "fig-6-orders", (*studio.section.series["N"], "reference"))
     yield from studio.curves("Fig. 6: the same number of control points", "fig-6-coarse", ("N2", "coarse", "reference"))
     yield from studio.curves("Fig. 6: the fine N2 against N5", "fig-6-fine", ("fine", "N5", "reference"))
     variants = ("N2", "ten-points", "more-steps", "tolerance")
     yield from studio.curves("Fig. 6: numerical parameters of N2", "fig-6-parameters", variants, ("paper",))
     yield from studio.curves("Penalties and tolerances of N2", "twist-penalties", ("N2", "tight", "soft", "soft-tolerance"), ("paper",))
-    lagrange = (*studio.study.series["Lagrange"], "reference")
+    lagrange = (*studio.section.series["Lagrange"], "reference")
     yield from studio.curves("Lagrange elements as master and as slave", "twist-lagrange", lagrange)
 
 
@@ -150,20 +150,20 @@ def _iron(studio: _Studio) -> Iterator[Plate]:
     yield from studio.history("Fig. 8: contact pressure", "fig-8-pressure", fine, "pressure")
     yield from studio.history("Fig. 8: traction along the drag", "fig-8-traction-1", fine, "traction")
     yield from studio.history("Fig. 8: traction across the drag", "fig-8-traction-2", fine, "traction_2")
-    yield from studio.curves("Fig. 9: orders", "fig-9-orders", studio.study.series["N"])
+    yield from studio.curves("Fig. 9: orders", "fig-9-orders", studio.section.series["N"])
     yield from studio.curves(
         "Fig. 9: N5 against finer N2 (A, B) and lower pressures (C, D)", "fig-9-smoothness", ("A", "B", "C", "D", "reference")
     )
-    lagrange = (*studio.study.series["Lagrange"], "reference")
+    lagrange = (*studio.section.series["Lagrange"], "reference")
     yield from studio.curves("Lagrange elements as master and as slave", "iron-lagrange", lagrange)
 
 
 def _tire(studio: _Studio) -> Iterator[Plate]:
-    orders, matched = studio.study.series["L"], studio.study.series["matched"]
+    orders, matched = studio.section.series["L"], studio.section.series["matched"]
     yield from studio.bodies("Fig. 10: the rolling tire", "fig-10-bodies", studio.first("N2"), "stress")
     yield from studio.close("Fig. 11: the contact zone midway", "fig-11-zone", ("N2", *orders), 0.5)
     yield from studio.fields("Contact pressure midway", "tire-pressure", ("N2", "N3", *orders), "pressure", 0.5)
-    yield from studio.curves("Rolling torque of NURBS", "tire-nurbs", studio.study.series["N"])
+    yield from studio.curves("Rolling torque of NURBS", "tire-nurbs", studio.section.series["N"])
     yield from studio.curves("Fig. 12: the same number of nodes", "fig-12-nodes", (*orders, "reference"))
     yield from studio.curves("Fig. 12: control points of the next order of NURBS", "fig-12-matched", (*matched, "reference"))
     variants = ("L2", "L2-tolerance", "L2-points")
@@ -174,7 +174,7 @@ _PLATES: dict[str, Callable[[_Studio], Iterator[Plate]]] = {"press": _press, "tw
 
 
 def _label(outcome: Outcome) -> str:
-    name = f"{outcome.run.name} (reference)" if outcome.run.name == outcome.study.reference else outcome.run.name
+    name = f"{outcome.run.name} (reference)" if outcome.run.name == outcome.section.reference else outcome.run.name
     return f"{name}, to step {outcome.steps}" if outcome.failure else name
 
 
@@ -184,6 +184,6 @@ def _words(outcome: Outcome) -> str:
 
 def _step_at(outcome: Outcome, share: float) -> int | None:
     """The recorded load step of the last stage nearest to a share of it; None where the run did not come there."""
-    stages = outcome.study.load(outcome.run, outcome.method).tables.stages
+    stages = outcome.section.load(outcome.run, outcome.method).tables.stages
     step = sum(stage.steps for stage in stages[:-1]) + round(share * stages[-1].steps)
     return step if step <= outcome.steps else None

@@ -1,13 +1,13 @@
-"""The quick studies: the same runs by name, N2, N3, L1 and L2 only, on coarse meshes in few load steps. They try the machinery."""
+"""The quick sections: the same runs by name, N2, N3, L1 and L2 only, on coarse meshes in few load steps. They try the machinery."""
 
 from __future__ import annotations
 
 from paper.plans import DRAG, FORCE, MOMENT, TOLERANCE, TORQUE, nurbs, own_method
-from paper.studies import Run, Study
+from paper.sections import Run, Section
 
-PRESS = Study(
+PRESS = Section(
     scene="press",
-    section="4.2",
+    number="4.2",
     title="Local quality: contact tractions",
     quantity=FORCE,
     window=(0.0, 1.0),
@@ -25,9 +25,9 @@ PRESS = Study(
     changes=("stages.press.steps=2",),
 )
 
-TWIST = Study(
+TWIST = Section(
     scene="twist",
-    section="4.3",
+    number="4.3",
     title="Global quality I: twisting moment",
     quantity=MOMENT,
     window=(0.25, 1.0),
@@ -48,9 +48,9 @@ TWIST = Study(
     ),
 )
 
-IRON = Study(
+IRON = Section(
     scene="iron",
-    section="4.4",
+    number="4.4",
     title="Global quality II: dragging force",
     quantity=DRAG,
     window=(0.2, 1.0),
@@ -72,9 +72,9 @@ IRON = Study(
     ),
 )
 
-TIRE = Study(
+TIRE = Section(
     scene="tire",
-    section="4.5",
+    number="4.5",
     title="Case study: tire traction",
     quantity=TORQUE,
     window=(0.0, 1.0),

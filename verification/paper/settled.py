@@ -1,4 +1,4 @@
-"""Over-refined curves of the studies, stored as a reference, and how far runs are from them."""
+"""Over-refined curves of the sections, stored as a reference, and how far runs are from them."""
 
 from __future__ import annotations
 
@@ -13,26 +13,26 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.harness.measures import curve_error
 from isomortar.harness.references import Reference
 
-#: Folder below the references, and the dataset of a study there (``verification/paper_curves``).
+#: Folder below the references, and the dataset of a section there (``verification/paper_curves``).
 NAME, DATASET = "paper_curves", "study={scene}/curve"
 
 
 @dataclass(frozen=True)
 class Settled:
-    """The curve of a study after its load steps, shape (load steps,), and its relative uncertainty."""
+    """The curve of a section after its load steps, shape (load steps,), and its relative uncertainty."""
 
     curve: FloatArray
     uncertainty: float
 
     def distance(self, outcome: Outcome) -> float | None:
-        """L2 distance of a run over the study's window, relative; None where it did not come to its end.
+        """L2 distance of a run over the section's window, relative; None where it did not come to its end.
 
         Standard load steps stand at equal distances in the last stage, whatever the number of those of the run.
         """
         if outcome.failure:
             return None
-        study = outcome.study
-        last = study.load(study.runs[0], "monolithic").tables.stages[-1].steps
+        section = outcome.section
+        last = section.load(section.runs[0], "monolithic").tables.stages[-1].steps
         if last > len(self.curve):
             return None
         shares, window = np.arange(1, last + 1) / last, outcome.window

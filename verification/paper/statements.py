@@ -9,7 +9,7 @@ from itertools import pairwise
 from typing import Literal
 
 from paper.outcome import Outcome, Outcomes
-from paper.studies import METHODS, Method, Study
+from paper.sections import METHODS, Method, Section
 
 from isomortar.errors import IsomortarError
 
@@ -26,7 +26,7 @@ class NotMeasuredError(IsomortarError):
 
 @dataclass(frozen=True)
 class Evidence:
-    """The runs of all studies by one method, for the functions that measure; `left_out`: those that they had to do without."""
+    """The runs of all sections by one method, for the functions that measure; `left_out`: those that they had to do without."""
 
     outcomes: Outcomes
     method: Method
@@ -76,8 +76,8 @@ class Evidence:
 
     def planned(self, key: str) -> list[Outcome]:
         """The runs that a key stands for, however they ended."""
-        study, entry = _split(self.outcomes, key)
-        return [found for name in study.names(entry) if (found := self.outcomes.named(study, name, self.method))]
+        section, entry = _split(self.outcomes, key)
+        return [found for name in section.names(entry) if (found := self.outcomes.named(section, name, self.method))]
 
 
 @dataclass(frozen=True)
@@ -100,7 +100,7 @@ class Statement:
     text : str
         The finding in a sentence.
     needs : tuple of str
-        Keys of the runs and series that it speaks of; a quick study that lacks one leaves the statement out.
+        Keys of the runs and series that it speaks of; a quick section that lacks one leaves the statement out.
     measure : callable
         From the evidence to the values that are judged.
     unit : str
@@ -126,9 +126,9 @@ class Statement:
     methods: tuple[Method, ...] = METHODS
     percent: bool = False
 
-    def concerns(self, studies: tuple[Study, ...]) -> bool:
-        """Whether the studies have all that it speaks of."""
-        found = {study.scene: study for study in studies}
+    def concerns(self, sections: tuple[Section, ...]) -> bool:
+        """Whether the sections have all that it speaks of."""
+        found = {section.scene: section for section in sections}
         pairs = [key.split("-", 1) for key in self.needs]
         return all(scene in found and found[scene].names(entry) for scene, entry in pairs)
 
@@ -195,6 +195,6 @@ def _reasons(failed: list[Outcome]) -> str:
     return "; ".join(f"{o.key} failed: {o.failure}" for o in failed)
 
 
-def _split(outcomes: Outcomes, key: str) -> tuple[Study, str]:
+def _split(outcomes: Outcomes, key: str) -> tuple[Section, str]:
     scene, entry = key.split("-", 1)
-    return next(study for study in outcomes.studies if study.scene == scene), entry
+    return next(section for section in outcomes.sections if section.scene == scene), entry

@@ -11,8 +11,8 @@ from paper import page
 from paper.catalogue import chosen
 from paper.findings import STATEMENTS
 from paper.outcome import Outcomes, cells_of, outcome
+from paper.sections import Section
 from paper.settled import Settled, settled_curves
-from paper.studies import Study
 
 from isomortar.harness.cases import Cell
 from isomortar.harness.measurement import Measurement
@@ -21,32 +21,32 @@ from isomortar.harness.study import Conclusion
 
 @dataclass(frozen=True)
 class Paper:
-    """The chosen studies, in full or as their quick variants, and over-refined curves by scene."""
+    """The chosen sections, in full or as their quick variants, and over-refined curves by scene."""
 
-    studies: tuple[Study, ...]
+    sections: tuple[Section, ...]
     quick: bool
     settled: Mapping[str, Settled]
 
     @classmethod
     def of(cls, names: Sequence[str], quick: bool, references: Path) -> Paper:
-        """The studies of these names, all if there are none.
+        """The sections of these names, all if there are none.
 
         Raises
         ------
         InputError
-            There is no such study, or the reference of over-refined curves is damaged.
+            There is no such section, or the reference of over-refined curves is damaged.
         """
         return cls(chosen(names, quick), quick, {} if quick else settled_curves(references))
 
     def cells(self, folder: Path) -> list[Cell]:
         """A cell a run and method."""
-        return [cell for *_, cell in cells_of(self.studies, folder)]
+        return [cell for *_, cell in cells_of(self.sections, folder)]
 
     def conclude(self, folder: Path, measurements: Sequence[Measurement], started: datetime) -> Conclusion:
         """Judge the statements and write ``paper.html``."""
-        planned = cells_of(self.studies, folder)
-        outcomes = Outcomes(self.studies, tuple(outcome(*plan, found) for plan, found in zip(planned, measurements, strict=True)))
-        statements = [statement for statement in STATEMENTS if statement.concerns(self.studies)]
+        planned = cells_of(self.sections, folder)
+        outcomes = Outcomes(self.sections, tuple(outcome(*plan, found) for plan, found in zip(planned, measurements, strict=True)))
+        statements = [statement for statement in STATEMENTS if statement.concerns(self.sections)]
         judgements = tuple(statement.judge(outcomes) for statement in statements)
         report = page.Report(outcomes, judgements, len(STATEMENTS) - len(statements), self.quick, started, self.settled)
         counts = ", ".join(f"{count} {state}" for state, count in report.counts.items())

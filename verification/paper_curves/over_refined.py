@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 from paper.plans import FULL
-from paper.studies import Run, Study
+from paper.sections import Run, Section
 
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, Matches, case
@@ -30,7 +30,7 @@ OTHERS: dict[str, tuple[int, Elements, Elements, float]] = {
 }
 
 
-def computed(study: Study, order: int, elements: Elements) -> FloatArray:
+def computed(study: Section, order: int, elements: Elements) -> FloatArray:
     """The study's quantity after every load step, converged, shape (load steps,)."""
     problem = study.load(Run("over-refined", f"N{order}", elements, ""), "monolithic").problem()
     moving = next(number for number, s in enumerate(problem.supports) if s.moves)

@@ -15,7 +15,7 @@ from isomortar.cli.verification import CASES, FAILED
 
 if TYPE_CHECKING:
     from isomortar.harness.bench import Row
-    from isomortar.harness.bench.processes import Outcome
+    from isomortar.harness.bench.processes import Answer
 
 
 def bench(
@@ -44,23 +44,23 @@ def bench(
 
     benchmarks = collection.select(collection.collect(cases), names or [])
     console = Console(stderr=True, highlight=False)
-    run = record.Run(datetime.now().astimezone(), quick, machine.machine(), (machine.limits(),))
+    kept = record.Record(datetime.now().astimezone(), quick, machine.machine(), (machine.limits(),))
 
     for benchmark in benchmarks:
         console.print(f"{benchmark.name}: {benchmark.question}", style="bold", soft_wrap=True)
-        outcome = processes.run(benchmark, quick, lambda row: console.print(f"  {_line(row)}", markup=False, soft_wrap=True))
-        if outcome.failed:
-            console.print(outcome.cost.message, markup=False, style="red", soft_wrap=True)
-        run = replace(run, outcomes=(*run.outcomes, outcome))
-        record.add(out, run, outcome)
-        record.keep(out, run)
-    run = replace(run, limits=(*run.limits, machine.limits()))
-    record.keep(out, run)
-    for outcome in run.outcomes:
-        _print(outcome)
-    print(" -> ".join(f"dgemm {limits.dgemm:.1f} GF/s, triad {limits.triad:.1f} GB/s, load {limits.load:.1f}" for limits in run.limits))
+        answer = processes.run(benchmark, quick, lambda row: console.print(f"  {_line(row)}", markup=False, soft_wrap=True))
+        if answer.failed:
+            console.print(answer.cost.message, markup=False, style="red", soft_wrap=True)
+        kept = replace(kept, answers=(*kept.answers, answer))
+        record.add(out, kept, answer)
+        record.keep(out, kept)
+    kept = replace(kept, limits=(*kept.limits, machine.limits()))
+    record.keep(out, kept)
+    for answer in kept.answers:
+        _print(answer)
+    print(" -> ".join(f"dgemm {limits.dgemm:.1f} GF/s, triad {limits.triad:.1f} GB/s, load {limits.load:.1f}" for limits in kept.limits))
     print(out / record.PAGE)
-    if any(outcome.failed for outcome in run.outcomes):
+    if any(answer.failed for answer in kept.answers):
         raise typer.Exit(FAILED)
 
 
@@ -71,21 +71,21 @@ def _line(row: Row) -> str:
     return "  ".join(f"{name} {text(value)}" for name, value in row.items())
 
 
-def _print(outcome: Outcome) -> None:
+def _print(answer: Answer) -> None:
     """The table of a benchmark, and how its limits stand."""
     from isomortar.harness.bench.declaration import NOTE
     from isomortar.harness.bench.page import headings, text
-    from isomortar.harness.bench.verdicts import verdicts
+    from isomortar.harness.bench.standings import standings
 
-    benchmark, console = outcome.benchmark, Console(highlight=False)
+    benchmark, console = answer.benchmark, Console(highlight=False)
     table = Table(*headings(benchmark), title=benchmark.question, title_justify="left")
-    for row in outcome.rows:
+    for row in answer.rows:
         table.add_row(*(text(row.get(name, "")) for name in benchmark.columns))
     console.print(table)
-    for row in outcome.rows:
+    for row in answer.rows:
         if NOTE in row:
             console.print(_line(row), markup=False, soft_wrap=True)
-    for verdict in verdicts(outcome):
-        style = {"met": "green", "missed": "red", "not compared": "yellow", "not measured": "yellow"}[verdict.state]
-        said = f"{verdict.column} {verdict.state}: {text(verdict.worst)} ({verdict.row}), at most {verdict.at_most:g}: {verdict.why}"
+    for standing in standings(answer):
+        style = {"met": "green", "missed": "red", "not compared": "yellow", "not measured": "yellow"}[standing.state]
+        said = f"{standing.column} {standing.state}: {text(standing.worst)} ({standing.row}), at most {standing.at_most:g}: {standing.why}"
         console.print(said, markup=False, style=style, soft_wrap=True)

@@ -76,8 +76,8 @@ def mutants(
             progress.update(bar, description=what, completed=done, total=total or None)
 
         with Campaign(where, Path(), cases, cells, finder(references), folder, jobs, tell) as campaign:
-            outcome = campaign.run(planted, drawn, sample, patience or float("inf"))
-    score = Score(outcome, classified, where.least_share)
+            tally = campaign.run(planted, drawn, sample, patience or float("inf"))
+    score = Score(tally, classified, where.least_share)
     minutes = round((time.perf_counter() - clock) / 60, 1)
     settings = {"layer": layer, "sample": sample, "seed": seed, "patience": patience, "jobs": jobs, "minutes": minutes}
     report.write(folder / "report.html", score, settings)
@@ -88,7 +88,7 @@ def mutants(
 
 
 def _print(score: Score) -> None:
-    """The outcome on the terminal."""
+    """The tally on the terminal."""
     console = Console(highlight=False)
     table = Table("caught first by", *score.folders, "all")
     for family, counts in score.catches.items():
@@ -98,11 +98,11 @@ def _print(score: Score) -> None:
         fault = attacked.fault
         lines = [f"survived: {fault.place} {fault.name} ({score.kind(attacked)})", f"- {fault.old.strip()}", f"+ {fault.new.strip()}"]
         console.print("\n".join(lines), markup=False, style="red", soft_wrap=True)
-    for cell in score.outcome.unused:
+    for cell in score.tally.unused:
         console.print(f"red without a fault, not used: {cell}", markup=False, soft_wrap=True)
     print(f"planted by hand: {score.caught_planted.part} of {score.caught_planted.whole} caught")
     if score.sample:
         for folder, (found, real) in score.caught_by_folder.items():
             print(f"random, in {folder}: {found.part} of {found.whole} caught; of those not equivalent {real.part} of {real.whole}")
         print(f"random: {score.caught} caught; without those classified as equivalent: {score.caught_of_real}")
-    print(", ".join(f"{count} {reason}" for reason, count in score.outcome.dropped.items()))
+    print(", ".join(f"{count} {reason}" for reason, count in score.tally.dropped.items()))

@@ -18,7 +18,7 @@ _BEFORE = 8
 
 
 @dataclass(frozen=True)
-class Run:
+class Entry:
     """One earlier run: when, of which program, and by cell name its state, seconds and checked values."""
 
     when: str
@@ -39,12 +39,12 @@ def append(path: Path, results: Sequence[Result]) -> None:
     append_line(path, {"when": datetime.now(UTC).isoformat(timespec="seconds"), "program": program_hash()[:12], "cells": cells})
 
 
-def read(path: Path, last: int = 60) -> list[Run]:
+def read(path: Path, last: int = 60) -> list[Entry]:
     """The last runs, oldest first; a line that was cut short by a crash is left out."""
-    return [Run(**entry) for entry in read_lines(path)[-last:]]
+    return [Entry(**entry) for entry in read_lines(path)[-last:]]
 
 
-def values_of(runs: Sequence[Run], cell: str, number: str) -> list[float]:
+def values_of(runs: Sequence[Entry], cell: str, number: str) -> list[float]:
     """A number over the runs; NaN where it was not measured."""
     return [float(run.cells.get(cell, {}).get("values", {}).get(number, np.nan)) for run in runs]
 

@@ -40,7 +40,7 @@ class Context:
     only: str
     seconds: float
     started: datetime
-    runs: Sequence[history.Run]
+    runs: Sequence[history.Entry]
 
 
 def write(path: Path, results: Sequence[Result], context: Context) -> None:

@@ -6,7 +6,7 @@ from paper.measures import deviation
 from paper.outcome import Outcome
 from paper.statements import Evidence, Statement, Values, ratio
 
-_STUDIES = ("press", "twist", "iron", "tire")
+_SECTIONS = ("press", "twist", "iron", "tire")
 
 
 def _tolerance(runs: Evidence) -> Values:
@@ -31,7 +31,7 @@ def _effort(runs: Evidence) -> Values:
 
 def _cuts(runs: Evidence) -> Values:
     """Of NURBS, and of the Lagrange elements that the paper ran; those of a run that failed are not known and count as one more."""
-    found = [o for scene in _STUDIES for o in [*runs.all(f"{scene}-N"), *(runs.all(f"{scene}-L") if scene in ("press", "tire") else [])]]
+    found = [o for scene in _SECTIONS for o in [*runs.all(f"{scene}-N"), *(runs.all(f"{scene}-L") if scene in ("press", "tire") else [])]]
     cuts = sum((o.numbers["cuts"] if o.numbers else 0) + bool(o.failure) for o in found)
     return {f"{cuts:g} cuts in {sum(o.steps for o in found)} load steps": cuts / max(1, sum(o.steps for o in found))}
 
@@ -39,7 +39,7 @@ def _cuts(runs: Evidence) -> Values:
 def _larger_steps(runs: Evidence) -> Values:
     """Cuts of the runs in half as many load steps; of one that failed they are not known and count as one more."""
     found = [outcome for scene in ("twist", "iron") for outcome in runs.all(f"{scene}-fewer-steps")]
-    return {o.study.scene: float((o.numbers["cuts"] if o.numbers else 0) + bool(o.failure)) for o in found}
+    return {o.section.scene: float((o.numbers["cuts"] if o.numbers else 0) + bool(o.failure)) for o in found}
 
 
 def _step_error(runs: Evidence) -> Values:
@@ -92,7 +92,7 @@ STATEMENTS = (
     Statement(
         "4.1",
         "A reduction of the load step size was needed only a few times overall.",
-        (*(f"{scene}-N" for scene in _STUDIES), "press-L", "tire-L"),
+        (*(f"{scene}-N" for scene in _SECTIONS), "press-L", "tire-L"),
         _cuts,
         "cuts over load steps",
         at_most=0.01,

@@ -10,7 +10,7 @@ from itertools import takewhile
 from pathlib import Path
 
 from isomortar.harness.bench.declaration import NOTE, Row
-from isomortar.harness.bench.processes import Outcome
+from isomortar.harness.bench.processes import Answer
 from isomortar.harness.store import append_line, program_hash, read_lines
 
 #: Runs that a trend shows.
@@ -33,10 +33,10 @@ def label(row: Row) -> str:
     return ", ".join(str(value) for value in takewhile(lambda value: not isinstance(value, float), _without_note(row)))
 
 
-def append(path: Path, outcome: Outcome, when: datetime) -> None:
+def append(path: Path, answer: Answer, when: datetime) -> None:
     """Add what a benchmark said to the history."""
-    rows = {label(row): {name: value for name, value in row.items() if isinstance(value, float)} for row in outcome.rows}
-    entry = {"when": when.isoformat(timespec="seconds"), "program": program_hash()[:12], "benchmark": outcome.benchmark.name, "rows": rows}
+    rows = {label(row): {name: value for name, value in row.items() if isinstance(value, float)} for row in answer.rows}
+    entry = {"when": when.isoformat(timespec="seconds"), "program": program_hash()[:12], "benchmark": answer.benchmark.name, "rows": rows}
     append_line(path, entry)
 
 

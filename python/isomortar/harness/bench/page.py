@@ -11,22 +11,22 @@ import numpy as np
 from isomortar.harness import report, svg
 from isomortar.harness.bench.declaration import ASIDE, NOTE, Benchmark, Plot, Row
 from isomortar.harness.bench.history import Trend, label
-from isomortar.harness.bench.processes import Outcome
-from isomortar.harness.bench.verdicts import STATES, state, verdicts
+from isomortar.harness.bench.processes import Answer
+from isomortar.harness.bench.standings import STATES, standings, state
 from isomortar.harness.history import change_points
 from isomortar.harness.store import compiler, kernel_hash, program_hash
 
 if TYPE_CHECKING:
-    from isomortar.harness.bench.record import Run
+    from isomortar.harness.bench.record import Record
 
 
-def page(run: Run, trends: Mapping[str, Trend]) -> str:
+def page(record: Record, trends: Mapping[str, Trend]) -> str:
     """The HTML page; `trends` are the last runs of each benchmark, by its name."""
-    judged = [verdict for outcome in run.outcomes for verdict in verdicts(outcome)]
+    judged = [standing for answer in record.answers for standing in standings(answer)]
     return report.template("bench/page.html").render(
-        run=run,
-        sections=[_section(outcome, trends[outcome.benchmark.name]) for outcome in run.outcomes],
-        failed=[outcome.benchmark.name for outcome in run.outcomes if outcome.failed],
+        record=record,
+        sections=[_section(answer, trends[answer.benchmark.name]) for answer in record.answers],
+        failed=[answer.benchmark.name for answer in record.answers if answer.failed],
         counts=[(kind, sum(v.state == kind for v in judged)) for kind in STATES],
         program=program_hash()[:12],
         kernel=kernel_hash()[:12],
@@ -52,21 +52,21 @@ def headings(benchmark: Benchmark) -> list[str]:
     return [f"{name}, {unit}" if unit else name for name, unit in benchmark.columns.items()]
 
 
-def _section(outcome: Outcome, trend: Trend) -> dict[str, Any]:
-    benchmark = outcome.benchmark
+def _section(answer: Answer, trend: Trend) -> dict[str, Any]:
+    benchmark = answer.benchmark
     return {
-        "outcome": outcome,
+        "answer": answer,
         "benchmark": benchmark,
         "headings": headings(benchmark),
         "numeric": [
-            all(row.get(name) == ASIDE or not isinstance(row.get(name, 0), str) for row in outcome.rows) for name in benchmark.columns
+            all(row.get(name) == ASIDE or not isinstance(row.get(name, 0), str) for row in answer.rows) for name in benchmark.columns
         ],
         "rows": [
-            {"cells": [_cell(row, name, benchmark, trend) for name in benchmark.columns], "note": row.get(NOTE)} for row in outcome.rows
+            {"cells": [_cell(row, name, benchmark, trend) for name in benchmark.columns], "note": row.get(NOTE)} for row in answer.rows
         ],
-        "noted": any(NOTE in row for row in outcome.rows),
-        "plots": [drawn for drawn in (_plot(outcome, plot) for plot in benchmark.plots) if drawn],
-        "verdicts": verdicts(outcome),
+        "noted": any(NOTE in row for row in answer.rows),
+        "plots": [drawn for drawn in (_plot(answer, plot) for plot in benchmark.plots) if drawn],
+        "standings": standings(answer),
         "runs": len(trend.runs),
     }
 
@@ -82,9 +82,9 @@ def _cell(row: Row, name: str, benchmark: Benchmark, trend: Trend) -> dict[str, 
     return {"text": text(value), "state": found, "spark": svg.sparkline(values, change_points(values))}
 
 
-def _plot(outcome: Outcome, plot: Plot) -> str:
+def _plot(answer: Answer, plot: Plot) -> str:
     """A column over another, each line with its slope."""
-    rows = [row for row in outcome.rows if all(not isinstance(row.get(name, ""), str) for name in (plot.x, plot.y))]
+    rows = [row for row in answer.rows if all(not isinstance(row.get(name, ""), str) for name in (plot.x, plot.y))]
     lines = []
     for kind in dict.fromkeys(row.get(plot.by, "") for row in rows):
         of_kind = sorted((float(row[plot.x]), float(row[plot.y])) for row in rows if row.get(plot.by, "") == kind)
@@ -92,5 +92,5 @@ def _plot(outcome: Outcome, plot: Plot) -> str:
         steepness = slope(x, y)
         said = f"slope {steepness:.2f}" if math.isfinite(steepness) else ""
         lines.append(svg.Line(": ".join(filter(None, (str(kind), said))), np.array(x), np.array(y)))
-    names = dict(zip(outcome.benchmark.columns, headings(outcome.benchmark), strict=True))
+    names = dict(zip(answer.benchmark.columns, headings(answer.benchmark), strict=True))
     return svg.plot(lines, names[plot.x], names[plot.y])

@@ -33,7 +33,7 @@ class Cost:
 
 
 @dataclass(frozen=True)
-class Outcome:
+class Answer:
     """A benchmark with its rows. Those that came before a failure stand."""
 
     benchmark: Benchmark
@@ -51,7 +51,7 @@ def fresh(*arguments: str) -> Process:
     return Process([sys.executable, *arguments], environment=ONE_THREAD)
 
 
-def run(benchmark: Benchmark, quick: bool, found: Callable[[Row], None]) -> Outcome:
+def run(benchmark: Benchmark, quick: bool, found: Callable[[Row], None]) -> Answer:
     """Run a benchmark in a process of its own; `found` is told of every row as it comes."""
     rows: list[Row] = []
     cost: Cost | None = None
@@ -63,7 +63,7 @@ def run(benchmark: Benchmark, quick: bool, found: Callable[[Row], None]) -> Outc
             else:
                 rows.append(entry["row"])
                 found(rows[-1])
-        return Outcome(benchmark, tuple(rows), cost or Cost(message=process.wait(GRACE).words))
+        return Answer(benchmark, tuple(rows), cost or Cost(message=process.wait(GRACE).words))
 
 
 def measure(benchmark: Benchmark, quick: bool, found: Callable[[Row], None]) -> Cost:

@@ -10,8 +10,8 @@ from typing import Any
 
 from isomortar.harness.bench import history, page
 from isomortar.harness.bench.machine import Limits, Machine
-from isomortar.harness.bench.processes import Outcome
-from isomortar.harness.bench.verdicts import verdicts
+from isomortar.harness.bench.processes import Answer
+from isomortar.harness.bench.standings import standings
 from isomortar.harness.report import plain
 from isomortar.harness.store import compiler, kernel_hash, program_hash, write_whole
 
@@ -19,48 +19,48 @@ HISTORY, PAGE, DATA = "history.jsonl", "bench.html", "bench.json"
 
 
 @dataclass(frozen=True)
-class Run:
+class Record:
     """What was run so far: its start, whether only tried, the machine with its limits before and after, the benchmarks that ended."""
 
     started: datetime
     quick: bool
     machine: Machine
     limits: tuple[Limits, ...]
-    outcomes: tuple[Outcome, ...] = ()
+    answers: tuple[Answer, ...] = ()
 
 
-def keep(folder: Path, run: Run) -> None:
+def keep(folder: Path, record: Record) -> None:
     """Write page and data of a run, each whole."""
-    trends = {outcome.benchmark.name: history.read(folder / HISTORY, outcome.benchmark.name) for outcome in run.outcomes}
-    write_whole(folder / DATA, json.dumps(plain(as_data(run)), indent=1))
-    write_whole(folder / PAGE, page.page(run, trends))
+    trends = {answer.benchmark.name: history.read(folder / HISTORY, answer.benchmark.name) for answer in record.answers}
+    write_whole(folder / DATA, json.dumps(plain(as_data(record)), indent=1))
+    write_whole(folder / PAGE, page.page(record, trends))
 
 
-def add(folder: Path, run: Run, outcome: Outcome) -> None:
+def add(folder: Path, record: Record, answer: Answer) -> None:
     """Put a benchmark into the history. One that was only tried says nothing about speed, and one that failed not all."""
-    if not (run.quick or outcome.failed):
-        history.append(folder / HISTORY, outcome, run.started)
+    if not (record.quick or answer.failed):
+        history.append(folder / HISTORY, answer, record.started)
 
 
-def as_data(run: Run) -> dict[str, Any]:
+def as_data(record: Record) -> dict[str, Any]:
     """All of a run as plain data."""
     return {
-        "started": run.started.isoformat(timespec="seconds"),
-        "quick": run.quick,
+        "started": record.started.isoformat(timespec="seconds"),
+        "quick": record.quick,
         "program": program_hash(),
         "kernel": kernel_hash(),
         "compiler": compiler(),
-        "machine": asdict(run.machine),
-        "limits": [asdict(limits) for limits in run.limits],
+        "machine": asdict(record.machine),
+        "limits": [asdict(limits) for limits in record.limits],
         "benchmarks": [
             {
-                "name": outcome.benchmark.name,
-                "question": outcome.benchmark.question,
-                "columns": dict(outcome.benchmark.columns),
-                "rows": [dict(row) for row in outcome.rows],
-                "limits": [asdict(verdict) for verdict in verdicts(outcome)],
-                **asdict(outcome.cost),
+                "name": answer.benchmark.name,
+                "question": answer.benchmark.question,
+                "columns": dict(answer.benchmark.columns),
+                "rows": [dict(row) for row in answer.rows],
+                "limits": [asdict(standing) for standing in standings(answer)],
+                **asdict(answer.cost),
             }
-            for outcome in run.outcomes
+            for answer in record.answers
         ],
     }

@@ -17,7 +17,7 @@ from isomortar.harness.crew import Crew
 from isomortar.harness.mutants.bench import Bench, freeze
 from isomortar.harness.mutants.build import content, workshop_of
 from isomortar.harness.mutants.faults import Fault
-from isomortar.harness.mutants.gate import Gate, Verdict
+from isomortar.harness.mutants.gate import Finding, Gate
 from isomortar.harness.mutants.journal import Journal
 from isomortar.harness.mutants.layers import Layer
 from isomortar.harness.report import sentence
@@ -31,15 +31,15 @@ _REJECTED, _SOUND, _TWICE = "rejected by the compiler", "same as the sound progr
 
 @dataclass(frozen=True)
 class Attacked:
-    """A fault and the gate's verdict on it; `whole`: a cell was red, or every cell met it."""
+    """A fault and the gate's finding on it; `whole`: a cell was red, or every cell met it."""
 
     fault: Fault
-    verdict: Verdict
+    finding: Finding
     whole: bool
 
 
 @dataclass(frozen=True)
-class Outcome:
+class Tally:
     """All of a campaign.
 
     Parameters
@@ -86,7 +86,7 @@ class Campaign:
         self, layer: Layer, project: Path, cases: Path, cells: Sequence[Cell], lookup: Lookup, folder: Path, jobs: int, progress: Progress
     ) -> None:
         self._cells, self._lookup, self._progress = cells, lookup, progress
-        self._builds, self._verdicts, self._sound = (Journal(folder / f"{name}.jsonl") for name in ("builds", "verdicts", "sound"))
+        self._builds, self._findings, self._sound = (Journal(folder / f"{name}.jsonl") for name in ("builds", "verdicts", "sound"))
         progress("building the sound program", 0, 0)
         self._workshop = workshop_of(layer, project, folder)
         package, frozen = freeze(cases, folder / "frozen")
@@ -99,7 +99,7 @@ class Campaign:
     def __exit__(self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None) -> None:
         self._crew.__exit__(kind, value, trace)
 
-    def run(self, planted: Sequence[Fault], drawn: Iterable[Fault], sample: int, most: float) -> Outcome:
+    def run(self, planted: Sequence[Fault], drawn: Iterable[Fault], sample: int, most: float) -> Tally:
         """Attack the planted faults with the whole gate, and the first `sample` of those drawn that are distinct.
 
         The latter are given up when cells that take `most` CPU seconds on the sound program are green.
@@ -121,7 +121,7 @@ class Campaign:
         if len(random) < sample:
             raise InputError(f"is {sample}; only {len(random)} of the random faults compile and are distinct", "sample")
         attacked = tuple(self._attacked(gate, [*hand, *random], most))
-        return Outcome(attacked, dropped, unused, seconds)
+        return Tally(attacked, dropped, unused, seconds)
 
     def _sound_seconds(self) -> tuple[dict[str, float], tuple[str, ...]]:
         """CPU seconds of the cells that are green on the sound program, and the others in words."""
@@ -179,33 +179,33 @@ class Campaign:
     def _attacked(self, gate: Gate, programs: Sequence[tuple[Fault, str]], most: float) -> Iterator[Attacked]:
         """Attack programs one by one."""
 
-        def attack(bench: Bench, item: tuple[Fault, str]) -> Verdict:
+        def attack(bench: Bench, item: tuple[Fault, str]) -> Finding:
             fault, program = item
             limit = math.inf if fault.name else most
-            verdict = self._remembered(program)
-            if verdict.killer is None and not gate.is_whole(verdict) and gate.cost(verdict.passed) < limit:
+            finding = self._remembered(program)
+            if finding.killer is None and not gate.is_whole(finding) and gate.cost(finding.passed) < limit:
                 built = self._workshop.build(fault)
                 assert built is not None
-                verdict = gate.attack(bench, built, fault.folder, verdict.passed, limit)
-                self._remember(program, verdict)
+                finding = gate.attack(bench, built, fault.folder, finding.passed, limit)
+                self._remember(program, finding)
                 shutil.rmtree(built)
-            gate.learn(fault.folder, verdict)
-            return verdict
+            gate.learn(fault.folder, finding)
+            return finding
 
         survivors = 0
-        for i, ((fault, _), verdict) in enumerate(self._crew.each(attack, programs)):
-            survivors += verdict.killer is None
+        for i, ((fault, _), finding) in enumerate(self._crew.each(attack, programs)):
+            survivors += finding.killer is None
             self._progress(f"attacking faulty programs, {survivors} survived", i + 1, len(programs))
-            yield Attacked(fault, verdict, gate.is_whole(verdict))
+            yield Attacked(fault, finding, gate.is_whole(finding))
 
-    def _remember(self, program: str, verdict: Verdict) -> None:
-        entry = {"killer": verdict.killer, "found": verdict.found, "passed": {name: self._keys[name] for name in verdict.passed}}
-        self._verdicts.put(program, entry | {"killer key": self._keys[verdict.killer] if verdict.killer else None})
+    def _remember(self, program: str, finding: Finding) -> None:
+        entry = {"killer": finding.killer, "found": finding.found, "passed": {name: self._keys[name] for name in finding.passed}}
+        self._findings.put(program, entry | {"killer key": self._keys[finding.killer] if finding.killer else None})
 
-    def _remembered(self, program: str) -> Verdict:
+    def _remembered(self, program: str) -> Finding:
         """What earlier runs found with cells that are still the same."""
-        entry = self._verdicts.get(program) or {"killer": None, "passed": {}}
+        entry = self._findings.get(program) or {"killer": None, "passed": {}}
         passed = tuple(name for name, key in entry["passed"].items() if self._keys.get(name) == key)
         if entry["killer"] and self._keys.get(entry["killer"]) == entry["killer key"]:
-            return Verdict(entry["killer"], entry["found"], passed)
-        return Verdict(None, "", passed)
+            return Finding(entry["killer"], entry["found"], passed)
+        return Finding(None, "", passed)

@@ -24,7 +24,7 @@ _ALIKE = 0.5
 
 
 @dataclass(frozen=True)
-class Verdict:
+class Finding:
     """What the gate found in a program.
 
     Parameters
@@ -69,16 +69,16 @@ class Gate:
         self._kills: Counter[tuple[str, str]] = Counter()
         self._lock = threading.Lock()
 
-    def learn(self, folder: str, verdict: Verdict) -> None:
+    def learn(self, folder: str, finding: Finding) -> None:
         """Note which cells a fault in a folder of the sources passed, and which was red."""
-        killers = [name for name in self._cells if name == verdict.killer]
-        tried = [name for name in verdict.passed if name in self._cells] + killers
+        killers = [name for name in self._cells if name == finding.killer]
+        tried = [name for name in finding.passed if name in self._cells] + killers
         with self._lock:
             for counts, names in ((self._tries, tried), (self._kills, killers)):
                 counts.update((folder, name) for name in names)
                 counts.update((folder, self._case[name]) for name in names)
 
-    def attack(self, bench: Bench, program: Path, folder: str, passed: Collection[str], most: float) -> Verdict:
+    def attack(self, bench: Bench, program: Path, folder: str, passed: Collection[str], most: float) -> Finding:
         """Measure and judge cells until one is red, none is left, or those that passed cost `most`.
 
         `passed` are cells that the program passed before. `folder` is where in the sources the fault is.
@@ -95,9 +95,9 @@ class Gate:
             if red:
                 if measurement.ending != "measured" and self._red(bench, self._sound, name)[1]:
                     raise IsomortarError(f"{name} is red on the sound program too, which it was not before: this machine is in trouble")
-                return Verdict(name, red, tuple(done))
+                return Finding(name, red, tuple(done))
             done.append(name)
-        return Verdict(None, "", tuple(done))
+        return Finding(None, "", tuple(done))
 
     def _red(self, bench: Bench, program: Path, name: str) -> tuple[Measurement, str]:
         """Measure a cell, and what is red about it."""
@@ -106,9 +106,9 @@ class Gate:
         red = [check for check in judge(cell, measurement, self._lookup) if check.state != "passed"]
         return measurement, sentence(red[0]) if red else ""
 
-    def is_whole(self, verdict: Verdict) -> bool:
+    def is_whole(self, finding: Finding) -> bool:
         """Whether no cell is left that could tell more."""
-        return verdict.killer is not None or self._cells.keys() <= set(verdict.passed)
+        return finding.killer is not None or self._cells.keys() <= set(finding.passed)
 
     def cost(self, names: Collection[str]) -> float:
         """CPU seconds of some cells on the sound program."""

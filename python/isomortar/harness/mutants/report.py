@@ -44,19 +44,19 @@ def _as_data(score: Score, settings: dict[str, Any], when: str) -> dict[str, Any
         "least share": score.least_share,
         "shares": {name: {**asdict(share), "interval": share.interval} for name, share in shares.items()},
         "folders": {folder: [asdict(share) for share in shares] for folder, shares in score.caught_by_folder.items()},
-        "dropped": score.outcome.dropped,
-        "unused cells": score.outcome.unused,
-        "seconds of the gate": sum(score.outcome.seconds.values()),
+        "dropped": score.tally.dropped,
+        "unused cells": score.tally.unused,
+        "seconds of the gate": sum(score.tally.seconds.values()),
         "catches": score.catches,
         "faults": [
             {
                 **asdict(a.fault),
-                "killer": a.verdict.killer,
-                "found": a.verdict.found,
-                "cells passed": len(a.verdict.passed),
+                "killer": a.finding.killer,
+                "found": a.finding.found,
+                "cells passed": len(a.finding.passed),
                 "whole gate": a.whole,
-                "class": None if a.verdict.killer else score.kind(a),
+                "class": None if a.finding.killer else score.kind(a),
             }
-            for a in score.outcome.attacked
+            for a in score.tally.attacked
         ],
     }

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from isomortar.errors import InputError
-from isomortar.harness.mutants.campaign import Attacked, Outcome
+from isomortar.harness.mutants.campaign import Attacked, Tally
 
 #: What a survivor can be. An ``equivalent`` one computes the same; ``not caught`` is a gap of the gate.
 CLASSES = ("equivalent", "performance only", "precision only", "not caught")
@@ -53,21 +53,21 @@ class Share:
 
 
 class Score:
-    """The outcome of a campaign, counted.
+    """The tally of a campaign, counted.
 
     Parameters
     ----------
-    outcome : Outcome
+    tally : Tally
     classified : dict of key to Classification
         What is known about survivors.
     least_share : float
         Of the random faults, without those classified as equivalent, that must be caught.
     """
 
-    def __init__(self, outcome: Outcome, classified: dict[str, Classification], least_share: float) -> None:
-        self.outcome, self.classified, self.least_share = outcome, classified, least_share
-        self.planted = [a for a in outcome.attacked if a.fault.name]
-        self.sample = [a for a in outcome.attacked if not a.fault.name]
+    def __init__(self, tally: Tally, classified: dict[str, Classification], least_share: float) -> None:
+        self.tally, self.classified, self.least_share = tally, classified, least_share
+        self.planted = [a for a in tally.attacked if a.fault.name]
+        self.sample = [a for a in tally.attacked if not a.fault.name]
 
     @property
     def caught_planted(self) -> Share:
@@ -96,7 +96,7 @@ class Score:
     @property
     def survivors(self) -> list[Attacked]:
         """Faults that no cell was red on; planted ones first."""
-        return [a for a in self.outcome.attacked if a.verdict.killer is None]
+        return [a for a in self.tally.attacked if a.finding.killer is None]
 
     def kind(self, attacked: Attacked) -> str:
         """Class of a survivor, or that it has none yet."""
@@ -107,25 +107,25 @@ class Score:
     def passes(self) -> bool:
         """Every planted fault is caught, and of a sample the share that must be."""
         sampled = not self.sample or self.caught_of_real.value >= self.least_share
-        return bool(self.outcome.attacked) and self.caught_planted.part == self.caught_planted.whole and sampled
+        return bool(self.tally.attacked) and self.caught_planted.part == self.caught_planted.whole and sampled
 
     @property
     def catches(self) -> dict[str, Counter[str]]:
         """By family of the first red cell: how many faults, by folder of the sources."""
         found: dict[str, Counter[str]] = {}
-        for attacked in self.outcome.attacked:
-            if attacked.verdict.killer:
-                found.setdefault(attacked.verdict.killer.partition("/")[0], Counter())[attacked.fault.folder] += 1
+        for attacked in self.tally.attacked:
+            if attacked.finding.killer:
+                found.setdefault(attacked.finding.killer.partition("/")[0], Counter())[attacked.fault.folder] += 1
         return dict(sorted(found.items(), key=lambda item: -item[1].total()))
 
     @property
     def folders(self) -> list[str]:
         """Folders of the sources with faults."""
-        return sorted({a.fault.folder for a in self.outcome.attacked})
+        return sorted({a.fault.folder for a in self.tally.attacked})
 
 
 def _caught(attacked: Sequence[Attacked]) -> Share:
-    return Share(sum(a.verdict.killer is not None for a in attacked), len(attacked))
+    return Share(sum(a.finding.killer is not None for a in attacked), len(attacked))
 
 
 def read_classified(path: Path) -> dict[str, Classification]:

@@ -1,4 +1,4 @@
-"""What a study of the paper's Section 4 is: runs of a bundled scene, as data."""
+"""What a section of the paper's numerical part is: runs of a bundled scene, as data."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ class Run:
     Parameters
     ----------
     name : str
-        Within its study.
+        Within its section.
     kind : str
-        ``N3``, ``L2`` of the body that the study varies (`isomortar.harness.discretisations`).
+        ``N3``, ``L2`` of the body that the section varies (`isomortar.harness.discretisations`).
     elements : tuple of int
         Of that body.
     title : str
@@ -58,7 +58,7 @@ class Run:
 
 @dataclass(frozen=True)
 class Quantity:
-    """The curve that a study looks at: a component of the force on, or of the moment about the centre of, the support that moves."""
+    """The curve that a section looks at: a component of the force on, or of the moment about the centre of, the support that moves."""
 
     name: str
     kind: Literal["force", "moment"]
@@ -71,14 +71,14 @@ class Quantity:
 
 
 @dataclass(frozen=True)
-class Study:
+class Section:
     """Runs of one scene that are compared with each other.
 
     Parameters
     ----------
     scene : str
-        Name of the bundled scene, and of the study.
-    section : str
+        Name of the bundled scene, and of the section.
+    number : str
         Of the paper.
     title : str
     quantity : Quantity
@@ -96,7 +96,7 @@ class Study:
     """
 
     scene: str
-    section: str
+    number: str
     title: str
     quantity: Quantity
     window: tuple[float, float]
@@ -107,11 +107,11 @@ class Study:
     changes: tuple[str, ...] = ()
 
     def run(self, name: str) -> Run:
-        """The run of a name; that of ``reference`` is the study's reference."""
+        """The run of a name; that of ``reference`` is the section's reference."""
         return next(run for run in self.runs if run.name == (self.reference if name == "reference" else name))
 
     def names(self, entry: str) -> tuple[str, ...]:
-        """Names of the runs that an entry stands for: a series, or one run; none where the study does not have it."""
+        """Names of the runs that an entry stands for: a series, or one run; none where the section does not have it."""
         known = {run.name for run in self.runs} | {"reference"}
         return self.series.get(entry, (entry,) if entry in known else ())
 

@@ -25,7 +25,7 @@ _program: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
-class Run:
+class Trial:
     """What became of a run.
 
     Parameters
@@ -71,7 +71,7 @@ def program(command: Sequence[str]) -> Iterator[None]:
         _program = before
 
 
-def run(scene: str, seconds: int = SECONDS, memory: int = MEMORY) -> Run:
+def run(scene: str, seconds: int = SECONDS, memory: int = MEMORY) -> Trial:
     """Run the text of a scene file; what was run in this process before is not run again."""
     return _run(scene, _program or _this_program(), seconds, memory)
 
@@ -82,17 +82,17 @@ def _this_program() -> tuple[str, ...]:
 
 
 @functools.lru_cache(maxsize=256)
-def _run(scene: str, command: tuple[str, ...], seconds: int, memory: int) -> Run:
+def _run(scene: str, command: tuple[str, ...], seconds: int, memory: int) -> Trial:
     with TemporaryDirectory() as folder:
         (Path(folder) / "scene.toml").write_text(scene, encoding="utf-8")
         command = (*command, "run", "scene.toml", "--output", "results.h5", "--quiet")
         with Process(command, Limits(seconds, memory), Path(folder), ONE_THREAD | {"COLUMNS": "1000"}) as process:
             end, said = process.wait(PATIENCE * seconds), process.said()
         if end.ending == "timed out":
-            return Run(None, end.words)
+            return Trial(None, end.words)
         held = _read(Path(folder) / "results.h5")
         steps = None if held is None else len(held["curves/step"])
-        return Run(end.status, said, held or {}, steps)
+        return Trial(end.status, said, held or {}, steps)
 
 
 def _read(path: Path) -> dict[str, FloatArray] | None:

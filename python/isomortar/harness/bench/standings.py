@@ -9,7 +9,7 @@ from typing import Literal, get_args
 
 from isomortar.harness.bench.declaration import ASIDE, Row
 from isomortar.harness.bench.history import label
-from isomortar.harness.bench.processes import Outcome
+from isomortar.harness.bench.processes import Answer
 
 State = Literal["met", "missed", "not compared", "not measured"]
 #: Best first.
@@ -17,7 +17,7 @@ STATES: tuple[State, ...] = get_args(State)
 
 
 @dataclass(frozen=True)
-class Verdict:
+class Standing:
     """A limit of a column, how it stands, and the row that came furthest (NaN: none)."""
 
     column: str
@@ -37,18 +37,18 @@ def state(value: object, at_most: float) -> State:
     return "met" if value <= at_most else "missed"
 
 
-def verdicts(outcome: Outcome) -> list[Verdict]:
+def standings(answer: Answer) -> list[Standing]:
     """How the limits stand. One missed row misses the limit, one that lacks the column leaves it open, and so does one without a number.
 
     What a benchmark that failed has not missed so far it might have missed.
     """
-    found = [_verdict(outcome.rows, column, *limit) for column, limit in outcome.benchmark.limits.items()]
-    return [replace(v, state="not measured") if outcome.failed and v.state != "missed" else v for v in found]
+    found = [_standing(answer.rows, column, *limit) for column, limit in answer.benchmark.limits.items()]
+    return [replace(v, state="not measured") if answer.failed and v.state != "missed" else v for v in found]
 
 
-def _verdict(rows: Sequence[Row], column: str, at_most: float, why: str) -> Verdict:
+def _standing(rows: Sequence[Row], column: str, at_most: float, why: str) -> Standing:
     spoken = [(state(row.get(column), at_most), row) for row in rows if row.get(column) != ASIDE]
     states = {found for found, _ in spoken}
     worst, where = max(((float(row[column]), label(row)) for found, row in spoken if found in ("met", "missed")), default=(math.nan, ""))
     found: State = next((kind for kind in ("missed", "not measured", "not compared", "met") if kind in states), "not measured")
-    return Verdict(column, at_most, why, found, worst, where)
+    return Standing(column, at_most, why, found, worst, where)
