@@ -139,7 +139,7 @@ def test_the_key_holds_what_the_numbers_depend_on(root):
 @pytest.fixture
 def unhashed():
     """Hashes are taken anew, in the test and after it."""
-    hashes = (store.package_hash, store.program_hash, store._case_hash)
+    hashes = (store.package_hash, store.program_hash, store.identity, store._case_hash)
     for hashed in hashes:
         hashed.cache_clear()
     yield lambda: [hashed.cache_clear() for hashed in hashes]
@@ -155,6 +155,14 @@ def test_an_upgraded_library_is_measured_anew(root, monkeypatch, unhashed, name)
     monkeypatch.setattr("importlib.metadata.version", lambda of: real(of) + ".post1" * (of == name))
     unhashed()
     assert keys.isdisjoint({cell_key(cell) for cell in cells})
+
+
+def test_what_is_stored_names_what_it_was_measured_with(root):
+    measured(root)
+    for path in (root.parent / "store").rglob("*.json"):
+        libraries = json.loads(path.read_text())["libraries"]
+        assert libraries["numpy"] == np.__version__
+        assert libraries["libumfpack"].startswith("libumfpack.so.")
 
 
 def test_what_the_kernel_is_linked_with_counts(root, monkeypatch, unhashed):

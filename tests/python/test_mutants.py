@@ -10,6 +10,7 @@ from typer.testing import CliRunner
 from isomortar.cli.commands import app
 from isomortar.errors import InputError, IsomortarError
 from isomortar.harness.collection import collect
+from isomortar.harness.journal import Journal
 from isomortar.harness.measurement import Measurement
 from isomortar.harness.mutants import report
 from isomortar.harness.mutants.bench import Bench, freeze
@@ -17,7 +18,6 @@ from isomortar.harness.mutants.campaign import Attacked, Campaign, Tally
 from isomortar.harness.mutants.faults import fault_at, read_planted
 from isomortar.harness.mutants.gate import Finding, Gate
 from isomortar.harness.mutants.generate import draw
-from isomortar.harness.mutants.journal import Journal
 from isomortar.harness.mutants.layers import LAYERS
 from isomortar.harness.mutants.meaning import meaning
 from isomortar.harness.mutants.score import Classification, Score, Share, read_classified
@@ -208,10 +208,10 @@ def test_a_journal_that_was_cut_short_goes_on(tmp_path, torn):
     with path.open("ab") as file:
         file.write(torn if isinstance(torn, bytes) else torn.encode())
     journal = Journal(path)
-    assert journal.get("a") == {"value": 1}
+    assert journal.get("a") == {"key": "a", "value": 1}
     assert journal.get("b") is None
     journal.put("c", {"value": 3})
-    assert Journal(path).get("c") == {"value": 3}
+    assert Journal(path).get("c") == {"key": "c", "value": 3}
 
 
 def test_wilson_interval():

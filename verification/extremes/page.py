@@ -14,7 +14,7 @@ from extremes.points import Earlier, Point, Sweep
 
 from isomortar.harness.report import template
 from isomortar.harness.runner import Result
-from isomortar.harness.store import compiler, kernel_hash, program_hash, write_whole
+from isomortar.harness.store import write_whole
 
 #: Where a family keeps the points of an earlier program, beside its cases.
 BEFORE = "before.json"
@@ -47,9 +47,6 @@ def page(sweeps: Sequence[Sweep], others: Sequence[Result], earlier: Earlier) ->
         sweeps=[_section(sweep) for sweep in sweeps],
         others=others,
         commit=earlier.commit[:12],
-        program=program_hash()[:12],
-        kernel=kernel_hash()[:12],
-        compiler=compiler(),
     )
 
 

@@ -12,7 +12,7 @@ from orders import figures
 from orders.analysis import CURVES, Analysis, Point
 
 from isomortar.harness.report import percent, plain, template
-from isomortar.harness.store import compiler, kernel_hash, program_hash, write_whole
+from isomortar.harness.store import identity, write_whole
 
 
 def write(folder: Path, analysis: Analysis, started: datetime) -> Path:
@@ -29,9 +29,7 @@ def as_data(analysis: Analysis, started: datetime) -> dict[str, Any]:
     return {
         "scene": plan.scene.name,
         "started": started.isoformat(timespec="seconds"),
-        "program": program_hash(),
-        "kernel": kernel_hash(),
-        "compiler": compiler(),
+        **identity(),
         "sweep": asdict(plan.sweep),
         "share_of_elements": plan.share,
         "reference": {"runs": [d.label for d in plan.reference], "uncertainty": analysis.uncertainty},
@@ -57,9 +55,6 @@ def page(analysis: Analysis, started: datetime) -> str:
         seconds=sum(p.numbers["cpu_seconds"] for p in analysis.points.values() if not p.failure),
         percent=percent,
         settings=plan.scene.problem().settings,
-        program=program_hash()[:12],
-        kernel=kernel_hash()[:12],
-        compiler=compiler(),
     )
 
 

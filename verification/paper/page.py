@@ -18,7 +18,7 @@ from paper.settled import Settled
 from paper.statements import STATES, Judgement
 
 from isomortar.harness.report import percent, plain, template
-from isomortar.harness.store import compiler, kernel_hash, program_hash, write_whole
+from isomortar.harness.store import identity, write_whole
 
 
 @dataclass(frozen=True)
@@ -75,9 +75,7 @@ def as_data(report: Report) -> dict[str, Any]:
     return {
         "started": report.started.isoformat(timespec="seconds"),
         "quick": report.quick,
-        "program": program_hash(),
-        "kernel": kernel_hash(),
-        "compiler": compiler(),
+        **identity(),
         "verdicts": report.counts,
         "statements": [_statement(judgement) for judgement in report.judgements],
         "runs": [_run(report, outcome) for outcome in report.outcomes.entries],
@@ -102,9 +100,6 @@ def page(report: Report, drawn: Mapping[str, Sequence[Mapping[str, str]]]) -> st
         total=_seconds(report.outcomes.entries),
         percent=percent,
         shown=shown,
-        program=program_hash()[:12],
-        kernel=kernel_hash()[:12],
-        compiler=compiler(),
     )
 
 

@@ -20,7 +20,7 @@ from isomortar.harness.measurement import curve_of
 from isomortar.harness.references import Reference, dataset_name, made_by, write_reference
 from isomortar.harness.report import template
 from isomortar.harness.runner import Result
-from isomortar.harness.store import compiler, kernel_hash, program_hash, write_whole
+from isomortar.harness.store import identity, write_whole
 
 #: The number of a cell by which it states how far off its others are, relative to their largest values, measured by two refinements.
 MEASURED = "uncertainty"
@@ -135,7 +135,7 @@ def bless(
     if not (np.isfinite(uncertainty) and uncertainty > 0):
         raise InputError(f"is {uncertainty}; must be positive: no run is exact", "uncertainty")
     shares = {change.cell.name: uncertainty if kind == "self" else max(uncertainty, _measured(change)) for change in found}
-    written = []
+    written, made = [], identity()
     for name in dict.fromkeys(change.reference for change in found):
         mine = [change for change in found if change.reference == name]
         if (folder / name / "record.toml").exists() and Reference(folder / name).record["class"] in ("exact", "other code"):
@@ -151,9 +151,8 @@ def bless(
             "reason": reason,
             "who": getpass.getuser(),
             "when": datetime.now(UTC).isoformat(timespec="seconds"),
-            "kernel": kernel_hash(),
-            "program": program_hash(),
-            "compiler": compiler(),
+            **{what: str(made[what]) for what in ("kernel", "program", "compiler")},
+            "libraries": ", ".join(f"{what} {version}" for what, version in made["libraries"].items()),
         }
         write_reference(folder / name, datasets, record)
         written.append(folder / name)

@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from isomortar.harness.journal import Journal
 from isomortar.harness.runner import Result
-from isomortar.harness.store import append_line, program_hash, read_lines
+from isomortar.harness.store import program_hash
 
 #: Runs before a point that it is compared with.
 _BEFORE = 8
@@ -36,12 +37,12 @@ def append(path: Path, results: Sequence[Result]) -> None:
         }
         for result in results
     }
-    append_line(path, {"when": datetime.now(UTC).isoformat(timespec="seconds"), "program": program_hash()[:12], "cells": cells})
+    Journal(path).add({"when": datetime.now(UTC).isoformat(timespec="seconds"), "program": program_hash()[:12], "cells": cells})
 
 
 def read(path: Path, last: int = 60) -> list[Entry]:
     """The last runs, oldest first; a line that was cut short by a crash is left out."""
-    return [Entry(**entry) for entry in read_lines(path)[-last:]]
+    return [Entry(**entry) for entry in Journal(path).entries[-last:]]
 
 
 def values_of(runs: Sequence[Entry], cell: str, number: str) -> list[float]:

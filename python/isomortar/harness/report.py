@@ -21,7 +21,7 @@ from isomortar.harness.cases import Bound, Order
 from isomortar.harness.compare import STATES, Check, worst
 from isomortar.harness.measurement import convergence_of, curve_of
 from isomortar.harness.runner import Result
-from isomortar.harness.store import compiler, kernel_hash, program_hash, write_whole
+from isomortar.harness.store import identity, write_whole
 
 #: Cases with more numbers than this have them in narrow columns: two digits, a history only where it changed.
 WIDE = 4
@@ -57,9 +57,7 @@ def as_data(results: Sequence[Result], context: Context) -> dict[str, Any]:
         "tier": context.tier,
         "only": context.only,
         "seconds": context.seconds,
-        "program": program_hash(),
-        "kernel": kernel_hash(),
-        "compiler": compiler(),
+        **identity(),
         "states": dict(Counter(result.state for result in results)),
         "left_out": left_out(results),
         "cells": [
@@ -121,6 +119,8 @@ def template(name: str, beside: Path = Path(__file__)) -> jinja2.Template:
     """A page by its name in the folder of a source file, or of this package, with what all pages say numbers and times by."""
     loader = jinja2.FileSystemLoader([beside.parent, Path(__file__).parent])
     environment = jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined)
+    made = identity()
+    environment.globals |= {"program": made["program"][:12], "kernel": made["kernel"][:12], "compiler": made["compiler"]}
     environment.filters["number"] = number
     environment.filters["duration"] = duration
     environment.filters["size"] = size
@@ -140,9 +140,6 @@ def page(results: Sequence[Result], context: Context) -> str:
         only_change=sum(any(check.reference == "self" for check in result.checks) for result in results),
         families=[_family(name, group, context) for name, group in _by_family(results)],
         news=_news(results, context),
-        program=program_hash()[:12],
-        kernel=kernel_hash()[:12],
-        compiler=compiler(),
         reused=sum(not result.fresh for result in results),
     )
 

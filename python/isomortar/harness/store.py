@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-import contextlib
 import functools
 import hashlib
 import importlib.metadata
@@ -49,7 +48,7 @@ class Store:
         """Keep what was measured, and that a scene does not converge: what lasts."""
         if measurement.lasts:
             plain = asdict(measurement)
-            content = {"cell": cell.name, "program": program_hash(), "hash": _content_hash(plain), "measurement": plain}
+            content = {"cell": cell.name, **identity(), "hash": _content_hash(plain), "measurement": plain}
             write_whole(self._path(cell), json.dumps(content, indent=1))
 
     def _path(self, cell: Cell) -> Path:
@@ -65,24 +64,6 @@ def write_whole(path: Path, text: str) -> None:
         file.flush()
         os.fsync(file.fileno())
     part.replace(path)
-
-
-def append_line(path: Path, entry: dict[str, Any]) -> None:
-    """Add an entry to a file of JSON lines, on a line of its own also where the one before was cut short by a crash."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with path.open("a+b") as file:
-        file.seek(-min(1, file.tell()), os.SEEK_CUR)
-        torn = file.read() not in (b"", b"\n")
-        file.write(b"\n" * torn + json.dumps(entry).encode() + b"\n")
-
-
-def read_lines(path: Path) -> list[dict[str, Any]]:
-    """Entries of a file of JSON lines, oldest first, without those that a crash cut short; none where there is no file."""
-    entries = []
-    for line in path.read_bytes().splitlines() if path.exists() else ():
-        with contextlib.suppress(ValueError):  # a character that is cut in two is one as well
-            entries.append(json.loads(line))
-    return [entry for entry in entries if isinstance(entry, dict)]
 
 
 def cell_key(cell: Cell, program: str | None = None) -> str:
@@ -131,7 +112,13 @@ def linked() -> list[Path]:
 
 
 @functools.cache
-def compiler() -> str:
+def identity() -> dict[str, Any]:
+    """What measures: hashes of program and kernel, the compiler, and versions of Python, of packages and of the kernel's libraries."""
+    shared = {path.name.partition(".so")[0]: path.resolve().name for path in linked()}
+    return {"program": program_hash(), "kernel": kernel_hash(), "compiler": _compiler(), "libraries": versions() | shared}
+
+
+def _compiler() -> str:
     """The compiler that made the kernel, as it signed the binary."""
     signature = re.search(rb"GCC: \([^)]*\) [\d.]+", next(_kernel_files()).read_bytes())
     return signature.group().decode() if signature else "unknown"

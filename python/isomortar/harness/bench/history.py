@@ -11,7 +11,8 @@ from pathlib import Path
 
 from isomortar.harness.bench.declaration import NOTE, Row
 from isomortar.harness.bench.processes import Answer
-from isomortar.harness.store import append_line, program_hash, read_lines
+from isomortar.harness.journal import Journal
+from isomortar.harness.store import program_hash
 
 #: Runs that a trend shows.
 _SHOWN = 60
@@ -37,12 +38,12 @@ def append(path: Path, answer: Answer, when: datetime) -> None:
     """Add what a benchmark said to the history."""
     rows = {label(row): {name: value for name, value in row.items() if isinstance(value, float)} for row in answer.rows}
     entry = {"when": when.isoformat(timespec="seconds"), "program": program_hash()[:12], "benchmark": answer.benchmark.name, "rows": rows}
-    append_line(path, entry)
+    Journal(path).add(entry)
 
 
 def read(path: Path, name: str) -> Trend:
     """The last runs of a benchmark; a line that was cut short by a crash is left out."""
-    runs = [entry["rows"] for entry in read_lines(path) if entry["benchmark"] == name]
+    runs = [entry["rows"] for entry in Journal(path).entries if entry["benchmark"] == name]
     return Trend(tuple(runs[-_SHOWN:]))
 
 

@@ -14,7 +14,6 @@ from isomortar.harness.bench.history import Trend, label
 from isomortar.harness.bench.processes import Answer
 from isomortar.harness.bench.standings import STATES, standings, state
 from isomortar.harness.history import change_points
-from isomortar.harness.store import compiler, kernel_hash, program_hash
 
 if TYPE_CHECKING:
     from isomortar.harness.bench.record import Record
@@ -28,9 +27,6 @@ def page(record: Record, trends: Mapping[str, Trend]) -> str:
         sections=[_section(answer, trends[answer.benchmark.name]) for answer in record.answers],
         failed=[answer.benchmark.name for answer in record.answers if answer.failed],
         counts=[(kind, sum(v.state == kind for v in judged)) for kind in STATES],
-        program=program_hash()[:12],
-        kernel=kernel_hash()[:12],
-        compiler=compiler(),
     )
 
 

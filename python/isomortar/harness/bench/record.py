@@ -13,7 +13,7 @@ from isomortar.harness.bench.machine import Limits, Machine
 from isomortar.harness.bench.processes import Answer
 from isomortar.harness.bench.standings import standings
 from isomortar.harness.report import plain
-from isomortar.harness.store import compiler, kernel_hash, program_hash, write_whole
+from isomortar.harness.store import identity, write_whole
 
 HISTORY, PAGE, DATA = "history.jsonl", "bench.html", "bench.json"
 
@@ -47,9 +47,7 @@ def as_data(record: Record) -> dict[str, Any]:
     return {
         "started": record.started.isoformat(timespec="seconds"),
         "quick": record.quick,
-        "program": program_hash(),
-        "kernel": kernel_hash(),
-        "compiler": compiler(),
+        **identity(),
         "machine": asdict(record.machine),
         "limits": [asdict(limits) for limits in record.limits],
         "benchmarks": [

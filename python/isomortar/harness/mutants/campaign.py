@@ -14,11 +14,11 @@ from isomortar.errors import InputError
 from isomortar.harness.cases import TIMEOUTS, Cell
 from isomortar.harness.compare import Lookup, judge
 from isomortar.harness.crew import Crew
+from isomortar.harness.journal import Journal
 from isomortar.harness.mutants.bench import Bench, freeze
 from isomortar.harness.mutants.build import content, workshop_of
 from isomortar.harness.mutants.faults import Fault
 from isomortar.harness.mutants.gate import Finding, Gate
-from isomortar.harness.mutants.journal import Journal
 from isomortar.harness.mutants.layers import Layer
 from isomortar.harness.report import sentence
 from isomortar.harness.store import cell_key

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from scipy.stats import binomtest
 
 from isomortar.errors import InputError
 from isomortar.harness.mutants.campaign import Attacked, Tally
@@ -42,10 +43,8 @@ class Share:
         """Wilson's interval at 95 %."""
         if not self.whole:
             return 0.0, 1.0
-        z, n, p = 1.959964, self.whole, self.value
-        middle = (p + z * z / (2 * n)) / (1 + z * z / n)
-        half = z / (1 + z * z / n) * np.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
-        return float(middle - half), float(middle + half)
+        found = binomtest(self.part, self.whole).proportion_ci(0.95, method="wilson")
+        return float(found.low), float(found.high)
 
     def __str__(self) -> str:
         low, high = self.interval
