@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from isomortar.errors import InputError
 from isomortar.harness.cases import Bound, Case, Cell, Curve, Matches, Order, Shown, case
-from isomortar.harness.compare import Expected, agree, agree_all, judge, worst
+from isomortar.harness.compare import Expected, agree, judge, worst
 from isomortar.harness.measurement import Measurement, measure, stored
 from isomortar.harness.orders import Convergence
 
@@ -58,15 +58,6 @@ def test_bad_values_do_not_agree(measured, expected, tolerance):
 def test_agreement_is_only_a_finite_error_within_a_finite_tolerance(a, b, t):
     good = bool(np.isfinite([a, b, t]).all()) and abs(a - b) <= t
     assert agree(a, b, t).agrees == good
-
-
-def test_names_must_be_the_same():
-    whole = {"a": 1.0, "b": 2.0}
-    tolerance = {"a": 0.1, "b": 0.1}
-    assert all(v.agrees for v in agree_all(whole, whole, tolerance).values())
-    for sides in (({"a": 1.0}, whole, tolerance), (whole, {"a": 1.0}, tolerance), (whole, whole, {"a": 0.1})):
-        assert not agree_all(*sides)["b"].agrees
-    assert not all(v.agrees for v in agree_all({}, {}, {}).values())
 
 
 def test_bounds():

@@ -4,11 +4,7 @@ import math
 
 import numpy as np
 import pytest
-
-from isomortar.errors import InputError
-from isomortar.geometry.primitives import bowl, box, ring
-from isomortar.geometry.refinement import mesh
-from isomortar.harness.measures import (
+from measures import (
     curve_error,
     expected_order,
     on_common_times,
@@ -16,7 +12,11 @@ from isomortar.harness.measures import (
     relative_error,
     roughness,
 )
-from isomortar.harness.sampling import basis_matrix, body_grid, face_grid, values_at
+from sampling import basis_matrix, body_grid, face_grid, values_at
+
+from isomortar.errors import InputError
+from isomortar.geometry.primitives import bowl, box, ring
+from isomortar.geometry.refinement import mesh
 
 
 def test_relative_error_of_known_values():

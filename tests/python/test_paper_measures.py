@@ -13,7 +13,9 @@ from paper.outcome import Outcome, Outcomes
 from paper.page import Report
 from paper.sections import METHODS
 from paper.settled import Settled, settled_curves
-from paper.statements import Evidence, NotMeasuredError, Statement, ratio, successive
+from paper.statements import Evidence, Statement, ratio, successive
+
+from isomortar.harness.statement import NotMeasuredError
 
 SECTIONS = {section.scene: section for section in chosen((), False)}
 IRON = SECTIONS["iron"]
@@ -37,7 +39,7 @@ def outcome(name: str, values, method="monolithic", failure="", lost=False, **nu
         "augmentations": 1.0,
         "control_points": 770.0,
     }
-    return Outcome(IRON, IRON.run(name), method, Path("none.h5"), failure, lost, plain | numbers)
+    return Outcome(IRON, IRON.variant(name), method, Path("none.h5"), failure, lost, plain | numbers)
 
 
 STEPS = np.arange(1, DRAGGED + 1)
@@ -78,7 +80,7 @@ def test_stored_curves_are_of_the_studies_and_settled_far_below_what_is_compared
     assert set(found) == set(SECTIONS) - {"iron"}
     for scene, settled in found.items():
         section = SECTIONS[scene]
-        assert len(settled.curve) == section.load(section.runs[0], "monolithic").problem().total_steps
+        assert len(settled.curve) == section.load(section.variants[0], "monolithic").problem().total_steps
         assert 0 < settled.uncertainty <= 0.02
 
 
@@ -140,7 +142,7 @@ def test_a_statement_without_one_of_its_runs_is_not_measured():
     judged = smoother().judge(Outcomes((IRON,), tuple(runs)))
     assert [v.state for v in judged.verdicts] == ["not measured", "holds"]
     assert judged.state == "partly measured"  # by one of the two methods
-    runs = [replace(run, failure="load step 43 does not converge") if run.run.name == "N3" else run for run in runs]
+    runs = [replace(run, failure="load step 43 does not converge") if run.variant.name == "N3" else run for run in runs]
     judged = smoother().judge(Outcomes((IRON,), tuple(runs)))
     assert judged.state == "not measured"
     assert judged.verdicts[0].why == "iron-N3 failed: load step 43 does not converge"
@@ -152,7 +154,7 @@ def test_numbers_that_are_not_finite_are_not_measured():
     assert judged.state == "not measured"
     assert "N3 / N2" in judged.verdicts[0].why
     runs = dragged(N2=0.4, N3=0.2, N4=0.1, N5=0.05)
-    one = [outcome("N3", math.nan * STEPS, "paper") if (r.run.name, r.method) == ("N3", "paper") else r for r in runs]
+    one = [outcome("N3", math.nan * STEPS, "paper") if (r.variant.name, r.method) == ("N3", "paper") else r for r in runs]
     assert smoother().judge(Outcomes((IRON,), tuple(one))).state == "partly measured"  # its runs came to their end
 
 
@@ -168,7 +170,7 @@ def test_a_series_of_which_some_failed_does_not_hold_but_may_be_broken(last, sta
     levels = dict(zip(IRON.series["Lagrange"], (1.0, 2.0, 3.0, last), strict=True))
     runs = [outcome(name, np.full(DRAGGED, v), method) for name, v in levels.items() for method in ("monolithic", "paper")]
     assert rises().judge(Outcomes((IRON,), tuple(runs))).state == ("holds" if last == 4.0 else state)
-    runs = [replace(run, failure="load step 43 does not converge") if run.run.name == "L2" else run for run in runs]
+    runs = [replace(run, failure="load step 43 does not converge") if run.variant.name == "L2" else run for run in runs]
     judged = rises().judge(Outcomes((IRON,), tuple(runs)))
     assert judged.state == state
     assert judged.verdicts[0].values.keys() == {"slave-L1 / L1", "slave-L2 / slave-L1"}
@@ -196,7 +198,9 @@ def test_only_a_run_that_does_not_converge_needs_a_treatment(failure, lost, stat
     twist = SECTIONS["twist"]
     statement = next(s for s in STATEMENTS if "need a special treatment" in s.text)
     short = {name: value[: 35 if failure else None] for name, value in outcome("N2", STEPS).numbers.items() if isinstance(value, list)}
-    runs = [Outcome(twist, twist.run(name), method, Path("none.h5"), failure, lost, short) for name in ("L1", "L2") for method in METHODS]
+    runs = [
+        Outcome(twist, twist.variant(name), method, Path("none.h5"), failure, lost, short) for name in ("L1", "L2") for method in METHODS
+    ]
     judged = statement.judge(Outcomes((twist,), tuple(runs)))
     assert judged.state == state
     report = Report(Outcomes((twist,), tuple(runs)), (judged,), 0, False, None, {})
@@ -208,8 +212,8 @@ def test_no_statement_is_measured_on_what_a_machine_lost(statement):
     """Whatever a statement does with runs that fail: one that crashed or ran out of time says nothing, so that none of it is judged."""
     sections = tuple(SECTIONS.values())
     crashed = [
-        Outcome(section, run, method, Path("none.h5"), "the process was ended by SIGKILL", True, {})
-        for section in sections for run in section.runs for method in run.methods
+        Outcome(section, variant, method, Path("none.h5"), "the process was ended by SIGKILL", True, {})
+        for section in sections for variant in section.variants for method in variant.methods
     ]  # fmt: skip
     assert statement.judge(Outcomes(sections, tuple(crashed))).state == "not measured"
 
@@ -217,7 +221,7 @@ def test_no_statement_is_measured_on_what_a_machine_lost(statement):
 def test_of_lagrange_elements_those_that_ended_count_if_there_are_two():
     runs = [outcome(n, np.full(DRAGGED, 1.0)) for n in ("L1", "L2", "slave-L1", "slave-L2")]
     runs[0] = replace(runs[0], failure="no")
-    assert [o.run.name for o in evidence(*runs).series("iron-Lagrange")] == ["L2", "slave-L1", "slave-L2"]
+    assert [o.variant.name for o in evidence(*runs).series("iron-Lagrange")] == ["L2", "slave-L1", "slave-L2"]
     failed = [replace(run, failure="no") for run in runs[:3]]
     with pytest.raises(NotMeasuredError, match="iron-L1 failed: no; iron-L2 failed: no"):
         evidence(*failed, runs[3]).series("iron-Lagrange")
@@ -242,5 +246,5 @@ def test_complete_is_a_report_without_a_failed_nurbs_run_or_a_gap_in_the_table()
     assert report(outcome("N2", STEPS), failed).complete
     assert not report(outcome("N2", STEPS), replace(failed, lost=True)).complete
     assert not report(replace(outcome("N2", STEPS), failure="no"), failed).complete
-    runs = [replace(run, failure="no") if run.run.name == "N3" else run for run in dragged(N2=0.4, N3=0.2, N4=0.1, N5=0.05)]
+    runs = [replace(run, failure="no") if run.variant.name == "N3" else run for run in dragged(N2=0.4, N3=0.2, N4=0.1, N5=0.05)]
     assert not report(judgements=[smoother().judge(Outcomes((IRON,), tuple(runs)))]).complete

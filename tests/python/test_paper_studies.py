@@ -16,16 +16,16 @@ FULL = {section.scene: section for section in chosen((), False)}
 
 def control_points(section: Section, name: str) -> list[int]:
     """Of each body, shared ones once."""
-    problem = section.load(section.run(name), "paper").problem()
+    problem = section.load(section.variant(name), "paper").problem()
     return [len(set(points.tolist())) for points in Numbering(problem).points.values()]
 
 
 @pytest.mark.parametrize("quick", [False, True])
 def test_every_scene_of_every_run_builds(quick):
     for section in chosen((), quick):
-        for run in section.runs:
-            for method in run.methods:
-                problem = section.load(run, method).problem()
+        for variant in section.variants:
+            for method in variant.methods:
+                problem = section.load(variant, method).problem()
                 assert problem.settings.method == ("uzawa" if method == "paper" else "monolithic")
                 assert problem.settings.slip_sum == ("paper" if method == "paper" else "local")
 
@@ -33,13 +33,13 @@ def test_every_scene_of_every_run_builds(quick):
 @pytest.mark.parametrize("quick", [False, True])
 def test_names_are_found(quick):
     for section in chosen((), quick):
-        names = [run.name for run in section.runs]
+        names = [variant.name for variant in section.variants]
         assert len(set(names)) == len(names)
         assert {section.reference, *(name for series in section.series.values() for name in series)} <= set(names)
         assert section.names("reference") == ("reference",)
-        assert section.run("reference").name == section.reference
+        assert section.variant("reference").name == section.reference
         assert section.names("N9") == ()
-        steps = section.load(section.runs[0], "monolithic").problem().total_steps
+        steps = section.load(section.variants[0], "monolithic").problem().total_steps
         assert max(section.instances) <= steps
 
 
@@ -60,26 +60,26 @@ def test_control_points_that_studies_match():
 
 def test_settings_of_the_papers_method():
     section = FULL["twist"]
-    settings = section.load(section.run("soft-tolerance"), "paper").problem().settings
+    settings = section.load(section.variant("soft-tolerance"), "paper").problem().settings
     assert (settings.augmentation_norm, settings.penalty_growth, settings.augmentation_tolerance) == ("paper", 1.0, 0.001)
     assert (settings.penalty_normal, settings.penalty_tangential) == (10.0, 1.0)
-    assert section.load(section.run("N2"), "paper").problem().settings.augmentation_tolerance == 0.01
-    assert [stage.steps for stage in section.load(section.run("more-steps"), "paper").problem().stages] == [15, 60]
-    assert section.load(section.run("ten-points"), "paper").problem().contacts[0].quadrature == (10, 10)
+    assert section.load(section.variant("N2"), "paper").problem().settings.augmentation_tolerance == 0.01
+    assert [stage.steps for stage in section.load(section.variant("more-steps"), "paper").problem().stages] == [15, 60]
+    assert section.load(section.variant("ten-points"), "paper").problem().contacts[0].quadrature == (10, 10)
 
 
 def test_a_command_runs_the_same_scene_alone():
     section = FULL["iron"]
-    words = shlex.split(section.command(section.run("slave-L2"), "paper"))
+    words = shlex.split(section.command(section.variant("slave-L2"), "paper"))
     changes = [words[n + 1] for n, word in enumerate(words) if word == "--set"]
     assert words[:3] == ["isomortar", "run", "iron"]
     assert set(PAPER_METHOD) <= set(changes)
-    assert Scene.load("iron", changes).to_toml() == section.load(section.run("slave-L2"), "paper").to_toml()
+    assert Scene.load("iron", changes).to_toml() == section.load(section.variant("slave-L2"), "paper").to_toml()
 
 
 def test_lagrange_runs_are_told():
     section = FULL["iron"]
-    assert [run.name for run in section.runs if run.lagrange] == ["L1", "L2", "slave-L1", "slave-L2"]
+    assert [variant.name for variant in section.variants if variant.lagrange] == ["L1", "L2", "slave-L1", "slave-L2"]
 
 
 def test_studies_are_chosen_by_name():
@@ -95,7 +95,7 @@ def test_every_statement_has_its_runs_a_limit_and_a_reason():
         assert statement.reason.startswith(("“", "grey zones")), statement.text
         assert set(statement.methods) <= set(METHODS)
         pairs = [(FULL[scene], entry) for scene, entry in (key.split("-", 1) for key in statement.needs)]
-        planned = [set(section.run(name).methods) for section, entry in pairs for name in section.names(entry)]
+        planned = [set(section.variant(name).methods) for section, entry in pairs for name in section.names(entry)]
         assert all(set(statement.methods) <= methods for methods in planned), f"judged by fewer methods than it says: {statement.text}"
     assert len({statement.text for statement in STATEMENTS}) == len(STATEMENTS)
 

@@ -4,19 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import count
-from pathlib import Path
 
 from orders import run
+from sampling import Grid, slave_grid
 
 from isomortar.errors import InputError
-from isomortar.harness.cases import LAGRANGE, NURBS, Cell
+from isomortar.harness.cases import LAGRANGE, NURBS
 from isomortar.harness.discretisations import Discretisation, Sweep, discretisation, lowest_order, overrides, parse_kind, refined, sweep_of
 from isomortar.harness.orders import SMALLEST_RATIO, WINDOW
-from isomortar.harness.sampling import Grid, slave_grid
-from isomortar.harness.store import write_whole
 from isomortar.model.entities import Problem
 from isomortar.scene.scene import Scene
 
@@ -117,16 +115,6 @@ class Plan:
     def discretised(self, chosen: Discretisation) -> Scene:
         """The scene in a discretisation."""
         return Scene.from_toml(self.scene.to_toml(), overrides=overrides(self.scene, self.sweep, chosen))
-
-    def cells(self, folder: Path) -> list[Cell]:
-        """A cell a discretisation, in the order of the plan; their scene files go to the folder, to be run by anyone."""
-        cells = []
-        for chosen in self.runs:
-            path = folder / f"{self.scene.name}-{chosen.label.replace(' ', '-')}.toml"
-            write_whole(path, self.discretised(chosen).to_toml())
-            settings = {"scene": str(path), "body": self.sweep.body, "contact": self.sweep.contact}
-            cells.append(Cell(replace(run.discretised, files=(path.absolute(),)), settings))
-        return cells
 
     def grids(self) -> tuple[Grid, Grid]:
         """Where pressure and displacement of all runs are sampled."""

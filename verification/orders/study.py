@@ -3,36 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from datetime import datetime
+from functools import partial
 from pathlib import Path
 
 from orders import page
 from orders.analysis import analyse
 from orders.plan import Plan
+from orders.run import discretised
 
-from isomortar.harness.cases import Cell
-from isomortar.harness.measurement import Measurement
-from isomortar.harness.study import Conclusion
+from isomortar.harness.runner import Result
+from isomortar.harness.study import Conclusion, Run, Study
 from isomortar.scene.scene import Scene
 
 
-@dataclass(frozen=True)
-class Orders:
-    """What is run of a scene."""
+def study(scene: Scene, kinds: Sequence[str], body: str | None, quick: bool) -> Study:
+    """The study of a scene, a run a discretisation; see `Plan.of`."""
+    plan = Plan.of(scene, kinds, body, quick)
+    settings = {"body": plan.sweep.body, "contact": plan.sweep.contact}
+    names = [f"{scene.name}-{chosen.label.replace(' ', '-')}" for chosen in plan.runs]
+    runs = [Run(name, plan.discretised(chosen), discretised, settings) for name, chosen in zip(names, plan.runs, strict=True)]
+    return Study(tuple(runs), partial(_written, plan))
 
-    plan: Plan
 
-    @classmethod
-    def of(cls, scene: Scene, kinds: Sequence[str], body: str | None, quick: bool) -> Orders:
-        """The study of a scene; see `Plan.of`."""
-        return cls(Plan.of(scene, kinds, body, quick))
-
-    def cells(self, folder: Path) -> list[Cell]:
-        """A cell a discretisation."""
-        return self.plan.cells(folder / "scenes")
-
-    def conclude(self, folder: Path, measurements: Sequence[Measurement], started: datetime) -> Conclusion:
-        """Compare the discretisations and write ``report.html``."""
-        analysis = analyse(self.plan, dict(zip(self.plan.runs, measurements, strict=True)))
-        return Conclusion(page.write(folder, analysis, started), len(analysis.failed), not analysis.failed)
+def _written(plan: Plan, folder: Path, results: Sequence[Result], started: datetime) -> Conclusion:
+    """Compare the discretisations and write ``report.html``."""
+    analysis = analyse(plan, {chosen: result.measurement for chosen, result in zip(plan.runs, results, strict=True)})
+    return Conclusion(page.write(folder, analysis, started), len(analysis.failed), not analysis.failed)

@@ -1,21 +1,21 @@
-"""What the statements measure, each number defined once; energies and distances of curves are those of `isomortar.harness.measures`."""
+"""What the statements measure, each number defined once; energies and distances of curves are those of `measures`."""
 
 from __future__ import annotations
 
 import math
 
 import numpy as np
+from measures import curve_error, relative_error, roughness
 from numpy.typing import ArrayLike
 from paper.outcome import Outcome
 
 from isomortar.geometry.patch import FloatArray
-from isomortar.harness.measures import curve_error, relative_error, roughness
 
 
 def rms_second_difference(outcome: Outcome) -> float:
     """Root mean square of ``f[i+1] - 2 f[i] + f[i-1]`` over the inner load steps of the window: sqrt(roughness / n).
 
-    The square of a ratio of two of them is the ratio of the curves' second-difference energies (`isomortar.harness.measures.roughness`).
+    The square of a ratio of two of them is the ratio of the curves' second-difference energies (`measures.roughness`).
     """
     window = outcome.window
     time, values = outcome.array("time")[window], outcome.curve[window]

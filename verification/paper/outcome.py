@@ -4,31 +4,31 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from paper import run as cells
-from paper.sections import Method, Run, Section
+from paper.run import computed, curves, results_file
+from paper.sections import Method, Section, Variant
 
-from isomortar.errors import InputError, ResultsError
+from isomortar.errors import ResultsError
 from isomortar.geometry.patch import FloatArray
-from isomortar.harness.cases import Cell
-from isomortar.harness.measurement import Measurement, Stored, stored
-from isomortar.harness.store import Store, write_whole
+from isomortar.harness.measurement import Stored, stored
+from isomortar.harness.runner import Result
+from isomortar.harness.study import Run
 from isomortar.results.reader import Results
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """A run by a method, and how it ended.
+    """A variant by a method, and how its run ended.
 
     Parameters
     ----------
     section : Section
-    run : Run
+    variant : Variant
     method : {"monolithic", "paper"}
     path : Path
         Its results file.
@@ -42,7 +42,7 @@ class Outcome:
     """
 
     section: Section
-    run: Run
+    variant: Variant
     method: Method
     path: Path
     failure: str
@@ -51,13 +51,13 @@ class Outcome:
 
     @property
     def key(self) -> str:
-        """Section and run: ``twist-N3``."""
-        return f"{self.section.scene}-{self.run.name}"
+        """Section and variant: ``twist-N3``."""
+        return f"{self.section.scene}-{self.variant.name}"
 
     @cached_property
     def total_steps(self) -> int:
         """Load steps of the whole run."""
-        return self.section.load(self.run, self.method).problem().total_steps
+        return self.section.load(self.variant, self.method).problem().total_steps
 
     @property
     def steps(self) -> int:
@@ -76,7 +76,7 @@ class Outcome:
     @property
     def window(self) -> slice:
         """The recorded load steps within the section's window."""
-        last = self.array("stage") == len(self.section.load(self.run, self.method).tables.stages) - 1
+        last = self.array("stage") == len(self.section.load(self.variant, self.method).tables.stages) - 1
         share, (begin, end) = self.array("share"), self.section.window
         within = np.flatnonzero(last & (share >= begin - 1e-9) & (share <= end + 1e-9))
         return slice(int(within[0]), int(within[-1]) + 1)
@@ -103,42 +103,37 @@ class Outcomes:
         """The run of a name by a method; None where the section does not have it."""
         if not section.names(name):
             return None
-        run = section.run(name)
-        return next((o for o in self.of(section, method) if o.run == run), None)
+        run = section.variant(name)
+        return next((o for o in self.of(section, method) if o.variant == run), None)
 
 
-def cells_of(sections: Sequence[Section], folder: Path) -> list[tuple[Section, Run, Method, Cell]]:
-    """A cell a run and method; their scene files go to the folder, to be run by anyone.
+def planned(sections: Sequence[Section]) -> list[tuple[Section, Variant, Method]]:
+    """All that is run, in this order."""
+    return [(section, variant, method) for section in sections for variant in section.variants for method in variant.methods]
+
+
+def run_of(section: Section, variant: Variant, method: Method) -> Run:
+    """The run of a variant by a method.
 
     Raises
     ------
     InputError
-        A scene is wrong, or the results file of a run that was measured is gone.
+        The scene is wrong.
     """
-    planned, store = [], Store(folder / "cells")
-    for section in sections:
-        for run in section.runs:
-            for method in run.methods:
-                path = folder / "scenes" / f"{section.scene}-{run.name}-{method}.toml"
-                scene = section.load(run, method)
-                scene.problem()
-                write_whole(path, scene.to_toml())
-                cell = Cell(replace(cells.computed, files=(path.absolute(),)), {"scene": str(path)})
-                if store.get(cell) and not cells.results_file(path).exists():
-                    raise InputError(f"{cells.results_file(path)} is gone; remove {store.folder} too, and what is missing is run again")
-                planned.append((section, run, method, cell))
-    return planned
+    scene = section.load(variant, method)
+    scene.problem()
+    return Run(f"{section.scene}-{variant.name}-{method}", scene, computed, leaves=results_file)
 
 
-def outcome(section: Section, run: Run, method: Method, cell: Cell, measurement: Measurement) -> Outcome:
+def outcome(section: Section, variant: Variant, method: Method, result: Result) -> Outcome:
     """How a run ended, with what its results file holds if it failed."""
-    path = cells.results_file(Path(cell.settings["scene"]))
+    path, measurement = results_file(Path(result.cell.settings["scene"])), result.measurement
     if measurement.ending == "measured":
-        return Outcome(section, run, method, path, "", False, measurement.numbers)
+        return Outcome(section, variant, method, path, "", False, measurement.numbers)
     numbers: dict[str, Stored]
     try:
         with Results(path) as results:
-            numbers = {name: stored(value) for name, value in cells.curves(results).items()}
+            numbers = {name: stored(value) for name, value in curves(results).items()}
     except ResultsError:
         numbers = {}
-    return Outcome(section, run, method, path, measurement.reason, measurement.ending != "not converged", numbers)
+    return Outcome(section, variant, method, path, measurement.reason, measurement.ending != "not converged", numbers)

@@ -15,9 +15,9 @@ from paper.outcome import Outcome, Outcomes
 from paper.plates import NAMES, Plate, gap_between_methods, plates
 from paper.sections import METHODS, Section
 from paper.settled import Settled
-from paper.statements import STATES, Judgement
 
 from isomortar.harness.report import percent, plain, template
+from isomortar.harness.statement import STATES, Judgement
 from isomortar.harness.store import identity, write_whole
 
 
@@ -54,7 +54,7 @@ class Report:
     @property
     def complete(self) -> bool:
         """Whether all runs came to their end (Lagrange elements: or to where they do not converge) and all statements were measured."""
-        return all(o.run.lagrange and not o.lost for o in self.failed) and not self.counts["not measured"]
+        return all(o.variant.lagrange and not o.lost for o in self.failed) and not self.counts["not measured"]
 
 
 def write(folder: Path, report: Report) -> Path:
@@ -113,7 +113,7 @@ def shown(value: float, in_percent: bool) -> str:
 def _rows(report: Report, section: Section) -> list[list[tuple[Outcome, float | None, float | None]]]:
     """Runs of a section with their outcomes by method, how far these are from each other, and from the over-refined curve."""
     outcomes = report.outcomes
-    found = [[outcomes.named(section, run.name, method) for method in METHODS] for run in section.runs]
+    found = [[outcomes.named(section, variant.name, method) for method in METHODS] for variant in section.variants]
     return [[(o, gap_between_methods(outcomes, o), report.off(o)) for o in row if o] for row in found]
 
 
@@ -135,8 +135,8 @@ def _run(report: Report, outcome: Outcome) -> dict[str, Any]:
     return {
         "key": outcome.key,
         "method": outcome.method,
-        "title": outcome.run.title,
-        "command": outcome.section.command(outcome.run, outcome.method),
+        "title": outcome.variant.title,
+        "command": outcome.section.command(outcome.variant, outcome.method),
         "failure": outcome.failure or None,
         "lost": outcome.lost,
         "load_steps": [outcome.steps, outcome.total_steps],

@@ -39,7 +39,7 @@ def plates(section: Section, outcomes: Outcomes) -> Iterator[Plate]:
 
 def gap_between_methods(outcomes: Outcomes, outcome: Outcome) -> float | None:
     """Deviation of a monolithic run from that by the paper's method; None where one of them did not come to its end."""
-    other = outcomes.named(outcome.section, outcome.run.name, "paper")
+    other = outcomes.named(outcome.section, outcome.variant.name, "paper")
     if outcome.method == "paper" or other is None or outcome.failure or other.failure:
         return None
     return deviation(outcome, other)
@@ -86,7 +86,7 @@ class _Studio:
             for outcome in self._begun(runs, "monolithic"):
                 step = _step_at(outcome, share)
                 if step is not None:
-                    scale = _HEIGHT_OF_L4 if outcome.run.kind == "L4" else 1.0
+                    scale = _HEIGHT_OF_L4 if outcome.variant.kind == "L4" else 1.0
                     panels.append(Panel(_label(outcome), opened.enter_context(outcome.results()), step, scale))
             if panels:
                 yield Plate(name, title, f"{NAMES['monolithic']}, load step {panels[0].step}", draw(panels))
@@ -111,11 +111,13 @@ class _Studio:
         return [step for step in self.section.instances if step <= outcome.steps] if outcome else []
 
     def _line(self, outcome: Outcome) -> Line:
-        return Line(_label(outcome), self._times(outcome), outcome.curve, outcome.run.kind, outcome.run.name == self.section.reference)
+        return Line(
+            _label(outcome), self._times(outcome), outcome.curve, outcome.variant.kind, outcome.variant.name == self.section.reference
+        )
 
     def _times(self, outcome: Outcome) -> FloatArray:
         """Load times as of the section's first run, whatever the size of the load steps."""
-        ends = np.cumsum([0, *(stage.steps for stage in self.section.load(self.section.runs[0], outcome.method).tables.stages)])
+        ends = np.cumsum([0, *(stage.steps for stage in self.section.load(self.section.variants[0], outcome.method).tables.stages)])
         stage = outcome.array("stage").astype(int)
         return ends[stage] + outcome.array("share") * np.diff(ends)[stage]
 
@@ -174,16 +176,16 @@ _PLATES: dict[str, Callable[[_Studio], Iterator[Plate]]] = {"press": _press, "tw
 
 
 def _label(outcome: Outcome) -> str:
-    name = f"{outcome.run.name} (reference)" if outcome.run.name == outcome.section.reference else outcome.run.name
+    name = f"{outcome.variant.name} (reference)" if outcome.variant.name == outcome.section.reference else outcome.variant.name
     return f"{name}, to step {outcome.steps}" if outcome.failure else name
 
 
 def _words(outcome: Outcome) -> str:
-    return f"{_label(outcome)}: {outcome.run.title}; {NAMES[outcome.method]}"
+    return f"{_label(outcome)}: {outcome.variant.title}; {NAMES[outcome.method]}"
 
 
 def _step_at(outcome: Outcome, share: float) -> int | None:
     """The recorded load step of the last stage nearest to a share of it; None where the run did not come there."""
-    stages = outcome.section.load(outcome.run, outcome.method).tables.stages
+    stages = outcome.section.load(outcome.variant, outcome.method).tables.stages
     step = sum(stage.steps for stage in stages[:-1]) + round(share * stages[-1].steps)
     return step if step <= outcome.steps else None

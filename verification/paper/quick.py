@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from paper.plans import DRAG, FORCE, MOMENT, TOLERANCE, TORQUE, nurbs, own_method
-from paper.sections import Run, Section
+from paper.sections import Section, Variant
 
 PRESS = Section(
     scene="press",
@@ -14,12 +14,12 @@ PRESS = Section(
     reference="N2-fine",
     series={"N": ("N2", "N3"), "L": ("L1", "L2"), "L>1": ("L2",)},
     instances=(2,),
-    runs=(
+    variants=(
         *nurbs((3, 3, 1), 2, 3),
-        Run("L1", "L1", (4, 4, 1), "Lagrange elements of order 1"),
-        Run("L2", "L2", (2, 2, 1), "Lagrange elements of order 2"),
-        Run("N2-fine", "N2", (6, 6, 1), "reference for NURBS"),
-        Run("L1-fine", "L1", (8, 8, 1), "reference for Lagrange elements", (), ("monolithic",)),
+        Variant("L1", "L1", (4, 4, 1), "Lagrange elements of order 1"),
+        Variant("L2", "L2", (2, 2, 1), "Lagrange elements of order 2"),
+        Variant("N2-fine", "N2", (6, 6, 1), "reference for NURBS"),
+        Variant("L1-fine", "L1", (8, 8, 1), "reference for Lagrange elements", (), ("monolithic",)),
         own_method("tolerance", "N2", (3, 3, 1), "N2 with tolerance 0.001", TOLERANCE),
     ),
     changes=("stages.press.steps=2",),
@@ -34,11 +34,11 @@ TWIST = Section(
     reference="fine-N3",
     series={"N": ("N2", "N3"), "Lagrange": ("L1", "L2")},
     instances=(7,),
-    runs=(
+    variants=(
         *nurbs((3, 3, 1), 2, 3),
-        Run("fine-N3", "N3", (4, 4, 1), "reference: four elements laterally", (), ("monolithic",)),
-        Run("L1", "L1", (3, 3, 1), "master of Lagrange elements of order 1", (), ("monolithic",)),
-        Run("L2", "L2", (2, 2, 1), "master of Lagrange elements of order 2", (), ("monolithic",)),
+        Variant("fine-N3", "N3", (4, 4, 1), "reference: four elements laterally", (), ("monolithic",)),
+        Variant("L1", "L1", (3, 3, 1), "master of Lagrange elements of order 1", (), ("monolithic",)),
+        Variant("L2", "L2", (2, 2, 1), "master of Lagrange elements of order 2", (), ("monolithic",)),
     ),
     changes=(
         "bodies.slave.mesh.elements=[2,2,1]",
@@ -57,12 +57,12 @@ IRON = Section(
     reference="N3",
     series={"N": ("N2", "N3"), "Lagrange": ("L1", "L2")},
     instances=(8,),
-    runs=(
+    variants=(
         *nurbs((5, 2, 2), 2, 3),
-        Run("A", "N2", (8, 2, 2), "N2 with 8 elements along the drag", (), ("monolithic",)),
-        Run("C", "N2", (5, 2, 2), "N2 pressed down by 0.4", ("stages.press.motions.top.translate=[0,0,-0.4]",), ("monolithic",)),
-        Run("L1", "L1", (5, 2, 2), "master of Lagrange elements of order 1", (), ("monolithic",)),
-        Run("L2", "L2", (3, 2, 2), "master of Lagrange elements of order 2", (), ("monolithic",)),
+        Variant("A", "N2", (8, 2, 2), "N2 with 8 elements along the drag", (), ("monolithic",)),
+        Variant("C", "N2", (5, 2, 2), "N2 pressed down by 0.4", ("stages.press.motions.top.translate=[0,0,-0.4]",), ("monolithic",)),
+        Variant("L1", "L1", (5, 2, 2), "master of Lagrange elements of order 1", (), ("monolithic",)),
+        Variant("L2", "L2", (3, 2, 2), "master of Lagrange elements of order 2", (), ("monolithic",)),
     ),
     changes=(
         "bodies.slave.mesh.elements=[2,2,2]",
@@ -81,12 +81,12 @@ TIRE = Section(
     reference="N2",
     series={"N": ("N2", "N3"), "L": ("L1", "L2"), "matched": ("L1-matched", "L2-matched")},
     instances=(8,),
-    runs=(
+    variants=(
         *nurbs((8, 1, 1), 2, 3),
-        Run("L1", "L1", (8, 1, 1), "Lagrange elements of order 1"),
-        Run("L2", "L2", (4, 1, 1), "Lagrange elements of order 2"),
-        Run("L1-matched", "L1", (12, 1, 1), "Lagrange elements of order 1, the 12 control points of N2 round the ring"),
-        Run("L2-matched", "L2", (8, 1, 1), "Lagrange elements of order 2, the 16 control points of N3 round the ring"),
+        Variant("L1", "L1", (8, 1, 1), "Lagrange elements of order 1"),
+        Variant("L2", "L2", (4, 1, 1), "Lagrange elements of order 2"),
+        Variant("L1-matched", "L1", (12, 1, 1), "Lagrange elements of order 1, the 12 control points of N2 round the ring"),
+        Variant("L2-matched", "L2", (8, 1, 1), "Lagrange elements of order 2, the 16 control points of N3 round the ring"),
         own_method("L2-tolerance", "L2", (4, 1, 1), "L2 with tolerance 0.001", TOLERANCE),
     ),
     changes=("stages.press.steps=2", "stages.roll.steps=6", "stages.roll.motions.rim={translate=[0.14765485471872,0,0],rotate=18.0}"),

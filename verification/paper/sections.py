@@ -1,4 +1,4 @@
-"""What a section of the paper's numerical part is: runs of a bundled scene, as data."""
+"""What a section of the paper's numerical part is: variants of a bundled scene, each run by one method or by both."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ PAPER_METHOD = (
 
 
 @dataclass(frozen=True)
-class Run:
+class Variant:
     """A scene with one of its bodies in a discretisation of its own.
 
     Parameters
@@ -90,7 +90,7 @@ class Section:
         Runs that differ in the order alone, lowest first: N (NURBS), L (Lagrange), and others that the statements ask for.
     instances : tuple of int
         Load steps that are drawn.
-    runs : tuple of Run
+    variants : tuple of Variant
     changes : tuple of str
         What differs from the scene in all runs.
     """
@@ -103,35 +103,35 @@ class Section:
     reference: str
     series: Mapping[str, tuple[str, ...]]
     instances: tuple[int, ...]
-    runs: tuple[Run, ...]
+    variants: tuple[Variant, ...]
     changes: tuple[str, ...] = ()
 
-    def run(self, name: str) -> Run:
-        """The run of a name; that of ``reference`` is the section's reference."""
-        return next(run for run in self.runs if run.name == (self.reference if name == "reference" else name))
+    def variant(self, name: str) -> Variant:
+        """The variant of a name; that of ``reference`` is the section's reference."""
+        return next(variant for variant in self.variants if variant.name == (self.reference if name == "reference" else name))
 
     def names(self, entry: str) -> tuple[str, ...]:
         """Names of the runs that an entry stands for: a series, or one run; none where the section does not have it."""
-        known = {run.name for run in self.runs} | {"reference"}
+        known = {variant.name for variant in self.variants} | {"reference"}
         return self.series.get(entry, (entry,) if entry in known else ())
 
-    def overrides(self, run: Run, method: Method) -> tuple[str, ...]:
-        """All that a run changes of the scene, as for ``isomortar run --set``; what comes later counts."""
+    def overrides(self, variant: Variant, method: Method) -> tuple[str, ...]:
+        """All that a variant changes of the scene, as for ``isomortar run --set``; what comes later counts."""
         return (
-            *_discretised(self.scene, run.kind, run.elements),
+            *_discretised(self.scene, variant.kind, variant.elements),
             *self.changes,
             *(PAPER_METHOD if method == "paper" else ()),
-            *run.changes,
+            *variant.changes,
         )
 
-    def load(self, run: Run, method: Method) -> Scene:
-        """The scene of a run."""
-        return Scene.load(self.scene, self.overrides(run, method))
+    def load(self, variant: Variant, method: Method) -> Scene:
+        """The scene of a variant by a method."""
+        return Scene.load(self.scene, self.overrides(variant, method))
 
-    def command(self, run: Run, method: Method) -> str:
+    def command(self, variant: Variant, method: Method) -> str:
         """What runs it alone, from a shell."""
-        settings = " ".join(f"--set {shlex.quote(change)}" for change in self.overrides(run, method))
-        return f"isomortar run {self.scene} {settings} --output {self.scene}-{run.name}-{method}.h5"
+        settings = " ".join(f"--set {shlex.quote(change)}" for change in self.overrides(variant, method))
+        return f"isomortar run {self.scene} {settings} --output {self.scene}-{variant.name}-{method}.h5"
 
 
 @cache

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from measures import curve_error
 from paper.outcome import Outcome
 
 from isomortar.geometry.patch import FloatArray
-from isomortar.harness.measures import curve_error
 from isomortar.harness.references import Reference
 
 #: Folder below the references, and the dataset of a section there (``verification/paper_curves``).
@@ -32,7 +32,7 @@ class Settled:
         if outcome.failure:
             return None
         section = outcome.section
-        last = section.load(section.runs[0], "monolithic").tables.stages[-1].steps
+        last = section.load(section.variants[0], "monolithic").tables.stages[-1].steps
         if last > len(self.curve):
             return None
         shares, window = np.arange(1, last + 1) / last, outcome.window

@@ -3,51 +3,41 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from datetime import datetime
+from functools import partial
 from pathlib import Path
 
 from paper import page
 from paper.catalogue import chosen
 from paper.findings import STATEMENTS
-from paper.outcome import Outcomes, cells_of, outcome
+from paper.outcome import Outcomes, outcome, planned, run_of
 from paper.sections import Section
 from paper.settled import Settled, settled_curves
 
-from isomortar.harness.cases import Cell
-from isomortar.harness.measurement import Measurement
-from isomortar.harness.study import Conclusion
+from isomortar.harness.runner import Result
+from isomortar.harness.study import Conclusion, Study
 
 
-@dataclass(frozen=True)
-class Paper:
-    """The chosen sections, in full or as their quick variants, and over-refined curves by scene."""
+def study(names: Sequence[str], quick: bool, references: Path) -> Study:
+    """The sections of these names, all if there are none, in full or as their quick variants.
 
-    sections: tuple[Section, ...]
-    quick: bool
-    settled: Mapping[str, Settled]
+    Raises
+    ------
+    InputError
+        There is no such section, a scene is wrong, or the reference of over-refined curves is damaged.
+    """
+    sections = chosen(names, quick)
+    settled = {} if quick else settled_curves(references)
+    return Study(tuple(run_of(*plan) for plan in planned(sections)), partial(_written, sections, quick, settled))
 
-    @classmethod
-    def of(cls, names: Sequence[str], quick: bool, references: Path) -> Paper:
-        """The sections of these names, all if there are none.
 
-        Raises
-        ------
-        InputError
-            There is no such section, or the reference of over-refined curves is damaged.
-        """
-        return cls(chosen(names, quick), quick, {} if quick else settled_curves(references))
-
-    def cells(self, folder: Path) -> list[Cell]:
-        """A cell a run and method."""
-        return [cell for *_, cell in cells_of(self.sections, folder)]
-
-    def conclude(self, folder: Path, measurements: Sequence[Measurement], started: datetime) -> Conclusion:
-        """Judge the statements and write ``paper.html``."""
-        planned = cells_of(self.sections, folder)
-        outcomes = Outcomes(self.sections, tuple(outcome(*plan, found) for plan, found in zip(planned, measurements, strict=True)))
-        statements = [statement for statement in STATEMENTS if statement.concerns(self.sections)]
-        judgements = tuple(statement.judge(outcomes) for statement in statements)
-        report = page.Report(outcomes, judgements, len(STATEMENTS) - len(statements), self.quick, started, self.settled)
-        counts = ", ".join(f"{count} {state}" for state, count in report.counts.items())
-        return Conclusion(page.write(folder, report), len(report.failed), report.complete, counts)
+def _written(
+    sections: tuple[Section, ...], quick: bool, settled: Mapping[str, Settled], folder: Path, results: Sequence[Result], started: datetime
+) -> Conclusion:
+    """Judge the statements and write ``paper.html``."""
+    outcomes = Outcomes(sections, tuple(outcome(*plan, result) for plan, result in zip(planned(sections), results, strict=True)))
+    statements = [statement for statement in STATEMENTS if statement.concerns(sections)]
+    judgements = tuple(statement.judge(outcomes) for statement in statements)
+    report = page.Report(outcomes, judgements, len(STATEMENTS) - len(statements), quick, started, settled)
+    counts = ", ".join(f"{count} {state}" for state, count in report.counts.items())
+    return Conclusion(page.write(folder, report), len(report.failed), report.complete, counts)

@@ -47,5 +47,5 @@ def orders(
     from isomortar.scene import Scene
 
     loaded, names = Scene.load(scene), [kind.strip() for kind in kinds.split(",") if kind.strip()]
-    study = study_module(cases, "orders").Orders.of(loaded, names, body, quick)
+    study = study_module(cases, "orders").study(loaded, names, body, quick)
     conduct(study, out or Path("results") / f"orders-{loaded.name}", jobs)

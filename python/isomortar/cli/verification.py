@@ -169,7 +169,7 @@ def conduct(study: Study, folder: Path, jobs: int) -> None:
 
     started, clock = datetime.now().astimezone(), time.perf_counter()
     results = measure_all(study.cells(folder), folder, lambda *_: None, local_processes(jobs), False)
-    found = study.conclude(folder, [result.measurement for result in results], started)
+    found = study.page(folder, results, started)
     print(f"{len(results)} runs, {found.failed} failed, {time.perf_counter() - clock:.0f} s")
     print("\n".join(filter(None, (found.summary, str(found.page)))))
     if not found.complete:

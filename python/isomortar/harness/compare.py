@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -85,20 +85,6 @@ def agree(measured: ArrayLike, expected: ArrayLike, tolerance: ArrayLike) -> Agr
         share = np.where(error == 0, 0.0, error / t)
     within = bool(np.all(error <= t))
     return Agreement(within, f"largest error {error.max():.3g}, {share.max():.3g} of the tolerance", float(share.max()))
-
-
-def agree_all(measured: Mapping[str, Any], expected: Mapping[str, Any], tolerance: Mapping[str, Any]) -> dict[str, Agreement]:
-    """Compare named values; a name that one side lacks disagrees, and so does comparing nothing."""
-    names = [*dict.fromkeys([*expected, *measured, *tolerance])]
-    verdicts = {}
-    for name in names:
-        missing = [
-            side for side, values in (("measured", measured), ("expected", expected), ("tolerance", tolerance)) if name not in values
-        ]
-        verdicts[name] = (
-            Agreement(False, f"missing: {', '.join(missing)}") if missing else agree(measured[name], expected[name], tolerance[name])
-        )
-    return verdicts or {"": Agreement(False, "nothing to compare")}
 
 
 def judge(cell: Cell, measurement: Measurement, lookup: Lookup) -> list[Check]:

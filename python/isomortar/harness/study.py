@@ -1,22 +1,23 @@
 """Studies: runs of scenes that are compared with each other, and the page that says what comes of it.
 
-A study stands in ``FOLDER/<name>/study.py``; what it runs, measures and draws stands beside it. A family of cases may have a page too.
+A study stands in ``FOLDER/<name>/study.py``, whose function ``study`` makes it of the options of a command; what it runs, measures and
+draws stands beside it. A family of cases may have a page too.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from datetime import datetime
 from pathlib import Path
 from types import ModuleType
-from typing import Protocol
 
 from isomortar.errors import InputError
-from isomortar.harness.cases import Cell
+from isomortar.harness.cases import Case, Cell, Settings
 from isomortar.harness.collection import module_at
-from isomortar.harness.measurement import Measurement
 from isomortar.harness.runner import Result
+from isomortar.harness.store import Store, write_whole
+from isomortar.scene.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -29,20 +30,66 @@ class Conclusion:
     summary: str = ""
 
 
-class Study(Protocol):
-    """What a command runs and concludes from."""
+@dataclass(frozen=True)
+class Run:
+    """A scene under a name of its own, and what measures it.
+
+    Parameters
+    ----------
+    name : str
+        Also of its scene file.
+    scene : Scene
+        With all that the run changes.
+    case : Case
+        Made by `measured`: a function of ``scene``, the path of the scene file, and of the settings.
+    settings : dict
+        Others of the case.
+    leaves : callable, optional
+        From the scene file to the results file that is needed besides the numbers.
+    """
+
+    name: str
+    scene: Scene
+    case: Case
+    settings: Settings = field(default_factory=dict)
+    leaves: Callable[[Path], Path] | None = None
+
+    def cell(self, folder: Path) -> Cell:
+        """Its cell; the scene file goes to the folder, to be run by anyone."""
+        path = folder / f"{self.name}.toml"
+        write_whole(path, self.scene.to_toml())
+        return Cell(replace(self.case, files=(path.absolute(),)), {"scene": str(path), **self.settings})
+
+
+@dataclass(frozen=True)
+class Study:
+    """Runs that are compared with each other.
+
+    Parameters
+    ----------
+    runs : tuple of Run
+    page : callable
+        From the folder, the results of the runs in their order, and the time of the start: compares them, judges what is stated of them
+        and writes the page.
+    """
+
+    runs: tuple[Run, ...]
+    page: Callable[[Path, Sequence[Result], datetime], Conclusion]
 
     def cells(self, folder: Path) -> list[Cell]:
-        """A cell a run. Scene files go to the folder, to be run by anyone.
+        """A cell a run.
 
         Raises
         ------
         InputError
-            A scene is wrong.
+            The results file of a run that was measured is gone.
         """
-
-    def conclude(self, folder: Path, measurements: Sequence[Measurement], started: datetime) -> Conclusion:
-        """Compare the runs, of which there is a measurement a cell, and write the page into the folder."""
+        cells, store = [run.cell(folder / "scenes") for run in self.runs], Store(folder / "cells")
+        for run, cell in zip(self.runs, cells, strict=True):
+            left = run.leaves(Path(cell.settings["scene"])) if run.leaves else None
+            if left and store.get(cell) and not left.exists():
+                raise InputError(f"{left} is gone; remove {store.folder} too, and what is missing is run again")
+        return cells
 
 
 def family_pages(cases: Path, folder: Path, results: Sequence[Result]) -> Iterator[Path]:

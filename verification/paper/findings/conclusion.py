@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 from paper.findings.press import NON_NEGATIVE
 from paper.measures import negative_share
-from paper.statements import Evidence, Statement, Values
+from paper.statements import Evidence, Statement
+
+from isomortar.harness.statement import Values
 
 _SECTIONS = ("press", "twist", "iron", "tire")
 

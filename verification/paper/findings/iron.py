@@ -6,7 +6,9 @@ import numpy as np
 from paper.fields import fields
 from paper.measures import cycles, mean, ripple, rms_second_difference
 from paper.outcome import Outcome
-from paper.statements import Evidence, Statement, Values, each, ratio, successive
+from paper.statements import Evidence, Statement, each, ratio, successive
+
+from isomortar.harness.statement import Values
 
 
 def _relative(outcome: Outcome) -> float:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from paper.measures import deviation
 from paper.outcome import Outcome
-from paper.statements import Evidence, Statement, Values, ratio
+from paper.statements import Evidence, Statement, ratio
+
+from isomortar.harness.statement import Values
 
 _SECTIONS = ("press", "twist", "iron", "tire")
 

@@ -8,7 +8,9 @@ import numpy as np
 from paper.fields import Fields, fields
 from paper.measures import excess_variation, field_deviation, negative_share
 from paper.outcome import Outcome
-from paper.statements import Evidence, Statement, Values, each, successive
+from paper.statements import Evidence, Statement, each, successive
+
+from isomortar.harness.statement import Values
 
 NON_NEGATIVE = 1e-8
 _SOLVED = "“non-negative” up to what the solution is solved to: the complementarity tolerance 1e-8"

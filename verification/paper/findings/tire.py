@@ -6,7 +6,9 @@ import numpy as np
 from paper.fields import Fields, fields
 from paper.measures import deviation, mean, ripple
 from paper.outcome import Outcome
-from paper.statements import Evidence, Statement, Values, each, ratio, successive
+from paper.statements import Evidence, Statement, each, ratio, successive
+
+from isomortar.harness.statement import Values
 
 #: Degrees that a C0 line is from the lowest point while it counts as being there.
 _AT_JOINT = 9.0
@@ -34,9 +36,9 @@ def _strongly(runs: Evidence, series: str) -> Values:
 def _closer(runs: Evidence) -> Values:
     """In the mean, with as many control points as the next order of NURBS against as many nodes."""
     truth = mean(runs.run("tire-reference"))
-    matched = {run.run.name: run for run in runs.series("tire-matched")}
-    pairs = [(run, matched.get(f"{run.run.name}-matched")) for run in runs.series("tire-L")]
-    return {f"{m.run.name} / {o.run.name}": abs(mean(m) - truth) / abs(mean(o) - truth) for o, m in pairs if m}
+    matched = {run.variant.name: run for run in runs.series("tire-matched")}
+    pairs = [(run, matched.get(f"{run.variant.name}-matched")) for run in runs.series("tire-L")]
+    return {f"{m.variant.name} / {o.variant.name}": abs(mean(m) - truth) / abs(mean(o) - truth) for o, m in pairs if m}
 
 
 def _at_joints(outcome: Outcome) -> float:

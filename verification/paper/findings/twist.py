@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 from paper.measures import deviation, mean, rms_second_difference
 from paper.outcome import Outcome
-from paper.statements import Evidence, Statement, Values, each, ratio, successive
+from paper.statements import Evidence, Statement, each, ratio, successive
+
+from isomortar.harness.statement import Values
 
 
 def _turning(outcome: Outcome) -> np.ndarray:

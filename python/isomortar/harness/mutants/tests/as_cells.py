@@ -10,7 +10,7 @@ from isomortar.errors import InputError
 from isomortar.harness.cases import Bound, Cell, case
 
 #: What tests of the harness and of its studies import: no fault is put there.
-_HARNESS = re.compile(r"isomortar\.harness|^from (orders|paper)\b", re.MULTILINE)
+_HARNESS = re.compile(r"isomortar\.harness|^from (measures|orders|paper|sampling)\b", re.MULTILINE)
 
 
 @case(
