@@ -74,6 +74,21 @@ def pressed(friction: float, press: float, method: str) -> dict[str, float]:
 
 
 @case(
+    claim="Augmentations of a tolerance finer than what Newton's method leaves of tractions come to their end, with narrow cones too.",
+    tier="gate",
+    grid={"friction": (1e-3, 1e-5, 1e-6), "press": (1e-2, 1e-3)},
+    bounds=lambda friction, press: {  # noqa: ARG005
+        "off": Bound(at_most=press, reason="theory: Hooke's law, off by the strain press / 2 times the law's curvature, below 2"),
+        "got there": BOUNDS["got there"],
+    },
+)
+def finely(friction: float, press: float) -> dict[str, float]:
+    """Tractions are some 1e-3 of the pressures and less; 1e-8 of them is less than balance to 1e-9 tells."""
+    scene = _COLUMN.format(friction=friction, method="uzawa").replace("augmentation_tolerance = 1e-6", "augmentation_tolerance = 1e-8")
+    return _force(scene, [{"name": "press", "by": (0.0, 0.0, -press)}])
+
+
+@case(
     claim="Bodies that part, move, and touch again with no force come through that, and bear what Hooke's law says when pressed.",
     tier="gate",
     grid={"aside": (0.0, 1e-16, 1e-9), "method": ("monolithic", "uzawa")},

@@ -142,11 +142,12 @@ class Stage:
     steps: int
 
 
-#: What helps Newton's method on the way to the solution (theory 6.5); none changes the solution.
+#: What helps Newton's method on the way to the solution (theory 6.5, 7.5); none changes the solution.
 #: keeping: factors of an earlier tangent serve for as long as solves with them leave a small share of the residual. The others
 #: help the monolithic loop. forgiving: slip rows with the current traction in place of the cone's. margin: what slips at the
 #: start of an increment goes on slipping. reversal: predicted slip against its traction sticks instead. halving: updates that
-#: fold an element, lose a projection, return to an earlier set of states, or double the merit are halved.
+#: fold an element, lose a projection, return to an earlier set of states, or double the merit are halved; in Uzawa's loop those that
+#: leave a larger residual.
 Measure = Literal["forgiving", "margin", "reversal", "halving", "keeping"]
 MEASURES: tuple[Measure, ...] = ("forgiving", "margin", "reversal", "halving", "keeping")
 

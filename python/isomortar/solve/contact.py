@@ -246,17 +246,18 @@ class PairMechanics:
         least = np.maximum((0.01 * min(self.friction, 1.0)) ** 2 * size, noise[1])
         return ratio(float(changes[0]), size), ratio(float(changes[1]), float(np.maximum(squares[1], least)))
 
-    def round_off(self, positions: FloatArray, law: Law, response: Response) -> tuple[float, float]:
+    def round_off(self, positions: FloatArray, law: Law, response: Response, unbalanced: float = 0.0) -> tuple[float, float]:
         """Norms of what the last bits of positions make of pressures and tractions where gap and slip are nothing (theory 5.8).
 
-        No iteration can remove them: where nothing pulls, friction is next to none or the bodies just touch, all is round-off.
+        No iteration can remove them: where nothing pulls, friction is next to none or the bodies just touch, all is round-off. Nor are
+        they known better than to `unbalanced`, what forces that are not quite in balance leave open.
         """
         last_bit = float(np.spacing(np.abs(positions[self.pair.slave.point]).max()))
         normal, tangential = law.penalties * last_bit * np.sqrt(np.count_nonzero(response.state))
-        return float(normal), float(tangential)
+        return max(float(normal), unbalanced), max(float(tangential), unbalanced)
 
     def off_conditions(
-        self, positions: FloatArray, kinematics: Kinematics, law: Law, response: Response, scales: Scales
+        self, positions: FloatArray, kinematics: Kinematics, law: Law, response: Response, scales: Scales, unbalanced: float
     ) -> tuple[float, float]:
         """Relative distance of a response's pressures and tractions from what the contact conditions make of them (theory 7.4).
 
@@ -274,7 +275,7 @@ class PairMechanics:
             kinematics.control,
             (target.pressure, target.traction),
             (response.pressure, response.traction),
-            self.round_off(positions, again, response),
+            self.round_off(positions, again, response, unbalanced),
         )
 
     def result(self, positions: FloatArray, kinematics: Kinematics, response: Response) -> ContactResult:

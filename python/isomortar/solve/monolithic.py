@@ -16,7 +16,15 @@ from isomortar.solve.contact import largest
 from isomortar.solve.equilibrium import Balance
 from isomortar.solve.feet import beside_poles
 from isomortar.solve.method import Increment, Method
-from isomortar.solve.newton import KEPT_FACTORS, KEPT_SHARE, observed_order, relative_residual, residual_round_off
+from isomortar.solve.newton import (
+    CYCLE_FREE,
+    KEPT_FACTORS,
+    KEPT_SHARE,
+    MAX_HALVINGS,
+    observed_order,
+    relative_residual,
+    residual_round_off,
+)
 from isomortar.solve.record import AugmentationRecord, IterationRecord, State
 from isomortar.solve.scales import Scales
 
@@ -24,10 +32,6 @@ from isomortar.solve.scales import Scales
 SLIP_MARGIN = 1e-6
 #: How often the predictor is solved again with reversed slips held.
 MAX_REVERSALS = 2
-#: Iterations that find the active set: before, states may return and the merit may grow without being halved.
-CYCLE_FREE = 5
-#: How often an update is halved.
-MAX_HALVINGS = 5
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,10 @@ from isomortar.solve.scales import Scales
 
 #: Factors are kept as long as a solve leaves at most this share of the residual.
 KEPT_SHARE = 0.2
+#: Iterations that find the active set: before, states may return and what is left may grow without an update being halved.
+CYCLE_FREE = 5
+#: How often an update is halved.
+MAX_HALVINGS = 5
 #: Note of an iteration that was solved with factors of an earlier tangent.
 KEPT_FACTORS = "kept factors"
 
@@ -99,7 +103,7 @@ class PositionSolver:
                 if tangents == settings.max_iterations or not np.isfinite(iterate.residual):
                     break
                 correction = self._equilibrium.correction(balance, laws, prescribed if moves else np.zeros_like(prescribed))
-                following, notes = self._evaluate(balance.positions + correction, laws), ()
+                following, notes = self._update(iterate, laws, correction, iteration)
                 self._factorised, moves = True, False
                 tangents += 1
             keep = keeps and following.residual <= KEPT_SHARE * iterate.residual
@@ -109,6 +113,22 @@ class PositionSolver:
     def _evaluate(self, positions: FloatArray, laws: Sequence[Law]) -> _Iterate:
         balance = self._equilibrium.balance(positions, self._start, laws)
         return _Iterate(balance, relative_residual(self._equilibrium, balance, self._scales))
+
+    def _update(self, iterate: _Iterate, laws: Sequence[Law], correction: FloatArray, iteration: int) -> tuple[_Iterate, tuple[str, ...]]:
+        """The next iterate: the full update; late, where that leaves more of the residual than before, one halved until it leaves less.
+
+        A narrow cone is next to a kink: full updates go from one side of it to the other and back. If halving does not help either, the
+        full update it is.
+        """
+        whole = self._evaluate(iterate.balance.positions + correction, laws)
+        late = iteration >= CYCLE_FREE and "halving" in self._equilibrium.problem.settings.measures
+        if not late or whole.residual < iterate.residual:
+            return whole, ()
+        for halving in range(1, MAX_HALVINGS + 1):
+            following = self._evaluate(iterate.balance.positions + 0.5**halving * correction, laws)
+            if following.residual < iterate.residual:
+                return following, (f"halved {halving} times: residual",)
+        return whole, ()
 
     def _by_kept_factors(self, iterate: _Iterate, laws: Sequence[Law]) -> _Iterate | None:
         """The next iterate with the factors of an earlier tangent; None if these leave too much of the residual."""
