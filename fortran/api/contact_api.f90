@@ -91,35 +91,53 @@ subroutine control_quantities(nodes, basis, area, point, nlocal, nelements, nqua
 end subroutine control_quantities
 
 !> Control pressures, tractions, states and their slopes of the augmented law (isomortar_contact_augmentation).
-!> `field_slip` is the field of control slips at the quadrature points, with `summed` only.
+!> `friction` and `parameters` name its law of friction (isomortar_contact_friction_table). `field_slip` is the field of control
+!> slips at the quadrature points, with `summed` only.
 subroutine augmented_multipliers(nodes, basis, area, point, nlocal, nelements, nquad, nslave, weight, square, gap, control_slip, &
-    metric, point_metric, summed, penalties, friction, pressure_k, traction_k, slip_margin, forgiving, held, bears, free, &
-    pressure, traction, state, pressure_slope, traction_slope, field_slip)
+    metric, point_metric, summed, penalties, friction, parameters, nparameters, pressure_k, traction_k, slip_margin, forgiving, &
+    held, bears, free, pressure, traction, state, pressure_slope, traction_slope, field_slip, status, place)
   use iso_c_binding, only: c_double, c_int
   use isomortar_api_unpack, only: unpack_slave
   use isomortar_contact_augmentation, only: law_t, respond, response_t
   use isomortar_contact_control, only: control_t
+  use isomortar_contact_friction_table, only: friction_of
   implicit none
-  integer(c_int), intent(in) :: nlocal, nelements, nquad, nslave
+  integer(c_int), intent(in) :: nlocal, nelements, nquad, nslave, friction, nparameters
   integer(c_int), intent(in) :: nodes(nlocal, nelements), point(nslave), summed, forgiving, held(nslave), bears(nslave)
   real(c_double), intent(in) :: basis(nlocal, nquad), area(nquad), weight(nslave), square(nslave), gap(nslave)
-  real(c_double), intent(in) :: control_slip(2, nslave), metric(3, nslave), point_metric(3, nquad), penalties(2), friction
-  real(c_double), intent(in) :: pressure_k(nslave), traction_k(2, nslave), slip_margin, free(2, 2, nslave)
+  real(c_double), intent(in) :: control_slip(2, nslave), metric(3, nslave), point_metric(3, nquad), penalties(2)
+  real(c_double), intent(in) :: parameters(nparameters), pressure_k(nslave), traction_k(2, nslave), slip_margin, free(2, 2, nslave)
   real(c_double), intent(out) :: pressure(nslave), traction(2, nslave), pressure_slope(nslave), traction_slope(2, 6, nslave)
   real(c_double), intent(out) :: field_slip(2, nquad)
-  integer(c_int), intent(out) :: state(nslave)
+  integer(c_int), intent(out) :: state(nslave), status, place
   type(control_t) :: control
   type(law_t) :: law
   type(response_t) :: response
 
+  pressure = 0.0_c_double
+  traction = 0.0_c_double
+  state = 0
+  pressure_slope = 0.0_c_double
+  traction_slope = 0.0_c_double
+  field_slip = 0.0_c_double
+  place = friction
+  call friction_of(friction, parameters, law%friction, status)
+  if (status /= 0) return
   control%weight = weight
   control%square = square
   control%gap = gap
   control%slip = control_slip
   control%metric = metric
   control%point_metric = point_metric
-  law = law_t(penalties(1), penalties(2), friction, pressure_k, traction_k, slip_margin, forgiving /= 0, held /= 0, &
-    bears /= 0, free)
+  law%normal_penalty = penalties(1)
+  law%tangential_penalty = penalties(2)
+  law%pressure = pressure_k
+  law%traction = traction_k
+  law%slip_margin = slip_margin
+  law%forgiving = forgiving /= 0
+  law%held = held /= 0
+  law%bears = bears /= 0
+  law%free = free
   call respond(unpack_slave(nodes, basis, area, point), control, law, summed /= 0, response, field_slip)
   pressure = response%multipliers%pressure
   traction = response%multipliers%traction
@@ -127,6 +145,30 @@ subroutine augmented_multipliers(nodes, basis, area, point, nlocal, nelements, n
   pressure_slope = response%pressure_slope
   traction_slope = response%traction_slope
 end subroutine augmented_multipliers
+
+!> Largest norms of control tractions that a law of friction (see `augmented_multipliers`) bears under control pressures: 0 where
+!> open, and without friction.
+subroutine friction_radius(friction, parameters, nparameters, pressure, n, radius, status, place)
+  use iso_c_binding, only: c_double, c_int
+  use isomortar_contact_friction_law, only: friction_t
+  use isomortar_contact_friction_table, only: friction_of
+  implicit none
+  integer(c_int), intent(in) :: friction, nparameters, n
+  real(c_double), intent(in) :: parameters(nparameters), pressure(n)
+  real(c_double), intent(out) :: radius(n)
+  integer(c_int), intent(out) :: status, place
+  class(friction_t), allocatable :: law
+  real(c_double) :: slope
+  integer :: i
+
+  radius = 0.0_c_double
+  place = friction
+  call friction_of(friction, parameters, law, status)
+  if (status /= 0 .or. .not. allocated(law)) return
+  do i = 1, n
+    if (.not. pressure(i) <= 0.0_c_double) call law%limit(pressure(i), radius(i), slope)
+  end do
+end subroutine friction_radius
 
 !> Add contact forces; separately on slave and master control points (isomortar_contact_blocks).
 subroutine contact_forces(nodes, basis, area, point, nlocal, nelements, nquad, nslave, kind, knots, nknots, master_point, &
@@ -185,7 +227,7 @@ end subroutine contact_blocks
 !> and of their trial tractions, trial(component, a, block), on the pattern `wide`; it and `neighbours` differ from the rows'
 !> pattern with `summed` only. `place` is the row of a pattern that lacks a block, 0 where `wide` has other rows.
 subroutine multiplier_rows(nodes, basis, area, point, nlocal, nelements, nquad, nslave, weight, square, control_slip, metric, &
-    point_metric, summed, penalties, friction, state, pressure_slope, traction_slope, row_start, row_column, nrows, nkinds, rows, &
+    point_metric, summed, penalties, state, pressure_slope, traction_slope, row_start, row_column, nrows, nkinds, rows, &
     neighbour_start, neighbour_column, nneighbours, wide_start, wide_column, nwide, changes, trial, status, place)
   use iso_c_binding, only: c_double, c_int
   use isomortar_api_unpack, only: unpack_pattern, unpack_slave
@@ -199,7 +241,7 @@ subroutine multiplier_rows(nodes, basis, area, point, nlocal, nelements, nquad, 
   integer(c_int), intent(in) :: row_start(nslave + 1), row_column(nrows), neighbour_start(nslave + 1), neighbour_column(nneighbours)
   integer(c_int), intent(in) :: wide_start(nslave + 1), wide_column(nwide)
   real(c_double), intent(in) :: basis(nlocal, nquad), area(nquad), weight(nslave), square(nslave)
-  real(c_double), intent(in) :: control_slip(2, nslave), metric(3, nslave), point_metric(3, nquad), penalties(2), friction
+  real(c_double), intent(in) :: control_slip(2, nslave), metric(3, nslave), point_metric(3, nquad), penalties(2)
   real(c_double), intent(in) :: pressure_slope(nslave), traction_slope(2, 6, nslave), rows(3, nkinds, nrows)
   real(c_double), intent(out) :: changes(3, 3, nwide), trial(3, 2, nwide)
   integer(c_int), intent(out) :: status, place
@@ -213,9 +255,7 @@ subroutine multiplier_rows(nodes, basis, area, point, nlocal, nelements, nquad, 
   control%slip = control_slip
   control%metric = metric
   control%point_metric = point_metric
-  law%normal_penalty = penalties(1)
   law%tangential_penalty = penalties(2)
-  law%friction = friction
   response%state = state
   response%pressure_slope = pressure_slope
   response%traction_slope = traction_slope

@@ -102,7 +102,7 @@ contains
 
     allocate (forces(3, size(positions, 2)))
     forces = 0.0_wp
-    call integrate_forces(fixed%slave, fixed%master, positions, projections, law%friction > 0.0_wp, multipliers, forces)
+    call integrate_forces(fixed%slave, fixed%master, positions, projections, allocated(law%friction), multipliers, forces)
   end subroutine contact_forces
 
   !> Make room for n control points and m quadrature points.

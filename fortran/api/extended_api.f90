@@ -39,22 +39,24 @@ end subroutine solid_difference
 !> `state` are those of the double-precision kernel; `switched` counts points and control points for which they are not the same on
 !> both sides.
 subroutine contact_difference(nodes, basis, area, point, nlocal, nelements, nquad, nslave, kind, knots, nknots, master_point, &
-    master_weight, nmaster, x, along, step, n, xi, element, fixed, found, origin, had, summed, penalties, friction, pressure_k, &
-    traction_k, bears, free, pressure_along, traction_along, pressure, traction, state, gap, coordinates, slip, metric, &
-    pressure_change, traction_change, normal_forces, tangential_forces, forces, switched, status, place)
+    master_weight, nmaster, x, along, step, n, xi, element, fixed, found, origin, had, summed, penalties, friction, parameters, &
+    nparameters, pressure_k, traction_k, bears, free, pressure_along, traction_along, pressure, traction, state, gap, coordinates, &
+    slip, metric, pressure_change, traction_change, normal_forces, tangential_forces, forces, switched, status, place)
   use iso_c_binding, only: c_double, c_int
   use isomortar_api_difference, only: difference, evaluate_contact, fixed_t, quantities_t
   use isomortar_api_unpack, only: unpack_master, unpack_slave
   use isomortar_base_kinds, only: wp
   use isomortar_contact_augmentation, only: law_t
   use isomortar_contact_blocks, only: multipliers_t
+  use isomortar_contact_friction_table, only: friction_of
   implicit none
-  integer(c_int), intent(in) :: nlocal, nelements, nquad, nslave, nknots, nmaster, n
+  integer(c_int), intent(in) :: nlocal, nelements, nquad, nslave, nknots, nmaster, n, friction, nparameters
   integer(c_int), intent(in) :: nodes(nlocal, nelements), point(nslave), kind(11), master_point(nmaster)
   integer(c_int), intent(in) :: element(2, nquad), fixed(2, nquad), found(nquad), had(nquad), summed, state(nslave)
   integer(c_int), intent(in) :: bears(nslave)
   real(c_double), intent(in) :: basis(nlocal, nquad), area(nquad), knots(nknots), master_weight(nmaster), x(3, n), along(3, n), step
-  real(c_double), intent(in) :: xi(2, nquad), origin(2, nquad), penalties(2), friction, pressure_k(nslave), traction_k(2, nslave)
+  real(c_double), intent(in) :: xi(2, nquad), origin(2, nquad), penalties(2), parameters(nparameters)
+  real(c_double), intent(in) :: pressure_k(nslave), traction_k(2, nslave)
   real(c_double), intent(in) :: pressure_along(nslave), traction_along(2, nslave), pressure(nslave), traction(2, nslave)
   real(c_double), intent(in) :: free(2, 2, nslave)
   real(c_double), intent(out) :: gap(nslave), coordinates(2, nslave), slip(2, nslave), metric(3, nslave), pressure_change(nslave)
@@ -66,6 +68,10 @@ subroutine contact_difference(nodes, basis, area, point, nlocal, nelements, nqua
   real(wp) :: h, shift
   integer :: side
 
+  switched = 0
+  place = friction
+  call friction_of(friction, real(parameters, wp), law%friction, status)
+  if (status /= 0) return
   kept%slave = unpack_slave(nodes, basis, area, point)
   kept%master = unpack_master(kind, knots, master_point, master_weight)
   kept%start = real(xi, wp)
@@ -73,12 +79,15 @@ subroutine contact_difference(nodes, basis, area, point, nlocal, nelements, nqua
   kept%had = had /= 0
   kept%frozen = multipliers_t(real(pressure, wp), real(traction, wp), state /= 0)
   kept%summed = summed /= 0
+  law%normal_penalty = real(penalties(1), wp)
+  law%tangential_penalty = real(penalties(2), wp)
+  law%bears = bears /= 0
+  law%free = real(free, wp)
   h = real(step, wp)
-  switched = 0
   do side = 1, 2
     shift = (2 * side - 3) * h
-    law = law_t(real(penalties(1), wp), real(penalties(2), wp), real(friction, wp), real(pressure_k, wp) + shift * pressure_along, &
-      real(traction_k, wp) + shift * traction_along, bears=bears /= 0, free=real(free, wp))
+    law%pressure = real(pressure_k, wp) + shift * pressure_along
+    law%traction = real(traction_k, wp) + shift * traction_along
     call evaluate_contact(kept, real(x, wp) + shift * along, law, sides(side), status, place)
     if (status /= 0) return
     switched = switched + count(sides(side)%response%state /= state) + count(sides(side)%projections%found .neqv. (found /= 0)) &

@@ -30,7 +30,7 @@ module isomortar_base_status
   integer, parameter, public :: status_passed_through = 11
   !> Slips at a foot on a C0 line do not follow the point, beyond the centre of curvature of the element beside it.
   integer, parameter, public :: status_no_slip = 12
-  !> No material law has that number and so many parameters; the place is the number.
+  !> No law of material or friction has that number and so many parameters; the place is the number.
   integer, parameter, public :: status_no_such_law = 13
 
 end module isomortar_base_status

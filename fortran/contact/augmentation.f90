@@ -3,7 +3,8 @@ module isomortar_contact_augmentation
   use isomortar_base_kinds, only: wp
   use isomortar_contact_blocks, only: multipliers_t, row_gap, row_metric, row_slip, row_slip_sum
   use isomortar_contact_control, only: control_t, integrate_slip_sum
-  use isomortar_contact_friction, only: metric_matrix, return_map, state_open, state_stick
+  use isomortar_contact_friction_law, only: friction_t
+  use isomortar_contact_friction_return_map, only: metric_matrix, return_map, state_open, state_stick
   use isomortar_contact_slave, only: integrate_functions, slave_t
   use isomortar_sparse_blocks, only: lacks, mark_row, pattern_t
   implicit none
@@ -14,12 +15,13 @@ module isomortar_contact_augmentation
   !> A control point whose weight w^I is below this share of what it has with all slave points has left the master.
   real(wp), parameter :: least_weight = 1.0e-10_wp
 
-  !> The law: multipliers of the current augmentation, penalties (force per volume), friction coefficient.
+  !> The law: multipliers of the current augmentation, penalties (force per volume), law of friction (not allocated: none).
   type, public :: law_t
-    real(wp) :: normal_penalty, tangential_penalty, friction
+    real(wp) :: normal_penalty, tangential_penalty
+    class(friction_t), allocatable :: friction
     real(wp), allocatable :: pressure(:)
     real(wp), allocatable :: traction(:, :)
-    !> Trials above (1 - slip_margin) mu p slip.
+    !> Trials above (1 - slip_margin) of what friction bears slip.
     real(wp) :: slip_margin = 0.0_wp
     !> Take the current traction for the radial part of the slip derivative.
     logical :: forgiving = .false.
@@ -112,7 +114,7 @@ contains
       if (.not. response%multipliers%active(i)) cycle
       response%state(i) = state_stick
       response%pressure_slope(i) = law%normal_penalty / control%weight(i)
-      if (law%friction <= 0.0_wp) cycle
+      if (.not. allocated(law%friction)) cycle
       metric = control%metric(:, i) / control%square(i)
       if (present(slip_sum)) then
         trial = slip_sum(:, i)

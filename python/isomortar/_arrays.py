@@ -19,6 +19,8 @@ from isomortar.errors import InputError
 #: Material laws in the order of their numbers in the kernel (isomortar_solid_material_table), from 1.
 MaterialLaw = Literal["neo-hookean", "neo-hookean-j", "linear-elastic"]
 LAWS = {name: number for number, name in enumerate(get_args(MaterialLaw), start=1)}
+#: Numbers of the friction laws in the kernel (isomortar_contact_friction_table); 0: no friction.
+FRICTION_LAWS = {"none": 0, "coulomb": 1}
 
 
 @dataclass(frozen=True)
@@ -63,6 +65,24 @@ class MaterialArrays:
         check.whole("law", self.law, 1, len(LAWS))
         for modulus in check.array("parameters", self.parameters, np.float64, 2):
             check.real("parameters", float(modulus), lambda value: value > 0, "numbers above 0")
+
+
+@dataclass(frozen=True)
+class FrictionArrays:
+    """A law of friction: its number (isomortar_contact_friction_table) and what that takes: nothing, or the coefficient mu."""
+
+    law: int
+    parameters: FloatArray
+
+    def __post_init__(self) -> None:
+        check.whole("friction.law", self.law, 0, len(FRICTION_LAWS) - 1)
+        for parameter in check.array("friction.parameters", self.parameters, np.float64, None):
+            check.real("friction.parameters", float(parameter), lambda value: value >= 0, "numbers not below 0")
+
+    @property
+    def acts(self) -> bool:
+        """Whether there is friction."""
+        return self.law != FRICTION_LAWS["none"]
 
 
 @dataclass(frozen=True)
@@ -195,16 +215,16 @@ class Control:
 
 @dataclass(frozen=True)
 class Law:
-    """Augmented penalty law: penalties (normal, tangential), friction, current multipliers, the paper's slip sum or the local one.
+    """Augmented penalty law: penalties (normal, tangential), law of friction, current multipliers, the paper's slip sum or the local one.
 
     What supports hold: control points with `bears` 0 bear nothing, and `free`, shape (n, 2, 2), projects the covariant tractions of the
     others (component, traction) so that nothing is left along it.
-    Trials above (1 - `slip_margin`) mu p slip; `held` control points (1) stick whatever their trial; `forgiving` takes the current
-    traction for the radial part of the slip derivative (theory 4.14).
+    Trials above (1 - `slip_margin`) of what friction bears slip; `held` control points (1) stick whatever their trial; `forgiving` takes
+    the current traction for the radial part of the slip derivative (theory 4.14).
     """
 
     penalties: FloatArray
-    friction: float
+    friction: FrictionArrays
     pressure: FloatArray
     traction: FloatArray
     summed: bool

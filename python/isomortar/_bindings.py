@@ -13,7 +13,18 @@ from numpy.typing import NDArray
 
 from isomortar import _arguments as check
 from isomortar._arguments import FloatArray, IntArray
-from isomortar._arrays import Control, Law, MasterArrays, MaterialArrays, PatchArrays, Pattern, Projections, Response, SlaveArrays
+from isomortar._arrays import (
+    Control,
+    FrictionArrays,
+    Law,
+    MasterArrays,
+    MaterialArrays,
+    PatchArrays,
+    Pattern,
+    Projections,
+    Response,
+    SlaveArrays,
+)
 from isomortar._compiled import kernel as _kernel
 from isomortar.errors import FoldedElementError, InputError, KernelError, LostProjectionError
 
@@ -21,10 +32,10 @@ LongArray = NDArray[np.int64]
 
 # With the arrays, which those who call take from here.
 __all__ = [
-    "ROW_KINDS", "Control", "FloatArray", "IntArray", "Law", "LongArray", "MasterArrays", "MaterialArrays", "PatchArrays", "Pattern",
-    "Projections", "Response", "SlaveArrays", "add_body", "add_values", "augmented_multipliers", "condense_multipliers", "contact_blocks",
-    "contact_forces", "control_quantities", "find_places", "material_stress", "multiplier_rows", "project_points", "slave_tables",
-    "surface_functions",
+    "ROW_KINDS", "Control", "FloatArray", "FrictionArrays", "IntArray", "Law", "LongArray", "MasterArrays", "MaterialArrays",
+    "PatchArrays", "Pattern", "Projections", "Response", "SlaveArrays", "add_body", "add_values", "augmented_multipliers",
+    "condense_multipliers", "contact_blocks", "contact_forces", "control_quantities", "find_places", "friction_radius", "material_stress",
+    "multiplier_rows", "project_points", "slave_tables", "surface_functions",
 ]  # fmt: skip
 
 #: Kinds of constraint rows with friction, without, and with the paper's slip sum (isomortar_contact_blocks).
@@ -42,7 +53,7 @@ def _raise(status: int, place: int) -> NoReturn:
         9: (KernelError, f"a pattern does not fit what is added to it: block missing in row {place} (-1: it has other rows)"),
         10: (LostProjectionError, f"the position of control point {place} is not finite"),
         11: (LostProjectionError, f"slave quadrature point {place} has passed through the master's body"),
-        13: (KernelError, f"no material law has the number {place + 1} and so many parameters"),
+        13: (KernelError, f"no law of material or friction has the number {place + 1} and so many parameters"),
     }
     kind, sentence = sentences.get(status, (KernelError, f"the kernel returned status {status} at {place}"))
     raise kind(sentence, place)
@@ -74,6 +85,11 @@ def _check_control(control: Control, slave: SlaveArrays) -> None:
         check.array(f"control.{name}", value, np.float64, *shape)
 
 
+def _check_friction(name: str, friction: FrictionArrays) -> None:
+    if not isinstance(friction, FrictionArrays):
+        raise InputError(f"is {friction!r:.60}; allowed: a law of friction", name)
+
+
 def _check_law(law: Law, slave: SlaveArrays) -> None:
     n = len(slave.point)
     check.array("law.penalties", law.penalties, np.float64, 2)
@@ -82,7 +98,7 @@ def _check_law(law: Law, slave: SlaveArrays) -> None:
     check.array("law.bears", law.bears, np.int32, n)
     check.array("law.free", law.free, np.float64, n, 2, 2)
     check.array("law.held", law.held, np.int32, n)
-    check.real("law.friction", law.friction, lambda value: value >= 0, "a number not below 0")
+    _check_friction("law.friction", law.friction)
     check.flag("law.summed", law.summed)
     check.flag("law.forgiving", law.forgiving)
     check.real("law.slip_margin", law.slip_margin, lambda value: 0 <= value <= 1, "a number from 0 to 1")
@@ -246,15 +262,39 @@ def control_quantities(slave: SlaveArrays, master: MasterArrays, positions: Floa
 
 
 def augmented_multipliers(slave: SlaveArrays, control: Control, law: Law) -> Response:
-    """Control pressures, tractions and states of the law, with their slopes."""
+    """Control pressures, tractions and states of the law, with their slopes.
+
+    Raises
+    ------
+    KernelError
+        No law of friction has that number and so many parameters.
+    """
     _check_control(control, slave)
     _check_law(law, slave)
-    pressure, traction, state, pressure_slope, traction_slope, field_slip = _kernel.augmented_multipliers(
+    pressure, traction, state, pressure_slope, traction_slope, field_slip, status, place = _kernel.augmented_multipliers(
         slave.nodes.T, slave.basis.T, slave.area, slave.point, control.weight, control.square, control.gap, control.slip.T,
-        control.metric.T, control.point_metric.T, int(law.summed), law.penalties, law.friction, law.pressure, law.traction.T,
-        law.slip_margin, int(law.forgiving), law.held, law.bears, law.free.T,
+        control.metric.T, control.point_metric.T, int(law.summed), law.penalties, law.friction.law, law.friction.parameters, law.pressure,
+        law.traction.T, law.slip_margin, int(law.forgiving), law.held, law.bears, law.free.T,
     )  # fmt: skip
+    if status:
+        _raise(status, place - 1)
     return Response(pressure, traction.T, state, pressure_slope, traction_slope.T, field_slip.T)
+
+
+def friction_radius(friction: FrictionArrays, pressure: FloatArray) -> FloatArray:
+    """Largest norms of control tractions under control pressures, both of shape (n,), force per area; 0 where open or without friction.
+
+    Raises
+    ------
+    KernelError
+        No law of friction has that number and so many parameters.
+    """
+    _check_friction("friction", friction)
+    check.array("pressure", pressure, np.float64, None)
+    radius, status, place = _kernel.friction_radius(friction.law, friction.parameters, pressure)
+    if status:
+        _raise(status, place - 1)
+    return np.asarray(radius)
 
 
 def contact_forces(
@@ -262,7 +302,7 @@ def contact_forces(
     master: MasterArrays,
     positions: FloatArray,
     projections: Projections,
-    friction: float,
+    with_friction: bool,
     response: Response,
     forces: FloatArray,
 ) -> None:
@@ -270,12 +310,11 @@ def contact_forces(
     _check_bodies(positions, slave, master)
     _check_projections(projections, slave, master)
     _check_response(response, slave)
-    check.real("friction", friction, lambda value: value >= 0, "a number not below 0")
     check.array("forces", forces, np.float64, len(positions), 3)
     _kernel.contact_forces(
         slave.nodes.T, slave.basis.T, slave.area, slave.point, master.kind, master.knots, master.point, master.weight, positions.T,
-        projections.xi.T, projections.element.T, projections.fixed.T, projections.found, int(friction > 0), response.pressure,
-        response.traction.T, response.state, forces.T,
+        projections.xi.T, projections.element.T, projections.fixed.T, projections.found, check.flag("with_friction", with_friction),
+        response.pressure, response.traction.T, response.state, forces.T,
     )  # fmt: skip
 
 
@@ -284,7 +323,7 @@ def contact_blocks(
     master: MasterArrays,
     positions: FloatArray,
     projections: Projections,
-    friction: float,
+    with_friction: bool,
     response: Response,
     row_pattern: Pattern,
     rows: FloatArray,
@@ -301,15 +340,14 @@ def contact_blocks(
     _check_bodies(positions, slave, master)
     _check_projections(projections, slave, master)
     _check_response(response, slave)
-    check.real("friction", friction, lambda value: value >= 0, "a number not below 0")
     _check_rows(row_pattern, rows, len(slave.point), len(positions))
     _check_pattern("pattern", pattern, len(positions), len(positions))
     check.array("tangent", tangent, np.float64, len(pattern.column), 3, 3)
     status, place = _kernel.contact_blocks(
         slave.nodes.T, slave.basis.T, slave.area, slave.point, master.kind, master.knots, master.point, master.weight, positions.T,
-        projections.xi.T, projections.element.T, projections.fixed.T, projections.found, projections.slips, int(friction > 0),
-        response.pressure, response.traction.T, response.state, response.field_slip.T, row_pattern.start, row_pattern.column, rows.T,
-        pattern.start, pattern.column, tangent.T,
+        projections.xi.T, projections.element.T, projections.fixed.T, projections.found, projections.slips,
+        check.flag("with_friction", with_friction), response.pressure, response.traction.T, response.state, response.field_slip.T,
+        row_pattern.start, row_pattern.column, rows.T, pattern.start, pattern.column, tangent.T,
     )  # fmt: skip
     if status:
         _raise(status, place - 1)
@@ -341,9 +379,8 @@ def multiplier_rows(
     _check_pattern("wide", wide, points, columns)
     changes, trial, status, place = _kernel.multiplier_rows(
         slave.nodes.T, slave.basis.T, slave.area, slave.point, control.weight, control.square, control.slip.T, control.metric.T,
-        control.point_metric.T, int(law.summed), law.penalties, law.friction, response.state, response.pressure_slope,
-        response.traction_slope.T, row_pattern.start, row_pattern.column, rows.T, neighbours.start, neighbours.column,
-        wide.start, wide.column,
+        control.point_metric.T, int(law.summed), law.penalties, response.state, response.pressure_slope, response.traction_slope.T,
+        row_pattern.start, row_pattern.column, rows.T, neighbours.start, neighbours.column, wide.start, wide.column,
     )  # fmt: skip
     if status:
         _raise(status, place - 1)

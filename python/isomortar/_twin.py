@@ -119,8 +119,8 @@ def contact_difference(
     *changes, switched, status, place = _extended.contact_difference(
         slave.nodes.T, slave.basis.T, slave.area, slave.point, master.kind, master.knots, master.point, master.weight, positions.T,
         along.T, STEP, projections.xi.T, projections.element.T, projections.fixed.T, projections.found, origin.T, had, int(law.summed),
-        law.penalties, law.friction, law.pressure, law.traction.T, law.bears, law.free.T, pressure_along, traction_along.T,
-        held.pressure, held.traction.T, held.state,
+        law.penalties, law.friction.law, law.friction.parameters, law.pressure, law.traction.T, law.bears, law.free.T, pressure_along,
+        traction_along.T, held.pressure, held.traction.T, held.state,
     )  # fmt: skip
     _check(status, place)
     return ContactChange(*[np.ascontiguousarray(change.T) for change in changes]), switched

@@ -77,7 +77,7 @@ class Assembly:
     def blocks(self, rows: Pattern, tangent: Pattern) -> Values:
         values, geometric = np.zeros((len(rows.column), 10 if self.summed else 8, 3)), np.zeros((len(tangent.column), 3, 3))
         _bindings.contact_blocks(
-            self.pair.pair.slave, self.pair.pair.master, self.positions, self.kinematics.projections, 0.5, self.response, rows, values,
+            self.pair.pair.slave, self.pair.pair.master, self.positions, self.kinematics.projections, True, self.response, rows, values,
             tangent, geometric,
         )  # fmt: skip
         return {"rows": values, "tangent": geometric}

@@ -11,13 +11,15 @@ from numpy.typing import NDArray
 from small_scenes import bowl
 
 from isomortar import _bindings
-from isomortar._bindings import Control, Law
+from isomortar._bindings import Control, FrictionArrays, Law
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, case
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.timing import Ledger
 
-FRICTION, PENALTIES = 0.4, np.array([30.0, 7.0])
+PENALTIES = np.array([30.0, 7.0])
+#: Coulomb's law, and none.
+FRICTION, NONE = FrictionArrays(1, np.array([0.4])), FrictionArrays(0, np.zeros(0))
 #: Imaginary step of the derivatives, which have no error of their own.
 STEP = 1e-30
 #: Quantities, multipliers and options of the law; the first two tractions and slips have a component that is zero.
@@ -42,18 +44,23 @@ def length(traction: Numbers, metric: Numbers) -> Any:
     return np.sqrt(traction @ np.linalg.solve(matrix, traction))
 
 
-def returned(pressure: Any, trial: Numbers, metric: Numbers, friction: float) -> Numbers:
+def radius(pressure: Any, friction: FrictionArrays) -> Any:
+    """What a law of friction bears under a pressure above 0."""
+    return friction.parameters[0] * pressure
+
+
+def returned(pressure: Any, trial: Numbers, metric: Numbers, friction: FrictionArrays) -> Numbers:
     """The slipping traction of a trial."""
-    return friction * pressure * trial / length(trial, metric)
+    return radius(pressure, friction) * trial / length(trial, metric)
 
 
 def law_at(trial_pressure: float, trial: FloatArray, metric: FloatArray, law: Law, held: bool) -> Point:
-    """Coulomb's law."""
+    """What becomes of trials."""
     if trial_pressure <= 0.0:
         return Point(0.0, np.zeros(2), 0)
-    if law.friction <= 0.0:
+    if not law.friction.acts:
         return Point(trial_pressure, np.zeros(2), 1)
-    if held or length(trial, metric) <= law.friction * trial_pressure * (1.0 - law.slip_margin):
+    if held or length(trial, metric) <= radius(trial_pressure, law.friction) * (1.0 - law.slip_margin):
         return Point(trial_pressure, trial, 1)
     return Point(trial_pressure, returned(trial_pressure, trial, metric, law.friction), 2)
 
@@ -61,9 +68,9 @@ def law_at(trial_pressure: float, trial: FloatArray, metric: FloatArray, law: La
 def slopes_at(point: Point, trial: FloatArray, metric: FloatArray, law: Law, radial: FloatArray) -> FloatArray:
     """Derivatives of the traction by pressure, trial (2) and metric (3), shape (6, 2), of the law's branch.
 
-    A forgiving law has `radial`, no longer than the cone, in place of the traction where the trial's length changes.
+    A forgiving law has `radial`, no longer than the radius, in place of the traction where the trial's length changes.
     """
-    if point.state == 0 or law.friction <= 0.0:
+    if point.state == 0 or not law.friction.acts:
         return np.zeros((6, 2))
     if point.state == 1:
         return np.vstack([np.zeros((1, 2)), np.eye(2), np.zeros((3, 2))])
@@ -75,8 +82,7 @@ def slopes_at(point: Point, trial: FloatArray, metric: FloatArray, law: Law, rad
     exact = change(lambda v: returned(v[0], v[1:3], v[3:6], law.friction))
     if not law.forgiving:
         return exact
-    cone = law.friction * point.pressure
-    shortened = radial * min(1.0, cone / length(radial, metric))
+    shortened = radial * min(1.0, radius(point.pressure, law.friction) / length(radial, metric))
     stretch = change(lambda v: length(v[1:3], v[3:6])) / length(trial, metric)
     return exact + np.outer(stretch, point.traction - shortened)
 
@@ -112,7 +118,7 @@ def control_points(variant: str, summed: bool) -> dict[str, float]:
         bears[::4] = 0
         free[::2] -= random.standard_normal((len(free[::2]), 2, 1)) @ random.standard_normal((len(free[::2]), 1, 2))
     law = Law(
-        PENALTIES, 0.0 if variant == "frictionless" else FRICTION, random.uniform(-0.5, 1.5, n), traction, summed, bears, free,
+        PENALTIES, NONE if variant == "frictionless" else FRICTION, random.uniform(-0.5, 1.5, n), traction, summed, bears, free,
         (np.arange(n) % 3 == 0).astype(np.int32) * (variant == "held"), slip_margin=0.2 * (variant == "margin"),
         forgiving=variant == "forgiving",
     )  # fmt: skip

@@ -25,7 +25,7 @@ from isomortar.solve.simulation import Simulation
 #: Every routine of the kernel's interface; those of the sparse LU at the end.
 ROUTINES = (
     *("add_body", "material_stress", "surface_functions", "slave_tables", "project_points", "control_quantities", "augmented_multipliers"),
-    *("contact_forces", "contact_blocks", "multiplier_rows", "condense_multipliers", "find_places", "add_values"),
+    *("friction_radius", "contact_forces", "contact_blocks", "multiplier_rows", "condense_multipliers", "find_places", "add_values"),
     *("analyse", "factorise", "solve"),
 )
 #: A tiny scene that calls them all but `surface_functions`: condensed multipliers are Uzawa's, the paper's slip sum has neighbours.

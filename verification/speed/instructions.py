@@ -29,7 +29,9 @@ SETTINGS = (
 WORK = {
     "solid": ("add_body_",),
     "projection": ("project_points_",),
-    "contact": ("control_quantities_", "augmented_multipliers_", "contact_forces_", "contact_blocks_", "multiplier_rows_"),
+    "contact": (
+        *("control_quantities_", "augmented_multipliers_", "friction_radius_", "contact_forces_", "contact_blocks_", "multiplier_rows_"),
+    ),
     "factors": ("sparse_analyse_", "sparse_factorise_"),
     "solves": ("sparse_solve_",),
 }

@@ -81,7 +81,7 @@ def _pair_parts(tangent: PairTangent) -> list[PartBlocks]:
         part("normal, pressure", wide, blocks.changes[:, :1], lambda change: change.pressure, active),
         part("condensed", tangent.pattern, tangent.condensed, lambda change: change.forces, whole),
     ]
-    if tangent.pair.friction > 0:
+    if tangent.pair.friction.acts:
         parts += [
             part("tangential, geometric", tangent.pattern, tangent.tangential, lambda change: change.tangential_forces, whole),
             part("tangential, projection", rows, blocks.rows[:, 1:3], lambda change: change.coordinates, active),

@@ -10,9 +10,6 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.harness.visits import PairVisit
 from isomortar.solve.contact import Kinematics, PairMechanics
 
-#: A friction coefficient under which everything that is active sticks: the traction is then the trial.
-_STICKS = 1e30
-
 
 def placed(pair: PairMechanics, positions: FloatArray, visit: PairVisit, pressure: FloatArray, length: FloatArray) -> PairVisit:
     """The visit with other multipliers: trial pressures and lengths of trial tractions are those asked for.
@@ -28,14 +25,14 @@ def placed(pair: PairMechanics, positions: FloatArray, visit: PairVisit, pressur
     pressure : ndarray, shape (slave control points,)
         Trial control pressures (theory 4.3), force per area.
     length : ndarray, shape (slave control points,)
-        Metric norms of the trial tractions as a share of friction times pressure; directions stay as they are.
+        Metric norms of the trial tractions as a share of what friction bears under these pressures; directions stay as they are.
     """
     kinematics = pair.kinematics(positions, visit.start)
     weight = np.where(kinematics.control.weight > 0, kinematics.control.weight, 1.0)
     law = replace(visit.law, pressure=pressure - visit.law.penalties[0] * kinematics.control.gap / weight)
-    if pair.friction > 0:
-        trial = pair.respond(kinematics, replace(law, friction=_STICKS)).traction
-        law = replace(law, traction=law.traction + _scaled(pair, kinematics, trial, pair.friction * pressure * length) - trial)
+    if pair.friction.acts:
+        trial = pair.respond(kinematics, replace(law, held=np.ones_like(law.held))).traction  # of what sticks that is the traction
+        law = replace(law, traction=law.traction + _scaled(pair, kinematics, trial, pair.radius(pressure) * length) - trial)
     return PairVisit(visit.start, law)
 
 

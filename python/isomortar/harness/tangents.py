@@ -236,7 +236,7 @@ class PairTangent(PairState):
             ("normal, gap", rows[_active(state), 0], twin.gap[_active(state)]),
             ("normal, pressure", changes[:, 0], twin.pressure),
         ]
-        if self.pair.friction > 0:
+        if self.pair.friction.acts:
             samples += [
                 ("tangential, geometric", block_product(self.pattern, self.tangential, along), twin.tangential_forces),
                 ("tangential, projection", rows[off_lines, 1:3], twin.coordinates[off_lines]),
@@ -310,7 +310,7 @@ def _sample(
     for tangent in linear:
         for along in (*fields[1:], *tangent.single_points(directions, random, length)):
             yield from tangent.along_positions(along)[0]
-        if tangent.pair.friction > 0:
+        if tangent.pair.friction.acts:
             yield from tangent.along_multipliers(random, length)
     yield _symmetry(equilibrium, solid, linear)
 

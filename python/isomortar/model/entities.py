@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from isomortar._arrays import LAWS, MaterialArrays, MaterialLaw
+from isomortar._arrays import FRICTION_LAWS, LAWS, FrictionArrays, MaterialArrays, MaterialLaw
 from isomortar.geometry.patch import FloatArray, Patch
 
 
@@ -101,6 +101,13 @@ class Contact:
     friction: float
     quadrature: tuple[int, int]
     reference_area: float | None = None
+
+    @property
+    def friction_law(self) -> FrictionArrays:
+        """Its law of friction, as the kernel takes it: Coulomb's, or none."""
+        if self.friction == 0.0:
+            return FrictionArrays(FRICTION_LAWS["none"], np.zeros(0))
+        return FrictionArrays(FRICTION_LAWS["coulomb"], np.array([self.friction]))
 
 
 @dataclass(frozen=True)

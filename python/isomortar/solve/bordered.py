@@ -145,7 +145,7 @@ def _border(equilibrium: Equilibrium, k: int, balance: Balance, law: Law, target
     current = balance.responses[k]
     blocks = pair.blocks(balance.positions, balance.kinematics[k], law, current)
     reached = np.diff(blocks.patterns.rows.start) > 0
-    components = 1 if pair.friction <= 0 else 3
+    components = 3 if pair.friction.acts else 1
     equation = np.full((len(reached), 3), -1, dtype=np.int32)
     count = int(np.count_nonzero(reached)) * components
     equation[reached, :components] = first + np.arange(count, dtype=np.int32).reshape(-1, components)

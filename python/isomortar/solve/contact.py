@@ -87,15 +87,15 @@ class PairMechanics:
     def __init__(self, pair: Pair, settings: SolverSettings, ledger: Ledger, origin: FloatArray, others: Sequence[Pair]) -> None:
         self.pair = pair
         self._feet = Feet(pair, origin)
-        self.friction = pair.contact.friction
-        self.summed = settings.slip_sum == "paper" and self.friction > 0
+        self.friction = pair.contact.friction_law
+        self.summed = settings.slip_sum == "paper" and self.friction.acts
         self.reach = Reach(pair, self.summed, settings.method == "uzawa")
         n = len(pair.slave.point)
         self.diagonal = Pattern(np.arange(n + 1, dtype=np.int32), np.arange(n, dtype=np.int32))
         self.held = nothing_held(pair)
         self.shared = np.isin(pair.slave.point, [point for other in others for point in other.slave.point])
         self._ledger = ledger
-        self._kinds = ROW_KINDS["frictionless" if self.friction <= 0 else ("paper" if self.summed else "local")]
+        self._kinds = ROW_KINDS["frictionless" if not self.friction.acts else ("paper" if self.summed else "local")]
 
     @property
     def penalty_area(self) -> float:
@@ -161,7 +161,11 @@ class PairMechanics:
     def sliding(self, start: ContactState) -> FloatArray:
         """Tractions of the last converged state, with those of sliding where supports push (theory 4.12); shape (n, 2)."""
         pushed = np.any(self.held.pushed != 0.0, axis=1)
-        return np.where(pushed[:, None], self.friction * start.pressure[:, None] * self.held.pushed, start.traction)
+        return np.where(pushed[:, None], self.radius(start.pressure)[:, None] * self.held.pushed, start.traction)
+
+    def radius(self, pressure: FloatArray) -> FloatArray:
+        """Largest norms of control tractions under control pressures, 0 where open, shape (n,) (theory 4.6)."""
+        return _bindings.friction_radius(self.friction, pressure)
 
     def respond(self, kinematics: Kinematics, law: Law) -> Response:
         """Multipliers and states of the law."""
@@ -178,7 +182,9 @@ class PairMechanics:
         """
         self._feet.check(positions, kinematics.projections, response)
         with self._ledger.phase("contact"):
-            _bindings.contact_forces(self.pair.slave, self.pair.master, positions, kinematics.projections, self.friction, response, forces)
+            _bindings.contact_forces(
+                self.pair.slave, self.pair.master, positions, kinematics.projections, self.friction.acts, response, forces
+            )
 
     def blocks(self, positions: FloatArray, kinematics: Kinematics, law: Law, response: Response) -> Blocks:
         """Constraint rows, derivatives of the multipliers and the geometric tangent."""
@@ -187,7 +193,7 @@ class PairMechanics:
         geometric = np.zeros((len(patterns.tangent.column), 3, 3))
         with self._ledger.phase("contact"):
             _bindings.contact_blocks(
-                self.pair.slave, self.pair.master, positions, kinematics.projections, self.friction, response,
+                self.pair.slave, self.pair.master, positions, kinematics.projections, self.friction.acts, response,
                 patterns.rows, rows, patterns.tangent, geometric,
             )  # fmt: skip
             changes, trial = _bindings.multiplier_rows(
@@ -220,7 +226,7 @@ class PairMechanics:
         """Typical lengths of the master's tangent vectors a_1, a_2 where the slave projects, shape (2,) (theory 6.4)."""
         present = control.square > 0
         squared = control.metric[present][:, [0, 2]] / control.square[present, None]
-        return np.sqrt(median(squared)) if np.any(present) and self.friction > 0 else np.ones(2)
+        return np.sqrt(median(squared)) if np.any(present) and self.friction.acts else np.ones(2)
 
     def traction_squares(self, control: Control, traction: FloatArray) -> FloatArray:
         """Squared metric norm of control tractions, shape (..., slave control points) (theory 4.2)."""
@@ -235,15 +241,16 @@ class PairMechanics:
     ) -> tuple[float, float]:
         """Distance of some control pressures and tractions from others, over the norms of these; round-off is none (theory 5.8).
 
-        Tractions count for no less than a hundredth of the cone, or of the pressures where the cone is wider: where nothing pulls they
-        are round-off.
+        Tractions count for no less than a hundredth of what friction bears, or of the pressures where that is more: where nothing pulls
+        they are round-off.
         """
         (p, t), (q, s) = some, others
         size = float(q @ q)
         squares = self.traction_squares(control, np.stack([t - s, s])).sum(axis=1)
         noise = np.square(round_off)
         changes = np.maximum(np.array([(p - q) @ (p - q), squares[0]]) - noise, 0.0)
-        least = np.maximum((0.01 * min(self.friction, 1.0)) ** 2 * size, noise[1])
+        cone = 0.01 * np.minimum(self.radius(q), q)
+        least = np.maximum(cone @ cone, noise[1])
         return ratio(float(changes[0]), size), ratio(float(changes[1]), float(np.maximum(squares[1], least)))
 
     def round_off(self, positions: FloatArray, law: Law, response: Response, unbalanced: float = 0.0) -> tuple[float, float]:

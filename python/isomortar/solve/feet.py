@@ -40,7 +40,7 @@ class Feet:
 
     def __init__(self, pair: Pair, origin: FloatArray) -> None:
         self._pair, self._origin = pair, origin
-        self._slips = pair.contact.friction > 0
+        self._slips = pair.contact.friction_law.acts
 
     def check(self, positions: FloatArray, projections: Projections, response: Response) -> None:
         """Refuse feet that do not follow their points, or cannot slip, under active control points.

@@ -202,7 +202,7 @@ class Monolithic(Method):
     def _reversals(self, k: int, iterate: Iterate, correction: Correction, border: Border | None) -> np.ndarray:
         """Slipping control points whose predicted trial change opposes their traction: t^a Dt_a < 0 (theory 6.5)."""
         target = iterate.targets[k]
-        if border is None or self._equilibrium.pairs[k].friction <= 0:
+        if border is None or not self._equilibrium.pairs[k].friction.acts:
             return np.zeros(len(target.state), dtype=bool)
         change = correction.tractions[k] + border.trial_change(correction.positions)
         raised = self._equilibrium.pairs[k].contravariant(iterate.balance.kinematics[k].control, iterate.laws[k].traction)

@@ -18,7 +18,7 @@ class Sharing:
     def __init__(self, equilibrium: Equilibrium) -> None:
         self._pairs: list[tuple[int, int, str, NDArray[np.intp], NDArray[np.intp]]] = []
         for (i, one), (j, other) in combinations(enumerate(equilibrium.pairs), 2):
-            if max(one.friction, other.friction) <= 0.0:
+            if not (one.friction.acts or other.friction.acts):
                 continue
             names = f"contacts {one.pair.contact.name!r} and {other.pair.contact.name!r}"
             _, mine, theirs = np.intersect1d(one.pair.slave.point, other.pair.slave.point, return_indices=True)

@@ -1,6 +1,7 @@
-!> Coulomb friction at a control point: trial traction, return map, and its exact derivative (theory 4.6).
-module isomortar_contact_friction
+!> Friction at a control point: the return map of a trial traction, by any law, and its exact derivative (theory 4.6).
+module isomortar_contact_friction_return_map
   use isomortar_base_kinds, only: wp
+  use isomortar_contact_friction_law, only: friction_t
   implicit none
   private
 
@@ -40,23 +41,26 @@ contains
     metric_norm = sqrt(square)
   end function metric_norm
 
-  !> Return the trial traction of a control point under pressure to the disk of radius mu p (theory 4.6, 4.13).
+  !> Return the trial traction of a control point under pressure to the disk of its friction law (theory 4.6, 4.13).
   !>
   !> `derivative(a, :)` is d traction_a by the pressure (1), the trial traction (2:3) and the metric (4:6: 11, 12, 22).
-  !> A trial above (1 - margin) mu p slips. `radial` replaces the traction in the part of the derivative that shortens the
+  !> A trial above (1 - margin) of the radius slips. `radial` replaces the traction in the part of the derivative that shortens the
   !> trial: the current traction there is more forgiving on the way and the same at the solution (theory 4.14).
   pure subroutine return_map(trial, pressure, friction, metric, margin, traction, state, derivative, radial)
-    real(wp), intent(in) :: trial(2), pressure, friction, metric(3), margin
+    real(wp), intent(in) :: trial(2), pressure
+    class(friction_t), intent(in) :: friction
+    real(wp), intent(in) :: metric(3), margin
     real(wp), intent(out) :: traction(2)
     integer, intent(out) :: state
     real(wp), intent(out) :: derivative(2, 6)
     real(wp), intent(in), optional :: radial(2)
-    real(wp) :: length, along(2), contravariant(2), ratio, by_metric(3), shortened(2)
+    real(wp) :: radius, slope, length, along(2), contravariant(2), ratio, by_metric(3), shortened(2)
     integer :: a
 
+    call friction%limit(pressure, radius, slope)
     length = metric_norm(trial, metric)
     derivative = 0.0_wp
-    if (length <= friction * pressure * (1.0_wp - margin)) then
+    if (length <= radius * (1.0_wp - margin)) then
       state = state_stick
       traction = trial
       derivative(1, 2) = 1.0_wp
@@ -66,13 +70,13 @@ contains
     state = state_slip
     along = trial / length
     contravariant = raise_index(along, metric)
-    ratio = friction * pressure / length
-    traction = friction * pressure * along
+    ratio = radius / length
+    traction = radius * along
     shortened = traction / length
-    if (present(radial)) shortened = onto_disk(radial, friction * pressure, metric) / length
+    if (present(radial)) shortened = onto_disk(radial, radius, metric) / length
     by_metric = -0.5_wp * length * [contravariant(1)**2, 2.0_wp * contravariant(1) * contravariant(2), contravariant(2)**2]
     do a = 1, 2
-      derivative(a, 1) = friction * along(a)
+      derivative(a, 1) = slope * along(a)
       derivative(a, 1 + a) = ratio
       derivative(a, 2:3) = derivative(a, 2:3) - shortened(a) * contravariant
       derivative(a, 4:6) = -shortened(a) * by_metric
@@ -90,4 +94,4 @@ contains
     if (length > radius) shortened = traction * (radius / length)
   end function onto_disk
 
-end module isomortar_contact_friction
+end module isomortar_contact_friction_return_map
