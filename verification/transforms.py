@@ -67,7 +67,7 @@ def scaled(problem: Problem, length: float, stress: float) -> Problem:
     return replace(
         sized,
         bodies=bodies,
-        contacts=tuple(_scaled_contact(contact, length) for contact in problem.contacts),
+        contacts=tuple(_scaled_contact(contact, length, stress) for contact in problem.contacts),
         supports=tuple(_scaled_support(support, length) for support in problem.supports),
     )
 
@@ -152,11 +152,13 @@ def _turned_support(support: Support, turn: FloatArray, sense: float) -> Support
     return replace(support, motions=motions, centre=centre, axis=axis)
 
 
-def _scaled_contact(contact: Contact, length: float) -> Contact:
+def _scaled_contact(contact: Contact, length: float, stress: float) -> Contact:
     area = None if contact.reference_area is None else length**2 * contact.reference_area
+    most = None if contact.traction_max is None else stress * contact.traction_max
+    scaled = replace(contact, reference_area=area, cohesion=stress * contact.cohesion, traction_max=most)
     if isinstance(contact.master, Face):
-        return replace(contact, reference_area=area)
-    return replace(contact, reference_area=area, master=replace(contact.master, point=vector(length * np.array(contact.master.point))))
+        return scaled
+    return replace(scaled, master=replace(contact.master, point=vector(length * np.array(contact.master.point))))
 
 
 def _scaled_support(support: Support, length: float) -> Support:

@@ -20,7 +20,7 @@ from isomortar.errors import InputError
 MaterialLaw = Literal["neo-hookean", "neo-hookean-j", "linear-elastic"]
 LAWS = {name: number for number, name in enumerate(get_args(MaterialLaw), start=1)}
 #: Numbers of the friction laws in the kernel (isomortar_contact_friction_table); 0: no friction.
-FRICTION_LAWS = {"none": 0, "coulomb": 1}
+FRICTION_LAWS = {"none": 0, "coulomb": 1, "capped": 2}
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ class MaterialArrays:
 
 @dataclass(frozen=True)
 class FrictionArrays:
-    """A law of friction: its number (isomortar_contact_friction_table) and what that takes: nothing, or the coefficient mu."""
+    """A law of friction: its number (isomortar_contact_friction_table) and what that takes: nothing, mu, or mu, c and tau_max."""
 
     law: int
     parameters: FloatArray

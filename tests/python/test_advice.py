@@ -179,7 +179,11 @@ def _of_weights(body: Body) -> list[str]:
     return [said for said in doubts(problem, Simulation(problem).state) if "weights" in said]
 
 
-@pytest.mark.parametrize("text", [PRESS, PAIR, TYRE, PRESS.replace("point = [0, 0, 0]", "point = [0, 0, -0.05]")])
+#: Any friction is meant where tractions have a limit of their own.
+_CAPPED = PRESS.replace("[supports.top]", "friction = 30\ntraction_max = 0.2\n[supports.top]")
+
+
+@pytest.mark.parametrize("text", [PRESS, PAIR, TYRE, PRESS.replace("point = [0, 0, 0]", "point = [0, 0, -0.05]"), _CAPPED])
 def test_sound_scenes_have_none(text: str) -> None:
     assert warnings(text) == []
 

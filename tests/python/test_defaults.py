@@ -31,11 +31,12 @@ SOLVER = {
     "measures": ("forgiving", "margin", "reversal", "halving", "keeping"),
     "path_tolerance": None,
 }
+_FRICTION = {"cohesion": 0.0, "traction_max": None}
 #: By entity of a problem; those that are not named have none.
 ENTITIES = {
     "Material": {"young": 10.0, "poisson": 0.3, "law": "neo-hookean"},
     "Body": {"closed": None},
-    "Contact": {"reference_area": None},
+    "Contact": {"reference_area": None, **_FRICTION},
     "Motion": {"translate": (0.0, 0.0, 0.0), "rotate": 0.0},
     "Support": {"components": (0, 1, 2), "centre": (0.0, 0.0, 0.0), "axis": (0.0, 0.0, 1.0)},
     "SolverSettings": SOLVER,
@@ -52,7 +53,7 @@ TABLES = {
     "MeshTable": _MESH,
     "BodyTable": {"material": None, "geometry": None, "file": None, "patch": None, "mesh": _MESH, "closed": None},
     "PlaneTable": {"point": (0.0, 0.0, 0.0), "normal": (0.0, 0.0, 1.0), "tangent": None},
-    "ContactTable": {"master": None, "plane": None, "friction": 0.3, "quadrature": None, "reference_area": None},
+    "ContactTable": {"master": None, "plane": None, "friction": 0.3, **_FRICTION, "quadrature": None, "reference_area": None},
     "SupportTable": {"components": ("x", "y", "z"), "centre": (0.0, 0.0, 0.0), "axis": (0.0, 0.0, 1.0)},
     "MotionTable": {"translate": (0.0, 0.0, 0.0), "rotate": 0.0},
     "StageTable": {"motions": {}},

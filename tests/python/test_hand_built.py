@@ -33,6 +33,14 @@ def _twice(problem: Problem) -> Problem:
     return replace(problem, contacts=(*problem.contacts, replace(problem.contacts[0], name="again")))
 
 
+def _limited_twice(problem: Problem) -> Problem:
+    return replace(problem, contacts=(replace(problem.contacts[0], cohesion=0.3, traction_max=0.2),))
+
+
+def _negative_cohesion(problem: Problem) -> Problem:
+    return replace(problem, contacts=(replace(problem.contacts[0], cohesion=-0.3),))
+
+
 def _in_another_unit(problem: Problem) -> Problem:
     bodies = [replace(body, patch=replace(body.patch, control_points=1e-90 * body.patch.control_points)) for body in problem.bodies]
     return replace(problem, bodies=tuple(bodies))
@@ -51,6 +59,8 @@ def _of_far_weights(problem: Problem) -> Problem:
         (_contradicting, "moves differently"),
         (_looking_away, "looks away|passed through"),
         (_twice, "the same faces"),
+        (_limited_twice, "friction would have no say"),
+        (_negative_cohesion, r"friction\.parameters: is -0\.3; allowed: numbers not below 0"),
         (_in_another_unit, "unit of length"),
         (_of_far_weights, r"mesh.quadrature = \[16, 16, 16\]"),
     ],

@@ -15,11 +15,26 @@ from isomortar._bindings import Control, FrictionArrays, Law, Response, SlaveArr
 from isomortar.errors import InputError, KernelError
 
 NONE = FrictionArrays(0, np.zeros(0))
-LAWS = {"coulomb": FrictionArrays(1, np.array([0.4]))}
+LAWS = {
+    "coulomb": FrictionArrays(1, np.array([0.4])),
+    "cohesion": FrictionArrays(2, np.array([0.4, 0.1, np.finfo(float).max])),
+    "constant": FrictionArrays(2, np.array([0.0, 0.25, np.finfo(float).max])),
+    "capped": FrictionArrays(2, np.array([0.4, 0.125, 0.5])),
+}
 #: What each bears under a pressure, of any kind of number.
-RADIUS: dict[str, Callable[[Any], Any]] = {"coulomb": lambda p: mpmath.mpf(0.4) * p}
+RADIUS: dict[str, Callable[[Any], Any]] = {
+    "coulomb": lambda p: mpmath.mpf(0.4) * p,
+    "cohesion": lambda p: mpmath.mpf(0.1) + mpmath.mpf(0.4) * p,
+    "constant": lambda p: mpmath.mpf(0.25) + 0 * p,
+    "capped": lambda p: min(mpmath.mpf(0.125) + mpmath.mpf(0.4) * p, mpmath.mpf(0.5)),
+}
 #: Pressures at which they are looked at: on every branch of the law.
-PRESSURES = {"coulomb": (1e-140, 0.3, 2.0, 1e140)}
+PRESSURES = {
+    "coulomb": (1e-140, 0.3, 2.0, 1e140),
+    "cohesion": (1e-140, 0.3, 1e140),
+    "constant": (1e-140, 1e140),
+    "capped": (1e-140, 0.9374, 0.9376, 1e140),
+}
 NAN = float("nan")
 
 
@@ -163,6 +178,15 @@ def test_a_forgiving_slope_is_the_exact_one_where_the_traction_is_the_answer(nam
     np.testing.assert_allclose(turned, 0.5 * (exact.traction_slope[0, 1:3] - stuck), rtol=1e-8, atol=1e-9 * np.abs(stuck).max())
 
 
+def test_the_kink_below_the_largest_traction() -> None:
+    """Where both limits are the same the slope is that of the pressures below; it is nothing above."""
+    kink, off = 0.75, 2.0**-51  # 0.125 + 0.5 * 0.75 = 0.5, to the last bit
+    law = FrictionArrays(2, np.array([0.5, 0.125, 0.5]))
+    found = answer(law, [kink - off, kink, kink + off], [[0.0, 9.0]] * 3)
+    assert found.traction[:, 1].tolist() == [0.5 - 0.5 * off, 0.5, 0.5]
+    assert found.traction_slope[:, 0, 1].tolist() == [0.5, 0.5, 0.0]
+
+
 def test_without_friction_there_is_no_traction() -> None:
     found = answer(NONE, 1.0, [3.0, 4.0])
     assert (found.state[0], *found.traction[0]) == (1, 0.0, 0.0)
@@ -176,6 +200,6 @@ def test_a_law_with_another_number_of_parameters_is_refused() -> None:
         with pytest.raises(KernelError, match="no law of material or friction has the number"):
             _bindings.friction_radius(friction, np.ones(1))
     with pytest.raises(InputError, match=r"friction\.law"):
-        FrictionArrays(len(LAWS) + 1, np.zeros(0))
+        FrictionArrays(3, np.zeros(0))
     with pytest.raises(InputError, match=r"friction\.parameters"):
         FrictionArrays(1, np.array([-0.1]))

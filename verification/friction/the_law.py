@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,8 +18,9 @@ from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.timing import Ledger
 
 PENALTIES = np.array([30.0, 7.0])
-#: Coulomb's law, and none.
-FRICTION, NONE = FrictionArrays(1, np.array([0.4])), FrictionArrays(0, np.zeros(0))
+#: Laws of friction, and none; the capped one bears its largest traction from a pressure of 0.6 on.
+FRICTION: Final = {"coulomb": FrictionArrays(1, np.array([0.4])), "capped": FrictionArrays(2, np.array([0.4, 0.1, 0.34]))}
+NONE = FrictionArrays(0, np.zeros(0))
 #: Imaginary step of the derivatives, which have no error of their own.
 STEP = 1e-30
 #: Quantities, multipliers and options of the law; the first two tractions and slips have a component that is zero.
@@ -46,7 +47,9 @@ def length(traction: Numbers, metric: Numbers) -> Any:
 
 def radius(pressure: Any, friction: FrictionArrays) -> Any:
     """What a law of friction bears under a pressure above 0."""
-    return friction.parameters[0] * pressure
+    coefficient, cohesion, most = (*friction.parameters, 0.0, np.inf)[:3]
+    below = cohesion + coefficient * pressure
+    return below if np.real(below) <= most else most
 
 
 def returned(pressure: Any, trial: Numbers, metric: Numbers, friction: FrictionArrays) -> Numbers:
@@ -88,18 +91,24 @@ def slopes_at(point: Point, trial: FloatArray, metric: FloatArray, law: Law, rad
 
 
 @case(
-    claim="Pressures, tractions and states are those of Coulomb's law, their slopes its derivatives, with every option, in every state.",
-    grid={"variant": VARIANTS, "summed": (False, True)},
-    bounds=lambda variant, summed: {  # noqa: ARG005
+    claim="Pressures, tractions and states are those of the law, their slopes its derivatives, with every option, in every state.",
+    grid={"variant": VARIANTS, "summed": (False, True), "law": tuple(FRICTION)},
+    bounds=lambda variant, summed, law: {  # noqa: ARG005
         "pressure": Bound(at_most=1e-14, reason="round-off: a sum of two products"),
         "traction": Bound(at_most=1e-13, reason="round-off: sums of some products, and a quotient"),
         "states": Bound(0.0, 0.0, "definition: the same states"),
         "slopes": Bound(at_most=1e-11, reason="round-off: products of some numbers, over lengths of trials of a hundredth and more"),
+        "radius": Bound(0.0, 0.0, "definition: control points with another limit of their tractions, and one without a pressure"),
         "present": Bound(at_least=2.0 if variant == "frictionless" else 3.0, reason="definition: open, stick and slip all occur"),
+        **(
+            {"capped": Bound(0.9, 0.1, "definition: some slip at the largest traction, some below")}
+            if law == "capped" and variant != "frictionless"
+            else {}
+        ),
     },
 )
-def control_points(variant: str, summed: bool) -> dict[str, float]:
-    """Largest differences; number of different states."""
+def control_points(variant: str, summed: bool, law: str) -> dict[str, float]:
+    """Largest differences; wrong limits; number of different states; share of what slips that bears the largest traction."""
     pair = Equilibrium(bowl("plane"), Ledger()).pairs[0].pair
     random = np.random.default_rng(17)
     n, points = len(pair.slave.point), len(pair.slave.area)
@@ -117,15 +126,15 @@ def control_points(variant: str, summed: bool) -> dict[str, float]:
     if variant == "supported":  # some bear nothing, others have no traction along a direction
         bears[::4] = 0
         free[::2] -= random.standard_normal((len(free[::2]), 2, 1)) @ random.standard_normal((len(free[::2]), 1, 2))
-    law = Law(
-        PENALTIES, NONE if variant == "frictionless" else FRICTION, random.uniform(-0.5, 1.5, n), traction, summed, bears, free,
+    made = Law(
+        PENALTIES, NONE if variant == "frictionless" else FRICTION[law], random.uniform(-0.5, 1.5, n), traction, summed, bears, free,
         (np.arange(n) % 3 == 0).astype(np.int32) * (variant == "held"), slip_margin=0.2 * (variant == "margin"),
         forgiving=variant == "forgiving",
     )  # fmt: skip
-    response = _bindings.augmented_multipliers(pair.slave, control, law)
+    response = _bindings.augmented_multipliers(pair.slave, control, made)
 
     present = np.where(weight > 0.0, weight, 1.0)
-    pressure = np.where((weight > 0.0) & (bears > 0), law.pressure + PENALTIES[0] * gap / present, 0.0)
+    pressure = np.where((weight > 0.0) & (bears > 0), made.pressure + PENALTIES[0] * gap / present, 0.0)
     metric = control.metric / square[:, None]
     slips = np.where((pressure > 0.0)[:, None], control.slip / present[:, None], 0.0)
     element = np.repeat(pair.slave.nodes, pair.points_per_element, axis=0)
@@ -134,17 +143,25 @@ def control_points(variant: str, summed: bool) -> dict[str, float]:
     np.add.at(totals, element, (pair.slave.basis * pair.slave.area[:, None])[..., None] * at_points[:, None, :])
     sums = totals if summed else product(metric, control.slip)
     trial = np.einsum("iba,ib->ia", free, traction + PENALTIES[1] * sums / present[:, None])
-    found = [law_at(pressure[i], trial[i], metric[i], law, bool(law.held[i])) for i in range(n)]
-    slopes = np.array([slopes_at(found[i], trial[i], metric[i], law, traction[i]) for i in range(n)])
+    found = [law_at(pressure[i], trial[i], metric[i], made, bool(made.held[i])) for i in range(n)]
+    slopes = np.array([slopes_at(found[i], trial[i], metric[i], made, traction[i]) for i in range(n)])
     slopes[:, 1:3] = free @ slopes[:, 1:3]
     slope = np.where(np.array([point.state for point in found]) > 0, PENALTIES[0] / present, 0.0)
-    return {
+    limits = _bindings.friction_radius(made.friction, np.append(pressure, np.nan))
+    borne = [radius(p, made.friction) if p > 0.0 and made.friction.acts else 0.0 for p in pressure]
+    borne.append(np.nan if made.friction.acts else 0.0)
+    differences = {
         "pressure": float(np.abs(response.pressure - [point.pressure for point in found]).max()),
         "traction": float(np.abs(response.traction - [point.traction for point in found]).max()),
         "states": float(np.count_nonzero(response.state != [point.state for point in found])),
         "slopes": float(np.maximum(np.abs(response.traction_slope - slopes).max(), np.abs(response.pressure_slope - slope).max())),
+        "radius": float(np.count_nonzero(~np.isclose(limits, borne, rtol=1e-14, atol=0.0, equal_nan=True))),
         "present": float(len(set(response.state))),
     }
+    slipping = [point.pressure for point in found if point.state == 2]
+    if law != "capped" or not slipping:
+        return differences
+    return differences | {"capped": float(np.mean([radius(p, made.friction) == made.friction.parameters[-1] for p in slipping]))}
 
 
 def metrics(random: np.random.Generator, count: int) -> FloatArray:

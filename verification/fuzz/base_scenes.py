@@ -56,6 +56,7 @@ mesh = { order = [2, 2, 1], elements = [2, 2, 1] }
 slave = "bowl.w0"
 master = "block.w1"
 friction = 0.2
+traction_max = 0.03
 [supports.top]
 face = "bowl.w1"
 [supports.floor]
@@ -82,6 +83,7 @@ mesh = { family = ["L", "N", "N"], order = [1, 2, 1], elements = [3, 2, 1], quad
 slave = "bowl.w0"
 plane = { point = [0.0, 0.0, 0.0] }
 friction = 0.1
+cohesion = 0.02
 quadrature = [5, 5]
 reference_area = 1.0
 [supports.top]

@@ -15,7 +15,7 @@ from fuzz.mutation import mutated, numbers
 from isomortar import Results
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, case
-from isomortar.model.entities import RigidPlane
+from isomortar.model.entities import Contact, RigidPlane
 from isomortar.results import layout
 from isomortar.scene.source import dump
 
@@ -26,6 +26,8 @@ LENGTHS = {
     "lower": 1, "upper": 1, "centre": 1, "half_width": 1, "bottom": 1, "rise": 1, "top": 1, "inner": 1, "outer": 1, "width": 1, "point": 1,
     "translate": 1, "control_points": 1, "reference_area": 2,
 }  # fmt: skip
+#: Keys of contacts that hold stresses.
+STRESSES = ("cohesion", "traction_max")
 #: Numbers within this range have twins, in the other units, that are as far from under- and overflow.
 ORDINARY = 1e12
 #: Share by which forces, and contact conditions, may be off beyond the scene's own tolerances; and what that is of a tolerance.
@@ -79,7 +81,7 @@ def _look(results: Results) -> None:
             forces.append(-values["force_slave"])
         elif not _close(values["force_slave"], -values["force_master"], ROUND_OFF):
             raise Wrong(f"forces on both sides of {contact.name} differ: {values['force_slave'][-1]}, {values['force_master'][-1]}")
-        _look_at_contact(results, contact.name, contact.friction)
+        _look_at_contact(results, contact)
     for force in forces:
         _finite("a force", force)
     whole = np.abs(forces).sum(axis=(0, 2))
@@ -91,15 +93,18 @@ def _look(results: Results) -> None:
         _finite("positions", results.step(int(number)).state.positions)
 
 
-def _look_at_contact(results: Results, name: str, friction: float) -> None:
+def _look_at_contact(results: Results, contact: Contact) -> None:
+    name = contact.name
     history = results.contact(name)
     for part in ("pressure", "traction", "gap", "traction_norm"):
         _finite(f"{name}.{part}", getattr(history, part))
     if not np.all(history.pressure >= 0):
         raise Wrong(f"negative pressure in {name}: {history.pressure.min():g}")
     allowed = ROUND_OFF + OF_TOLERANCE * _tolerance(results)
-    if not np.all(history.traction_norm <= friction * history.pressure * (1 + allowed) + allowed * history.pressure.max()):
-        raise Wrong(f"the cone is left in {name}")
+    most = np.inf if contact.traction_max is None else contact.traction_max
+    borne = np.where(history.pressure > 0, np.minimum(contact.cohesion + contact.friction * history.pressure, most), 0.0)
+    if not np.all(history.traction_norm <= borne * (1 + allowed) + allowed * max(history.pressure.max(), history.traction_norm.max())):
+        raise Wrong(f"tractions in {name} are larger than friction bears")
     size = float(np.max([np.ptp(body.patch.control_points, axis=0).max() for body in results.problem.bodies]))
     if results.problem.settings.method == "monolithic" and not np.all(history.gap <= allowed * size):
         raise Wrong(f"{name} penetrates by {history.gap.max():g}, of bodies of size {size:g}")
@@ -132,6 +137,7 @@ def _twin(data: Any, number: int) -> tuple[Any, float, float] | None:
         material["young"] = material.get("young", 10.0) * MODULUS
     _scale(twin, 0)
     for contact in twin.get("contacts", {}).values():
+        contact.update({key: contact[key] * MODULUS for key in STRESSES if key in contact})
         if "tangent" not in contact.get("plane", {"tangent": ()}):
             contact["plane"].setdefault("point", [0.0, 0.0, 0.0])
     return twin, LENGTH, MODULUS

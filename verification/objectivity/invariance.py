@@ -48,10 +48,16 @@ def measure(problem: Problem) -> Measured:
 
 
 def change(
-    master: str, transform: Callable[[Problem], Problem], back: Callable[[Measured], Measured] = lambda found: found
+    master: str,
+    transform: Callable[[Problem], Problem],
+    back: Callable[[Measured], Measured] = lambda found: found,
+    problem: Problem | None = None,
 ) -> dict[str, float]:
-    """Largest change of each measured quantity over its largest value, when `back` has taken the transformed results back."""
-    problem = bowl(master)
+    """Largest change of each measured quantity over its largest value, when `back` has taken the transformed results back.
+
+    The problem is the bowl on its master unless another one is given.
+    """
+    problem = problem or bowl(master)
     before, after = measure(problem), back(measure(transform(problem)))
     return {name: float(np.abs(after[name] - value).max() / np.abs(value).max()) for name, value in before.items()}
 
@@ -127,7 +133,9 @@ def _contact_wrench(result: StepResult) -> tuple[FloatArray, FloatArray]:
     bounds=BOUNDS,
 )
 def units(master: str, length: float, stress: float) -> dict[str, float]:
-    """Lengths and stresses in other units; results taken back to the first ones."""
+    """Lengths and stresses in other units, those of a cohesion and a largest traction too; results taken back to the first ones."""
+    problem = bowl(master)
+    contact = replace(problem.contacts[0], cohesion=0.05, traction_max=0.3)
     return change(
         master,
         lambda problem: scaled(problem, length, stress),
@@ -138,6 +146,7 @@ def units(master: str, length: float, stress: float) -> dict[str, float]:
             "tractions": found["tractions"] / stress,
             "states": found["states"],
         },
+        replace(problem, contacts=(contact,)),
     )
 
 

@@ -2,6 +2,7 @@
 module isomortar_contact_friction_table
   use isomortar_base_kinds, only: wp
   use isomortar_base_status, only: status_no_such_law, status_ok
+  use isomortar_contact_friction_capped, only: capped_t
   use isomortar_contact_friction_coulomb, only: coulomb_t
   use isomortar_contact_friction_law, only: friction_t
   implicit none
@@ -9,8 +10,9 @@ module isomortar_contact_friction_table
 
   public :: friction_of
 
-  !> Numbers of the laws, here and in Python (isomortar._arrays). None has no parameters, Coulomb's the coefficient.
-  integer, parameter, public :: law_none = 0, law_coulomb = 1
+  !> Numbers of the laws, here and in Python (isomortar._arrays). None has no parameters, Coulomb's the coefficient, the capped
+  !> one coefficient, cohesion and largest traction.
+  integer, parameter, public :: law_none = 0, law_coulomb = 1, law_capped = 2
 
 contains
 
@@ -28,6 +30,9 @@ contains
     case (law_coulomb)
       if (size(parameters) /= 1) return
       allocate (friction, source=coulomb_t(parameters(1)))
+    case (law_capped)
+      if (size(parameters) /= 3) return
+      allocate (friction, source=capped_t(parameters(1), parameters(2), parameters(3)))
     case default
       return
     end select

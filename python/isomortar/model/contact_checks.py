@@ -24,9 +24,11 @@ def check_contacts(problem: Problem) -> None:
     Raises
     ------
     InputError
-        Faces without an area, that look away from each other, or have passed through each other; the same contact twice.
+        Faces without an area, that look away from each other, or have passed through each other; the same contact twice; a friction
+        whose numbers contradict each other.
     """
     for contact in problem.contacts:
+        _check_friction(contact)
         found = stance(problem, contact)
         _check_area(problem, contact, found)
         _check_stance(problem, contact, found)
@@ -36,6 +38,25 @@ def check_contacts(problem: Problem) -> None:
                 f"is between the same faces as contact {one.name!r}: their pressures could be shared in any way; remove one of them",
                 f"contacts.{other.name}",
             )
+
+
+def _check_friction(contact: Contact) -> None:
+    """Refuse a largest traction that leaves a part of the law without any say."""
+    field = f"contacts.{contact.name}.traction_max"
+    if contact.traction_max is None:
+        return
+    if contact.friction == 0.0:
+        raise InputError(
+            f"is {contact.traction_max:g}, but without friction tractions do not grow with the pressure: they are up to the cohesion, "
+            f"{contact.cohesion:g}; remove it, give a coefficient of friction, or give that limit as the cohesion",
+            field,
+        )
+    if contact.traction_max <= contact.cohesion:
+        raise InputError(
+            f"is {contact.traction_max:g}, and the cohesion, {contact.cohesion:g}, is not below it: friction would have no say; give a "
+            "larger one, or, for tractions up to a constant, friction = 0 and that constant as the cohesion",
+            field,
+        )
 
 
 def _check_area(problem: Problem, contact: Contact, found: Stance) -> None:

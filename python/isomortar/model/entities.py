@@ -93,6 +93,8 @@ class Contact:
     """A contact pair. `quadrature` are Gauss points per slave contact element and surface direction.
 
     `reference_area` divides the penalties (theory 7.1); None: the area of the slave face in the reference configuration.
+    Where there is pressure p, tractions are up to min(`cohesion` + `friction` p, `traction_max`), force per area (theory 4.6);
+    None: no largest one.
     """
 
     name: str
@@ -101,13 +103,18 @@ class Contact:
     friction: float
     quadrature: tuple[int, int]
     reference_area: float | None = None
+    cohesion: float = 0.0
+    traction_max: float | None = None
 
     @property
     def friction_law(self) -> FrictionArrays:
-        """Its law of friction, as the kernel takes it: Coulomb's, or none."""
-        if self.friction == 0.0:
+        """Its law of friction, as the kernel takes it: the simplest one that is the same."""
+        if self.friction == self.cohesion == 0.0:
             return FrictionArrays(FRICTION_LAWS["none"], np.zeros(0))
-        return FrictionArrays(FRICTION_LAWS["coulomb"], np.array([self.friction]))
+        if self.cohesion == 0.0 and self.traction_max is None:
+            return FrictionArrays(FRICTION_LAWS["coulomb"], np.array([self.friction]))
+        largest = np.finfo(np.float64).max if self.traction_max is None else self.traction_max
+        return FrictionArrays(FRICTION_LAWS["capped"], np.array([self.friction, self.cohesion, largest]))
 
 
 @dataclass(frozen=True)

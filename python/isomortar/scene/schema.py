@@ -183,7 +183,11 @@ class ContactTable(Table):
     plane: PlaneTable | None = None
     """Rigid master plane, instead of master."""
     friction: Annotated[Real, Field(ge=0, le=1e100)] = 0.3
-    """Coefficient of friction; 0 switches friction off."""
+    """Coefficient of friction; 0, without cohesion, switches friction off."""
+    cohesion: Annotated[Real, Field(ge=0)] = 0.0
+    """Traction, force per area, that friction bears where there is contact besides its coefficient times the pressure; none where open."""
+    traction_max: Positive | None = None
+    """Largest traction, force per area: friction bears min(cohesion + friction * pressure, traction_max); default: no largest one."""
     quadrature: PerSurfaceDirection[GaussPoints] | None = None
     """Gauss points per slave contact element; default by family and order (Table 1 of the paper; above order 5: order + 2)."""
     reference_area: Positive | None = None

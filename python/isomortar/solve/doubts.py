@@ -189,7 +189,7 @@ def _of_stance(contact: Contact, found: Stance, travel: float, beside: bool) -> 
 
 def _of_contact(problem: Problem, contact: Contact) -> Iterator[str]:
     """What is given for a contact, wherever its faces are."""
-    if contact.friction > HIGH_FRICTION:
+    if contact.friction > HIGH_FRICTION and contact.traction_max is None:
         yield (
             f"contact {contact.name!r}: a coefficient of friction of {contact.friction:g} makes all stick. Was it meant in per cent, "
             f"{contact.friction / 100.0:g}?"

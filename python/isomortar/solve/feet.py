@@ -22,9 +22,9 @@ _DOUBTS = {
     4: "other points of the master are as near as the nearest one, as from a ring's axis: it has no direction to press in. "
     "Keep the slave nearer to the master than its centres of curvature, or take a master that is less hollow",
     _NO_SLIP: "its nearest point is on a C0 line of the master, and slips have no measure there: the element beside it has its centre of "
-    "curvature nearer. Set friction = 0, or take a master that is less hollow beside its lines",
+    "curvature nearer. Set friction = 0, without cohesion, or take a master that is less hollow beside its lines",
     _SLIPS_AT_POLE: "its nearest point is beside a pole of the master, an edge that is one point, where slips have no coordinates. "
-    "Set friction = 0, or take a mesh without a pole there",
+    "Set friction = 0, without cohesion, or take a mesh without a pole there",
 }
 
 
