@@ -21,8 +21,9 @@ end subroutine slave_tables
 subroutine project_points(nodes, basis, area, point, nlocal, nelements, nquad, nslave, kind, knots, nknots, master_point, &
     master_weight, nmaster, x, n, started, origin, had, xi, element, fixed, found, doubt, slip, slips, status, place)
   use iso_c_binding, only: c_double, c_int
-  use isomortar_api_unpack, only: unpack_master, unpack_slave
-  use isomortar_contact_control, only: project => project_points, projections_t
+  use isomortar_api_unpack, only: unpack_gap_map, unpack_slave
+  use isomortar_contact_control, only: project => project_points
+  use isomortar_contact_gap_map_map, only: gap_map_t, projections_t
   implicit none
   integer(c_int), intent(in) :: nlocal, nelements, nquad, nslave, nknots, nmaster, n
   integer(c_int), intent(in) :: nodes(nlocal, nelements), point(nslave), kind(11), master_point(nmaster)
@@ -33,6 +34,7 @@ subroutine project_points(nodes, basis, area, point, nlocal, nelements, nquad, n
   integer(c_int), intent(out) :: element(2, nquad), fixed(2, nquad), found(nquad), doubt(nquad), slips(nquad)
   real(c_double), intent(out) :: slip(2, nquad)
   integer(c_int), intent(out) :: status, place
+  class(gap_map_t), allocatable :: map
   type(projections_t) :: projections
 
   allocate (projections%place(2, nquad), projections%fixed(2, nquad), projections%found(nquad), projections%doubt(nquad), &
@@ -42,7 +44,8 @@ subroutine project_points(nodes, basis, area, point, nlocal, nelements, nquad, n
   projections%fixed = .false.
   projections%found = .false.
   projections%doubt = 0
-  call project(unpack_slave(nodes, basis, area, point), unpack_master(kind, knots, master_point, master_weight), x, &
+  call unpack_gap_map(kind, knots, master_point, master_weight, map)
+  call project(unpack_slave(nodes, basis, area, point), map, x, &
     started /= 0, origin, had /= 0, projections, status, place)
   xi = projections%xi
   element = projections%place - 1
@@ -60,8 +63,9 @@ end subroutine project_points
 subroutine control_quantities(nodes, basis, area, point, nlocal, nelements, nquad, nslave, kind, knots, nknots, master_point, &
     master_weight, nmaster, x, n, xi, element, fixed, found, slip, weight, square, gap, control_slip, metric, point_metric)
   use iso_c_binding, only: c_double, c_int
-  use isomortar_api_unpack, only: unpack_master, unpack_slave
-  use isomortar_contact_control, only: control_t, integrate => control_quantities, projections_t
+  use isomortar_api_unpack, only: unpack_gap_map, unpack_slave
+  use isomortar_contact_control, only: control_t, integrate => control_quantities
+  use isomortar_contact_gap_map_map, only: gap_map_t, projections_t
   implicit none
   integer(c_int), intent(in) :: nlocal, nelements, nquad, nslave, nknots, nmaster, n
   integer(c_int), intent(in) :: nodes(nlocal, nelements), point(nslave), kind(11), master_point(nmaster)
@@ -70,6 +74,7 @@ subroutine control_quantities(nodes, basis, area, point, nlocal, nelements, nqua
   real(c_double), intent(in) :: xi(2, nquad), slip(2, nquad)
   real(c_double), intent(out) :: weight(nslave), square(nslave), gap(nslave), control_slip(2, nslave), metric(3, nslave)
   real(c_double), intent(out) :: point_metric(3, nquad)
+  class(gap_map_t), allocatable :: map
   type(projections_t) :: projections
   type(control_t) :: control
 
@@ -80,7 +85,8 @@ subroutine control_quantities(nodes, basis, area, point, nlocal, nelements, nqua
   projections%slip = slip
   allocate (control%weight(nslave), control%square(nslave), control%gap(nslave), control%slip(2, nslave), &
     control%metric(3, nslave), control%point_metric(3, nquad))
-  call integrate(unpack_slave(nodes, basis, area, point), unpack_master(kind, knots, master_point, master_weight), x, projections, &
+  call unpack_gap_map(kind, knots, master_point, master_weight, map)
+  call integrate(unpack_slave(nodes, basis, area, point), map, x, projections, &
     control)
   weight = control%weight
   square = control%square
@@ -174,9 +180,9 @@ end subroutine friction_radius
 subroutine contact_forces(nodes, basis, area, point, nlocal, nelements, nquad, nslave, kind, knots, nknots, master_point, &
     master_weight, nmaster, x, n, xi, element, fixed, found, with_friction, pressure, traction, state, forces)
   use iso_c_binding, only: c_double, c_int
-  use isomortar_api_unpack, only: unpack_master, unpack_slave
+  use isomortar_api_unpack, only: unpack_gap_map, unpack_slave
   use isomortar_contact_blocks, only: integrate_forces, multipliers_t
-  use isomortar_contact_control, only: projections_t
+  use isomortar_contact_gap_map_map, only: gap_map_t, projections_t
   implicit none
   integer(c_int), intent(in) :: nlocal, nelements, nquad, nslave, nknots, nmaster, n
   integer(c_int), intent(in) :: nodes(nlocal, nelements), point(nslave), kind(11), master_point(nmaster)
@@ -184,13 +190,15 @@ subroutine contact_forces(nodes, basis, area, point, nlocal, nelements, nquad, n
   real(c_double), intent(in) :: basis(nlocal, nquad), area(nquad), knots(nknots), master_weight(nmaster), x(3, n)
   real(c_double), intent(in) :: xi(2, nquad), pressure(nslave), traction(2, nslave)
   real(c_double), intent(inout) :: forces(3, n)
+  class(gap_map_t), allocatable :: map
   type(projections_t) :: projections
 
   projections%xi = xi
   projections%place = element + 1
   projections%fixed = fixed /= 0
   projections%found = found /= 0
-  call integrate_forces(unpack_slave(nodes, basis, area, point), unpack_master(kind, knots, master_point, master_weight), x, &
+  call unpack_gap_map(kind, knots, master_point, master_weight, map)
+  call integrate_forces(unpack_slave(nodes, basis, area, point), map, x, &
     projections, with_friction /= 0, multipliers_t(pressure, traction, state /= 0), forces)
 end subroutine contact_forces
 
@@ -199,9 +207,9 @@ subroutine contact_blocks(nodes, basis, area, point, nlocal, nelements, nquad, n
     master_weight, nmaster, x, n, xi, element, fixed, found, slips, with_friction, pressure, traction, state, field_slip, &
     row_start, row_column, nrows, nkinds, rows, start, nstart, column, nblocks, tangent, status, place)
   use iso_c_binding, only: c_double, c_int
-  use isomortar_api_unpack, only: unpack_master, unpack_pattern, unpack_slave
+  use isomortar_api_unpack, only: unpack_gap_map, unpack_pattern, unpack_slave
   use isomortar_contact_blocks, only: integrate_blocks, multipliers_t
-  use isomortar_contact_control, only: projections_t
+  use isomortar_contact_gap_map_map, only: gap_map_t, projections_t
   implicit none
   integer(c_int), intent(in) :: nlocal, nelements, nquad, nslave, nknots, nmaster, n, nrows, nkinds, nstart, nblocks
   integer(c_int), intent(in) :: nodes(nlocal, nelements), point(nslave), kind(11), master_point(nmaster)
@@ -211,6 +219,7 @@ subroutine contact_blocks(nodes, basis, area, point, nlocal, nelements, nquad, n
   real(c_double), intent(in) :: xi(2, nquad), pressure(nslave), traction(2, nslave), field_slip(2, nquad)
   real(c_double), intent(inout) :: rows(3, nkinds, nrows), tangent(3, 3, nblocks)
   integer(c_int), intent(out) :: status, place
+  class(gap_map_t), allocatable :: map
   type(projections_t) :: projections
 
   projections%xi = xi
@@ -218,7 +227,8 @@ subroutine contact_blocks(nodes, basis, area, point, nlocal, nelements, nquad, n
   projections%fixed = fixed /= 0
   projections%found = found /= 0
   projections%slips = slips /= 0
-  call integrate_blocks(unpack_slave(nodes, basis, area, point), unpack_master(kind, knots, master_point, master_weight), x, &
+  call unpack_gap_map(kind, knots, master_point, master_weight, map)
+  call integrate_blocks(unpack_slave(nodes, basis, area, point), map, x, &
     projections, with_friction /= 0, multipliers_t(pressure, traction, state /= 0), field_slip, &
     unpack_pattern(row_start, row_column), rows, unpack_pattern(start, column), tangent, status, place)
 end subroutine contact_blocks

@@ -5,8 +5,8 @@ module isomortar_api_difference
   use isomortar_base_status, only: status_ok
   use isomortar_contact_augmentation, only: law_t, respond, response_t
   use isomortar_contact_blocks, only: integrate_forces, multipliers_t
-  use isomortar_contact_control, only: control_quantities, control_t, project_points, projections_t
-  use isomortar_contact_master, only: master_t
+  use isomortar_contact_control, only: control_quantities, control_t, project_points
+  use isomortar_contact_gap_map_map, only: gap_map_t, projections_t
   use isomortar_contact_slave, only: slave_t
   implicit none
   private
@@ -16,7 +16,7 @@ module isomortar_api_difference
   !> What stays while positions and multipliers move.
   type, public :: fixed_t
     type(slave_t) :: slave
-    type(master_t) :: master
+    class(gap_map_t), allocatable :: map
     !> Starts of the projections.
     real(wp), allocatable :: start(:, :)
     !> Projections at the last converged load step, and whether there were any.
@@ -69,16 +69,16 @@ contains
     quantities%projections%xi = fixed%start
     quantities%projections%place = 0
     started = .true.
-    call project_points(fixed%slave, fixed%master, positions, started, fixed%origin, fixed%had, quantities%projections, status, &
+    call project_points(fixed%slave, fixed%map, positions, started, fixed%origin, fixed%had, quantities%projections, status, &
       place)
     if (status /= status_ok) return
 
     call reserve(n, points, quantities%control)
-    call control_quantities(fixed%slave, fixed%master, positions, quantities%projections, quantities%control)
+    call control_quantities(fixed%slave, fixed%map, positions, quantities%projections, quantities%control)
     call reserve(n, points, coordinates)
     absolute = quantities%projections
     absolute%slip = absolute%xi
-    call control_quantities(fixed%slave, fixed%master, positions, absolute, coordinates)
+    call control_quantities(fixed%slave, fixed%map, positions, absolute, coordinates)
     quantities%coordinates = coordinates%slip
     call respond(fixed%slave, quantities%control, law, fixed%summed, quantities%response, field_slip)
 
@@ -102,7 +102,7 @@ contains
 
     allocate (forces(3, size(positions, 2)))
     forces = 0.0_wp
-    call integrate_forces(fixed%slave, fixed%master, positions, projections, allocated(law%friction), multipliers, forces)
+    call integrate_forces(fixed%slave, fixed%map, positions, projections, allocated(law%friction), multipliers, forces)
   end subroutine contact_forces
 
   !> Make room for n control points and m quadrature points.

@@ -44,7 +44,7 @@ subroutine contact_difference(nodes, basis, area, point, nlocal, nelements, nqua
     slip, metric, pressure_change, traction_change, normal_forces, tangential_forces, forces, switched, status, place)
   use iso_c_binding, only: c_double, c_int
   use isomortar_api_difference, only: difference, evaluate_contact, fixed_t, quantities_t
-  use isomortar_api_unpack, only: unpack_master, unpack_slave
+  use isomortar_api_unpack, only: unpack_gap_map, unpack_slave
   use isomortar_base_kinds, only: wp
   use isomortar_contact_augmentation, only: law_t
   use isomortar_contact_blocks, only: multipliers_t
@@ -73,7 +73,7 @@ subroutine contact_difference(nodes, basis, area, point, nlocal, nelements, nqua
   call friction_of(friction, real(parameters, wp), law%friction, status)
   if (status /= 0) return
   kept%slave = unpack_slave(nodes, basis, area, point)
-  kept%master = unpack_master(kind, knots, master_point, master_weight)
+  call unpack_gap_map(kind, knots, master_point, master_weight, kept%map)
   kept%start = real(xi, wp)
   kept%origin = real(origin, wp)
   kept%had = had /= 0
@@ -109,10 +109,9 @@ end subroutine contact_difference
 subroutine surface_hulls(kind, knots, nknots, point, weight, npoints, x, n, nelements, nlocal, centre, radius, frame, half, &
     corner, sample, curvature)
   use iso_c_binding, only: c_double, c_int
-  use isomortar_api_unpack, only: unpack_master
+  use isomortar_api_unpack, only: unpack_face
   use isomortar_base_kinds, only: wp
   use isomortar_contact_hulls, only: enclose, hulls_t
-  use isomortar_contact_master, only: master_t
   implicit none
   integer(c_int), intent(in) :: nknots, npoints, n, nelements, nlocal
   integer(c_int), intent(in) :: kind(11), point(npoints)
@@ -120,10 +119,8 @@ subroutine surface_hulls(kind, knots, nknots, point, weight, npoints, x, n, nele
   real(c_double), intent(out) :: centre(nelements, 3), radius(nelements), frame(3, 3, nelements), half(3, nelements)
   real(c_double), intent(out) :: corner(3, nlocal, nelements), sample(3, nlocal, nelements), curvature(nelements)
   type(hulls_t) :: hulls
-  type(master_t) :: master
 
-  master = unpack_master(kind, knots, point, weight)
-  call enclose(master%surface, real(x, wp), hulls)
+  call enclose(unpack_face(kind(3:11), knots, point, weight, kind(1), kind(2)), real(x, wp), hulls)
   centre = real(hulls%centre, c_double)
   radius = real(hulls%radius, c_double)
   frame = real(hulls%frame, c_double)

@@ -2,16 +2,18 @@
 module isomortar_api_unpack
   use, intrinsic :: iso_c_binding, only: c_double, c_int
   use isomortar_base_kinds, only: wp
-  use isomortar_contact_master, only: master_t, plane_through
+  use isomortar_contact_gap_map_closest_point, only: closest_point_t
+  use isomortar_contact_gap_map_map, only: gap_map_t
+  use isomortar_contact_gap_map_plane, only: plane_through
   use isomortar_contact_slave, only: slave_t
   use isomortar_nurbs_direction, only: direction_t, family_nurbs, new_direction
   use isomortar_nurbs_patch, only: patch_t
-  use isomortar_nurbs_surface, only: face_of
+  use isomortar_nurbs_surface, only: face_of, surface_t
   use isomortar_sparse_blocks, only: pattern_t
   implicit none
   private
 
-  public :: unpack_master, unpack_patch, unpack_pattern, unpack_slave
+  public :: unpack_face, unpack_gap_map, unpack_patch, unpack_pattern, unpack_slave
 
 contains
 
@@ -35,20 +37,29 @@ contains
     allocate (patch%weight, source=real(weight, wp))
   end function unpack_patch
 
-  !> A master. `kind` holds axis (1..3) and end (0, 1) of a face, then the layout of its patch; axis 0 is a plane, whose
-  !> origin, normal and first tangent stand in `knots`.
-  pure function unpack_master(kind, knots, point, weight) result(master)
+  !> A gap map: a case for each. `kind` holds axis (1..3) and end (0, 1) of the master's face, then the layout of its patch;
+  !> axis 0 is a plane, whose origin, normal and first tangent stand in `knots`.
+  subroutine unpack_gap_map(kind, knots, point, weight, map)
     integer(c_int), intent(in) :: kind(11), point(:)
     real(c_double), intent(in) :: knots(:), weight(:)
-    type(master_t) :: master
+    class(gap_map_t), allocatable, intent(out) :: map
 
     if (kind(1) == 0) then
-      master = plane_through(real(knots(1:3), wp), real(knots(4:6), wp), real(knots(7:9), wp))
+      allocate (map, source=plane_through(real(knots(1:3), wp), real(knots(4:6), wp), real(knots(7:9), wp)))
     else
-      master%surface = face_of(unpack_patch(kind(3:11), knots, point, weight), int(kind(1)), int(kind(2)))
-      master%opposite = face_of(unpack_patch(kind(3:11), knots, point, weight), int(kind(1)), 1 - int(kind(2)))
+      allocate (map, source=closest_point_t(surface=unpack_face(kind(3:11), knots, point, weight, kind(1), kind(2)), &
+        opposite=unpack_face(kind(3:11), knots, point, weight, kind(1), 1 - kind(2))))
     end if
-  end function unpack_master
+  end subroutine unpack_gap_map
+
+  !> A face of a patch, by the axis across it and its end there.
+  pure function unpack_face(layout, knots, point, weight, axis, side) result(face)
+    integer(c_int), intent(in) :: layout(9), point(:), axis, side
+    real(c_double), intent(in) :: knots(:), weight(:)
+    type(surface_t) :: face
+
+    face = face_of(unpack_patch(layout, knots, point, weight), int(axis), int(side))
+  end function unpack_face
 
   !> A slave side from its tables.
   pure function unpack_slave(nodes, basis, area, point) result(slave)

@@ -4,7 +4,7 @@ module isomortar_base_algebra
   implicit none
   private
 
-  public :: cross, determinant, determinant2, inverse, inverse2, identity, trace, log1p
+  public :: add_product, cross, determinant, determinant2, first_not_finite, inverse, inverse2, identity, trace, log1p
 
   !> 3x3 unit matrix.
   real(wp), parameter :: identity(3, 3) = reshape([1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [3, 3])
@@ -83,5 +83,29 @@ contains
       r = y
     end if
   end function log1p
+
+  !> form += scale * left right^T.
+  pure subroutine add_product(scale, left, right, form)
+    real(wp), intent(in) :: scale, left(:), right(:)
+    real(wp), intent(inout) :: form(:, :)
+    integer :: k
+
+    do k = 1, size(right)
+      form(:, k) = form(:, k) + (scale * right(k)) * left
+    end do
+  end subroutine add_product
+
+  !> The first of some control points whose position is not finite; 0 where there is none.
+  pure integer function first_not_finite(positions, points) result(point)
+    real(wp), intent(in) :: positions(:, :)
+    integer, intent(in) :: points(:)
+    integer :: a
+
+    do a = 1, size(points)
+      point = points(a)
+      if (.not. all(abs(positions(:, point)) <= huge(1.0_wp))) return
+    end do
+    point = 0
+  end function first_not_finite
 
 end module isomortar_base_algebra

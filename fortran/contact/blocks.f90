@@ -4,12 +4,8 @@
 module isomortar_contact_blocks
   use isomortar_base_kinds, only: wp
   use isomortar_base_status, only: status_ok, status_pattern
-  use isomortar_contact_control, only: point_on_master, projections_t
-  use isomortar_contact_kinematics, only: all_components, contact_point_t, first_variations, gap_variation, metric_variation, &
-    short_vectors, traction_variation, variations_t
-  use isomortar_contact_master, only: master_order, master_point_count, master_t
-  use isomortar_contact_slave, only: slave_t
-  use isomortar_nurbs_surface, only: derivative_columns
+  use isomortar_contact_gap_map_map, only: all_components, contact_point_t, gap_map_t, projections_t, variations_t
+  use isomortar_contact_slave, only: slave_position, slave_t
   use isomortar_sparse_blocks, only: lacks, mark_row, pattern_t
   implicit none
   private
@@ -61,9 +57,9 @@ module isomortar_contact_blocks
 contains
 
   !> Add the contact forces r(d) = sum p^I <R^I dg> + sum t_a^I <R^I dxi^a> (theory 4.7).
-  subroutine integrate_forces(slave, master, positions, projections, with_friction, multipliers, forces)
+  subroutine integrate_forces(slave, map, positions, projections, with_friction, multipliers, forces)
     type(slave_t), intent(in) :: slave
-    type(master_t), intent(in) :: master
+    class(gap_map_t), intent(in) :: map
     real(wp), intent(in) :: positions(:, :)
     type(projections_t), intent(in) :: projections
     logical, intent(in) :: with_friction
@@ -78,7 +74,7 @@ contains
       if (.not. any(multipliers%active(slave%nodes(:, e)))) cycle
       do q = (e - 1) * per_element + 1, e * per_element
         if (.not. projections%found(q)) cycle
-        call take_sample(slave, master, positions, projections, e, q, merge(0, 2, master%is_plane), with_friction, sample)
+        call take_sample(slave, map, positions, projections, e, q, .false., sample)
         field = fields_at(slave, multipliers, e, q)
         row = slave%area(q) * (field(1) * sample%variations%gap + matmul(sample%variations%slip, field(2:3)))
         do a = 1, size(sample%points)
@@ -96,10 +92,10 @@ contains
   !> `row_pattern` holds for each slave control point (row) the control points (columns) that its rows reach;
   !> rows(component, kind, block). `field_slip` is the field of control slips, used by the slip sum's rows. On failure
   !> `place` is the row of a pattern that lacks a block.
-  subroutine integrate_blocks(slave, master, positions, projections, with_friction, multipliers, field_slip, row_pattern, rows, &
+  subroutine integrate_blocks(slave, map, positions, projections, with_friction, multipliers, field_slip, row_pattern, rows, &
       pattern, tangent, status, place)
     type(slave_t), intent(in) :: slave
-    type(master_t), intent(in) :: master
+    class(gap_map_t), intent(in) :: map
     real(wp), intent(in) :: positions(:, :)
     type(projections_t), intent(in) :: projections
     logical, intent(in) :: with_friction
@@ -117,7 +113,7 @@ contains
     status = status_pattern
     place = 0
     columns = 0
-    call reserve(slave, master, size(pending), short_vectors(master%is_plane, with_friction), size(rows, 2), batch)
+    call reserve(slave, map, size(pending), map%vectors(with_friction), size(rows, 2), batch)
     do e = 1, size(slave%nodes, 2)
       if (.not. any(multipliers%active(slave%nodes(:, e)))) cycle
       before = (e - 1) * size(pending)
@@ -129,13 +125,12 @@ contains
         batch%count = 0
         do k = 1, size(together)
           if (.not. together(k)) cycle
-          call take_sample(slave, master, positions, projections, e, before + k, master_order(master, with_friction), &
-            with_friction, sample)
-          call add_sample(slave, before + k, projections%slips(before + k), sample, field_slip(:, before + k), &
-            fields_at(slave, multipliers, e, before + k), master%is_plane, batch)
+          call take_sample(slave, map, positions, projections, e, before + k, with_friction, sample)
+          call add_sample(slave, map, before + k, projections%slips(before + k), sample, field_slip(:, before + k), &
+            fields_at(slave, multipliers, e, before + k), batch)
         end do
         call scatter_rows(slave%nodes(:, e), multipliers%active, batch, sample%points, row_pattern, columns, rows, place)
-        if (place == 0 .and. .not. master%is_plane) call scatter_tangent(batch, sample%points, pattern, columns, tangent, place)
+        if (place == 0 .and. map%bends) call scatter_tangent(batch, sample%points, pattern, columns, tangent, place)
         if (place > 0) return
       end do
     end do
@@ -151,17 +146,17 @@ contains
   end function same_element
 
   !> Make room for the quadrature points of an element.
-  pure subroutine reserve(slave, master, per_element, vectors, kinds, batch)
+  pure subroutine reserve(slave, map, per_element, vectors, kinds, batch)
     type(slave_t), intent(in) :: slave
-    type(master_t), intent(in) :: master
+    class(gap_map_t), intent(in) :: map
     integer, intent(in) :: per_element, vectors, kinds
     type(batch_t), intent(out) :: batch
     integer :: n
 
-    n = size(slave%nodes, 1) + master_point_count(master)
+    n = size(slave%nodes, 1) + map%bearing()
     allocate (batch%weight(size(slave%nodes, 1), per_element), batch%square_weight(size(slave%nodes, 1), per_element))
     allocate (batch%coefficients(n, vectors, per_element), batch%rows(n, 3, per_element, kinds))
-    if (.not. master%is_plane) allocate (batch%second(n, 3, 3, vectors, per_element))
+    if (map%bends) allocate (batch%second(n, 3, 3, vectors, per_element))
   end subroutine reserve
 
   !> p, t_1, t_2 at a quadrature point (theory 4.7).
@@ -180,38 +175,34 @@ contains
   end function fields_at
 
   !> Control points, kinematics, variations and coefficients of the short vectors at a quadrature point.
-  pure subroutine take_sample(slave, master, positions, projections, e, q, order, with_friction, sample)
+  pure subroutine take_sample(slave, map, positions, projections, e, q, of_slip, sample)
     type(slave_t), intent(in) :: slave
-    type(master_t), intent(in) :: master
+    class(gap_map_t), intent(in) :: map
     real(wp), intent(in) :: positions(:, :)
     type(projections_t), intent(in) :: projections
-    integer, intent(in) :: e, q, order
-    logical, intent(in) :: with_friction
+    integer, intent(in) :: e, q
+    logical, intent(in) :: of_slip
     type(sample_t), intent(inout) :: sample
-    integer :: n, nodes(master_point_count(master)), vectors
-    real(wp) :: functions(master_point_count(master), derivative_columns(order))
+    integer :: n
 
     n = size(slave%nodes, 1)
-    vectors = short_vectors(master%is_plane, with_friction .and. order > 2)
-    call point_on_master(slave, master, positions, projections, q, order, sample%point, nodes, functions)
-    sample%variations = first_variations(sample%point, vectors)
     if (.not. allocated(sample%points)) then
-      allocate (sample%points(n + size(nodes)), sample%coefficients(n + size(nodes), vectors))
+      allocate (sample%points(n + map%bearing()), sample%coefficients(n + map%bearing(), map%vectors(of_slip)))
       sample%coefficients = 0.0_wp
     end if
+    call map%at(positions, slave_position(slave, positions, q), projections, q, of_slip, sample%point, sample%points(n + 1:), &
+      sample%coefficients(n + 1:, :))
+    sample%variations = map%first(sample%point, size(sample%coefficients, 2))
     sample%points(:n) = slave%point(slave%nodes(:, e))
     sample%coefficients(:n, 1) = slave%basis(:, q)
-    if (master%is_plane) return
-    sample%points(n + 1:) = master%surface%point(nodes)
-    sample%coefficients(n + 1:, 1) = -functions(:, 1)
-    sample%coefficients(n + 1:, 2:vectors) = functions(:, 2:vectors)
   end subroutine take_sample
 
   !> Add a quadrature point to a batch.
-  pure subroutine add_sample(slave, q, slips, sample, field_slip, field, is_plane, batch)
+  pure subroutine add_sample(slave, map, q, slips, sample, field_slip, field, batch)
     type(slave_t), intent(in) :: slave
+    class(gap_map_t), intent(in) :: map
     integer, intent(in) :: q
-    logical, intent(in) :: slips, is_plane
+    logical, intent(in) :: slips
     type(sample_t), intent(in) :: sample
     real(wp), intent(in) :: field_slip(2), field(3)
     type(batch_t), intent(inout) :: batch
@@ -221,13 +212,14 @@ contains
       batch%weight(:, m) = slave%area(q) * slave%basis(:, q)
       batch%square_weight(:, m) = slave%area(q) * slave%basis(:, q)**2
       batch%coefficients(:, :, m) = sample%coefficients
-      call spread_rows(sample, slips, field_slip, size(batch%rows, 4), batch%rows(:, :, m, :))
-      if (.not. is_plane) call spread_geometric(sample, slave%area(q), field, batch%second(:, :, :, :, m))
+      call spread_rows(map, sample, slips, field_slip, size(batch%rows, 4), batch%rows(:, :, m, :))
+      if (map%bends) call spread_geometric(map, sample, slave%area(q), field, batch%second(:, :, :, :, m))
     end associate
   end subroutine add_sample
 
   !> Variations that the constraint rows integrate, by control points: (control point, component, kind).
-  pure subroutine spread_rows(sample, slips, field_slip, kinds, rows)
+  pure subroutine spread_rows(map, sample, slips, field_slip, kinds, rows)
+    class(gap_map_t), intent(in) :: map
     type(sample_t), intent(in) :: sample
     logical, intent(in) :: slips
     real(wp), intent(in) :: field_slip(2)
@@ -239,7 +231,7 @@ contains
 
     forms(:, row_gap) = sample%variations%gap
     if (kinds > 1) then
-      metric = metric_variation(sample%point, sample%variations)
+      metric = map%metric(sample%point, sample%variations)
       forms(:, row_work:row_work + 1) = sample%variations%slip
       forms(:, row_slip:row_slip + 1) = merge(1.0_wp, 0.0_wp, slips) * sample%variations%projection
       forms(:, row_metric:row_metric + 2) = metric
@@ -258,7 +250,8 @@ contains
 
   !> area * (p Ddg + t_a Ddxi^a) by short vectors on the left and control points on the right:
   !> (right control point, left component, right component, left vector).
-  pure subroutine spread_geometric(sample, area, field, second)
+  pure subroutine spread_geometric(map, sample, area, field, second)
+    class(gap_map_t), intent(in) :: map
     type(sample_t), intent(in) :: sample
     real(wp), intent(in) :: area, field(3)
     real(wp), intent(out) :: second(:, :, :, :)
@@ -267,10 +260,7 @@ contains
 
     vectors = size(second, 4)
     form = 0.0_wp
-    if (abs(field(1)) > 0.0_wp) call gap_variation(sample%point, sample%variations, area * field(1), form)
-    if (vectors == 6 .and. any(abs(field(2:3)) > 0.0_wp)) then
-      call traction_variation(sample%point, sample%variations, area * field(2:3), form)
-    end if
+    call map%second(sample%point, sample%variations, area * field(1), area * field(2:3), form)
     do k = 1, vectors
       do l = 1, vectors
         by_vector(l, :, :, k) = form(3 * k - 2:3 * k, 3 * l - 2:3 * l)

@@ -5,7 +5,7 @@
 module isomortar_contact_pole
   use isomortar_base_algebra, only: cross
   use isomortar_base_kinds, only: wp
-  use isomortar_contact_kinematics, only: contact_point_t
+  use isomortar_contact_gap_map_map, only: contact_point_t
   use isomortar_nurbs_surface, only: homogeneous_net, surface_point, surface_t
   implicit none
   private

@@ -8,7 +8,7 @@ module isomortar_contact_slave
   implicit none
   private
 
-  public :: integrate_functions, slave_tables
+  public :: integrate_functions, slave_position, slave_tables
 
   !> Slave side. Slave control points are numbered from 1 on their own; quadrature points run within elements.
   type, public :: slave_t
@@ -57,6 +57,21 @@ contains
       end do
     end do
   end subroutine slave_tables
+
+  !> Position of a slave quadrature point.
+  pure function slave_position(slave, positions, q) result(x)
+    type(slave_t), intent(in) :: slave
+    real(wp), intent(in) :: positions(:, :)
+    integer, intent(in) :: q
+    real(wp) :: x(3)
+    integer :: a, e
+
+    e = (q - 1) / (size(slave%area) / size(slave%nodes, 2)) + 1
+    x = 0.0_wp
+    do a = 1, size(slave%nodes, 1)
+      x = x + slave%basis(a, q) * positions(:, slave%point(slave%nodes(a, e)))
+    end do
+  end function slave_position
 
   !> <R^I f> (theory 2.8) for every slave control point, of fields given at the quadrature points: totals(field, I).
   pure subroutine integrate_functions(slave, fields, totals)

@@ -1,15 +1,15 @@
 !> Feet of slave points on C0 lines of the master (theory 3.11): there the normal is the direction of the distance.
 !>
 !> Gap and normal are continuous from a face onto the line, along it, and onto the next face.
-module isomortar_contact_kink
-  use isomortar_base_algebra, only: cross, determinant2, inverse2
+module isomortar_contact_gap_map_kink_line
+  use isomortar_base_algebra, only: add_product, cross, determinant2, inverse2
   use isomortar_base_kinds, only: wp
-  use isomortar_contact_kinematics, only: contact_point_t
+  use isomortar_contact_gap_map_map, only: contact_point_t
   use isomortar_nurbs_surface, only: derivative_columns, step_across, surface_basis, surface_nodes, surface_t
   implicit none
   private
 
-  public :: hold_on_lines
+  public :: add_turn, hold_on_lines
 
   !> A distance below this share of the element's size has no direction.
   real(wp), parameter :: least_distance = 1.0e-10_wp
@@ -92,4 +92,20 @@ contains
     end do
   end function element_size
 
-end module isomortar_contact_kink
+  !> Add scale * (dx - dS)^T P (Dx - DS), P the projector across the normal and the free tangents: on a C0 line (theory 3.13).
+  pure subroutine add_turn(point, scale, form)
+    type(contact_point_t), intent(in) :: point
+    real(wp), intent(in) :: scale
+    real(wp), intent(inout) :: form(:, :)
+    integer :: a, i
+
+    do i = 1, 3
+      form(i, i) = form(i, i) + scale
+    end do
+    call add_product(-scale, point%normal, point%normal, form)
+    do a = 1, 2
+      call add_product(-scale * point%inverse_metric(a, a), point%tangent(:, a), point%tangent(:, a), form)
+    end do
+  end subroutine add_turn
+
+end module isomortar_contact_gap_map_kink_line

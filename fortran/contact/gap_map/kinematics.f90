@@ -1,63 +1,24 @@
-!> Gap, projection and their variations at one slave point (theory 3).
+!> Gap, closest point and their variations at one slave point (theory 3).
 !>
-!> Variations are linear forms in short vectors: dx - dS, dS,1, dS,2, dS,11, dS,12, dS,22, three components each. A plane
-!> needs the first, a frictionless surface the first three, friction on a surface all six.
-module isomortar_contact_kinematics
-  use isomortar_base_algebra, only: cross, inverse2
+!> Variations are linear forms in short vectors: dx - dS, dS,1, dS,2, dS,11, dS,12, dS,22. A frictionless surface needs the first
+!> three, friction on a surface all six.
+module isomortar_contact_gap_map_kinematics
+  use isomortar_base_algebra, only: add_product, cross, inverse2
   use isomortar_base_kinds, only: wp
+  use isomortar_contact_gap_map_kink_line, only: add_turn
+  use isomortar_contact_gap_map_map, only: all_components, contact_point_t, variations_t
   implicit none
   private
 
-  public :: contact_point, first_variations, metric_variation, plane_point, short_vectors, traction_variation, gap_variation
+  public :: contact_point, first_variations, metric_variation, second_variations
 
-  !> Components of all short vectors.
-  integer, parameter, public :: all_components = 18
   !> Number of the short vector dS,ab.
   integer, parameter :: second_vector(2, 2) = reshape([4, 5, 5, 6], [2, 2])
   !> Column of S,ab and of S,abc in the table of surface derivatives.
   integer, parameter :: second_column(2, 2) = reshape([4, 5, 5, 6], [2, 2])
   integer, parameter :: third_column(2, 2, 2) = reshape([7, 8, 8, 9, 8, 9, 9, 10], [2, 2, 2])
 
-  !> A slave point and its projection.
-  type, public :: contact_point_t
-    !> Penetration: positive inside the master.
-    real(wp) :: gap
-    real(wp) :: normal(3)
-    !> Tangent vectors a_1, a_2.
-    real(wp) :: tangent(3, 2)
-    real(wp) :: metric(2, 2)
-    real(wp) :: inverse_metric(2, 2)
-    !> Curvature b_ab = normal . S,ab; zero for a plane.
-    real(wp) :: curvature(2, 2)
-    !> Inverse of H_ab = a_ab + g b_ab.
-    real(wp) :: inverse_h(2, 2)
-    !> Coordinates that stay while the point moves: the foot is on a C0 line.
-    logical :: fixed(2) = .false.
-    !> The normal turns about such a line with the slave point.
-    logical :: turns = .false.
-    !> Slips across such a line follow the slave point: H of the face that goes on is positive.
-    logical :: slips = .true.
-    !> Surface derivatives by column (derivative_column), up to the order that is needed.
-    real(wp) :: surface(3, 10)
-  end type contact_point_t
-
-  !> First variations as rows over the components of the short vectors.
-  type, public :: variations_t
-    real(wp) :: gap(all_components)
-    !> dxi.
-    real(wp) :: projection(all_components, 2)
-    !> The slip that tractions do their work on: dxi; on a C0 line, where that is zero, as if the element's face went on.
-    real(wp) :: slip(all_components, 2)
-  end type variations_t
-
 contains
-
-  !> Number of short vectors that the variations of a scene need.
-  pure integer function short_vectors(is_plane, with_friction)
-    logical, intent(in) :: is_plane, with_friction
-
-    short_vectors = merge(1, merge(6, 3, with_friction), is_plane)
-  end function short_vectors
 
   !> Kinematics on a deformable surface (theory 3.2, 3.3). `derivatives` holds S and its derivatives by column, `outward` the sign
   !> of the normal.
@@ -81,21 +42,6 @@ contains
     end do
     self%inverse_h = inverse2(self%metric + self%gap * self%curvature)
   end function contact_point
-
-  !> Kinematics on a rigid plane (theory 3.4).
-  pure function plane_point(x, origin, normal, tangent) result(self)
-    real(wp), intent(in) :: x(3), origin(3), normal(3), tangent(3, 2)
-    type(contact_point_t) :: self
-
-    self%surface = 0.0_wp
-    self%normal = normal
-    self%tangent = tangent
-    self%gap = -dot_product(x - origin, normal)
-    self%metric = reshape([1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [2, 2])
-    self%inverse_metric = self%metric
-    self%curvature = 0.0_wp
-    self%inverse_h = self%metric
-  end function plane_point
 
   !> Components 3 k - 2 .. 3 k of short vector k.
   pure function components(k) result(range)
@@ -160,6 +106,19 @@ contains
     rows(:, 3) = 2.0_wp * matmul(second, point%tangent(:, 2))
   end function metric_variation
 
+  !> Add pressure * Ddg + traction_a D(slip)^a to a bilinear form over the components (theory 3.9, 3.10, 3.13).
+  pure subroutine second_variations(point, variations, pressure, traction, form)
+    type(contact_point_t), intent(in) :: point
+    type(variations_t), intent(in) :: variations
+    real(wp), intent(in) :: pressure, traction(2)
+    real(wp), intent(inout) :: form(:, :)
+
+    if (abs(pressure) > 0.0_wp) call gap_variation(point, variations, pressure, form)
+    if (size(form, 1) == all_components .and. any(abs(traction) > 0.0_wp)) then
+      call traction_variation(point, variations, traction, form)
+    end if
+  end subroutine second_variations
+
   !> Add scale * Ddg to a bilinear form over the components (theory 3.9, 3.13).
   pure subroutine gap_variation(point, variations, scale, form)
     type(contact_point_t), intent(in) :: point
@@ -183,22 +142,6 @@ contains
     end do
     if (point%turns) call add_turn(point, scale / point%gap, form(1:3, 1:3))
   end subroutine gap_variation
-
-  !> Add scale * (dx - dS)^T P (Dx - DS), P the projector across the normal and the free tangents: on a C0 line (theory 3.13).
-  pure subroutine add_turn(point, scale, form)
-    type(contact_point_t), intent(in) :: point
-    real(wp), intent(in) :: scale
-    real(wp), intent(inout) :: form(:, :)
-    integer :: a, i
-
-    do i = 1, 3
-      form(i, i) = form(i, i) + scale
-    end do
-    call add_product(-scale, point%normal, point%normal, form)
-    do a = 1, 2
-      call add_product(-scale * point%inverse_metric(a, a), point%tangent(:, a), point%tangent(:, a), form)
-    end do
-  end subroutine add_turn
 
   !> Rows of dx - dS - a_b dxi^b, three rows (theory 3.7).
   pure function moving_distance(point, projection) result(rows)
@@ -270,15 +213,4 @@ contains
     end do
   end subroutine second_row
 
-  !> form += scale * left right^T.
-  pure subroutine add_product(scale, left, right, form)
-    real(wp), intent(in) :: scale, left(:), right(:)
-    real(wp), intent(inout) :: form(:, :)
-    integer :: k
-
-    do k = 1, size(right)
-      form(:, k) = form(:, k) + (scale * right(k)) * left
-    end do
-  end subroutine add_product
-
-end module isomortar_contact_kinematics
+end module isomortar_contact_gap_map_kinematics

@@ -1,0 +1,187 @@
+!> The gap map of the closest point on a face of a deformable body (theory 3): inside the face, on its C0 lines, at its poles.
+module isomortar_contact_gap_map_closest_point
+  use isomortar_base_algebra, only: first_not_finite
+  use isomortar_base_kinds, only: wp
+  use isomortar_base_status, only: status_degenerate_surface, status_lost_projection, status_no_slip, status_not_finite, &
+    status_ok, status_passed_through
+  use isomortar_contact_gap_map_kinematics, only: contact_point, first_variations, metric_variation, second_variations
+  use isomortar_contact_gap_map_kink_line, only: hold_on_lines
+  use isomortar_contact_gap_map_map, only: contact_point_t, gap_map_t, projections_t
+  use isomortar_contact_hulls, only: enclose, hulls_t, within_reach
+  use isomortar_contact_pole, only: gather_at_pole, hold_at_pole, is_at_pole, pole_of
+  use isomortar_contact_projection, only: is_too_deep, look_round, start_nearest
+  use isomortar_contact_search, only: descend, is_isolated, projection_degenerate, projection_inside, projection_lost, &
+    projection_outside, search_t, start_at
+  use isomortar_contact_slave, only: slave_position, slave_t
+  use isomortar_nurbs_surface, only: derivative_columns, shortest_way, surface_basis, surface_nodes, surface_t
+  implicit none
+  private
+
+  !> Share of the least depth between control points within which a point is not asked how deep the master's body is.
+  real(wp), parameter :: shallow_share = 0.25_wp
+
+  type, extends(gap_map_t), public :: closest_point_t
+    type(surface_t) :: surface
+    !> The face of the same body across from it: how deep the body is.
+    type(surface_t) :: opposite
+  contains
+    procedure :: bearing
+    procedure :: vectors
+    procedure :: locate
+    procedure :: slip
+    procedure :: at
+    procedure, nopass :: first => first_variations
+    procedure, nopass :: metric => metric_variation
+    procedure, nopass :: second => second_variations
+  end type closest_point_t
+
+contains
+
+  !> Number of control points of an element of the face.
+  pure integer function bearing(self)
+    class(closest_point_t), intent(in) :: self
+
+    bearing = product(self%surface%direction%order + 1)
+  end function bearing
+
+  !> dx - dS, dS,1, dS,2, and dS,11, dS,12, dS,22 for second variations of the slip.
+  pure integer function vectors(self, of_slip)
+    class(closest_point_t), intent(in) :: self
+    logical, intent(in) :: of_slip
+
+    vectors = merge(6, 3, of_slip)
+  end function vectors
+
+  !> Project all points, element by element (theory 3.1).
+  subroutine locate(self, slave, positions, started, had, projections, status, place)
+    class(closest_point_t), intent(in) :: self
+    type(slave_t), intent(in) :: slave
+    real(wp), intent(in) :: positions(:, :)
+    logical, intent(in) :: started(:), had(:)
+    type(projections_t), intent(inout) :: projections
+    integer, intent(out) :: status, place
+    type(hulls_t) :: hulls
+    real(wp) :: shallow
+    integer :: e, per_element
+
+    place = first_not_finite(positions, self%surface%point)
+    status = merge(status_not_finite, status_ok, place > 0)
+    if (status /= status_ok) return
+    call enclose(self%surface, positions, hulls)
+    shallow = shallow_share * least_depth(self, positions)
+    per_element = size(slave%area) / size(slave%nodes, 2)
+    do e = 1, size(slave%nodes, 2)
+      call project_element(self, slave, hulls, positions, started, had, shallow, per_element * (e - 1), projections, status, place)
+      if (status /= status_ok) return
+    end do
+  end subroutine locate
+
+  !> Project the quadrature points of a slave element, which are near each other: those after number `before` (theory 3.19).
+  pure subroutine project_element(self, slave, hulls, positions, started, had, shallow, before, projections, status, place)
+    class(closest_point_t), intent(in) :: self
+    type(slave_t), intent(in) :: slave
+    type(hulls_t), intent(in) :: hulls
+    real(wp), intent(in) :: positions(:, :), shallow
+    logical, intent(in) :: started(:), had(:)
+    integer, intent(in) :: before
+    type(projections_t), intent(inout) :: projections
+    integer, intent(inout) :: status, place
+    type(search_t) :: here(size(slave%area) / size(slave%nodes, 2))
+    real(wp) :: x(3, size(here)), middle(3), reach
+    type(contact_point_t) :: point
+    integer :: count, doubt, list(size(hulls%radius)), points(self%bearing()), q
+    real(wp) :: coefficients(size(points), self%vectors(of_slip=.false.))
+
+    do q = 1, size(here)
+      x(:, q) = slave_position(slave, positions, before + q)
+      here(q) = start_at(self%surface, projections%xi(:, before + q))
+      if (.not. started(before + q)) here(q) = start_nearest(self%surface, hulls, x(:, q))
+      call descend(self%surface, positions, x(:, q), here(q))
+    end do
+    middle = sum(x, 2) / size(here)
+    reach = maxval(norm2(x - spread(middle, 2, size(here)), 1) + sqrt(2.0_wp * here%distance))
+    call within_reach(hulls, middle, reach, list, count)
+    do q = 1, size(here)
+      call look_round(self%surface, hulls, positions, x(:, q), list(:count), here(q))
+      doubt = status_ok
+      if (here(q)%outcome == projection_inside .and. .not. is_isolated(here(q))) doubt = status_degenerate_surface
+      if (here(q)%outcome == projection_lost) doubt = status_lost_projection
+      if (doubt /= status_ok) here(q)%outcome = projection_inside
+      if (here(q)%outcome == projection_degenerate) then
+        status = status_degenerate_surface
+        place = before + q
+        return
+      end if
+      if (here(q)%outcome == projection_inside .and. 2.0_wp * here(q)%distance > shallow**2) then
+        if (is_too_deep(self%surface, self%opposite, positions, here(q))) here(q)%outcome = projection_outside
+        if (here(q)%outcome == projection_outside .and. had(before + q)) then
+          status = status_passed_through
+          place = before + q
+          return
+        end if
+      end if
+      projections%xi(:, before + q) = here(q)%xi
+      projections%place(:, before + q) = here(q)%place
+      projections%fixed(:, before + q) = here(q)%fixed
+      projections%found(before + q) = here(q)%outcome == projection_inside
+      projections%doubt(before + q) = merge(doubt, status_ok, projections%found(before + q))
+      if (projections%found(before + q) .and. doubt == status_ok .and. any(here(q)%fixed)) then
+        call self%at(positions, x(:, q), projections, before + q, .false., point, points, coefficients)
+        if (.not. point%slips) projections%doubt(before + q) = status_no_slip
+      end if
+    end do
+  end subroutine project_element
+
+  !> Least distance of a control point of the master from that across the body.
+  pure real(wp) function least_depth(self, positions)
+    class(closest_point_t), intent(in) :: self
+    real(wp), intent(in) :: positions(:, :)
+    integer :: a
+
+    least_depth = huge(1.0_wp)
+    do a = 1, size(self%surface%point)
+      least_depth = min(least_depth, norm2(positions(:, self%surface%point(a)) - positions(:, self%opposite%point(a))))
+    end do
+  end function least_depth
+
+  !> The difference of the coordinates, the shortest way round a closed face (theory 3.20).
+  pure function slip(self, origin, xi)
+    class(closest_point_t), intent(in) :: self
+    real(wp), intent(in) :: origin(2), xi(2)
+    real(wp) :: slip(2)
+
+    slip = shortest_way(self%surface, xi - origin)
+  end function slip
+
+  !> Kinematics of a foot inside an element, on C0 lines or at a pole (theory 3.2, 3.3, 3.11).
+  pure subroutine at(self, positions, x, projections, q, of_slip, point, points, coefficients)
+    class(closest_point_t), intent(in) :: self
+    real(wp), intent(in) :: positions(:, :), x(3)
+    type(projections_t), intent(in) :: projections
+    integer, intent(in) :: q
+    logical, intent(in) :: of_slip
+    type(contact_point_t), intent(out) :: point
+    integer, intent(out) :: points(:)
+    real(wp), intent(out) :: coefficients(:, :)
+    integer :: nodes(size(points)), order, pole
+    real(wp) :: functions(size(points), derivative_columns(merge(3, 2, of_slip)))
+
+    order = merge(3, 2, of_slip)
+    associate (surface => self%surface, place => projections%place(:, q), xi => projections%xi(:, q))
+      call surface_nodes(surface, place, nodes)
+      call surface_basis(surface, place, nodes, xi, order, functions)
+      pole = pole_of(surface, place, xi)
+      if (pole /= 0) call gather_at_pole(surface, pole, functions)
+      points = surface%point(nodes)
+      coefficients(:, 1) = -functions(:, 1)
+      coefficients(:, 2:) = functions(:, 2:size(coefficients, 2))
+      if (is_at_pole(surface, place, xi)) then
+        call hold_at_pole(surface, positions, x, pole, point)
+        return
+      end if
+      point = contact_point(x, matmul(positions(:, points), functions), surface%outward)
+      if (any(projections%fixed(:, q))) call hold_on_lines(surface, positions, x, xi, place, projections%fixed(:, q), point)
+    end associate
+  end subroutine at
+
+end module isomortar_contact_gap_map_closest_point

@@ -1,0 +1,161 @@
+!> How a slave point finds its master point, and what varies with it.
+!>
+!> A gap map is one file beside this one, with one case in `unpack_gap_map`. The two passes over the slave quadrature points do not
+!> know which they serve. Variations are linear forms in short vectors, three components each: the first is dx - dS, the others are
+!> the map's own, as sums over the master control points that bear on the point.
+module isomortar_contact_gap_map_map
+  use isomortar_base_kinds, only: wp
+  use isomortar_contact_slave, only: slave_t
+  implicit none
+  private
+
+  !> Components of all short vectors of any map.
+  integer, parameter, public :: all_components = 18
+
+  !> Where the slave quadrature points stand on the master.
+  type, public :: projections_t
+    !> Master coordinates.
+    real(wp), allocatable :: xi(:, :)
+    !> Master element by direction; 0 where there is none (plane, no projection).
+    integer, allocatable :: place(:, :)
+    !> Coordinates that stay while the point moves (on C0 lines; of points that are found), shape (2, points).
+    logical, allocatable :: fixed(:, :)
+    logical, allocatable :: found(:)
+    !> Of a point that is found: status_ok, or why its foot does not follow it. Then its distance alone means something.
+    integer, allocatable :: doubt(:)
+    !> Slip increment since the last converged load step; zero without a history.
+    real(wp), allocatable :: slip(:, :)
+    !> The slip follows the motion: found now and at the last converged load step.
+    logical, allocatable :: slips(:)
+  end type projections_t
+
+  !> A slave point and its projection.
+  type, public :: contact_point_t
+    !> Penetration: positive inside the master.
+    real(wp) :: gap
+    real(wp) :: normal(3)
+    !> Tangent vectors a_1, a_2.
+    real(wp) :: tangent(3, 2)
+    real(wp) :: metric(2, 2)
+    real(wp) :: inverse_metric(2, 2)
+    !> Curvature b_ab = normal . S,ab; zero for a plane.
+    real(wp) :: curvature(2, 2)
+    !> Inverse of H_ab = a_ab + g b_ab.
+    real(wp) :: inverse_h(2, 2)
+    !> Coordinates that stay while the point moves: the foot is on a C0 line.
+    logical :: fixed(2) = .false.
+    !> The normal turns about such a line with the slave point.
+    logical :: turns = .false.
+    !> Slips across such a line follow the slave point: H of the face that goes on is positive.
+    logical :: slips = .true.
+    !> Surface derivatives by column (derivative_column), up to the order that is needed.
+    real(wp) :: surface(3, 10)
+  end type contact_point_t
+
+  !> First variations as rows over the components of the short vectors.
+  type, public :: variations_t
+    real(wp) :: gap(all_components)
+    !> dxi.
+    real(wp) :: projection(all_components, 2)
+    !> The slip that tractions do their work on: dxi; on a C0 line, where that is zero, as if the element's face went on.
+    real(wp) :: slip(all_components, 2)
+  end type variations_t
+
+  !> A gap map onto a certain master.
+  type, abstract, public :: gap_map_t
+    !> Variations change with the positions.
+    logical :: bends = .true.
+  contains
+    procedure(count_bearing), deferred :: bearing
+    procedure(count_vectors), deferred :: vectors
+    procedure(locate_points), deferred :: locate
+    procedure(slip_between), deferred :: slip
+    procedure(point_at), deferred :: at
+    procedure(first_of), deferred, nopass :: first
+    procedure(metric_of), deferred, nopass :: metric
+    procedure(second_of), deferred, nopass :: second
+  end type gap_map_t
+
+  abstract interface
+    !> Number of master control points that bear on one slave point.
+    pure integer function count_bearing(self)
+      import :: gap_map_t
+      implicit none
+      class(gap_map_t), intent(in) :: self
+    end function count_bearing
+
+    !> Number of short vectors: for first variations and the second ones of the gap, and `of_slip` for those of the slip too.
+    pure integer function count_vectors(self, of_slip)
+      import :: gap_map_t
+      implicit none
+      class(gap_map_t), intent(in) :: self
+      logical, intent(in) :: of_slip
+    end function count_vectors
+
+    !> Find the master points of all slave quadrature points: all of `projections` but the slips. `xi` holds starts where
+    !> `started`; `had` says which had one at the last converged load step. On failure `place` is the quadrature point.
+    subroutine locate_points(self, slave, positions, started, had, projections, status, place)
+      import :: gap_map_t, projections_t, slave_t, wp
+      implicit none
+      class(gap_map_t), intent(in) :: self
+      type(slave_t), intent(in) :: slave
+      real(wp), intent(in) :: positions(:, :)
+      logical, intent(in) :: started(:), had(:)
+      type(projections_t), intent(inout) :: projections
+      integer, intent(out) :: status, place
+    end subroutine locate_points
+
+    !> Slip from one place of the master to another one.
+    pure function slip_between(self, origin, xi) result(slip)
+      import :: gap_map_t, wp
+      implicit none
+      class(gap_map_t), intent(in) :: self
+      real(wp), intent(in) :: origin(2), xi(2)
+      real(wp) :: slip(2)
+    end function slip_between
+
+    !> Kinematics of slave quadrature point q, which is at x and has a projection; the master control points that bear on it, and
+    !> their coefficients in the short vectors, (control points, vectors).
+    pure subroutine point_at(self, positions, x, projections, q, of_slip, point, points, coefficients)
+      import :: contact_point_t, gap_map_t, projections_t, wp
+      implicit none
+      class(gap_map_t), intent(in) :: self
+      real(wp), intent(in) :: positions(:, :), x(3)
+      type(projections_t), intent(in) :: projections
+      integer, intent(in) :: q
+      logical, intent(in) :: of_slip
+      type(contact_point_t), intent(out) :: point
+      integer, intent(out) :: points(:)
+      real(wp), intent(out) :: coefficients(:, :)
+    end subroutine point_at
+
+    !> Rows of dg, dxi and the slip that tractions work on.
+    pure function first_of(point, vectors) result(variations)
+      import :: contact_point_t, variations_t
+      implicit none
+      type(contact_point_t), intent(in) :: point
+      integer, intent(in) :: vectors
+      type(variations_t) :: variations
+    end function first_of
+
+    !> Rows of the metric's variation: a_11, a_12, a_22.
+    pure function metric_of(point, variations) result(rows)
+      import :: all_components, contact_point_t, variations_t, wp
+      implicit none
+      type(contact_point_t), intent(in) :: point
+      type(variations_t), intent(in) :: variations
+      real(wp) :: rows(all_components, 3)
+    end function metric_of
+
+    !> Add pressure * Ddg + traction_a D(slip)^a to a bilinear form over the components of the short vectors.
+    pure subroutine second_of(point, variations, pressure, traction, form)
+      import :: contact_point_t, variations_t, wp
+      implicit none
+      type(contact_point_t), intent(in) :: point
+      type(variations_t), intent(in) :: variations
+      real(wp), intent(in) :: pressure, traction(2)
+      real(wp), intent(inout) :: form(:, :)
+    end subroutine second_of
+  end interface
+
+end module isomortar_contact_gap_map_map
