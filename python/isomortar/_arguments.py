@@ -15,6 +15,8 @@ IntArray = NDArray[np.int32]
 
 #: Largest orders by family of the layout of a patch: 1 NURBS, 2 Lagrange.
 MAX_ORDERS = {1: 10, 2: 4}
+#: Largest number of a control point: the unknowns, three of each, are counted in 32 bits.
+MAX_POINT = np.iinfo(np.int32).max // 3 - 1
 #: Largest number of Gauss points per direction: more is taken for a mistake.
 MAX_GAUSS = 64
 
@@ -92,7 +94,7 @@ def patch(layout: Any, knots: Any, point: Any, weight: Any) -> None:
     array("knots", knots, np.float64, first)
     points = int(np.prod(counts, dtype=np.int64))
     array("point", point, np.int32, points)
-    within("point", point, 0, np.iinfo(np.int32).max)
+    within("point", point, 0, MAX_POINT)
     array("weight", weight, np.float64, points)
     if not (finite("weight", weight) > 0).all():
         raise InputError("holds a weight that is not positive", "weight")
@@ -109,11 +111,11 @@ def _knots(knots: FloatArray, count: int, order: int) -> None:
 
 
 def rows(start: Any, column: Any) -> None:
-    """Refuse compressed rows of blocks that do not rise from 0 to the number of blocks, or with negative columns."""
+    """Refuse compressed rows of blocks that do not rise from 0 to the number of blocks, or with columns that are no control points."""
     array("start", start, np.int32, None)
     array("column", column, np.int32, None)
     compressed("start", start, len(column))
-    within("column", column, 0, np.iinfo(np.int32).max)
+    within("column", column, 0, MAX_POINT)
 
 
 def compressed(name: str, start: NDArray[Any], entries: int) -> None:

@@ -136,7 +136,7 @@ class SlaveArrays:
         check.finite("basis", check.array("basis", self.basis, np.float64, points, local))
         check.array("point", self.point, np.int32, None)
         check.within("nodes", self.nodes, 0, len(self.point) - 1)
-        check.within("point", self.point, 0, np.iinfo(np.int32).max)
+        check.within("point", self.point, 0, check.MAX_POINT)
         if not elements or points % elements:
             raise InputError(f"has {points} quadrature points for {elements} elements; allowed: as many in each element", "area")
 

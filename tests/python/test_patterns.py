@@ -9,8 +9,8 @@ import pytest
 from scipy import sparse
 
 from isomortar import _bindings
-from isomortar._bindings import Pattern
-from isomortar.errors import KernelError
+from isomortar._bindings import PatchArrays, Pattern, SlaveArrays
+from isomortar.errors import InputError, KernelError
 from isomortar.model.entities import Problem
 from isomortar.model.pattern import pattern_of
 from isomortar.scene import Scene
@@ -153,3 +153,17 @@ def test_scatter_of_a_sound_pattern_is_that_of_a_dense_matrix(assemblies):
     assert np.array_equal(dense[row, rows.column], values.reshape(len(values), -1))
     dense[row, rows.column] = 0.0
     assert not dense.any()
+
+
+@pytest.mark.parametrize("number", [2**31 - 1, 2**31 // 3])
+def test_a_number_of_a_control_point_that_32_bits_do_not_count_is_refused(number: int) -> None:
+    """The kernel counts from 1 and three unknowns a point: a column of 2^31 - 1 wrote in front of its memory."""
+    far = np.array([number], dtype=np.int32)
+    with pytest.raises(InputError, match="column"):
+        Pattern(np.array([0, 1], dtype=np.int32), far)
+    with pytest.raises(InputError, match="point"):
+        SlaveArrays(np.zeros((1, 1), dtype=np.int32), np.ones((1, 1)), np.ones(1), far)
+    point = np.arange(8, dtype=np.int32)
+    point[3] = number
+    with pytest.raises(InputError, match="point"):
+        PatchArrays(np.array([1, 1, 1, 1, 1, 1, 2, 2, 2], dtype=np.int32), np.tile([0.0, 0.0, 1.0, 1.0], 3), point, np.ones(8))
