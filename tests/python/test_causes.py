@@ -62,6 +62,46 @@ def said(simulation: Simulation, error: Exception | None = None) -> list[str]:
     return list(causes(simulation.equilibrium, simulation.state.positions, error or ConvergenceError("")))
 
 
+#: A block pressed onto a larger one, and slid off over its edge.
+OVER_THE_EDGE = """
+format = 1
+bodies.upper.geometry = { kind = "box", lower = [-0.4, -0.4, 0.0], upper = [0.4, 0.4, 0.6] }
+bodies.lower = { geometry = { kind = "box", lower = [-1, -1, -1], upper = [1, 1, 0] }, mesh = { elements = [2, 2, 1] } }
+contacts.pair = { slave = "upper.w0", master = "lower.w1", friction = FRICTION }
+supports = { top.face = "upper.w1", base.face = "lower.w0" }
+solver.max_cuts = 5
+stages = [
+    { name = "press", steps = 2, motions.top.translate = [0, 0, DOWN] },
+    { name = "slide", steps = 10, motions.top.translate = [2.0, 0, 0] },
+]
+[bodies.upper.mesh]
+order = [ORDER, ORDER, 1]
+elements = [ELEMENTS, ELEMENTS, 2]
+"""
+
+
+@pytest.mark.parametrize(
+    ("friction", "down", "order", "comes_past"),
+    [(0.0, -0.05, 2, True), (0.3, -0.15, 2, True), (0.3, -0.15, 1, True), (0.0, -0.15, 1, False)],
+)
+def test_a_slave_that_slides_over_an_edge_comes_past_it_or_says_so_and_how(
+    friction: float, down: float, order: int, comes_past: bool
+) -> None:
+    """Where coarse elements lie across the edge few points bear, fewer than they have conditions; the cure that is named cures."""
+
+    def run(elements: int) -> str:
+        text = OVER_THE_EDGE.replace("FRICTION", str(friction)).replace("DOWN", str(down))
+        problem = Scene.from_toml(text.replace("ORDER", str(order)).replace("ELEMENTS", str(elements))).problem()
+        try:
+            return f"load step {len(list(Simulation(problem).run()))}"
+        except ConvergenceError as error:
+            return str(error)
+
+    coarse = run(2)
+    assert coarse == "load step 12" if comes_past else ("goes over an edge" in coarse and "Refine the slave" in coarse)
+    assert run(4) == "load step 12"
+
+
 def test_a_sound_scene_gives_no_cause() -> None:
     assert said(scene()) == said(scene(), SingularSystemError("")) == []
 

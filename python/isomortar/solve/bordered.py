@@ -16,14 +16,15 @@ import numpy as np
 
 from isomortar._bindings import Law, Pattern, Response
 from isomortar.geometry.patch import FloatArray, IntArray
+from isomortar.model.supports import BoolArray
 from isomortar.solve.contact import Blocks, PairMechanics, median
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.singular import Multipliers
 from isomortar.solve.system import Source, block_product
 
-#: What a traction resists its own change where its slave control point is one of another contact as well: what sticks to both has six
-#: conditions for three components. The redundant ones then stay as they are (theory 6.4); the conditions are the same.
-SHARED = 1e-6
+#: What multipliers resist their own change where conditions may repeat each other (theory 6.4). What no other row tells stays as it is, and
+#: the conditions are the same.
+RESISTANCE = 1e-6
 
 
 @dataclass(frozen=True)
@@ -45,6 +46,7 @@ class Border:
     row_scale: FloatArray  # (slave control points, 3)
     column_scale: FloatArray  # (3,)
     target: Response
+    loose: BoolArray  # (slave control points, 3)
 
     def sources(self, unknowns: IntArray) -> tuple[list[Source], list[FloatArray]]:
         """Geometric tangent, constraint columns, condition rows, and the multipliers' own block."""
@@ -72,7 +74,7 @@ class Border:
         slope = self.target.traction_slope[active]  # (control points, pressure | trial | metric, component)
         own[active, 1:, 0] = -slope[:, 0]
         own[active, 1:, 1:] -= slope[:, 1:3].transpose(0, 2, 1)
-        own[active & self.pair.shared, 1:, 1:] += SHARED * np.eye(2)
+        own[:, [0, 1, 2], [0, 1, 2]] += RESISTANCE * (self.loose & active[:, None])
         return own
 
     def trial_change(self, correction: FloatArray) -> FloatArray:
@@ -153,7 +155,8 @@ def _border(equilibrium: Equilibrium, k: int, balance: Balance, law: Law, target
     lengths = np.concatenate([[1.0], pair.tangent_lengths(control)])
     present = control.weight > 0
     weight = np.where(present, control.weight, median(control.weight[present]))
-    return Border(pair, blocks, equation.ravel(), weight[:, None] / lengths, float(law.penalties[0]) * lengths, target)
+    loose = pair.loose(balance.kinematics[k].projections)
+    return Border(pair, blocks, equation.ravel(), weight[:, None] / lengths, float(law.penalties[0]) * lengths, target, loose)
 
 
 def _right_hand_side(

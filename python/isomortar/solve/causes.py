@@ -12,6 +12,7 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.model.contrasts import element_lengths
 from isomortar.model.entities import Body, Problem
 from isomortar.solve.advice import few_points
+from isomortar.solve.contact import PairMechanics
 from isomortar.solve.equilibrium import Equilibrium
 
 #: Volume ratios below this one are those of elements about to fold.
@@ -24,6 +25,9 @@ LENGTHS_BENT = 1e3
 INCOMPRESSIBLE = 1e4
 #: Penalties of augmentations above this one make contact so stiff that Newton's method goes to and fro.
 PENALTY = 1e3
+
+#: How an error says that a slave goes over its master's edge.
+BESIDE = "beside the master"
 
 
 def causes(equilibrium: Equilibrium, positions: FloatArray, error: Exception) -> Iterator[str]:
@@ -46,6 +50,21 @@ def causes(equilibrium: Equilibrium, positions: FloatArray, error: Exception) ->
     yield from _penalties(problem)
     for contact in problem.contacts:
         yield from few_points(problem, contact)
+    if BESIDE not in str(error):
+        for pair in equilibrium.pairs:
+            yield from _over_the_edge(pair, positions)
+
+
+def _over_the_edge(pair: PairMechanics, positions: FloatArray) -> Iterator[str]:
+    """A slave that goes over an edge of its master, in elements of which a part only has anything below."""
+    elements = pair.initial(positions).projected.reshape(len(pair.pair.slave.nodes), -1) > 0
+    partly = elements.any(axis=1) & ~elements.all(axis=1)
+    if partly.any() or not elements.any():
+        yield (
+            f"contact {pair.pair.contact.name!r}: the slave goes over an edge of its master; {np.count_nonzero(~elements)} of its "
+            f"{elements.size} quadrature points are {BESIDE} by then, and few bear what comes. Refine the slave, use a larger master, end "
+            "the motion earlier, or bring the slave onto its master from above"
+        )
 
 
 def _flat(bodies: Sequence[Body], jacobians: Sequence[float]) -> Iterator[str]:

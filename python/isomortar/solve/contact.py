@@ -15,7 +15,7 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import SolverSettings
 from isomortar.model.held import held_by, nothing_held
 from isomortar.model.pairs import Pair
-from isomortar.model.supports import Supports
+from isomortar.model.supports import BoolArray, Supports
 from isomortar.solve.feet import Feet
 from isomortar.solve.reach import ContactPatterns, Reach
 from isomortar.solve.record import ContactResult, ContactState
@@ -201,6 +201,17 @@ class PairMechanics:
             )
         self._ledger.counts["contact tangents"] += 1
         return Blocks(patterns, rows, changes, trial, geometric)
+
+    def loose(self, projections: Projections) -> BoolArray:
+        """Multipliers whose conditions may repeat others where they are active, shape (slave control points, 3) (theory 6.4).
+
+        Control points of two contacts have six conditions for three components, of which the pressures are not too many; those of
+        elements that reach over an edge of the master may have more than there are points on it.
+        """
+        nodes = self.pair.slave.nodes
+        loose: BoolArray = self.shared[:, None] & np.array([False, True, True])
+        loose[nodes[np.any(projections.found.reshape(len(nodes), -1) == 0, axis=1)]] = True
+        return loose
 
     def condensed(self, response: Response, blocks: Blocks) -> tuple[Pattern, FloatArray]:
         """The contact tangent with the multipliers eliminated."""

@@ -93,11 +93,12 @@ def _repeated(
     where = f"contact {contact.pair.pair.contact.name!r}: the conditions of {len(among)} slave control points, the first of them {among[0]}"
     others = {other.pair.pair.contact.name: _shared(contact, among, other) for other in contacts if other is not contact}
     twice = max(others, key=lambda name: others[name], default="")
+    beside = (
+        f"rest on {there} of the {total} quadrature points around them; the others are beside the master. Refine the slave, use a larger "
+        "master, end the motion earlier, or bring the slave onto its master from above"
+    )
     if 2 * there < total:
-        reason = (
-            f"rest on {there} of the {total} quadrature points around them; the others are beside the master. Use a larger master, end the "
-            "motion earlier, or bring the slave onto its master from above"
-        )
+        reason = beside
     elif prescribed:
         reason = (
             f"repeat what supports prescribe: {prescribed} of these control points are held by supports, and the others cannot make good "
@@ -110,6 +111,8 @@ def _repeated(
             "what sticks to one master can neither stick to another one nor press on it in the same direction. Take friction from one of "
             'the two contacts, remove one, keep their faces apart, or try solver.method = "uzawa"'
         )
+    elif there < total:
+        reason = beside
     else:
         reason = "repeat each other; the slave may be finer and stiffer than its master: swap the two, or refine the master"
     return SingularSystemError(f"{said}. {where}, {reason}", int(among[0]))
