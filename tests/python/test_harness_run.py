@@ -441,14 +441,54 @@ def test_numbers_from_other_sources_are_not_taken(root, sources):
     assert store.get(cells[0]) is None
 
 
-def test_dask_gives_the_same_bits(root):
+def cluster(**options):
+    """Two workers of Dask."""
     distributed = pytest.importorskip("distributed")
-    local = measured(root)
+    return distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, **options)
+
+
+def measured_on(there, root: Path):
     store = Store(root.parent / "other")
-    options = {"n_workers": 2, "threads_per_worker": 1, "processes": True, "dashboard_address": None}
-    with distributed.LocalCluster(**options) as cluster, dask_cluster(cluster.scheduler_address) as submit:
+    with dask_cluster(there.scheduler_address) as submit:
         results = run(start(select(collect(root), "gate"), store, submit), finder(root.parent / "references"), store)
-    assert {r.cell.name.partition("/")[2]: r.measurement.numbers for r in results} == {n: r.measurement.numbers for n, r in local.items()}
+    return {r.cell.name.partition("/")[2]: r for r in results}
+
+
+def test_dask_gives_the_same_bits(root):
+    local = measured(root)
+    with cluster() as there:
+        results = measured_on(there, root)
+    assert {n: r.measurement.numbers for n, r in results.items()} == {n: r.measurement.numbers for n, r in local.items()}
+
+
+KILLING = """
+import os, signal
+from isomortar.harness import Bound, case
+
+@case(claim="Is alone.", grid={"kills": [0, 1]}, bounds={"error": Bound(at_most=1.0, reason="theory: so")})
+def alone(kills):
+    if kills:
+        os.kill(os.getppid(), signal.SIGKILL)
+    return {"error": 0.0}
+"""
+
+
+def test_a_dask_worker_that_is_killed_is_a_trouble_of_the_machine(root):
+    next(root.glob("family_*/good.py")).write_text(KILLING)
+    with cluster() as there:
+        results = measured_on(there, root)
+    assert results["alone[kills=0]"].state == "passed"
+    lost = results["alone[kills=1]"]
+    assert (lost.state, lost.measurement.ending) == ("failed", "trouble")
+    assert "KilledWorker" in lost.measurement.message
+    assert Store(root.parent / "other").get(lost.cell) is None
+
+
+def test_what_a_dask_worker_had_no_time_for_is_measured_by_the_next(root):
+    slow = GOOD.replace("    return {", "    import time; time.sleep(1.0)\n    return {").replace("[1, 2, 3]", "list(range(1, 9))")
+    next(root.glob("family_*/good.py")).write_text(slow)
+    with cluster(lifetime="3s", lifetime_restart=True) as there:
+        assert {result.state for result in measured_on(there, root).values()} == {"passed"}
 
 
 SWEEP = """
@@ -472,25 +512,24 @@ def measuring(folder: Path) -> list[int]:
     return found
 
 
-@pytest.mark.parametrize("where", ["here", "on a cluster"])
-def test_ctrl_c_ends_a_sweep_at_once(root, where):
+@pytest.mark.parametrize(("where", "code"), [("here", 130), ("on a cluster", 130), ("by pytest", 2)])
+def test_ctrl_c_ends_a_sweep_at_once(root, where, code):
     folder = Path.cwd()
     next(root.glob("family_*/good.py")).write_text(SWEEP)
     with ExitStack() as stack:
-        way = ["-j", "2"]
-        if where != "here":
-            distributed = pytest.importorskip("distributed")
-            options = {"n_workers": 2, "threads_per_worker": 1, "processes": True, "dashboard_address": None}
-            way = ["--dask", stack.enter_context(distributed.LocalCluster(**options)).scheduler_address]
-        command = [sys.executable, "-m", "isomortar", "verify", "--cases", str(root), "--results", "out", *way]
+        command = [sys.executable, "-m", "isomortar", "verify", "--cases", str(root), "--results", "results/verification", "-j", "2"]
+        if where == "on a cluster":
+            command[-2:] = ["--dask", stack.enter_context(cluster()).scheduler_address]
+        if where == "by pytest":
+            command = [sys.executable, "-m", "pytest", "--rootdir", str(folder), str(root)]
         process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
         end = time.monotonic() + 120
-        while len(list(Path("out/cells").rglob("*.json"))) < 4 and time.monotonic() < end:
+        while len(list(Path("results/verification/cells").rglob("*.json"))) < 4 and time.monotonic() < end:
             time.sleep(0.05)
         assert measuring(folder)
         begin = time.monotonic()
         process.send_signal(signal.SIGINT)
-        assert process.wait(timeout=60) == 130
+        assert process.wait(timeout=60) == code
         assert time.monotonic() - begin < 2.0
         while measuring(folder) and time.monotonic() < begin + 10:
             time.sleep(0.1)
