@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, as_completed
 from contextlib import contextmanager
@@ -144,7 +145,9 @@ def dask_cluster(address: str) -> Iterator[Submit]:
     def submit(task: dict[str, Any]) -> Future[Measurement]:
         answer: Future[Measurement] = Future()
         sent.append(client.submit(_measure_alone, task, pure=False))
-        sent[-1].add_done_callback(lambda done: _settle(answer, done))  # type: ignore[no-untyped-call]
+        # Not in Dask's own thread, which the program waits for at its end: of a client that is closed meanwhile no result ever comes.
+        waiting = threading.Thread(target=_settle, args=(answer, sent[-1]), daemon=True)
+        sent[-1].add_done_callback(lambda _: waiting.start())  # type: ignore[no-untyped-call]
         return answer
 
     with client:
