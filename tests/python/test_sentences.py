@@ -26,7 +26,7 @@ from test_advice import DOUBTFUL, PLATE, PRESS, Warned, _of_weights, material, r
 from test_causes import said, scene
 from test_scene_contacts import WRONG
 from test_scene_errors import CASES, GOOD
-from test_singular import BLOCK, error, explained
+from test_singular import BLOCK, CORNER, STICKING, Heard, error, explained
 
 SENTENCES: dict[str, dict[str, str]] = tomllib.loads((Path(__file__).parent / "sentences.toml").read_text(encoding="utf-8"))
 
@@ -104,6 +104,17 @@ def along_the_way(_: pytest.MonkeyPatch) -> Told:
     (yield "beside", *advice.after_step(4, gone, calm))
     assert list(advice.after_step(5, gone, calm)) == []
     (yield "opened", *advice.at_the_end())
+    (yield "pushed in", *warnings(CORNER))
+    heard, motion = Heard(), "[0.0, 0.0, -0.05]"
+    list(
+        Simulation(
+            Scene.from_toml(
+                STICKING.replace("MOTION", motion), overrides=["contacts.wall.friction=0.9", "contacts.floor.friction=0.9"]
+            ).problem(),
+            heard,
+        ).run()
+    )
+    (yield "sticks to both", *heard.said)
     yield "pulls", pulling._sentence(problem().contacts[0], 3)
     yield "pulls, plane", pulling._sentence(problem().contacts[1], 3)
     (yield "never closed", *[list(StepAdvice(problem(), 0, nothing).at_the_end())[1]])
