@@ -103,9 +103,10 @@ def _look_at_contact(results: Results, contact: Contact) -> None:
     allowed = ROUND_OFF + OF_TOLERANCE * _tolerance(results)
     most = np.inf if contact.traction_max is None else contact.traction_max
     borne = np.where(history.pressure > 0, np.minimum(contact.cohesion + contact.friction * history.pressure, most), 0.0)
-    if not np.all(history.traction_norm <= borne * (1 + allowed) + allowed * max(history.pressure.max(), history.traction_norm.max())):
-        raise Wrong(f"tractions in {name} are larger than friction bears")
     size = float(np.max([np.ptp(body.patch.control_points, axis=0).max() for body in results.problem.bodies]))
+    nothing = allowed * max(history.pressure.max(), history.traction_norm.max()) + _nothing(results) / size**2
+    if not np.all(history.traction_norm <= borne * (1 + allowed) + nothing):
+        raise Wrong(f"tractions in {name} are larger than friction bears")
     if results.problem.settings.method == "monolithic" and not np.all(history.gap <= allowed * size):
         raise Wrong(f"{name} penetrates by {history.gap.max():g}, of bodies of size {size:g}")
 
@@ -116,8 +117,12 @@ def _finite(name: str, values: Any) -> None:
 
 
 def _nothing(results: Results) -> float:
-    """A force that is round-off of the stiffest body."""
-    return float(np.max([1e-13 * b.material.young * np.ptp(b.patch.control_points, axis=0).max() ** 2 for b in results.problem.bodies]))
+    """A force that is round-off of the stiffest body, or of the last bits of positions far away."""
+    farthest = np.max([np.abs(results.step(int(number)).state.positions).max() for number in results.kept_states])
+    sizes = [np.ptp(body.patch.control_points, axis=0).max() for body in results.problem.bodies]
+    return float(
+        np.max([1e-13 * b.material.young * size * max(size, farthest) for b, size in zip(results.problem.bodies, sizes, strict=True)])
+    )
 
 
 def _close(one: FloatArray, other: FloatArray, share: float, nothing: float = 0.0) -> bool:
