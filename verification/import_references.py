@@ -20,7 +20,7 @@ import numpy as np
 from bundled_scenes import differences
 from convert_reference import convert
 from other_code.agreement import GROUPS
-from reference_scenes import FIRST, RUNS, Run, find, has_end, load
+from reference_scenes import FIRST, RUNS, Excerpt, find, has_end, load
 
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness.references import write_reference
@@ -55,7 +55,7 @@ def steps_of(problem: Problem) -> FloatArray:
     )
 
 
-def not_the_same(run: Run, source: Path) -> list[str]:
+def not_the_same(run: Excerpt, source: Path) -> list[str]:
     """What differs between a run and the explicit scene, in words."""
     with TemporaryDirectory() as folder:
         theirs = Scene.load(convert(source, Path(folder))).problem()
@@ -67,7 +67,7 @@ def not_the_same(run: Run, source: Path) -> list[str]:
     return found + differences(replace(ours, supports=moved, stages=theirs.stages), theirs)
 
 
-def numbers(result: dict[str, Any], run: Run, end: bool) -> dict[str, FloatArray]:
+def numbers(result: dict[str, Any], run: Excerpt, end: bool) -> dict[str, FloatArray]:
     """The numbers of `reference_scenes.measure` in a result of the other program."""
     records = result["records"][: run.steps]
     if len(records) < run.steps:

@@ -35,7 +35,7 @@ FIRST = "_first"
 
 
 @dataclass(frozen=True)
-class Run:
+class Excerpt:
     """A bundled scene, the discretisation of one of its bodies if it is another than the scene's, and how many load steps are followed."""
 
     scene: str
@@ -53,55 +53,55 @@ _PRESS_L2: dict[str, Sequence[Any]] = {"family": ["L", "L", "L"], "order": [2, 2
 _PRESS_SIX = [6, 6, 3]
 
 #: By group and name; steps that are fewer than the scene's are its first ones.
-RUNS: dict[str, dict[str, Run]] = {
+RUNS: dict[str, dict[str, Excerpt]] = {
     "local": {
-        "press_L2_6": Run("press", 5, "block", {**_PRESS_L2, "elements": [3, 3, 3]}),
-        "press_N2_6": Run("press", 5, "block", {"elements": _PRESS_SIX}),
-        "press_N3_6": Run("press", 5, "block", {"order": [3, 3, 2], "elements": _PRESS_SIX}),
-        "press_N4_6": Run("press", 5, "block", {"order": [4, 4, 2], "elements": _PRESS_SIX}),
-        "press_N2_12": Run("press", 5),
-        "twist_N2": Run("twist", 50),
-        "twist_N3": Run("twist", 50, "master", {"order": [3, 3, 2]}),
-        "twist_N5": Run("twist", 50, "master", {"order": [5, 5, 2]}),
-        "iron_N2": Run("iron", 50),
-        "iron_N3": Run("iron", 50, "master", {"order": [3, 2, 2]}),
-        "iron_N5": Run("iron", 50, "master", {"order": [5, 2, 2]}),
-        "tire_N2_32_q": Run("tire", 40),
+        "press_L2_6": Excerpt("press", 5, "block", {**_PRESS_L2, "elements": [3, 3, 3]}),
+        "press_N2_6": Excerpt("press", 5, "block", {"elements": _PRESS_SIX}),
+        "press_N3_6": Excerpt("press", 5, "block", {"order": [3, 3, 2], "elements": _PRESS_SIX}),
+        "press_N4_6": Excerpt("press", 5, "block", {"order": [4, 4, 2], "elements": _PRESS_SIX}),
+        "press_N2_12": Excerpt("press", 5),
+        "twist_N2": Excerpt("twist", 50),
+        "twist_N3": Excerpt("twist", 50, "master", {"order": [3, 3, 2]}),
+        "twist_N5": Excerpt("twist", 50, "master", {"order": [5, 5, 2]}),
+        "iron_N2": Excerpt("iron", 50),
+        "iron_N3": Excerpt("iron", 50, "master", {"order": [3, 2, 2]}),
+        "iron_N5": Excerpt("iron", 50, "master", {"order": [5, 2, 2]}),
+        "tire_N2_32_q": Excerpt("tire", 40),
     },
     "tight": {
-        "press_L2": Run("press", 5, "block", {**_PRESS_L2, "elements": [3, 3, 3]}),
-        "press_N3": Run("press", 5, "block", {"order": [3, 3, 2], "elements": _PRESS_SIX}),
-        "twist_N2_first17": Run("twist", 17),
-        "twist_N3": Run("twist", 20, "master", {"order": [3, 3, 2]}),
-        "iron_N2": Run("iron", 20),
-        "tire_L2": Run("tire", 20, "tire", {"family": ["L", "L", "L"], "elements": [16, 4, 4]}),
-        "tire_N2": Run("tire", 20),
+        "press_L2": Excerpt("press", 5, "block", {**_PRESS_L2, "elements": [3, 3, 3]}),
+        "press_N3": Excerpt("press", 5, "block", {"order": [3, 3, 2], "elements": _PRESS_SIX}),
+        "twist_N2_first17": Excerpt("twist", 17),
+        "twist_N3": Excerpt("twist", 20, "master", {"order": [3, 3, 2]}),
+        "iron_N2": Excerpt("iron", 20),
+        "tire_L2": Excerpt("tire", 20, "tire", {"family": ["L", "L", "L"], "elements": [16, 4, 4]}),
+        "tire_N2": Excerpt("tire", 20),
     },
     "paper": {
-        "press_L2_6": Run("press", 5, "block", {**_PRESS_L2, "elements": [3, 3, 3]}),
-        "press_L2_12": Run("press", 5, "block", {**_PRESS_L2, "elements": [6, 6, 6]}),
-        "press_N2_6": Run("press", 5, "block", {"elements": _PRESS_SIX}),
-        "press_N3_6": Run("press", 5, "block", {"order": [3, 3, 2], "elements": _PRESS_SIX}),
-        "press_N2_12": Run("press", 5),
-        "twist_N2": Run("twist", 50),
-        "twist_N3": Run("twist", 50, "master", {"order": [3, 3, 2]}),
-        "iron_N3": Run("iron", 50, "master", {"order": [3, 2, 2]}),
-        "iron_N4": Run("iron", 50, "master", {"order": [4, 2, 2]}),
-        "iron_N5": Run("iron", 50, "master", {"order": [5, 2, 2]}),
-        "tire_L1_32_q": Run("tire", 40, "tire", {"family": ["L", "L", "L"], "order": [1, 1, 1]}),
-        "tire_L4_8_q": Run("tire", 40, "tire", {"family": ["L", "L", "L"], "order": [4, 1, 1], "elements": [8, 4, 4]}),
-        "tire_N3_32_q": Run("tire", 40, "tire", {"order": [3, 1, 1]}),
+        "press_L2_6": Excerpt("press", 5, "block", {**_PRESS_L2, "elements": [3, 3, 3]}),
+        "press_L2_12": Excerpt("press", 5, "block", {**_PRESS_L2, "elements": [6, 6, 6]}),
+        "press_N2_6": Excerpt("press", 5, "block", {"elements": _PRESS_SIX}),
+        "press_N3_6": Excerpt("press", 5, "block", {"order": [3, 3, 2], "elements": _PRESS_SIX}),
+        "press_N2_12": Excerpt("press", 5),
+        "twist_N2": Excerpt("twist", 50),
+        "twist_N3": Excerpt("twist", 50, "master", {"order": [3, 3, 2]}),
+        "iron_N3": Excerpt("iron", 50, "master", {"order": [3, 2, 2]}),
+        "iron_N4": Excerpt("iron", 50, "master", {"order": [4, 2, 2]}),
+        "iron_N5": Excerpt("iron", 50, "master", {"order": [5, 2, 2]}),
+        "tire_L1_32_q": Excerpt("tire", 40, "tire", {"family": ["L", "L", "L"], "order": [1, 1, 1]}),
+        "tire_L4_8_q": Excerpt("tire", 40, "tire", {"family": ["L", "L", "L"], "order": [4, 1, 1], "elements": [8, 4, 4]}),
+        "tire_N3_32_q": Excerpt("tire", 40, "tire", {"order": [3, 1, 1]}),
     },
 }
 
 
-def find(group: str, name: str) -> Run:
+def find(group: str, name: str) -> Excerpt:
     """A run by its name, or its beginning: ``twist_N2_first14`` is the first 14 load steps of ``twist_N2``."""
     if name in RUNS[group]:
         return RUNS[group][name]
     whole, _, steps = name.rpartition(FIRST)
     run = RUNS[group][whole]
-    return Run(run.scene, int(steps), run.body, run.mesh)
+    return Excerpt(run.scene, int(steps), run.body, run.mesh)
 
 
 def has_end(name: str) -> bool:
@@ -109,7 +109,7 @@ def has_end(name: str) -> bool:
     return FIRST not in name
 
 
-def load(run: Run, settings: Iterable[str] = ()) -> Scene:
+def load(run: Excerpt, settings: Iterable[str] = ()) -> Scene:
     """The scene with its discretisation and solver settings."""
     return Scene.load(run.scene, [*run.overrides, *settings])
 

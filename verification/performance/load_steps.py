@@ -20,7 +20,7 @@ Moment = tuple[int, Fraction]
 
 
 @dataclass(frozen=True)
-class Run:
+class History:
     """Force and moment at every load step, shape (3,) each, and what they cost."""
 
     force: dict[Moment, FloatArray]
@@ -55,7 +55,7 @@ def load_steps(quick: bool) -> Iterator[Row]:
     for scene in ("press",) if quick else ("twist", "iron"):
         own = problem(scene, "N2", (4, 4, 2) if quick else None)
         support = moved_support(own)
-        fine: Run | None = None
+        fine: History | None = None
         for factor in (1, 5) if quick else (1, 2, 4):
             found = run(coarsened(own, factor), support)
             fine = fine or found
@@ -74,14 +74,14 @@ def coarsened(problem: Problem, factor: int) -> Problem:
     return replace(problem, stages=tuple(replace(stage, steps=-(-stage.steps // factor)) for stage in problem.stages))
 
 
-def run(problem: Problem, support: int) -> Run:
+def run(problem: Problem, support: int) -> History:
     """Run to the end; a run that stops raises."""
     start = process_time()
     results = list(Simulation(problem).run())
     seconds = process_time() - start
     moments = [(k, Fraction(i + 1, stage.steps)) for k, stage in enumerate(problem.stages) for i in range(stage.steps)]
     reactions = [result.reactions[support] for result in results]
-    return Run(
+    return History(
         dict(zip(moments, (reaction.force for reaction in reactions), strict=True)),
         dict(zip(moments, (reaction.moment for reaction in reactions), strict=True)),
         [result.counters["factorisations"] for result in results],

@@ -30,7 +30,7 @@ class Agreement:
 
 @dataclass(frozen=True)
 class Check:
-    """Verdict on one number: its state, the value to show (worst entry), the limit in words, what was found and why it is the limit.
+    """A claim on one number: its state, the value to show (worst entry), the limit in words, what was found and why it is the limit.
 
     `order`: of a convergence sequence. `reference`: the class of the reference that it was compared with.
     """
