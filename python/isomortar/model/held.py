@@ -36,37 +36,42 @@ class Held:
         Symmetric projections of covariant tractions that leave nothing along what is held.
     pushed : ndarray, shape (slave control points, 2)
         Directions in which supports push along the plane in this increment: unit vectors, or zero.
+    rests : ndarray of bool, shape (slave control points,)
+        Where supports that hold the normal have them just touch a rigid plane: if they bear, their conditions follow from the others'.
     """
 
     bears: IntArray
     free: FloatArray
     pushed: FloatArray
+    rests: BoolArray
 
 
 def nothing_held(pair: Pair) -> Held:
     """All multipliers are free."""
     n = len(pair.slave.point)
-    return Held(np.ones(n, dtype=np.int32), np.tile(np.eye(2), (n, 1, 1)), np.zeros((n, 2)))
+    return Held(np.ones(n, dtype=np.int32), np.tile(np.eye(2), (n, 1, 1)), np.zeros((n, 2)), np.zeros(n, dtype=np.bool_))
 
 
 def held_by(supports: Supports, pair: Pair, start: FloatArray, time: float) -> Held:
     """What supports hold of a pair in the increment from positions `start` to a load time (theory 4.11, 4.12)."""
     held = nothing_held(pair)
     if isinstance(pair.contact.master, RigidPlane):
-        _beside_plane(held, supports, pair, supports.increment(start, time), supports.moved(time))
+        _beside_plane(held, supports, pair, start, time)
     else:
         _beside_surface(held, pair, start, supports.held & ~supports.moved(time))
     return held
 
 
-def _beside_plane(held: Held, supports: Supports, pair: Pair, increment: FloatArray, moved: BoolArray) -> None:
+def _beside_plane(held: Held, supports: Supports, pair: Pair, start: FloatArray, time: float) -> None:
     """A rigid plane: what is held is the direction of its coordinates, or the normal."""
     assert isinstance(pair.contact.master, RigidPlane)
     tangents, normal = _axes(pair.contact.master)
-    point = pair.slave.point
+    point, increment, moved = pair.slave.point, supports.increment(start, time), supports.moved(time)
+    heights = (start[point] + increment[point] - pair.contact.master.point) @ normal
     for i in np.flatnonzero(supports.held[point].any(axis=1)):
         prescribed = supports.held[point[i]]
         held.bears[i] = int(np.linalg.norm(normal[~prescribed]) >= _NOTHING)
+        held.rests[i] = not held.bears[i] and abs(heights[i]) <= _NOTHING * np.ptp(start, axis=0).max()
         directions, sizes, _ = np.linalg.svd(tangents[prescribed & ~moved[point[i]]].T, full_matrices=False)
         taken = directions[:, sizes > _NOTHING]
         held.free[i] -= taken @ taken.T

@@ -205,11 +205,12 @@ class PairMechanics:
     def loose(self, projections: Projections) -> BoolArray:
         """Multipliers whose conditions may repeat others where they are active, shape (slave control points, 3) (theory 6.4).
 
-        Control points of two contacts have six conditions for three components, of which the pressures are not too many; those of
-        elements that reach over an edge of the master may have more than there are points on it.
+        Control points of two contacts have six conditions for three components, of which the pressures are not too many; where supports
+        have them just touch a plane they leave nothing to a pressure; and of elements that reach over an edge of the master there may
+        be more than points on it.
         """
         nodes = self.pair.slave.nodes
-        loose: BoolArray = self.shared[:, None] & np.array([False, True, True])
+        loose: BoolArray = np.column_stack([self.held.rests, self.shared, self.shared])
         loose[nodes[np.any(projections.found.reshape(len(nodes), -1) == 0, axis=1)]] = True
         return loose
 
