@@ -13,8 +13,9 @@ _BODY = """
 format = 1
 bodies.block = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 0.6, 0.4] }, mesh = { order = [2, 2, 2], elements = [3, 2, 2] } }
 """
-#: Squeezed between a clamped side and one that slides along the plane as it moves; pushed along the plane by its side, then left; beside
-#: a support whose direction is neither in the tilted plane nor across it; a slice in plane strain.
+#: Squeezed between a clamped side and one that slides along the plane as it moves; pushed along the plane by its side, then left, or
+#: pressed on; pushed by a side that is held across as well; beside a support whose direction is neither in the tilted plane nor across
+#: it; a slice in plane strain.
 SCENES = {
     "clamped": """
         contacts.floor = { slave = "block.w0", plane = { point = [0, 0, 0] }, friction = 0.3 }
@@ -31,6 +32,27 @@ SCENES = {
             { name = "press", steps = 2, motions.top.translate = [0, 0, -0.03] },
             { name = "push", steps = 4, motions.side.translate = [0.2, 0, 0] },
             { name = "rest", steps = 1 },
+        ]
+    """,
+    "pushed, then pressed": """
+        contacts.floor = { slave = "block.w0", plane = { point = [0, 0, 0] }, friction = 0.3 }
+        supports.top = { face = "block.w1", components = ["z"] }
+        supports.side = { face = "block.u0", components = ["x"] }
+        supports.south = { face = "block.v0", components = ["y"] }
+        stages = [
+            { name = "press", steps = 1, motions.top.translate = [0, 0, -0.03] },
+            { name = "push", steps = 2, motions.side.translate = [0.2, 0, 0] },
+            { name = "more", steps = 2, motions.top.translate = [0, 0, -0.01] },
+        ]
+    """,
+    "pushed askew": """
+        contacts.floor = { slave = "block.w0", plane = { point = [0, 0, 0] }, friction = 0.3 }
+        supports.top = { face = "block.w1", components = ["z"] }
+        supports.side = { face = "block.u0", components = ["x", "y"] }
+        stages = [
+            { name = "press", steps = 1, motions.top.translate = [0, 0, -0.03] },
+            { name = "push", steps = 3, motions.side.translate = [0.2, 0.05, 0] },
+            { name = "across", steps = 2, motions.side.translate = [0, 0.05, 0] },
         ]
     """,
     "tilted": """

@@ -38,18 +38,23 @@ class Held:
         Directions in which supports push along the plane in this increment: unit vectors, or zero.
     rests : ndarray of bool, shape (slave control points,)
         Where supports that hold the normal have them just touch a rigid plane: if they bear, their conditions follow from the others'.
+    moved : ndarray of bool, shape (slave control points,)
+        Where a component along the plane is prescribed, and by now has moved: slips there are given, so that they tell nothing of the
+        traction along it while that sticks, nor of the one across while it slips.
     """
 
     bears: IntArray
     free: FloatArray
     pushed: FloatArray
     rests: BoolArray
+    moved: BoolArray
 
 
 def nothing_held(pair: Pair) -> Held:
     """All multipliers are free."""
     n = len(pair.slave.point)
-    return Held(np.ones(n, dtype=np.int32), np.tile(np.eye(2), (n, 1, 1)), np.zeros((n, 2)), np.zeros(n, dtype=np.bool_))
+    nowhere = np.zeros((2, n), dtype=np.bool_)
+    return Held(np.ones(n, dtype=np.int32), np.tile(np.eye(2), (n, 1, 1)), np.zeros((n, 2)), *nowhere)
 
 
 def held_by(supports: Supports, pair: Pair, start: FloatArray, time: float) -> Held:
@@ -77,6 +82,7 @@ def _beside_plane(held: Held, supports: Supports, pair: Pair, start: FloatArray,
         held.free[i] -= taken @ taken.T
         along = held.free[i] @ (increment[point[i]] @ tangents)
         held.pushed[i] = along / (np.linalg.norm(along) or 1.0)
+        held.moved[i] = bool(np.any(np.linalg.norm(tangents[prescribed & moved[point[i]]], axis=1) > _NOTHING))
 
 
 def _beside_surface(held: Held, pair: Pair, start: FloatArray, still: BoolArray) -> None:

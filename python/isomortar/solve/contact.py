@@ -206,11 +206,12 @@ class PairMechanics:
         """Multipliers whose conditions may repeat others where they are active, shape (slave control points, 3) (theory 6.4).
 
         Control points of two contacts have six conditions for three components, of which the pressures are not too many; where supports
-        have them just touch a plane they leave nothing to a pressure; and of elements that reach over an edge of the master there may
-        be more than points on it.
+        have moved them along a plane slips are given, and where these have them just touch one they leave nothing to a pressure; and of
+        elements that reach over an edge of the master there may be more than points on it.
         """
         nodes = self.pair.slave.nodes
-        loose: BoolArray = np.column_stack([self.held.rests, self.shared, self.shared])
+        given = self.shared | self.held.moved
+        loose: BoolArray = np.column_stack([self.held.rests, given, given])
         loose[nodes[np.any(projections.found.reshape(len(nodes), -1) == 0, axis=1)]] = True
         return loose
 
