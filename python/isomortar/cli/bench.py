@@ -40,7 +40,7 @@ def bench(
     - `isomortar bench factorisation solid_assembly`
     - `isomortar bench --quick --out results/tried`
     """
-    from isomortar.harness.bench import collection, machine, processes, record
+    from isomortar.harness.bench import collection, machine, page, processes, record
 
     benchmarks = collection.select(collection.collect(cases), names or [])
     console = Console(stderr=True, highlight=False)
@@ -53,13 +53,13 @@ def bench(
             console.print(answer.cost.message, markup=False, style="red", soft_wrap=True)
         kept = replace(kept, answers=(*kept.answers, answer))
         record.add(out, kept, answer)
-        record.keep(out, kept)
+        page.keep(out, kept)
     kept = replace(kept, limits=(*kept.limits, machine.limits()))
-    record.keep(out, kept)
+    page.keep(out, kept)
     for answer in kept.answers:
         _print(answer)
     print(" -> ".join(f"dgemm {limits.dgemm:.1f} GF/s, triad {limits.triad:.1f} GB/s, load {limits.load:.1f}" for limits in kept.limits))
-    print(out / record.PAGE)
+    print(out / page.PAGE)
     if any(answer.failed for answer in kept.answers):
         raise typer.Exit(FAILED)
 

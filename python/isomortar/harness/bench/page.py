@@ -1,22 +1,32 @@
-"""The page of a run of benchmarks: one HTML file that needs nothing else."""
+"""A run of benchmarks as it is stored: ``bench.json``, and the page, one HTML file that needs nothing else."""
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from isomortar.harness import report, svg
 from isomortar.harness.bench.declaration import ASIDE, NOTE, Benchmark, Plot, Row
-from isomortar.harness.bench.history import Trend, label
+from isomortar.harness.bench.history import Trend, label, read
 from isomortar.harness.bench.processes import Answer
+from isomortar.harness.bench.record import HISTORY, Record, as_data
 from isomortar.harness.bench.standings import STATES, standings, state
 from isomortar.harness.history import change_points
+from isomortar.harness.store import write_whole
 
-if TYPE_CHECKING:
-    from isomortar.harness.bench.record import Record
+PAGE, DATA = "bench.html", "bench.json"
+
+
+def keep(folder: Path, record: Record) -> None:
+    """Write page and data of a run, each whole."""
+    trends = {answer.benchmark.name: read(folder / HISTORY, answer.benchmark.name) for answer in record.answers}
+    write_whole(folder / DATA, json.dumps(report.plain(as_data(record)), indent=1))
+    write_whole(folder / PAGE, page(record, trends))
 
 
 def page(record: Record, trends: Mapping[str, Trend]) -> str:

@@ -1,21 +1,19 @@
-"""A run of benchmarks as it is stored: ``bench.json``, ``bench.html``, and a line a benchmark in ``history.jsonl``."""
+"""A run of benchmarks as plain data, and a line a benchmark in ``history.jsonl``."""
 
 from __future__ import annotations
 
-import json
 from dataclasses import asdict, dataclass
 from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from isomortar.harness.bench import history, page
+from isomortar.harness.bench import history
 from isomortar.harness.bench.machine import Limits, Machine
 from isomortar.harness.bench.processes import Answer
 from isomortar.harness.bench.standings import standings
-from isomortar.harness.report import plain
-from isomortar.harness.store import identity, write_whole
+from isomortar.harness.store import identity
 
-HISTORY, PAGE, DATA = "history.jsonl", "bench.html", "bench.json"
+HISTORY = "history.jsonl"
 
 
 @dataclass(frozen=True)
@@ -27,13 +25,6 @@ class Record:
     machine: Machine
     limits: tuple[Limits, ...]
     answers: tuple[Answer, ...] = ()
-
-
-def keep(folder: Path, record: Record) -> None:
-    """Write page and data of a run, each whole."""
-    trends = {answer.benchmark.name: history.read(folder / HISTORY, answer.benchmark.name) for answer in record.answers}
-    write_whole(folder / DATA, json.dumps(plain(as_data(record)), indent=1))
-    write_whole(folder / PAGE, page.page(record, trends))
 
 
 def add(folder: Path, record: Record, answer: Answer) -> None:
