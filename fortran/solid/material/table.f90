@@ -11,7 +11,7 @@ module isomortar_solid_material_table
 
   public :: material_of
 
-  !> Numbers of the laws, here and in Python (isomortar.model.materials). Each has the parameters A1, A2.
+  !> Numbers of the laws, here and in Python (isomortar._arrays). Each has the parameters A1, A2.
   integer, parameter, public :: law_neo_hookean = 1, law_neo_hookean_j = 2, law_linear_elastic = 3
 
 contains
