@@ -3,13 +3,21 @@
 Debian's OpenBLAS takes a processor that is younger than itself for a very old one: matrix products, and with them assembly and
 factorisation, are then two to ten times slower. The right choice follows from the processor's flags; OpenBLAS reads it
 from the environment while it is loaded. A choice that the user has made stands.
+
+Another kernel with the same interface takes its place where the environment names one (docs/programs.md).
 """
 
 from __future__ import annotations
 
+import importlib.util
 import os
 from pathlib import Path
+from types import ModuleType
 
+from isomortar.errors import InputError
+
+#: Variable of the environment that names the file of another kernel, for this process and those that it starts.
+KERNEL = "ISOMORTAR_KERNEL"
 _CHOICE = "OPENBLAS_CORETYPE"
 
 
@@ -31,6 +39,29 @@ def _processor_flags() -> frozenset[str]:
     return frozenset(next((line for line in lines if line.startswith("flags")), "").split())
 
 
+def kernel_at(path: Path, own: ModuleType) -> ModuleType:
+    """The kernel of a file, a compiled module or one of Python, with all routines that the own one has.
+
+    Raises
+    ------
+    InputError
+        There is no such file, it is no module, or routines are missing.
+    """
+    name = path.name.partition(".")[0]
+    spec = importlib.util.spec_from_file_location(name, path)
+    if spec is None or spec.loader is None or not path.is_file():
+        raise InputError(f"{path} is no file of a module: name a compiled one (.so), or one of Python (.py)", "kernel")
+    module = importlib.util.module_from_spec(spec)
+    try:
+        spec.loader.exec_module(module)
+    except (ImportError, SyntaxError) as error:
+        raise InputError(f"{path} cannot be imported: {error}", "kernel") from error
+    missing = [routine for routine in dir(own) if not routine.startswith("_") and not callable(getattr(module, routine, None))]
+    if missing:
+        raise InputError(f"{path} has no {', '.join(missing)}: a kernel has all routines of fortran/api", "kernel")
+    return module
+
+
 _kind = processor_kind(_processor_flags()) if _CHOICE not in os.environ else None
 if _kind is not None:
     os.environ[_CHOICE] = _kind
@@ -38,5 +69,7 @@ from isomortar import _kernel as kernel
 
 if _kind is not None:
     del os.environ[_CHOICE]
+if KERNEL in os.environ:
+    kernel = kernel_at(Path(os.environ[KERNEL]), kernel)
 
-__all__ = ["kernel", "processor_kind"]
+__all__ = ["KERNEL", "kernel", "kernel_at", "processor_kind"]

@@ -1,12 +1,11 @@
-"""What is written for other programs and read from them, and what stands beside isomortar's times."""
+"""What stands beside isomortar's times."""
 
 from __future__ import annotations
 
 import re
 import runpy
-import sys
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -16,61 +15,32 @@ from isomortar.harness.collection import cases_of
 from isomortar.harness.compare import judge
 from isomortar.harness.measurement import measure
 from isomortar.harness.references import finder
+from isomortar.program.getfem import GetFEM
 from isomortar.scene import Scene
 
 VERIFICATION = Path(__file__).parents[2] / "verification"
 
-calculix = runpy.run_path(str(VERIFICATION / "performance/peers/calculix.py"))
 bulk_work = runpy.run_path(str(VERIFICATION / "performance/peers/bulk_work.py"))
 programs = runpy.run_path(str(VERIFICATION / "performance/peers/programs.py"))
 block = runpy.run_path(str(VERIFICATION / "performance/block.py"))
 
 
-@pytest.fixture(scope="module")
-def problem() -> dict[str, Any]:
-    return block["description"](Scene.load("block", block["COARSE"]))  # type: ignore[no-any-return]
-
-
-def test_the_description_is_the_scene(problem: dict[str, Any]) -> None:
-    assert problem["slave"] == {"lower": [-0.35, -0.35, 0.025], "upper": [0.35, 0.35, 0.525], "elements": [2, 2, 1]}
-    assert problem["friction"] == 0.3
-    assert [(stage["steps"], stage["translate"]) for stage in problem["stages"]] == [(2, [0.0, 0.0, -0.1]), (2, [0.02, 0.0, 0.0])]
-
-
-def test_pressing_alone_is_the_first_stage(problem: dict[str, Any]) -> None:
+def test_pressing_alone_is_the_first_stage() -> None:
     coarse = Scene.load("block", block["COARSE"])
-    alone = block["description"](Scene.load("block", [*block["COARSE"], block["pressing"](coarse)]))
-    assert alone == {**problem, "stages": problem["stages"][:1]}
+    alone = Scene.load("block", [*block["COARSE"], block["pressing"](coarse)]).problem()
+    assert alone.stages == coarse.problem().stages[:1]
+    assert [support.motions[0] for support in alone.supports] == [support.motions[0] for support in coarse.problem().supports]
 
 
-def test_calculix_deck_has_all_nodes_elements_and_faces(problem: dict[str, Any]) -> None:
-    lines = calculix["deck"](problem).splitlines()
-    first = lines.index("*NODE, NSET=slave") + 1
-    points = np.array([[float(x) for x in line.split(",")] for line in lines[first : first + 18]])
-    assert lines[first + 18] == "*ELEMENT, TYPE=C3D8, ELSET=slave"
-    np.testing.assert_array_equal(points[:, 0], np.arange(1, 19))
-    np.testing.assert_allclose(points[[0, -1], 1:], [problem["slave"]["lower"], problem["slave"]["upper"]])
-    corners = np.array([int(n) for n in lines[first + 19].split(",")])[1:] - 1
-    a, b, c = (points[corners[k], 1:] - points[corners[0], 1:] for k in (1, 3, 4))
-    np.testing.assert_allclose(np.linalg.det([a, b, c]), 0.35 * 0.35 * 0.5)
-    # The slave touches with the faces below of its four elements, the master with those above of its upper layer.
-    assert lines[lines.index("*SURFACE, NAME=FACE_slave") + 1] == "1, S1"
-    assert lines[lines.index("*SURFACE, NAME=FACE_master") + 1] == "14, S2"
-    assert [line for line in lines if line.startswith("TOP, ")] == [
-        *("TOP, 1, 1, 0", "TOP, 2, 2, 0", "TOP, 3, 3, -0.1"),
-        *("TOP, 1, 1, 0.02", "TOP, 2, 2, 0", "TOP, 3, 3, -0.1"),
-    ]
+def test_a_problem_at_rest_has_no_load_step() -> None:
+    rest = block["at_rest"](Scene.load("block", block["COARSE"]).problem())
+    assert rest.total_steps == 0
+    assert [len(support.motions) for support in rest.supports] == [0, 0]
 
 
-def test_calculix_forces_are_those_at_load_steps() -> None:
-    heading = " total force (fx,fy,fz) for set TOP and time  {}\n\n  {}  0.0  {}\n"
-    dat = "".join(heading.format(*entry) for entry in ((0.5, 0.0, -1.0), (0.75, 0.0, -1.5), (1.0, 0.0, -2.0), (1.5, 0.25, -1.75)))
-    stages = [{"steps": 2}, {"steps": 2}]
-    assert calculix["forces"](dat, stages) == [[0.0, 0.0, -1.0], [0.0, 0.0, -2.0], [0.25, 0.0, -1.75]]
-
-
-def test_calculix_iterations_are_counted() -> None:
-    assert calculix["linear_solves"](" SUMMARY\n STEP INC\n\n 1 1 1 1 0.5\n 1 1 1 2 0.1\n 2 1 1 1 0.3\n") == 3
+def test_a_program_that_is_not_there_is_a_note() -> None:
+    row = block["other_run"](GetFEM("/no/such/python"), Scene.load("block", block["COARSE"]), 1, "aside")
+    assert row == {"note": "GetFEM is not installed: apt-get install python3-getfem"}
 
 
 def test_time_is_compared_only_where_both_came_to_the_end() -> None:
@@ -81,16 +51,16 @@ def test_time_is_compared_only_where_both_came_to_the_end() -> None:
     assert block["compared"]({**own, "note": "ended"}, {"load steps": 5, "CPU": 4.0}) == {**own, "note": "ended"}
 
 
-def test_a_program_is_timed_with_what_it_says() -> None:
-    code = "import sys; print('first'); print(sys.stdin.read()); sum(range(3_000_000))"
-    finished, seconds = programs["timed"]([sys.executable, "-c", code], '{"a": 1}', repeats=1)
-    assert finished.answer() == {"a": 1}
-    assert finished.status == 0
-    assert seconds == finished.seconds > 0.01
-    assert programs["run"]([sys.executable, "-c", "raise ValueError('the last words')"]).last_words == "ValueError: the last words"
-    assert programs["has_module"](sys.executable, "json")
-    assert not programs["has_module"](sys.executable, "no_such_module")
-    assert not programs["has_module"]("/no/such/python", "json")
+@dataclass(frozen=True)
+class _Run:
+    cpu_seconds: float
+
+
+@pytest.mark.parametrize(("spent", "runs", "median"), [([1.0, 3.0, 2.0], 3, 2.0), ([100.0], 1, 100.0)])
+def test_short_work_is_timed_more_than_once(spent: list[float], runs: int, median: float) -> None:
+    left = iter(spent)
+    last, seconds = programs["timed"](lambda: _Run(next(left)), 3)
+    assert (last.cpu_seconds, seconds, len(spent)) == (spent[-1], median, runs)
 
 
 def test_multilinear_fields() -> None:

@@ -14,7 +14,7 @@ import h5py
 import numpy as np
 
 from isomortar.geometry.patch import FloatArray
-from isomortar.harness.process import ONE_THREAD, Limits, Process
+from isomortar.program.process import ONE_THREAD, Limits, Process
 
 #: What one run may take: seconds of the processor (of the clock a few times that, as the machine may be busy), bytes of address space.
 SECONDS, PATIENCE, MEMORY = 30, 10, 4 << 30

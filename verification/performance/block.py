@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-import json
-import shutil
 import sys
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
-from performance.peers import calculix
-from performance.peers.programs import DEBIAN_PYTHON, has_module, timed
+from performance.peers.programs import timed
 
 import isomortar
+from isomortar.geometry.patch import FloatArray
 from isomortar.harness.bench import ASIDE, Row, benchmark
 from isomortar.harness.bench.declaration import REPEATS
+from isomortar.model.entities import Problem
 from isomortar.model.numbering import Numbering
+from isomortar.program.calculix import CalculiX
+from isomortar.program.declaration import NotInstalledError, Program
+from isomortar.program.getfem import GetFEM
+from isomortar.program.process import run
 from isomortar.scene import Scene
 
 #: The scene's bodies as NURBS of order 2 on the same elements.
@@ -30,6 +33,9 @@ COARSE = (
     "stages.slide.steps=2",
     "stages.slide.motions.top.translate=[0.02,0,0]",
 )
+#: The paper's law is none of CalculiX': it gets its own, the same to first order.
+CALCULIX_LAW = "materials.rubber.law=neo-hookean-j"
+CALCULIX_NOTE = "another volumetric energy, A1/2 (J - 1)^2; contact by a penalty"
 #: All that isomortar does before its first load step: imports, reading the scene, setting the system up.
 START_UP = """
 import sys
@@ -38,30 +44,6 @@ from isomortar.scene import Scene
 from isomortar.solve.simulation import Simulation
 Simulation(Scene.load("block", sys.argv[1:]).problem())
 """
-
-
-def description(scene: Scene) -> dict[str, Any]:
-    """What the other programs have to know of the scene, in plain numbers that JSON holds."""
-    tables, problem = scene.tables, scene.problem()
-    (contact,), material = problem.contacts, problem.bodies[0].material
-    bodies = {
-        body.name: {
-            "lower": body.patch.control_points.min(axis=0).tolist(),
-            "upper": body.patch.control_points.max(axis=0).tolist(),
-            "elements": [direction.elements for direction in body.patch.directions],
-        }
-        for body in problem.bodies
-    }
-    return {
-        **bodies,
-        "bulk": material.bulk,
-        "shear": material.shear,
-        "friction": contact.friction,
-        "solid_points": problem.bodies[0].quadrature[0],
-        "contact_points": contact.quadrature[0],
-        "tolerance": problem.settings.newton_tolerance,
-        "stages": [{"steps": stage.steps, "translate": list(stage.motions["top"].translate)} for stage in tables.stages],
-    }
 
 
 def heading(scene: Scene, program: str, kind: str) -> Row:
@@ -78,9 +60,9 @@ def pressing(scene: Scene) -> str:
     return f'stages=[{{name="{first.name}", steps={first.steps}, motions.top.translate={list(first.motions["top"].translate)}}}]'
 
 
-def measured(solves: int, seconds: float, start_up: float, forces: Sequence[Sequence[float]]) -> dict[str, float | int | str]:
-    """What a run came to: its cost, its load steps, and the forces on the top after the last of them."""
-    ends = {"normal force": -forces[-1][2], "tangential force": forces[-1][0]} if forces else {}
+def measured(solves: int, seconds: float, start_up: float, forces: Sequence[FloatArray]) -> dict[str, float | int | str]:
+    """What a run came to: its cost, its load steps, and the forces on the top, shape (3,), after the last of them."""
+    ends = {"normal force": -float(forces[-1][2]), "tangential force": float(forces[-1][0])} if forces else {}
     return {"load steps": len(forces), "linear solves": solves, "CPU": seconds, "start-up": start_up, **ends}
 
 
@@ -90,48 +72,33 @@ def isomortar_run(overrides: Sequence[str], repeats: int) -> Row:
         output = Path(folder) / "block.h5"
         settings = [argument for override in overrides for argument in ("--set", override)]
         command = [sys.executable, "-m", "isomortar", "run", "block", "--quiet", "--overwrite", "--output", str(output), *settings]
-        finished, seconds = timed(command, repeats=repeats)
+        finished, seconds = timed(lambda: run(command), repeats)
         with isomortar.Results(output) as results:
-            forces = results.curve("force", support="top").tolist()
+            forces = list(results.curve("force", support="top"))
             solves = int(results.counters()["solves"].sum())
-    _, start_up = timed([sys.executable, "-c", START_UP, *overrides], repeats=repeats)
+    _, start_up = timed(lambda: run([sys.executable, "-c", START_UP, *overrides]), repeats)
     row = measured(solves, seconds, start_up, forces)
-    if finished.status != 0:
+    if finished.end.status != 0:
         row["note"] = f"forces and linear solves up to load step {len(forces)}, CPU of all tries; {finished.last_words}"
     return row
 
 
-def getfem_run(problem: Mapping[str, Any], repeats: int) -> Row:
-    """GetFEM's Python interface."""
-    if not has_module(DEBIAN_PYTHON, "getfem"):
-        return {"note": "not installed: apt-get install python3-getfem"}
-    command = [DEBIAN_PYTHON, str(Path(__file__).parent / "peers" / "getfem_block.py")]
-    finished, seconds = timed(command, json.dumps(problem), repeats=repeats)
-    if finished.status != 0:
-        return {"note": finished.last_words}
-    _, start_up = timed(command, json.dumps({**problem, "stages": []}), repeats=repeats)
-    found = finished.answer()
-    return {
-        **measured(sum(found["solves"]), seconds, start_up, found["forces"]),
-        "note": found.get("ended", "what isomortar is compared with"),
-    }
+def other_run(program: Program, scene: Scene, repeats: int, note: str) -> Row:
+    """Another program on a scene; `note` says what its numbers are worth."""
+    problem = scene.problem()
+    try:
+        found, seconds = timed(lambda: program.run(problem), repeats)
+    except NotInstalledError as error:
+        return {"note": str(error)}
+    _, start_up = timed(lambda: program.run(at_rest(problem)), repeats)
+    top = [support.name for support in problem.supports].index("top")
+    row = measured(found.solves, seconds, start_up, [step.reactions[top].force for step in found.steps])
+    return {**row, "note": "; ".join(filter(None, (note, found.words)))}
 
 
-def calculix_run(problem: Mapping[str, Any], repeats: int) -> Row:
-    """CalculiX, from its input deck."""
-    if shutil.which("ccx") is None:
-        return {"note": "not installed: apt-get install calculix-ccx"}
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        (folder / "block.inp").write_text(calculix.deck(problem))
-        (folder / "empty.inp").write_text(calculix.deck({**problem, "stages": []}))
-        finished, seconds = timed(["ccx", "-i", "block"], folder=folder, repeats=repeats)
-        _, start_up = timed(["ccx", "-i", "empty"], folder=folder, repeats=repeats)
-        forces = calculix.forces((folder / "block.dat").read_text(), problem["stages"])
-        solves = calculix.linear_solves((folder / "block.cvg").read_text())
-    said = "another volumetric energy, A1/2 (J - 1)^2; contact by a penalty"
-    said += f"; {finished.last_words}" if finished.status != 0 else ""
-    return {**measured(solves, seconds, start_up, forces), "note": said}
+def at_rest(problem: Problem) -> Problem:
+    """The problem without a load step."""
+    return replace(problem, stages=(), supports=tuple(replace(support, motions=()) for support in problem.supports))
 
 
 def compared(row: Row, getfem: Row) -> Row:
@@ -178,10 +145,10 @@ def block(quick: bool) -> Iterator[Row]:
     for only in ((pressing(Scene.load("block", coarse)),), ()):
         linear = (*coarse, *only)
         scene = Scene.load("block", linear)
-        problem = description(scene)
-        getfem = getfem_run(problem, repeats)
+        getfem = other_run(GetFEM(), scene, repeats, "what isomortar is compared with")
         yield {**heading(scene, "GetFEM", "L1"), **getfem, "of GetFEM": ASIDE}
-        yield {**heading(scene, "CalculiX", "L1"), **calculix_run(problem, repeats), "of GetFEM": ASIDE}
+        calculix = other_run(CalculiX(), Scene.load("block", (*linear, CALCULIX_LAW)), repeats, CALCULIX_NOTE)
+        yield {**heading(scene, "CalculiX", "L1"), **calculix, "of GetFEM": ASIDE}
         for kind, overrides in (("L1", linear), ("N2", (*N2, *linear))):
             row = compared(isomortar_run(overrides, repeats), getfem)
             yield {**heading(Scene.load("block", overrides), "isomortar", kind), **row}

@@ -10,9 +10,11 @@ from typing import Any
 
 import numpy as np
 from performance.peers.bulk_work import answer, multilinear, seconds
-from performance.peers.programs import DEBIAN_PYTHON, has_module, peers_python, run
+from performance.peers.programs import peers_python
 
 from isomortar.harness.bench import ASIDE, Row, benchmark
+from isomortar.program.getfem import DEBIAN_PYTHON, has_module
+from isomortar.program.process import run
 from isomortar.scene import Scene
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.system import LinearSystem, block_product
@@ -94,10 +96,10 @@ def peer_row(program: str, problem: Mapping[str, Any], own: Mapping[str, Any], k
     python, module, script, _, install = PEERS[program]
     if not has_module(python, module):
         return {"note": f"not installed: {install}"}
-    finished = run([python, "-m", f"performance.peers.{script}"], json.dumps(problem), Path(__file__).parents[1])
-    if finished.status != 0:
+    finished = run([python, "-m", f"performance.peers.{script}"], json.dumps(problem), folder=Path(__file__).parents[1])
+    if finished.end.status != 0:
         return {"note": finished.last_words}
-    found = finished.answer()
+    found = json.loads(finished.output.splitlines()[-1])
     return {"assembly": found["assembly"], "ordering": "in solve", "solve": found["solve"], "difference": difference(found, own, kind)}
 
 

@@ -31,6 +31,10 @@ ResultsOption = Annotated[Path, typer.Option("--results", file_okay=False, help=
 JobsOption = Annotated[int, typer.Option("-j", "--jobs", min=1, help="Cells measured at the same time.", show_default="one a core")]
 DaskOption = Annotated[str | None, typer.Option("--dask", metavar="ADDRESS", help="Measure on a Dask cluster: tcp://HOST:PORT.")]
 
+KernelOption = Annotated[
+    Path | None, typer.Option("--kernel", dir_okay=False, help="Another kernel with our interface, a .so or .py (docs/programs.md).")
+]
+
 CORES = os.cpu_count() or 1
 CASES, REFERENCES, RESULTS = Path("verification"), Path("reference_data"), Path("results/verification")
 
@@ -46,6 +50,7 @@ def verify(
         typer.Option(dir_okay=False, help="The HTML page; .xml (JUnit) and .json go beside it.", show_default="RESULTS/report.html"),
     ] = None,
     dask: DaskOption = None,
+    kernel: KernelOption = None,
     cases: CasesOption = CASES,
     references: ReferencesOption = REFERENCES,
     results: ResultsOption = RESULTS,
@@ -71,6 +76,8 @@ def verify(
     from isomortar.harness.runner import not_measured, select
     from isomortar.harness.study import family_pages
 
+    if kernel:
+        _take(kernel, dask)
     if tier not in TIERS:
         raise InputError(f"is {tier!r}; allowed: {', '.join(TIERS)}", "tier")
     page = report or results / "report.html"
@@ -130,6 +137,17 @@ def bless(
         typer.confirm("Make these the reference?", abort=True)
     for path in blessing.bless(chosen, found, references, reason, "self" if kind == "self" else "over-refined", uncertainty):
         print(path)
+
+
+def _take(kernel: Path, dask: str | None) -> None:
+    """Let another kernel take the place of the own one, in this process and those that measure."""
+    from isomortar import _compiled
+    from isomortar.errors import InputError
+
+    if dask:
+        raise InputError(f"is of this machine: set {_compiled.KERNEL} in the environment of the cluster's workers", "kernel")
+    _compiled.kernel_at(kernel.absolute(), _compiled.kernel)
+    os.environ[_compiled.KERNEL] = str(kernel.absolute())
 
 
 def _submitter(jobs: int, dask: str | None) -> AbstractContextManager[Submit]:

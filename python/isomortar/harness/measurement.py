@@ -19,7 +19,7 @@ from isomortar.errors import ConvergenceError, InputError
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness.cases import Cell, Curve, SkippedError, Words
 from isomortar.harness.orders import Convergence
-from isomortar.harness.process import Ending
+from isomortar.program.process import Ending
 
 #: Up to here double precision holds every whole number.
 LARGEST_WHOLE = 2**53

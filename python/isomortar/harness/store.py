@@ -18,6 +18,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from isomortar._compiled import KERNEL
 from isomortar.harness.cases import Case, Cell
 from isomortar.harness.measurement import Measurement
 
@@ -25,7 +26,7 @@ _PACKAGE = Path(__file__).parent.parent
 #: Names what cases declare themselves with.
 _ENTRANCE = _PACKAGE / "harness" / "__init__.py"
 #: What of the package does not touch a case's numbers.
-_ASIDE = (_PACKAGE / "harness", _PACKAGE / "cli", _PACKAGE / "__main__.py")  # of the harness what a case imports is added
+_ASIDE = (_PACKAGE / "harness", _PACKAGE / "program", _PACKAGE / "cli", _PACKAGE / "__main__.py")  # but what a case imports of it
 
 
 class Store:
@@ -81,7 +82,7 @@ def sources_hash(case: Case) -> str:
 
 @functools.cache
 def kernel_hash() -> str:
-    """Hash of the compiled kernel and its extended-precision twin."""
+    """Hash of the compiled kernel, its extended-precision twin, and what takes the kernel's place."""
     return _hash(path.read_bytes() for path in _kernel_files())
 
 
@@ -107,7 +108,8 @@ def versions() -> dict[str, str]:
 
 def linked() -> list[Path]:
     """The shared libraries that the kernel is linked with, directly or not: UMFPACK, OpenBLAS, METIS, the compiler's own."""
-    said = [subprocess.run(["ldd", str(path)], capture_output=True, text=True, check=True).stdout for path in _kernel_files()]
+    binaries = [path for path in _kernel_files() if path.suffix != ".py"]
+    said = [subprocess.run(["ldd", str(path)], capture_output=True, text=True, check=True).stdout for path in binaries]
     return sorted({Path(found) for found in re.findall(r"=> (/\S+)", "".join(said))})
 
 
@@ -125,7 +127,9 @@ def _compiler() -> str:
 
 
 def _kernel_files() -> Iterator[Path]:
-    """The compiled kernel, and its extended-precision twin."""
+    """The compiled kernel, its extended-precision twin, and the kernel that takes its place, if one does."""
+    if KERNEL in os.environ:
+        yield Path(os.environ[KERNEL])
     for module in ("isomortar._kernel", "isomortar._extended"):
         found = importlib.util.find_spec(module)
         if found and found.origin:

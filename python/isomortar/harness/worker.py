@@ -23,7 +23,7 @@ from isomortar._process import own_process
 from isomortar.errors import IsomortarError
 from isomortar.harness.cases import TIMEOUTS, Cell
 from isomortar.harness.measurement import Measurement
-from isomortar.harness.process import GRACE, Limits, Process
+from isomortar.program.process import GRACE, Limits, Process
 
 #: What starts a measuring process.
 COMMAND = (sys.executable, "-m", "isomortar.harness.worker")

@@ -20,7 +20,7 @@ import numpy as np
 from isomortar._process import own_process
 from isomortar.harness.bench.declaration import Benchmark, Row
 from isomortar.harness.measurement import peak_memory
-from isomortar.harness.process import GRACE, ONE_THREAD, Process
+from isomortar.program.process import GRACE, ONE_THREAD, Process
 
 
 @dataclass(frozen=True)

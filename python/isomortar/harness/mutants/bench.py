@@ -13,8 +13,8 @@ import isomortar
 from isomortar.errors import IsomortarError
 from isomortar.harness.cases import Cell
 from isomortar.harness.measurement import Measurement
-from isomortar.harness.process import Limits
 from isomortar.harness.worker import Worker, task_of
+from isomortar.program.process import Limits
 
 #: Most memory of a measuring process, bytes: a fault in a size must not take the machine down.
 _MEMORY = 8 << 30

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import os
 import resource
@@ -118,6 +119,11 @@ class Process:
         assert self._process.stdin is not None
         self._process.stdin.write(line + b"\n")
 
+    def given_all(self) -> None:
+        """Close its standard input: nothing more will be written to it."""
+        assert self._process.stdin is not None
+        self._process.stdin.close()
+
     def line(self, seconds: float | None = None, wanted: Callable[[], bool] = lambda: True) -> bytes | None:
         """The next line of its standard output, empty where it has ended.
 
@@ -133,18 +139,28 @@ class Process:
         bytes or None
             None: it took too long, or is not wanted any more.
         """
-        assert self._process.stdout is not None
         deadline = math.inf if seconds is None else time.monotonic() + seconds
         while b"\n" not in self._received:
-            if select.select([self._process.stdout], [], [], max(0.0, min(_LOOK, deadline - time.monotonic())))[0]:
-                piece = os.read(self._process.stdout.fileno(), 1 << 16)
-                if not piece:
-                    return b""
-                self._received += piece
-            elif time.monotonic() >= deadline or not wanted():
-                return None
+            if not (piece := self._piece(deadline, wanted)):
+                return piece
+            self._received += piece
         line, _, self._received = self._received.partition(b"\n")
         return line
+
+    def rest(self, seconds: float) -> bytes | None:
+        """All that it has yet to write on its standard output until it ends; None: that takes more seconds of the clock."""
+        deadline = time.monotonic() + seconds
+        while piece := self._piece(deadline, lambda: True):
+            self._received += piece
+        return None if piece is None else self._received
+
+    def _piece(self, deadline: float, wanted: Callable[[], bool]) -> bytes | None:
+        """What comes next on its standard output, empty where it has ended; None: not in time, or not wanted any more."""
+        assert self._process.stdout is not None
+        while not select.select([self._process.stdout], [], [], max(0.0, min(_LOOK, deadline - time.monotonic())))[0]:
+            if time.monotonic() >= deadline or not wanted():
+                return None
+        return os.read(self._process.stdout.fileno(), 1 << 16)
 
     def wait(self, seconds: float) -> End:
         """Why it ended, of itself within so many seconds of the clock, or by these."""
@@ -171,3 +187,65 @@ class Process:
         """All of its standard error so far."""
         self._errors.seek(0)
         return self._errors.read().decode(errors="replace")
+
+
+@dataclass(frozen=True)
+class Finished:
+    """A process that was run to its end: why it ended, its standard output and error, CPU seconds with those of its own children."""
+
+    end: End
+    output: str
+    errors: str
+    cpu_seconds: float
+
+    @property
+    def last_words(self) -> str:
+        """The last line that it wrote, on the standard error if there is one: why it failed, as a rule."""
+        lines = (self.errors.strip() or self.output.strip()).splitlines()
+        return lines[-1].strip() if lines else self.end.words
+
+
+def run(
+    command: Sequence[str],
+    text: str = "",
+    seconds: float = math.inf,
+    folder: Path | None = None,
+    environment: Mapping[str, str] | None = None,
+) -> Finished:
+    """Run a program to its end.
+
+    Parameters
+    ----------
+    command : sequence of str
+    text : str
+        A line for its standard input, which it reads before it writes.
+    seconds : float
+        Of the clock, that it may take.
+    folder, environment
+        As of `Process`.
+
+    Returns
+    -------
+    Finished
+        `cpu_seconds` counts children of this process that ended meanwhile: exact where one is run at a time.
+
+    Raises
+    ------
+    FileNotFoundError
+        There is no such program.
+    """
+    before = _children_seconds()
+    with Process(command, folder=folder, environment=environment) as process:
+        with contextlib.suppress(BrokenPipeError):
+            process.send(text.encode())
+            process.given_all()
+        output = process.rest(seconds)
+        end = process.wait(GRACE) if output is not None else End("timed out", f"no end after {seconds:g} s", None)
+        process.kill()
+        return Finished(end, (output or b"").decode(errors="replace"), process.said(), _children_seconds() - before)
+
+
+def _children_seconds() -> float:
+    """User and system time of the children of this process that have ended."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime

@@ -1,0 +1,146 @@
+"""What GetFEM does with a problem: ``python3 -I getfem_job.py PROBLEM.json``, with an interpreter that finds the module getfem.
+
+Needs nothing else but NumPy. Prints a line of JSON a load step: linear solves, whether it converged, and if so displacements of all
+nodes, and the forces that hold the prescribed unknowns in their place.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import getfem as gf
+import numpy as np
+
+#: GetFEM's numbers of the faces of a product of three lines: at the end of each direction, then at its beginning.
+FACES = {"u1": 0, "u0": 1, "v1": 2, "v0": 3, "w1": 4, "w0": 5}
+#: Unknowns below which factors are dense: MUMPS estimates its memory by shares of the matrix, and of a small one that may be too little.
+SMALL = 1000
+
+
+def product(kind: str, parts: list[str]) -> str:
+    """GetFEM's name of a tensor product of three directions."""
+    u, v, w = parts
+    return f"{kind}_PRODUCT({kind}_PRODUCT({u},{v}),{w})"
+
+
+def gauss(points: list[int]) -> Any:
+    """Integration on hexahedra with so many Gauss points by direction."""
+    return gf.Integ(product("IM", [f"IM_GAUSS1D({2 * count - 1})" for count in points]))
+
+
+class Body:
+    """A body of the model: its mesh, its displacement, and where GetFEM's degrees of freedom stand among all nodes."""
+
+    def __init__(self, model: Any, number: int, told: dict[str, Any], nodes: Any) -> None:
+        self.variable = f"u_{number}"
+        self.mesh = gf.Mesh("empty", 3)
+        shape = gf.GeoTrans(product("GT", [f"GT_PK(1,{order})" for order in told["orders"]]))
+        cells = [int(self.mesh.add_convex(shape, nodes[element].T)[0]) for element in told["elements"]]
+        self.cells = cells
+        self.field = gf.MeshFem(self.mesh, 3)
+        self.field.set_fem(gf.Fem(product("FEM", [f"FEM_PK(1,{order})" for order in told["orders"]])))
+        #: Number among all nodes of each of this body's.
+        self.node = np.zeros(self.field.nbdof() // 3, dtype=int)
+        for cell, element in zip(cells, told["elements"], strict=True):
+            self.node[self.field.basic_dof_from_cvid(cell)[0][::3] // 3] = element
+        self.solid = gf.MeshIm(self.mesh, gauss(told["gauss"]))
+        model.add_fem_variable(self.variable, self.field)
+        model.add_fem_data(f"{self.variable}_before", self.field)
+        model.add_initialized_data(f"A1_{number}", told["bulk"])
+        model.add_initialized_data(f"A2_{number}", told["shear"])
+        model.add_nonlinear_term(self.solid, told["energy"])
+
+    @property
+    def unknowns(self) -> Any:
+        """Number among all unknowns, 3 * node + component, of each degree of freedom."""
+        return (3 * self.node[:, None] + np.arange(3)).ravel()
+
+    def region(self, number: int, side: dict[str, Any]) -> int:
+        """Make a face a region of that number."""
+        cells = [self.cells[element] for element in side["elements"]]
+        self.mesh.set_region(number, np.array([cells, [FACES[side["face"]]] * len(cells)]))
+        return number
+
+
+class Held:
+    """The prescribed unknowns of a body, by a multiplier each: minus the force that the support exerts."""
+
+    def __init__(self, model: Any, body: Body, prescribed: Any) -> None:
+        self.model, self.multiplier = model, f"held_{body.variable}"
+        unknowns = body.unknowns
+        own = np.flatnonzero(np.isin(unknowns, prescribed))
+        #: Where they stand among all that is prescribed.
+        self.places = np.searchsorted(prescribed, unknowns[own])
+        if len(own):
+            picks = gf.Spmat("empty", len(own), len(unknowns))
+            picks.add(np.arange(len(own)), own, gf.Spmat("identity", len(own)))
+            model.add_variable(self.multiplier, len(own))
+            self.brick = model.add_constraint_with_multipliers(body.variable, self.multiplier, picks, np.zeros(len(own)))
+
+    def put(self, displacements: Any) -> None:
+        """Prescribe displacements."""
+        if len(self.places):
+            self.model.set_private_rhs(self.brick, displacements[self.places])
+
+    def forces(self, forces: Any) -> None:
+        """Write the forces that the supports exert to where they belong."""
+        if len(self.places):
+            forces[self.places] = -self.model.variable(self.multiplier)
+
+
+def add_contact(model: Any, number: int, told: dict[str, Any], contact: dict[str, Any], bodies: list[Body]) -> list[Any]:
+    """Add contact with friction, its multipliers on the slave face; the model needs what is returned to stay alive."""
+    slave, master = (bodies[side["body"]] for side in contact["sides"])
+    # Regions of one mesh must differ: each side of each contact has a number of its own.
+    faces = [body.region(2 * number + k + 1, side) for k, (body, side) in enumerate(zip((slave, master), contact["sides"], strict=True))]
+    rules = [gf.MeshIm(body.mesh, gauss(side["gauss"])) for body, side in zip((slave, master), contact["sides"], strict=True)]
+    multiplier, friction = f"multiplier_{number}", f"friction_{number}"
+    model.add_filtered_fem_variable(multiplier, slave.field, faces[0])
+    model.add_initialized_data(friction, contact["friction"])
+    model.add_initialized_data(f"r_{number}", told["augmentation"])
+    brick = model.add_integral_large_sliding_contact_brick_raytracing(f"r_{number}", told["release"], friction)
+    ends = (slave.variable, multiplier, f"{slave.variable}_before")
+    model.add_slave_contact_boundary_to_large_sliding_contact_brick(brick, rules[0], faces[0], *ends)
+    model.add_master_contact_boundary_to_large_sliding_contact_brick(
+        brick, rules[1], faces[1], master.variable, f"{master.variable}_before"
+    )
+    return rules
+
+
+def main(path: str) -> None:
+    """Read, compute, print."""
+    told = json.loads(Path(path).read_text())
+    nodes, prescribed = np.array(told["nodes"]), np.array(told["prescribed"])
+    gf.util_trace_level(0)
+    model = gf.Model("real")
+    bodies = [Body(model, number, body, nodes) for number, body in enumerate(told["bodies"])]
+    held = [Held(model, body, prescribed) for body in bodies]
+    kept = [add_contact(model, number, told, contact, bodies) for number, contact in enumerate(told["contacts"])]
+    solver = "dense_lu" if model.nbdof() < SMALL else "mumps"
+    for wanted in np.array(told["displacements"]):
+        for body, support in zip(bodies, held, strict=True):
+            support.put(wanted)
+            model.set_variable(f"{body.variable}_before", model.variable(body.variable))
+        solves, converged = model.solve("max_res", told["tolerance"], "max_iter", told["iterations"], "lsolver", solver)
+        print(json.dumps({"solves": int(solves), "converged": bool(converged)} | (_found(model, bodies, held, nodes) if converged else {})))
+        if not converged:
+            break
+    del kept
+
+
+def _found(model: Any, bodies: list[Body], held: list[Held], nodes: Any) -> dict[str, Any]:
+    """Displacements of all nodes and the forces of what is prescribed."""
+    displacements = np.zeros(nodes.size)
+    for body in bodies:
+        displacements[body.unknowns] = model.variable(body.variable)
+    forces = np.zeros(sum(len(support.places) for support in held))
+    for support in held:
+        support.forces(forces)
+    return {"displacements": displacements.tolist(), "forces": forces.tolist()}
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])

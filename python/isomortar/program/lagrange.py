@@ -1,0 +1,106 @@
+"""A problem as programs of finite elements see it: nodes, elements and faces of Lagrange bodies, and what is prescribed when."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from functools import cached_property
+
+import numpy as np
+
+from isomortar.errors import InputError
+from isomortar.geometry.patch import FACES, FloatArray, IntArray
+from isomortar.model.checks import check
+from isomortar.model.entities import Body, Contact, Face, Problem
+from isomortar.model.numbering import Numbering
+from isomortar.model.pattern import element_points
+from isomortar.model.supports import Supports
+
+
+class LagrangeProblem:
+    """The problem in terms of nodes, for a program that has these laws of material.
+
+    Parameters
+    ----------
+    problem : Problem
+    program : str
+        Its name, for what is said of what it cannot express.
+    laws : collection of str
+        Laws of material that it has.
+
+    Attributes
+    ----------
+    nodes : ndarray, shape (n, 3)
+        Reference positions; the numbers of `Numbering` count them.
+    prescribed : ndarray of int, shape (m,)
+        Prescribed unknowns, 3 * node + component, sorted.
+
+    Raises
+    ------
+    InputError
+        No program of Lagrange elements has this, or not this one: NURBS, weights, elements of which an edge is a point, another law of
+        material, rigid planes, friction other than Coulomb's.
+    """
+
+    def __init__(self, problem: Problem, program: str, laws: Collection[str]) -> None:
+        check(problem)
+        self.problem, self._program = problem, program
+        self._numbering = Numbering(problem)
+        self._supports = Supports(problem, self._numbering)
+        self.nodes, self.prescribed = self._numbering.reference, self._supports.prescribed
+        for body in problem.bodies:
+            self._check_body(body, laws)
+        for contact in problem.contacts:
+            self._check_contact(contact)
+
+    def elements(self, body: Body) -> IntArray:
+        """Nodes of each element, the first direction fastest in both, shape (elements, nodes of an element)."""
+        return element_points(body.patch, self._numbering.points[body.name])
+
+    def touching(self, place: Face) -> IntArray:
+        """Numbers of a body's elements on a face, in ascending order."""
+        counts = [direction.elements for direction in self.problem.body(place.body).patch.directions]
+        numbers = np.arange(np.prod(counts), dtype=np.int32).reshape(counts, order="F")
+        number = FACES.index(place.face)
+        return np.sort(np.take(numbers, -(number % 2), axis=number // 2), axis=None)
+
+    @cached_property
+    def displacements(self) -> FloatArray:
+        """What is prescribed at the end of each load step, shape (load steps, m)."""
+        steps = range(1, self.problem.total_steps + 1)
+        places = np.array([self._supports.place(float(step)) for step in steps]).reshape(-1, len(self.nodes) * 3)
+        return (places - self.nodes.ravel())[:, self.prescribed]
+
+    @property
+    def thinnest(self) -> float:
+        """Smallest extent of any body along a coordinate."""
+        return float(min(np.ptp(body.patch.control_points, axis=0).min() for body in self.problem.bodies))
+
+    @property
+    def stiffest(self) -> float:
+        """Largest Young's modulus."""
+        return max(body.material.young for body in self.problem.bodies)
+
+    def refuse(self, what: str, field: str) -> InputError:
+        """The error that names what the program cannot express."""
+        return InputError(f"{self._program} {what}", field)
+
+    def _check_body(self, body: Body, laws: Collection[str]) -> None:
+        place = f"bodies.{body.name}"
+        if any(direction.family != "L" for direction in body.patch.directions):
+            raise self.refuse('has no NURBS; take Lagrange elements: mesh.family = "L"', f"{place}.mesh.family")
+        if np.ptp(body.patch.weights) != 0.0:
+            raise self.refuse("has no rational functions: weights must be equal", f"{place}.patch.weights")
+        nodes = np.sort(self.elements(body), axis=1)
+        if np.any(nodes[:, 1:] == nodes[:, :-1]):
+            raise self.refuse("takes no elements of which an edge is a point", f"{place}.patch.control_points")
+        if body.material.law not in laws:
+            raise self.refuse(f"has no law {body.material.law!r}; it has {', '.join(sorted(laws))}", f"{place}.material.law")
+
+    def _check_contact(self, contact: Contact) -> None:
+        place = f"contacts.{contact.name}"
+        if not isinstance(contact.master, Face):
+            raise self.refuse("is not told of rigid planes; take a body as the master", f"{place}.plane")
+        if contact.cohesion:
+            raise self.refuse("has no friction with a cohesion", f"{place}.cohesion")
+        if contact.traction_max is not None:
+            raise self.refuse("is not told of a largest traction", f"{place}.traction_max")
