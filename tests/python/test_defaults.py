@@ -44,9 +44,8 @@ ENTITIES = {
 }
 _MESH = {"family": ("N", "N", "N"), "order": None, "elements": None, "quadrature": None}
 _RECORD = {"states": "every", "curves": None}
-#: By table of a scene file.
+#: By table of a scene file that is none of these.
 TABLES = {
-    "MaterialTable": {"young": 10.0, "poisson": 0.3, "law": "neo-hookean"},
     "BowlTable": {"centre": (0.0, 0.0)},
     "RingTable": {"centre": (0.0, 0.0, 0.0)},
     "PatchTable": {"family": ("N", "N", "N"), "weights": None},
@@ -55,9 +54,7 @@ TABLES = {
     "PlaneTable": {"point": (0.0, 0.0, 0.0), "normal": (0.0, 0.0, 1.0), "tangent": None},
     "ContactTable": {"master": None, "plane": None, "friction": 0.3, **_FRICTION, "quadrature": None, "reference_area": None},
     "SupportTable": {"components": ("x", "y", "z"), "centre": (0.0, 0.0, 0.0), "axis": (0.0, 0.0, 1.0)},
-    "MotionTable": {"translate": (0.0, 0.0, 0.0), "rotate": 0.0},
     "StageTable": {"motions": {}},
-    "SolverTable": SOLVER,
     "CurveTable": {"quantity": "force", "component": "norm"},
     "RecordTable": _RECORD,
     "SceneTable": {"name": None, "title": "", "materials": {}, "contacts": {}, "supports": {}, "solver": SOLVER, "record": _RECORD},

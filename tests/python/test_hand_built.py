@@ -52,6 +52,10 @@ def _of_far_weights(problem: Problem) -> Problem:
     return replace(problem, bodies=(*problem.bodies, body), supports=(*problem.supports, held))
 
 
+def _with_settings(**settings: object) -> Callable[[Problem], Problem]:
+    return lambda problem: replace(problem, settings=replace(problem.settings, **settings))
+
+
 @pytest.mark.parametrize(
     ("change", "said"),
     [
@@ -62,6 +66,12 @@ def _of_far_weights(problem: Problem) -> Problem:
         (_limited_twice, "friction would have no say"),
         (_negative_cohesion, r"friction\.parameters: is -0\.3; allowed: numbers not below 0"),
         (_in_another_unit, "unit of length"),
+        (_with_settings(method="newton"), "solver.method: is 'newton'; allowed: 'monolithic' or 'uzawa'"),
+        (_with_settings(newton_tolerance=0.1), "solver.newton_tolerance: is 0.1; allowed: less than or equal to 0.001"),
+        (
+            _with_settings(measures=("haste",)),
+            "solver.measures.0: is 'haste'; allowed: 'forgiving', 'margin'",
+        ),
         (_of_far_weights, r"mesh.quadrature = \[16, 16, 16\]"),
     ],
 )

@@ -263,7 +263,7 @@ def test_what_failed_leaves_no_trace():
 
 def test_a_path_tolerance_takes_halves_one_after_the_other():
     toleranced = problem()
-    simulation = Simulation(replace(toleranced, settings=replace(toleranced.settings, path_tolerance=1e3)))
+    simulation = Simulation(replace(toleranced, settings=replace(toleranced.settings, path_tolerance=1.0)))
     simulation._method = method = Scripted(simulation, ["easy"] * 12)
     results = list(simulation.run())
     assert [time for _, time, _ in method.tried] == [t for step in range(1, 5) for t in (step, step - 0.5, step)]

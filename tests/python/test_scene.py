@@ -6,7 +6,7 @@ import json
 import math
 from dataclasses import fields
 from pathlib import Path
-from typing import Any, get_type_hints
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,9 +14,8 @@ import splinepy
 
 import isomortar.scene
 from isomortar.geometry.primitives import ring
-from isomortar.model.entities import Face, Motion, Problem, RigidPlane, SolverSettings
+from isomortar.model.entities import Face, Material, Motion, Problem, RigidPlane, SolverSettings
 from isomortar.scene import Scene, bundled_scenes, json_schema
-from isomortar.scene.schema import SolverTable
 from isomortar.scene.source import read_source
 
 ROOT = Path(__file__).parents[2]
@@ -240,11 +239,17 @@ def test_a_body_may_be_held_by_another_that_it_touches() -> None:
     assert len(Scene.from_toml(SHORT + upper).problem().bodies) == 2
 
 
-def test_solver_table_is_the_dataclass_with_explanations() -> None:
-    assert {f.name: f.default for f in fields(SolverSettings)} == {n: f.default for n, f in SolverTable.model_fields.items()}
-    assert all(field.description for field in SolverTable.model_fields.values())
-    table, settings = get_type_hints(SolverTable), get_type_hints(SolverSettings)
-    assert {name: table[name] for name in SolverTable.model_fields} == settings
+@pytest.mark.parametrize("entity", [Material, Motion, SolverSettings])
+def test_entities_that_are_tables_explain_each_key(entity: type) -> None:
+    table = json_schema()["$defs"][entity.__name__]
+    assert list(table["properties"]) == [field.name for field in fields(entity)]
+    assert all(key["description"] for key in table["properties"].values())
+    assert table["additionalProperties"] is False
+
+
+def test_a_scene_hands_over_its_solver_table() -> None:
+    scene = Scene.from_toml(SHORT, overrides=["solver.max_cuts=3", 'solver.measures=["keeping"]'])
+    assert scene.problem().settings == SolverSettings(max_cuts=3, measures=("keeping",))
 
 
 def test_published_schema_is_the_one_of_the_program() -> None:

@@ -187,10 +187,11 @@ def test_unconverged_step_is_cut_and_then_named() -> None:
 
 
 def test_cuts_end_where_time_no_longer_moves() -> None:
-    simulation = Simulation(small_iron(max_cuts=1000))
-    simulation._cut(4, simulation.state, 3.5, 2.0**-40, 1.0, ConvergenceError("no"))
+    """Where supports turn far in a load step, increments are short to begin with."""
+    simulation = Simulation(small_iron(max_cuts=30))
+    simulation._cut(4, simulation.state, 3.5, 2.0**-40, 2.0**-30, ConvergenceError("no"))
     with pytest.raises(ConvergenceError, match="does not converge"):
-        simulation._cut(4, simulation.state, 3.5, 2.0**-52, 1.0, ConvergenceError("no"))
+        simulation._cut(4, simulation.state, 3.5, 2.0**-52, 2.0**-30, ConvergenceError("no"))
 
 
 def test_stiff_and_fine_slave_is_warned_about() -> None:

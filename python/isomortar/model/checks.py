@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import asdict, replace
 from itertools import combinations
 
 import numpy as np
+from pydantic import TypeAdapter, ValidationError
 
 from isomortar.errors import FoldedElementError, InputError
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.geometry.refinement import surface_samples
 from isomortar.model.contact_checks import check_contacts
-from isomortar.model.entities import Body, Contact, Face, Problem, Support
+from isomortar.model.entities import Body, Contact, Face, Problem, SolverSettings, Support
 from isomortar.model.memory import memory_needed, memory_of_machine
+from isomortar.model.messages import input_error, located
 from isomortar.model.numbering import same_points
 from isomortar.model.rational import QUADRATURE_TOLD, quadrature_error, too_few_points
 
@@ -33,9 +35,10 @@ def check(problem: Problem) -> None:
     Raises
     ------
     InputError
-        Units that no number holds; more memory than there is; a body that nothing holds; supports that contradict each other;
-        contacts that cannot be meant; too few Gauss points for a body's weights.
+        Settings of the solver that are not allowed; units that no number holds; more memory than there is; a body that nothing holds;
+        supports that contradict each other; contacts that cannot be meant; too few Gauss points for a body's weights.
     """
+    _check_settings(problem.settings)
     for body in problem.bodies:
         _check_units(body)
         _check_weights(body)
@@ -45,6 +48,16 @@ def check(problem: Problem) -> None:
     for one, other in combinations(problem.supports, 2):
         if one.place.body == other.place.body:
             _check_agreement(problem.body(one.place.body), one, other)
+
+
+def _check_settings(settings: SolverSettings) -> None:
+    """Settings made in Python are what those of a scene file may be."""
+    values = asdict(settings)
+    try:
+        TypeAdapter(SolverSettings).validate_python(values)
+    except ValidationError as error:
+        with located("solver"):
+            raise input_error(error, values) from error
 
 
 def _check_units(body: Body) -> None:

@@ -3,32 +3,28 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Annotated, Literal, get_args
 
 import numpy as np
+from pydantic import Field
 
 from isomortar._arrays import FRICTION_LAWS, LAWS, FrictionArrays, MaterialArrays, MaterialLaw
 from isomortar.geometry.patch import FloatArray, Patch
+from isomortar.model.values import TABLE, Count, Point, Positive, Real
 
 
 @dataclass(frozen=True)
 class Material:
-    """A material: its law, and the moduli that all laws have in common where strains are small (theory 1).
+    """A solid; the defaults are the paper's."""
 
-    Parameters
-    ----------
-    young : float
-        Young's modulus E, force per area.
-    poisson : float
-        Poisson's ratio, -1 < nu < 0.5.
-    law : str
-        "neo-hookean": the paper's, W = A1/2 (ln J)^2 + A2/2 (J^(-2/3) tr C - 3); "neo-hookean-j": that of Abaqus and CalculiX,
-        with A1/2 (J - 1)^2; "linear-elastic": Hooke's law of small strain, for small turns alone.
-    """
+    __pydantic_config__ = TABLE
 
-    young: float = 10.0
-    poisson: float = 0.3
+    young: Positive = 10.0
+    """Young's modulus, force per area."""
+    poisson: Annotated[Real, Field(gt=-1, lt=0.5)] = 0.3
+    """Poisson's ratio, above -1 and below 0.5."""
     law: MaterialLaw = "neo-hookean"
+    """Stored energy (docs/method.md): the paper's, that of Abaqus and CalculiX, or small strains' for turns that are small too."""
 
     @property
     def arrays(self) -> MaterialArrays:
@@ -119,13 +115,14 @@ class Contact:
 
 @dataclass(frozen=True)
 class Motion:
-    """What a support does during one stage: grows linearly over the stage's load steps.
+    """What a support does during a stage; grows linearly over its load steps."""
 
-    `translate`: total vector (length). `rotate`: total angle in degrees, right-hand rule about the support's axis.
-    """
+    __pydantic_config__ = TABLE
 
-    translate: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    rotate: float = 0.0
+    translate: Point = (0.0, 0.0, 0.0)
+    """Total translation of the stage."""
+    rotate: Real = 0.0
+    """Total angle of the stage in degrees about the support's axis."""
 
 
 @dataclass(frozen=True)
@@ -163,53 +160,47 @@ class Stage:
 #: fold an element, lose a projection, return to an earlier set of states, or double the merit are halved; in Uzawa's loop those that
 #: leave a larger residual.
 Measure = Literal["forgiving", "margin", "reversal", "halving", "keeping"]
-MEASURES: tuple[Measure, ...] = ("forgiving", "margin", "reversal", "halving", "keeping")
+#: Residuals and distances that are left stand for an error of the result: above this share none is worth having.
+Tolerance = Annotated[Positive, Field(le=1e-3)]
+Penalty = Annotated[Real, Field(ge=1e-12, le=1e12)]
 
 
 @dataclass(frozen=True)
 class SolverSettings:
-    """How contact is enforced and when a load step has converged (theory 5).
+    """How contact is enforced and when a load step has converged."""
 
-    Parameters
-    ----------
-    method : {"monolithic", "uzawa"}
-        Multipliers as unknowns of one Newton loop (theory 6), or augmentations around Newton's method (theory 7, the paper's way).
-    slip_sum : {"local", "paper"}
-        The trial traction from the control point's own slip, or summed over active neighbours (theory 4.4, 4.5).
-    penalty_normal, penalty_tangential : float
-        Base penalties, times the largest diagonal entry of the solid tangent over the reference area.
-    penalty_growth, penalty_growth_max : float
-        Factor per augmentation within a load step and its limit over the base.
-    augmentation_tolerance : float
-    augmentation_norm : {"separate", "paper"}
-        Pressures and tractions tested each in their norm, or the paper's single mixed norm.
-    newton_tolerance : float
-    complementarity_tolerance : float
-        Monolithic: relative distance of pressures and of tractions from the contact conditions.
-    max_augmentations, max_iterations, max_cuts : int
-        `max_cuts`: how often a load step may be halved.
-    measures : tuple of str
-        What helps Newton's method on the way (MEASURES; theory 6.5).
-    path_tolerance : float or None
-        Relative error of the control multipliers that a load increment may make by itself, estimated by halving it; None: the
-        increments are the stages' load steps.
-    """
+    __pydantic_config__ = TABLE
 
     method: Literal["monolithic", "uzawa"] = "monolithic"
+    """Multipliers as unknowns of one Newton loop per load step (monolithic), or penalties corrected by augmentations (uzawa)."""
     slip_sum: Literal["local", "paper"] = "local"
-    penalty_normal: float = 100.0
-    penalty_tangential: float = 10.0
-    penalty_growth: float = 2.0
-    penalty_growth_max: float = 200.0
-    augmentation_tolerance: float = 0.01
+    """Trial traction from the control point's own slip (local), or summed over active neighbours (paper)."""
+    penalty_normal: Penalty = 100.0
+    """Base penalty for the gap, times the largest diagonal entry of the tangents of the pair's bodies over the reference area."""
+    penalty_tangential: Penalty = 10.0
+    """Base penalty for slip, in the same unit; keep it near a tenth of the normal one."""
+    penalty_growth: Annotated[Real, Field(ge=1, le=1e6)] = 2.0
+    """Factor on the penalties per augmentation within a load step; 1: they stay."""
+    penalty_growth_max: Annotated[Real, Field(ge=1, le=1e12)] = 200.0
+    """Limit of that growth over the base."""
+    augmentation_tolerance: Annotated[Positive, Field(le=0.1)] = 0.01
+    """Relative change of the multipliers, and distance from the contact conditions, below which augmentations have converged."""
     augmentation_norm: Literal["separate", "paper"] = "separate"
-    newton_tolerance: float = 1e-9
-    complementarity_tolerance: float = 1e-8
-    max_augmentations: int = 100
-    max_iterations: int = 30
-    max_cuts: int = 8
-    measures: tuple[Measure, ...] = MEASURES
-    path_tolerance: float | None = None
+    """Pressures and tractions tested each in their norm (separate), or in the paper's single norm, which mixes units."""
+    newton_tolerance: Tolerance = 1e-9
+    """Residual over the internal force of each body below which Newton's method has converged."""
+    complementarity_tolerance: Tolerance = 1e-8
+    """Monolithic: relative distance of pressures and tractions from the contact conditions."""
+    max_augmentations: Count = 100
+    """Augmentations after which a load step is cut."""
+    max_iterations: Count = 30
+    """Tangents of a Newton loop after which a load step is cut."""
+    max_cuts: Annotated[int, Field(strict=True, ge=0, le=30)] = 8
+    """How often a load step may be halved before the run ends; 30 times is to a billionth."""
+    measures: tuple[Measure, ...] = get_args(Measure)
+    """What helps Newton's method on the way; leave one out to see what it does."""
+    path_tolerance: Annotated[Positive, Field(le=1)] | None = None
+    """Error of the multipliers that a load increment may make, estimated by halving it; absent: the load steps as given."""
 
 
 @dataclass(frozen=True)

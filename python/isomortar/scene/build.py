@@ -12,8 +12,8 @@ from isomortar.geometry.patch import FACES, Direction, Patch
 from isomortar.geometry.quadrature import contact_points, volume_points
 from isomortar.geometry.refinement import mesh
 from isomortar.model.entities import Body, Contact, Face, Material, Motion, Problem, RigidPlane, Stage, Support
+from isomortar.model.messages import located
 from isomortar.scene.geometry_file import read_geometry
-from isomortar.scene.messages import located
 from isomortar.scene.schema import BodyTable, ContactTable, MeshTable, PlaneTable, SceneTable, SupportTable
 from isomortar.scene.types import listed
 
@@ -49,7 +49,7 @@ def build(scene: SceneTable, name: str, folder: Path) -> Problem:
         contacts=tuple(_contact(contact, table, by_name) for contact, table in scene.contacts.items()),
         supports=tuple(_support(support, table, by_name, _motions(scene, support)) for support, table in scene.supports.items()),
         stages=_stages(scene),
-        settings=scene.solver.settings(),
+        settings=scene.solver,
     )
 
 
@@ -126,10 +126,7 @@ def _material(scene: SceneTable, body: str) -> Material:
         raise InputError(f"is missing, but must be given where there are several; allowed: {', '.join(names)}", field)
     if wanted is not None and wanted not in names:
         raise InputError(f"there is no material {wanted!r}; allowed: {listed(wanted, names)}", field)
-    if not names:
-        return Material()
-    table = scene.materials[wanted or names[0]]
-    return Material(table.young, table.poisson, table.law)
+    return scene.materials[wanted or names[0]] if names else Material()
 
 
 def _face(text: str, bodies: dict[str, Body], field: str) -> Face:
@@ -180,7 +177,7 @@ def _support(name: str, table: SupportTable, bodies: dict[str, Body], motions: t
 
 
 def _motions(scene: SceneTable, support: str) -> tuple[Motion, ...]:
-    return tuple(stage.motions[support].motion() if support in stage.motions else Motion() for stage in scene.stages)
+    return tuple(stage.motions.get(support, Motion()) for stage in scene.stages)
 
 
 def _stages(scene: SceneTable) -> tuple[Stage, ...]:

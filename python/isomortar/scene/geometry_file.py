@@ -11,7 +11,7 @@ from pydantic import ValidationError
 from isomortar.errors import InputError
 from isomortar.geometry.files import read_spline
 from isomortar.geometry.patch import Patch
-from isomortar.scene.messages import input_error
+from isomortar.model.messages import input_error
 from isomortar.scene.schema import PatchTable
 from isomortar.scene.source import parse
 from isomortar.scene.text import read_text

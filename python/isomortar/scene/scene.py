@@ -11,9 +11,9 @@ from pydantic import ValidationError
 
 from isomortar.model.checks import check
 from isomortar.model.entities import Problem
+from isomortar.model.messages import input_error
 from isomortar.scene.build import build, coarse_patch
 from isomortar.scene.geometry_file import patch_table
-from isomortar.scene.messages import input_error
 from isomortar.scene.schema import CurveTable, RecordTable, SceneTable
 from isomortar.scene.source import apply_overrides, dump, parse, read_source
 

@@ -1,50 +1,34 @@
-"""The tables of a scene file, format 1. Every default of a scene is stated here or in `SolverSettings`."""
+"""The tables of a scene file, format 1. Every default of a scene is stated here or with the entities of a problem."""
 
 from __future__ import annotations
 
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import Field, field_validator, model_validator
+from pydantic import Field, TypeAdapter, field_validator, model_validator
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import PydanticCustomError, core_schema
 
-from isomortar._arrays import MaterialLaw
 from isomortar.geometry.patch import Direction, Family, Patch
 from isomortar.geometry.primitives import bowl, box, ring
-from isomortar.model.entities import Material, Measure, Motion, SolverSettings
+from isomortar.model.entities import Material, Motion, SolverSettings
+from isomortar.model.values import Count, Point, Positive, Real
 from isomortar.scene.types import (
     Axis,
-    Count,
     FaceName,
     GaussPoints,
     Name,
     PerDirection,
     PerSurfaceDirection,
     PlanePoint,
-    Point,
-    Positive,
-    Real,
     Table,
+    entity,
 )
 
-#: Residuals and distances that are left stand for an error of the result: above this share none is worth having.
-Tolerance = Annotated[Positive, Field(le=1e-3)]
-Penalty = Annotated[Real, Field(ge=1e-12, le=1e12)]
-
-_PAPER = Material()
-_SOLVER = SolverSettings()
-
-
-class MaterialTable(Table):
-    """A solid; the defaults are the paper's."""
-
-    young: Positive = _PAPER.young
-    """Young's modulus, force per area."""
-    poisson: Annotated[Real, Field(gt=-1, lt=0.5)] = _PAPER.poisson
-    """Poisson's ratio, above -1 and below 0.5."""
-    law: MaterialLaw = _PAPER.law
-    """Stored energy (docs/method.md): the paper's, that of Abaqus and CalculiX, or small strains' for turns that are small too."""
+#: Entities of a problem that are tables of a scene file as they are.
+MaterialTable = Annotated[Material, entity(Material)]
+MotionTable = Annotated[Motion, entity(Motion)]
+SolverTable = Annotated[SolverSettings, entity(SolverSettings)]
 
 
 class BoxTable(Table):
@@ -221,19 +205,6 @@ class SupportTable(Table):
         return value
 
 
-class MotionTable(Table):
-    """What a support does during a stage; grows linearly over its load steps."""
-
-    translate: Point = (0.0, 0.0, 0.0)
-    """Total translation of the stage."""
-    rotate: Real = 0.0
-    """Total angle of the stage in degrees about the support's axis."""
-
-    def motion(self) -> Motion:
-        """As plain data."""
-        return Motion(self.translate, self.rotate)
-
-
 class StageTable(Table):
     """A part of the load history."""
 
@@ -243,45 +214,6 @@ class StageTable(Table):
     """Equal load steps, each of them recorded."""
     motions: dict[str, MotionTable] = Field({})
     """By name of support; supports without a motion stay where they are."""
-
-
-class SolverTable(Table):
-    """How contact is enforced and when a load step has converged."""
-
-    method: Literal["monolithic", "uzawa"] = _SOLVER.method
-    """Multipliers as unknowns of one Newton loop per load step (monolithic), or penalties corrected by augmentations (uzawa)."""
-    slip_sum: Literal["local", "paper"] = _SOLVER.slip_sum
-    """Trial traction from the control point's own slip (local), or summed over active neighbours (paper)."""
-    penalty_normal: Penalty = _SOLVER.penalty_normal
-    """Base penalty for the gap, times the largest diagonal entry of the tangents of the pair's bodies over the reference area."""
-    penalty_tangential: Penalty = _SOLVER.penalty_tangential
-    """Base penalty for slip, in the same unit; keep it near a tenth of the normal one."""
-    penalty_growth: Annotated[Real, Field(ge=1, le=1e6)] = _SOLVER.penalty_growth
-    """Factor on the penalties per augmentation within a load step; 1: they stay."""
-    penalty_growth_max: Annotated[Real, Field(ge=1, le=1e12)] = _SOLVER.penalty_growth_max
-    """Limit of that growth over the base."""
-    augmentation_tolerance: Annotated[Positive, Field(le=0.1)] = _SOLVER.augmentation_tolerance
-    """Relative change of the multipliers, and distance from the contact conditions, below which augmentations have converged."""
-    augmentation_norm: Literal["separate", "paper"] = _SOLVER.augmentation_norm
-    """Pressures and tractions tested each in their norm (separate), or in the paper's single norm, which mixes units."""
-    newton_tolerance: Tolerance = _SOLVER.newton_tolerance
-    """Residual over the internal force of each body below which Newton's method has converged."""
-    complementarity_tolerance: Tolerance = _SOLVER.complementarity_tolerance
-    """Monolithic: relative distance of pressures and tractions from the contact conditions."""
-    max_augmentations: Count = _SOLVER.max_augmentations
-    """Augmentations after which a load step is cut."""
-    max_iterations: Count = _SOLVER.max_iterations
-    """Tangents of a Newton loop after which a load step is cut."""
-    max_cuts: Annotated[int, Field(strict=True, ge=0, le=30)] = _SOLVER.max_cuts
-    """How often a load step may be halved before the run ends; 30 times is to a billionth."""
-    measures: tuple[Measure, ...] = _SOLVER.measures
-    """What helps Newton's method on the way; leave one out to see what it does."""
-    path_tolerance: Annotated[Positive, Field(le=1)] | None = _SOLVER.path_tolerance
-    """Error of the multipliers that a load increment may make, estimated by halving it; absent: the load steps as given."""
-
-    def settings(self) -> SolverSettings:
-        """As plain data."""
-        return SolverSettings(**self.model_dump())
 
 
 class CurveTable(Table):
@@ -325,7 +257,7 @@ class SceneTable(Table):
     """Supports by name."""
     stages: Annotated[list[StageTable], Field(min_length=1)]
     """The load history, in order."""
-    solver: SolverTable = SolverTable()
+    solver: SolverTable = SolverSettings()
     """Enforcement of contact and convergence."""
     record: RecordTable = RecordTable()
     """What to keep."""
@@ -343,7 +275,7 @@ class _WithoutNull(GenerateJsonSchema):
         return super().default_schema(schema)
 
     def encode_default(self, dft: Any) -> Any:
-        return dft.model_dump(mode="json", exclude_none=True) if isinstance(dft, Table) else super().encode_default(dft)
+        return TypeAdapter(type(dft)).dump_python(dft, mode="json", exclude_none=True)
 
 
 def json_schema() -> dict[str, Any]:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import difflib
-import reprlib
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
+from dataclasses import fields
 from typing import Annotated, Any, Literal, TypeVar
 
-from pydantic import AllowInfNan, BaseModel, BeforeValidator, ConfigDict, Field, Strict, model_validator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, Strict, model_validator
 from pydantic_core import PydanticCustomError
+
+from isomortar.model.values import TABLE, Real, coordinates
 
 T = TypeVar("T")
 
@@ -16,16 +18,25 @@ T = TypeVar("T")
 class Table(BaseModel):
     """Base of all tables of a scene file: unknown keys are errors that list the known ones, the nearest first."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
+    model_config = ConfigDict(**TABLE, frozen=True)
 
     @model_validator(mode="before")
     @classmethod
     def _only_known_keys(cls, data: Any) -> Any:
-        unknown = [key for key in data if key not in cls.model_fields] if isinstance(data, dict) else []
-        if unknown:
-            problem = f"unknown key; allowed here: {listed(unknown[0], cls.model_fields)}"
-            raise PydanticCustomError("unknown_key", "{problem}", {"problem": problem, "key": unknown[0]})
-        return data
+        return _only(cls.model_fields, data)
+
+
+def entity(kind: type) -> BeforeValidator:
+    """A dataclass of the problem as a table: unknown keys are errors as those of a `Table` are."""
+    return BeforeValidator(lambda data: _only([field.name for field in fields(kind)], data))
+
+
+def _only(known: Collection[str], data: Any) -> Any:
+    unknown = [key for key in data if key not in known] if isinstance(data, dict) else []
+    if unknown:
+        problem = f"unknown key; allowed here: {listed(unknown[0], known)}"
+        raise PydanticCustomError("unknown_key", "{problem}", {"problem": problem, "key": unknown[0]})
+    return data
 
 
 def listed(name: str, allowed: Iterable[str]) -> str:
@@ -48,26 +59,12 @@ def _spread(count: int) -> Callable[[Any], Any]:
     return spread
 
 
-def _coordinates(count: int) -> BeforeValidator:
-    def check(value: Any) -> Any:
-        if not isinstance(value, list | tuple) or len(value) != count:
-            facts = {"value": reprlib.repr(value), "count": count}
-            raise PydanticCustomError("coordinates", "is {value}; allowed: a list of {count} numbers", facts)
-        return tuple(value)
-
-    return BeforeValidator(check)
-
-
-Real = Annotated[float, Strict(), AllowInfNan(False)]
-Positive = Annotated[Real, Field(gt=0)]
-Count = Annotated[int, Strict(), Field(ge=1)]
 GaussPoints = Annotated[int, Strict(), Field(ge=1, le=64)]
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+$")]
 FaceName = Annotated[str, Field(json_schema_extra={"pattern": r"^[A-Za-z0-9_-]+\.[uvw][01]$"})]
 Axis = Literal["u", "v", "w"]
 
-Point = Annotated[tuple[Real, Real, Real], _coordinates(3)]
-PlanePoint = Annotated[tuple[Real, Real], _coordinates(2)]
+PlanePoint = Annotated[tuple[Real, Real], coordinates(2)]
 #: One value a parametric direction; a single value stands for all three.
 PerDirection = Annotated[tuple[T, T, T], BeforeValidator(_spread(3), json_schema_input_type=T | tuple[T, T, T])]
 PerSurfaceDirection = Annotated[tuple[T, T], BeforeValidator(_spread(2), json_schema_input_type=T | tuple[T, T])]
