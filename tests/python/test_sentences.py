@@ -19,8 +19,8 @@ from isomortar.results.writer import ResultsWriter
 from isomortar.scene import Scene
 from isomortar.solve import doubts, pulling
 from isomortar.solve.advice import StepAdvice
-from isomortar.solve.monolithic import _toggling
 from isomortar.solve.simulation import Simulation
+from isomortar.solve.trail import toggling
 from results_samples import problem, step_result
 from test_advice import DOUBTFUL, PLATE, PRESS, Warned, _of_weights, material, rational, warnings
 from test_causes import said, scene
@@ -150,11 +150,11 @@ def given_up(_: pytest.MonkeyPatch) -> Told:
     states = [np.array(s, dtype=np.int32).tobytes() for s in ([0, 1, 2], [0, 2, 2])]
     places = [np.zeros((2, 4), dtype=np.int32), np.array([[0, 0, 0, 0], [1, 0, 0, 0]], dtype=np.int32)]
     away, near = np.zeros(2, dtype=bool), np.ones(2, dtype=bool)
-    yield "changing states", _toggling(states, places, away, summed=False)
-    yield "changing states, paper's sum", _toggling(states, places, away, summed=True)
-    yield "knot lines", _toggling(states[:1] * 2, places, away, summed=True)
-    yield "poles", _toggling(states[:1] * 2, places, near, summed=True)
-    yield "nothing changes", _toggling(states[:1] * 2, places[:1] * 2, near, summed=True)
+    yield "changing states", toggling(states, places, away, summed=False)
+    yield "changing states, paper's sum", toggling(states, places, away, summed=True)
+    yield "knot lines", toggling(states[:1] * 2, places, away, summed=True)
+    yield "poles", toggling(states[:1] * 2, places, near, summed=True)
+    yield "nothing changes", toggling(states[:1] * 2, places[:1] * 2, near, summed=True)
     few = ["solver.method=uzawa", "solver.max_augmentations=2", "solver.max_cuts=0"]
     yield "augmentations", without_digits(error(PRESS, *few))
 

@@ -12,7 +12,7 @@ import pytest
 from isomortar.errors import ConvergenceError
 from isomortar.model.entities import Motion, Problem, Stage
 from isomortar.scene import Scene
-from isomortar.solve import bordered, monolithic
+from isomortar.solve import bordered, monolithic, newton
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.newton import KEPT_FACTORS, KEPT_SHARE
 from isomortar.solve.record import IterationRecord, Observer, StepResult
@@ -144,7 +144,7 @@ def test_kept_factors_are_those_of_the_same_increment_and_states(monkeypatch: py
 
     Factors are kept here as long as they gain anything, or changes of state would hide behind poor gains.
     """
-    monkeypatch.setattr(monolithic, "KEPT_SHARE", 0.95)
+    monkeypatch.setattr(newton, "KEPT_SHARE", 0.95)
     factors = Factors(monkeypatch)
     run(small_iron())
     assert factors.again > 10

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,6 +24,9 @@ from isomortar.solve.scales import BodyMeasures, Scales
 from isomortar.solve.singular import Multipliers, explain
 from isomortar.solve.system import LinearSystem, Source, block_product, entries
 from isomortar.solve.timing import Ledger
+
+#: Depth inside its master, as a share of the bodies' size, from which a control point that supports hold along the normal bears on it.
+SUNK = 1e-6
 
 
 @dataclass(frozen=True)
@@ -110,22 +113,31 @@ class Equilibrium:
         return State(balance.positions, tuple(pair.state(kinematics, response) for pair, kinematics, response in pairs))
 
     def balance(self, positions: FloatArray, start: State, laws: Sequence[Law]) -> Balance:
-        """Forces at given positions; slips count from `start`.
+        """Forces at given positions with the multipliers that given laws make of them; slips count from `start`.
 
         Raises
         ------
         FoldedElementError, LostProjectionError
         """
+        return self.forces(positions, start, lambda k, kinematics: self.pairs[k].respond(kinematics, laws[k]))
+
+    def forces(self, positions: FloatArray, start: State, respond: Callable[[int, Kinematics], Response]) -> Balance:
+        """The same with the response of each pair, by its number and kinematics, given by a function."""
         with self.ledger.phase("solid"):
             internal = self.solid.forces(positions)
         self.ledger.counts["solid residuals"] += 1
         total = internal.copy()
         kinematics, responses = [], []
-        for pair, law, state in zip(self.pairs, laws, start.contacts, strict=True):
+        for k, (pair, state) in enumerate(zip(self.pairs, start.contacts, strict=True)):
             kinematics.append(pair.kinematics(positions, state))
-            responses.append(pair.respond(kinematics[-1], law))
+            responses.append(respond(k, kinematics[-1]))
             pair.add_forces(positions, kinematics[-1], responses[-1], total)
         return Balance(positions, internal, total, tuple(kinematics), tuple(responses))
+
+    def bear(self, balance: Balance) -> bool:
+        """Whether control points that supports hold along the normal are inside their master, and bear on it from now on (theory 4.11)."""
+        depth = SUNK * self.numbering.size
+        return any(pair.bear(k, depth) for pair, k in zip(self.pairs, balance.kinematics, strict=True))
 
     def tangents(self, balance: Balance, laws: Sequence[Law]) -> tuple[list[Source], list[FloatArray]]:
         """Solid and condensed contact tangents as sources of the linear system, with their values."""

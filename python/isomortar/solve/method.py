@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
+from isomortar._bindings import Law
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.newton import KEPT_FACTORS
-from isomortar.solve.record import AugmentationRecord, Observer, State
-
-#: Depth inside its master, as a share of the bodies' size, from which a control point that supports hold along the normal bears on it.
-SUNK = 1e-6
+from isomortar.solve.record import AugmentationRecord, IterationRecord, Observer, State
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,10 @@ class Method(ABC):
             The increment has to be cut.
         """
 
-    def _bear(self, balance: Balance) -> bool:
-        """Whether control points that supports hold along the normal have ended inside their master, and now bear on it."""
-        depth = SUNK * self._equilibrium.numbering.size
-        return any(pair.bear(k, depth) for pair, k in zip(self._equilibrium.pairs, balance.kinematics, strict=True))
+
+def augmentation_record(
+    number: int, laws: Sequence[Law], changes: tuple[float, float], log: tuple[IterationRecord, ...]
+) -> AugmentationRecord:
+    """What is recorded of an augmentation: penalties are those of the first pair."""
+    penalties = laws[0].penalties if laws else np.zeros(2)
+    return AugmentationRecord(number, float(penalties[0]), float(penalties[1]), *changes, log)

@@ -1,19 +1,21 @@
-"""Newton's method for the positions, with the multipliers of one augmentation held."""
+"""Newton's method within a load increment: the loop that all ways of enforcing contact share."""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import count
+from typing import Generic, TypeVar
 
 import numpy as np
 
-from isomortar._bindings import Law
 from isomortar.errors import ConvergenceError, FoldedElementError, LostProjectionError
 from isomortar.geometry.patch import FloatArray
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.record import IterationRecord, State
 from isomortar.solve.scales import Scales
+from isomortar.solve.trail import Trail, states
 
 #: Factors are kept as long as a solve leaves at most this share of the residual.
 KEPT_SHARE = 0.2
@@ -25,40 +27,51 @@ MAX_HALVINGS = 5
 KEPT_FACTORS = "kept factors"
 
 
-def relative_residual(equilibrium: Equilibrium, balance: Balance, scales: Scales) -> float:
-    """Residual at the free unknowns of a body relative to its internal forces, of the body where that is largest (theory 5.6).
-
-    Forces count for no less than what makes round-off pass `newton_tolerance`: while a body moves rigidly, they are nothing else.
-    """
-    floor = scales.round_off / equilibrium.problem.settings.newton_tolerance
-    measures = equilibrium.measures
-    residual, forces = measures.free_norms(balance.total), np.maximum(measures.norms(balance.internal), floor)
-    return float(np.max(np.divide(residual, forces, out=np.zeros_like(residual), where=residual != 0.0)))  # a body with nothing free: zero
-
-
-def residual_round_off(equilibrium: Equilibrium, balance: Balance, scales: Scales) -> float:
-    """Round-off of the relative residual, of the bodies that have forces above it (theory 8.4)."""
-    forces = equilibrium.measures.norms(balance.internal)
-    loaded = forces > scales.round_off
-    return float(np.max(scales.round_off[loaded] / forces[loaded], initial=0.0))
-
-
 @dataclass(frozen=True)
-class _Iterate:
+class Iterate:
     """Forces at the positions of one iteration, and their relative residual."""
 
     balance: Balance
     residual: float
 
+    @property
+    def merit(self) -> float:
+        """What an update should make smaller."""
+        return self.residual
 
-class PositionSolver:
-    """Newton's method for the positions of one load increment.
+    @property
+    def left(self) -> str:
+        """What is left to solve, in words."""
+        return f"a relative residual of {self.residual:.2e}"
 
-    Factors are kept for as long as solves with them leave a small share of the residual: from one augmentation to the next, and at the
-    end of a Newton loop, the tangent changes little, and its factors are by far the dearest part of a solve.
+    @property
+    def states(self) -> bytes:
+        """The states of all control points, to compare with."""
+        return states(self.balance)
+
+
+Iterated = TypeVar("Iterated", bound=Iterate)
+Corrected = TypeVar("Corrected")
+
+
+@dataclass(frozen=True)
+class Converged(Generic[Iterated]):
+    """What a Newton loop came to: its last iterate, its iterations, its observed order of convergence."""
+
+    iterate: Iterated
+    log: tuple[IterationRecord, ...]
+    order: float
+
+
+class Newton(ABC, Generic[Iterated, Corrected]):
+    """Newton's method for one load increment; what its unknowns are, and how an update is shortened, say the methods of contact.
+
+    Factors are kept for as long as solves with them leave a small share of what there was: at the end of a loop, and from one loop of an
+    increment to the next, the tangent changes little, and its factors are by far the dearest part of a solve.
 
     Parameters
     ----------
+    equilibrium : Equilibrium
     start : State
         Last converged state: slips count from it.
     scales : Scales
@@ -67,77 +80,109 @@ class PositionSolver:
 
     def __init__(self, equilibrium: Equilibrium, start: State, scales: Scales) -> None:
         self._equilibrium, self._start, self._scales = equilibrium, start, scales
+        self._settings = equilibrium.problem.settings
+        self._keeps = "keeping" in self._settings.measures
         self._factorised = False
 
-    def solve(
-        self, positions: FloatArray, prescribed: FloatArray, laws: Sequence[Law], report: Callable[[IterationRecord], None]
-    ) -> Balance:
-        """Positions in balance with the laws.
+    def solve(self, iterate: Iterated, prescribed: FloatArray, observe: Callable[[IterationRecord], None]) -> Converged[Iterated]:
+        """Iterate until forces are in balance.
 
         Parameters
         ----------
-        positions : ndarray, shape (control points, 3)
+        iterate : Iterate
             Where the iteration starts.
         prescribed : ndarray, shape (control points, 3)
-            Increment of the prescribed positions, which enters the first linear solve.
-        report : callable
+            Increment of the prescribed positions, which enters the first solve with a tangent of its own.
+        observe : callable
             Gets the record of every iteration.
 
         Raises
         ------
         ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError
         """
-        settings = self._equilibrium.problem.settings
         moves = bool(np.any(prescribed))
-        keeps = "keeping" in settings.measures
-        keep = keeps and self._factorised and not moves
-        iterate, notes = self._evaluate(positions, laws), tuple[str, ...]()
-        tangents = 0
+        keep = self._keeps and self._factorised and not moves
+        log, tangents, notes = list[IterationRecord](), 0, tuple[str, ...]()
+        self._trail = Trail()
         for iteration in count():
-            balance = iterate.balance
-            report(IterationRecord(iteration, iterate.residual, balance.active, balance.active - balance.slipping, balance.slipping, notes))
-            if iterate.residual <= settings.newton_tolerance and not moves:
-                return balance
-            following, notes = self._by_kept_factors(iterate, laws) if keep else None, (KEPT_FACTORS,)
+            self._trail.add(iterate.balance)
+            log.append(_record(iteration, iterate, notes))
+            observe(log[-1])
+            if self._converged(iterate) and not moves:
+                reopened = self._reopened(iterate)
+                if reopened is iterate:
+                    return Converged(iterate, tuple(log), observed_order(log, self._round_off(iterate.balance)))
+                iterate, keep = reopened, False
+            following, notes = self._by_kept_factors(iterate) if keep else None, (KEPT_FACTORS,)
             if following is None:
-                if tangents == settings.max_iterations or not np.isfinite(iterate.residual):
+                if tangents == self._settings.max_iterations or not np.isfinite(iterate.merit):
                     break
-                correction = self._equilibrium.correction(balance, laws, prescribed if moves else np.zeros_like(prescribed))
-                following, notes = self._update(iterate, laws, correction, iteration)
+                iterate, correction, predicted = self._correct(iterate, None if tangents else prescribed)
+                following, shortened = self._update(iterate, correction, iteration)
+                notes, tangents = predicted + shortened, tangents + 1
                 self._factorised, moves = True, False
-                tangents += 1
-            keep = keeps and following.residual <= KEPT_SHARE * iterate.residual
+            keep = self._keeps and self._serve(iterate, following)
             iterate = following
-        raise ConvergenceError(f"Newton's method stopped at a relative residual of {iterate.residual:.2e} after {iteration} iterations")
+        toggling = self._trail.toggling(self._equilibrium.pairs, iterate.balance.kinematics)
+        raise ConvergenceError(f"Newton's method stopped at {iterate.left} after {iteration} iterations{toggling}")
 
-    def _evaluate(self, positions: FloatArray, laws: Sequence[Law]) -> _Iterate:
-        balance = self._equilibrium.balance(positions, self._start, laws)
-        return _Iterate(balance, relative_residual(self._equilibrium, balance, self._scales))
+    def _converged(self, iterate: Iterated) -> bool:
+        """Whether nothing is left to solve (theory 5.6)."""
+        return iterate.residual <= self._settings.newton_tolerance
 
-    def _update(self, iterate: _Iterate, laws: Sequence[Law], correction: FloatArray, iteration: int) -> tuple[_Iterate, tuple[str, ...]]:
-        """The next iterate: the full update; late, where that leaves more of the residual than before, one halved until it leaves less.
+    def _reopened(self, iterate: Iterated) -> Iterated:
+        """A converged iterate with the conditions that it calls for in addition; itself, where there are none."""
+        return iterate
 
-        A narrow cone is next to a kink: full updates go from one side of it to the other and back. If halving does not help either, the
-        full update it is.
-        """
-        whole = self._evaluate(iterate.balance.positions + correction, laws)
-        late = iteration >= CYCLE_FREE and "halving" in self._equilibrium.problem.settings.measures
-        if not late or whole.residual < iterate.residual:
-            return whole, ()
-        for halving in range(1, MAX_HALVINGS + 1):
-            following = self._evaluate(iterate.balance.positions + 0.5**halving * correction, laws)
-            if following.residual < iterate.residual:
-                return following, (f"halved {halving} times: residual",)
-        return whole, ()
+    @abstractmethod
+    def _correct(self, iterate: Iterated, prescribed: FloatArray | None) -> tuple[Iterated, Corrected, tuple[str, ...]]:
+        """Newton's correction by a tangent of its own, what it corrects, and what acted; the first one has the prescribed increment."""
 
-    def _by_kept_factors(self, iterate: _Iterate, laws: Sequence[Law]) -> _Iterate | None:
-        """The next iterate with the factors of an earlier tangent; None if these leave too much of the residual."""
-        correction = self._equilibrium.kept_correction(iterate.balance)
+    @abstractmethod
+    def _correct_again(self, iterate: Iterated) -> Corrected:
+        """Correction by the factors of the last tangent."""
+
+    @abstractmethod
+    def _moved(self, iterate: Iterated, correction: Corrected, share: float) -> Iterated:
+        """An iterate with a share of a correction."""
+
+    @abstractmethod
+    def _update(self, iterate: Iterated, correction: Corrected, iteration: int) -> tuple[Iterated, tuple[str, ...]]:
+        """The next iterate, by the whole correction or a share of it, and what acted."""
+
+    def _serve(self, iterate: Iterated, following: Iterated) -> bool:
+        """Whether factors that led from one iterate to the next are good enough for another solve."""
+        return following.merit <= KEPT_SHARE * iterate.merit
+
+    def _by_kept_factors(self, iterate: Iterated) -> Iterated | None:
+        """The next iterate with the factors of an earlier tangent; None if these do not serve."""
+        correction = self._correct_again(iterate)
         try:
-            following = self._evaluate(iterate.balance.positions + correction, laws)
+            following = self._moved(iterate, correction, 1.0)
         except (FoldedElementError, LostProjectionError):
             return None
-        return following if following.residual <= KEPT_SHARE * iterate.residual else None
+        return following if self._serve(iterate, following) else None
+
+    def _residual(self, balance: Balance) -> float:
+        """Residual at the free unknowns of a body relative to its internal forces, of the body where that is largest (theory 5.6).
+
+        Forces count for no less than what makes round-off pass `newton_tolerance`: while a body moves rigidly, they are nothing else.
+        """
+        floor = self._scales.round_off / self._settings.newton_tolerance
+        measures = self._equilibrium.measures
+        residual, forces = measures.free_norms(balance.total), np.maximum(measures.norms(balance.internal), floor)
+        return float(np.max(np.divide(residual, forces, out=np.zeros_like(residual), where=residual != 0.0)))  # a body with nothing free: 0
+
+    def _round_off(self, balance: Balance) -> float:
+        """Round-off of the relative residual, of the bodies that have forces above it (theory 8.4)."""
+        forces = self._equilibrium.measures.norms(balance.internal)
+        loaded = forces > self._scales.round_off
+        return float(np.max(self._scales.round_off[loaded] / forces[loaded], initial=0.0))
+
+
+def _record(iteration: int, iterate: Iterate, notes: tuple[str, ...]) -> IterationRecord:
+    active, slipping = iterate.balance.active, iterate.balance.slipping
+    return IterationRecord(iteration, iterate.merit, active, active - slipping, slipping, notes)
 
 
 def observed_order(log: Sequence[IterationRecord], round_off: float) -> float:

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from isomortar._bindings import Law
 from isomortar.errors import ConvergenceError
+from isomortar.geometry.patch import FloatArray
 from isomortar.solve.contact import Kinematics, PairMechanics, largest, median, ratio
 from isomortar.solve.equilibrium import Balance
-from isomortar.solve.method import Increment, Method
-from isomortar.solve.newton import PositionSolver, observed_order, residual_round_off
-from isomortar.solve.record import AugmentationRecord, IterationRecord, State
+from isomortar.solve.method import Increment, Method, augmentation_record
+from isomortar.solve.newton import CYCLE_FREE, MAX_HALVINGS, Iterate, Newton
+from isomortar.solve.record import State
 from isomortar.solve.scales import Scales
 
 #: How far from the contact conditions augmentations may end, in their tolerance, by the norm of their changes: the paper's mixes
@@ -20,6 +23,45 @@ from isomortar.solve.scales import Scales
 DISTANCE_ALLOWED = {"separate": 1.0, "paper": 10.0}
 #: How much more of the multipliers than forces of just `newton_tolerance` change from one augmentation to the next (0.5 to 2.5 were seen).
 LEFT_OPEN = 4.0
+
+
+class _PositionNewton(Newton[Iterate, FloatArray]):
+    """Newton's method for the positions, with the multipliers of one augmentation held."""
+
+    def held(self, laws: Sequence[Law], positions: FloatArray) -> Iterate:
+        """The first iterate with these laws."""
+        self._laws = laws
+        return self._evaluate(positions)
+
+    def _evaluate(self, positions: FloatArray) -> Iterate:
+        balance = self._equilibrium.balance(positions, self._start, self._laws)
+        return Iterate(balance, self._residual(balance))
+
+    def _moved(self, iterate: Iterate, correction: FloatArray, share: float) -> Iterate:
+        return self._evaluate(iterate.balance.positions + share * correction)
+
+    def _correct(self, iterate: Iterate, prescribed: FloatArray | None) -> tuple[Iterate, FloatArray, tuple[str, ...]]:
+        increment = np.zeros_like(iterate.balance.positions) if prescribed is None else prescribed
+        return iterate, self._equilibrium.correction(iterate.balance, self._laws, increment), ()
+
+    def _correct_again(self, iterate: Iterate) -> FloatArray:
+        return self._equilibrium.kept_correction(iterate.balance)
+
+    def _update(self, iterate: Iterate, correction: FloatArray, iteration: int) -> tuple[Iterate, tuple[str, ...]]:
+        """The full update; late, where that leaves more of the residual than before, one halved until it leaves less.
+
+        A narrow cone is next to a kink: full updates go from one side of it to the other and back. If halving does not help either, the
+        full update it is.
+        """
+        whole = self._moved(iterate, correction, 1.0)
+        late = iteration >= CYCLE_FREE and "halving" in self._settings.measures
+        if not late or whole.residual < iterate.residual:
+            return whole, ()
+        for halving in range(1, MAX_HALVINGS + 1):
+            following = self._moved(iterate, correction, 0.5**halving)
+            if following.residual < iterate.residual:
+                return following, (f"halved {halving} times: residual",)
+        return whole, ()
 
 
 class Uzawa(Method):
@@ -33,24 +75,17 @@ class Uzawa(Method):
         base = [factors * pair.stiffness(scales) / pair.penalty_area for pair in equilibrium.pairs]
         laws = [pair.law(b, s.pressure, s.traction) for pair, b, s in zip(equilibrium.pairs, base, start.contacts, strict=True)]
 
-        newton = PositionSolver(equilibrium, start, scales)
+        newton = _PositionNewton(equilibrium, start, scales)
         positions, records, orders, growth = start.positions, [], [], 1.0
         for augmentation in range(1, self._settings.max_augmentations + 1):
-            log: list[IterationRecord] = []
-
-            def report(record: IterationRecord, log: list[IterationRecord] = log, number: int = augmentation) -> None:
-                log.append(record)
-                self._observer.iteration(step, time, number, record)
-
-            balance = newton.solve(positions, prescribed, laws, report)
-            orders.append(observed_order(log, residual_round_off(equilibrium, balance, scales)))
+            found = newton.solve(newton.held(laws, positions), prescribed, partial(self._observer.iteration, step, time, augmentation))
+            orders.append(found.order)
+            balance = found.iterate.balance
             changes, distances = self._changes(laws, balance), self._distances(laws, balance, scales)
-            penalties = laws[0].penalties if laws else np.zeros(2)
-            record = AugmentationRecord(augmentation, float(penalties[0]), float(penalties[1]), changes[0], changes[1], tuple(log))
-            records.append(record)
-            self._observer.augmented(step, time, record)
+            records.append(augmentation_record(augmentation, laws, changes, found.log))
+            self._observer.augmented(step, time, records[-1])
             off = np.array(distances) / DISTANCE_ALLOWED[self._settings.augmentation_norm]
-            if np.max([*changes, *off]) <= self._settings.augmentation_tolerance and not self._bear(balance):
+            if np.max([*changes, *off]) <= self._settings.augmentation_tolerance and not equilibrium.bear(balance):
                 return Increment(balance, tuple(records), tuple(orders))
             growth = min(growth * self._settings.penalty_growth, max(self._settings.penalty_growth_max, 1.0))
             laws = [

@@ -1,0 +1,75 @@
+"""Where a Newton loop has been: states of control points and master elements of feet, and which of them go to and fro."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from isomortar.geometry.patch import IntArray
+from isomortar.solve.contact import Kinematics, PairMechanics
+from isomortar.solve.equilibrium import Balance
+from isomortar.solve.feet import beside_poles
+
+
+def states(balance: Balance) -> bytes:
+    """The states of all slave control points, to compare with."""
+    return b"".join(response.state.tobytes() for response in balance.responses)
+
+
+def _elements(balance: Balance) -> IntArray:
+    """Master elements and fixed coordinates of the slave quadrature points, shape (points of all pairs, 4)."""
+    places = [np.hstack([k.projections.element, k.projections.fixed]) for k in balance.kinematics]
+    return np.concatenate(places or [np.zeros((0, 4), dtype=np.int32)])
+
+
+class Trail:
+    """The iterates of a Newton loop.
+
+    Attributes
+    ----------
+    states : list of bytes
+        Their states of control points.
+    """
+
+    def __init__(self) -> None:
+        self.states: list[bytes] = []
+        self._elements: list[IntArray] = []
+
+    def add(self, balance: Balance) -> None:
+        """Note an iterate."""
+        self.states.append(states(balance))
+        self._elements.append(_elements(balance))
+
+    def toggling(self, pairs: Sequence[PairMechanics], kinematics: Sequence[Kinematics]) -> str:
+        """What changed to and fro in the last iterations, as a part of a sentence; `kinematics` are those of the last one."""
+        poles = [beside_poles(pair.pair, k.projections) for pair, k in zip(pairs, kinematics, strict=True)]
+        by_poles = np.concatenate(poles or [np.zeros(0, dtype=np.bool_)])
+        return toggling(self.states, self._elements, by_poles, any(pair.summed for pair in pairs))
+
+
+def toggling(seen: Sequence[bytes], visited: Sequence[IntArray], by_poles: np.ndarray, summed: bool) -> str:
+    """What changed to and fro in the last iterations, as a part of a sentence."""
+    states = np.array([np.frombuffer(s, dtype=np.int32) for s in seen[-6:]])
+    points = np.flatnonzero(np.any(states != states[0], axis=0))
+    if points.size:
+        hint = ' (solver.slip_sum = "local" has no jump where a neighbour becomes active)' if summed else ""
+        return f"; slave control points {_first_few(points)} change their states from iteration to iteration{hint}"
+    elements = np.array(visited[-6:])
+    crossing = np.flatnonzero(np.any(elements != elements[0], axis=(0, 2)))
+    about = crossing[by_poles[crossing]]
+    if about.size:
+        return (
+            f"; nearest points of slave quadrature points {_first_few(about)} go round a pole of the master: pressed in, it is a hollow "
+            "vertex, and what is above one has no nearest point of its own. Press beside it, or take a mesh without a pole there"
+        )
+    if crossing.size:
+        return (
+            f"; slave quadrature points {_first_few(crossing)} cross a knot line of the master from iteration to iteration, where a master "
+            "of order 1 or of Lagrange elements has a kink, and the curvature of one of order 2 jumps (not so NURBS of order 3 and more)"
+        )
+    return ""
+
+
+def _first_few(numbers: np.ndarray) -> str:
+    return ", ".join(str(int(i)) for i in numbers[:10]) + (", ..." if len(numbers) > 10 else "")
