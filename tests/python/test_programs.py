@@ -121,7 +121,7 @@ def test_what_is_not_installed_says_what_to_install(monkeypatch: pytest.MonkeyPa
 
 
 def test_calculix_deck_has_all_nodes_elements_faces_and_what_is_prescribed() -> None:
-    told = LagrangeProblem(block(), "CalculiX", LAWS)
+    told = LagrangeProblem(block("stages.slide.motions.top.translate=[-0.00001,0,0]"), "CalculiX", LAWS)
     lines = list(calculix.deck(told, 1e4, 1e3))
     first = lines.index("*NODE, NSET=ALL") + 1
     points = np.array([[float(x) for x in line.split(",")] for line in lines[first : first + len(told.nodes)]])
@@ -133,6 +133,8 @@ def test_calculix_deck_has_all_nodes_elements_faces_and_what_is_prescribed() -> 
     # The slave touches with the faces below of its four elements, the master with those above of its upper layer.
     assert lines[lines.index("*SURFACE, NAME=SLAVE0") + 1] == "1, S1"
     assert lines[lines.index("*SURFACE, NAME=MASTER0") + 1] == "14, S2"
+    fields = [field for line in lines[1:] if not line.startswith("*") for field in line.split(",")][1:]
+    assert max(len(field.strip()) for field in fields) <= 20, "CalculiX reads no more of a number"
     assert lines.count("*BOUNDARY") == lines.count("*END STEP") == 4
     bulk, shear = (getattr(told.problem.bodies[0].material, name) for name in ("bulk", "shear"))
     c10, d1 = (float(x) for x in lines[lines.index("*HYPERELASTIC, NEO HOOKE") + 1].split(","))
@@ -213,9 +215,16 @@ def test_what_calculix_writes_is_read() -> None:
     vectors = np.random.default_rng(2).normal(size=(2, *told.nodes.shape)).round(6)
     dat = DAT.format(1, _table(vectors[0]), _table(vectors[1]))
     cvg = " SUMMARY\n STEP INC\n\n 1 1 1 1 0.5\n 1 1 1 2 0.1\n 2 1 1 1 0.3\n"
-    stopped = Finished(End("crashed", "the process ended with status 201", 201), " *ERROR: increment size smaller than minimum\n", "", 0.5)
+    stopped = Finished(
+        End("crashed", "the process ended with status 201", 201), " *ERROR: increment size\n        smaller than minimum\n\n said", "", 0.5
+    )
     found = calculix._outcome(told, stopped, dat, cvg)
-    assert (found.ending, found.words, len(found.steps), found.solves) == ("not converged", "increment size smaller than minimum", 1, 3)
+    assert (found.ending, found.words, len(found.steps), found.solves) == (
+        "not converged",
+        "*ERROR: increment size smaller than minimum",
+        1,
+        3,
+    )
     np.testing.assert_allclose(found.steps[0].positions, told.nodes + vectors[1])
     np.testing.assert_allclose(found.steps[0].reactions[0].force, vectors[0][np.isclose(told.nodes[:, 2], 0.0)].sum(axis=0))
     done = calculix._outcome(told, Finished(End("measured", "", 0), "", "", 0.5), dat + dat, cvg)

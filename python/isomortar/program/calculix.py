@@ -37,8 +37,10 @@ ELEMENTS = {1: ("C3D8", np.array(_CORNERS) // 2), 2: ("C3D20", np.array(_CORNERS
 _FACES = {"w0": "S1", "w1": "S2", "v0": "S3", "u1": "S4", "v1": "S5", "u0": "S6"}
 #: A table of the .dat file: what it holds, then a line a node.
 _TABLE = re.compile(r"^ (forces|displacements) \(.*\) for set \S+ and time.*\n\n((?: +\d+(?: +\S+){3}\n)+)", re.MULTILINE)
+#: What it says of a mistake, on its standard output.
+_ERROR = re.compile(r"\*ERROR.*(?:\n {2,}\S.*)*")
 #: What CalculiX says where a load step does not converge.
-_GAVE_UP = re.compile(r"increment size smaller than minimum|too many cutbacks|solution seems to diverge", re.IGNORECASE)
+_GAVE_UP = re.compile(r"increment size\s+smaller than minimum|too many cutbacks|solution seems to diverge", re.IGNORECASE)
 
 
 class CalculiX:
@@ -91,7 +93,7 @@ def deck(told: LagrangeProblem, pressure_slope: float, stick_slope: float) -> It
     elements = {body.name: _elements(told, body) for body in told.problem.bodies}
     used = np.unique(np.concatenate([numbers.ravel() for numbers in elements.values()]))
     yield "*NODE, NSET=ALL"
-    yield from (f"{node + 1}, " + ", ".join(f"{x:.16g}" for x in told.nodes[node]) for node in used)
+    yield from (f"{node + 1}, " + ", ".join(map(_number, told.nodes[node])) for node in used)
     first = 1
     for number, body in enumerate(told.problem.bodies):
         yield f"*ELEMENT, TYPE={ELEMENTS[_order(body)][0]}, ELSET=BODY{number}"
@@ -105,6 +107,11 @@ def deck(told: LagrangeProblem, pressure_slope: float, stick_slope: float) -> It
     for number, contact in enumerate(told.problem.contacts):
         yield from _contact(number, contact, pressure_slope, stick_slope)
     yield from _steps(told, used)
+
+
+def _number(value: float) -> str:
+    """A number as CalculiX reads it: a field has twenty characters at the most."""
+    return f"{value:.12e}"
 
 
 def _elements(told: LagrangeProblem, body: Body) -> IntArray:
@@ -131,14 +138,14 @@ def _places(problem: Problem, body: Body) -> Iterator[tuple[str, Face]]:
 
 def _law(material: Material) -> tuple[str, str]:
     if material.law == "linear-elastic":
-        return "*ELASTIC", f"{material.young:.16g}, {material.poisson:.16g}"
-    return "*HYPERELASTIC, NEO HOOKE", f"{material.shear / 2:.16g}, {2 / material.bulk:.16g}"
+        return "*ELASTIC", f"{_number(material.young)}, {_number(material.poisson)}"
+    return "*HYPERELASTIC, NEO HOOKE", f"{_number(material.shear / 2)}, {_number(2 / material.bulk)}"
 
 
 def _contact(number: int, contact: Contact, pressure_slope: float, stick_slope: float) -> Iterator[str]:
-    yield from (f"*SURFACE INTERACTION, NAME=CONTACT{number}", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR", f"{pressure_slope:.16g}")
+    yield from (f"*SURFACE INTERACTION, NAME=CONTACT{number}", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR", _number(pressure_slope))
     if contact.friction:
-        yield from ("*FRICTION", f"{contact.friction:.16g}, {stick_slope:.16g}")
+        yield from ("*FRICTION", f"{_number(contact.friction)}, {_number(stick_slope)}")
     yield from (f"*CONTACT PAIR, INTERACTION=CONTACT{number}, TYPE=SURFACE TO SURFACE", f"SLAVE{number}, MASTER{number}")
 
 
@@ -153,7 +160,7 @@ def _steps(told: LagrangeProblem, used: IntArray) -> Iterator[str]:
         yield from ("*CONTROLS, PARAMETERS=FIELD", f"{told.problem.settings.newton_tolerance:g}, 0.01", "*BOUNDARY")
         for unknown, value in zip(told.prescribed[prescribed], displacements[prescribed], strict=True):
             node, component = divmod(int(unknown), 3)
-            yield f"{node + 1}, {component + 1}, {component + 1}, {value:.16g}"
+            yield f"{node + 1}, {component + 1}, {component + 1}, {_number(value)}"
         for nodes, what in (("HELD", "RF"), ("ALL", "U")):
             yield from (f"*NODE PRINT, NSET={nodes}, FREQUENCY=100000", what)
         yield "*END STEP"
@@ -188,9 +195,9 @@ def _outcome(told: LagrangeProblem, finished: Finished, dat: str, cvg: str) -> O
         load_step(told.problem, number, told.nodes + displacements, np.nan_to_num(forces))
         for number, (forces, displacements) in enumerate(zip(tables[::2], tables[1::2], strict=False), start=1)
     ]
-    gave_up = _GAVE_UP.search(finished.output)
-    ending: Ending = "not converged" if gave_up else finished.end.ending
-    words = gave_up.group() if gave_up else finished.last_words
+    ending: Ending = "not converged" if _GAVE_UP.search(finished.output) else finished.end.ending
+    error = _ERROR.search(finished.output)
+    words = " ".join(error.group().split()) if error else finished.last_words
     return Outcome(*ended(steps, told.problem, ending, words), tuple(steps), _iterations(cvg.splitlines()), finished.cpu_seconds)
 
 
