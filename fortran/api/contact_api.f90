@@ -1,42 +1,55 @@
-!> Functions and reference areas at the quadrature points of a slave face (isomortar_contact_slave).
-!> `nodes` are numbered within the face, from 0.
-subroutine slave_tables(layout, knots, nknots, point, weight, npoints, axis, side, gauss, reference, n, &
-    nlocal, nelements, nquad, nodes, basis, area)
-  use iso_c_binding, only: c_double, c_int
-  use isomortar_api_unpack, only: unpack_patch
+! What Python sees of contact. `slave`, `map`, `friction` and patterns are handles (see isomortar_api_descriptors); numbers of control
+! points, elements and blocks count from 0 outside and from 1 inside. Fields at quadrature points have `nquad` entries, those of
+! test functions `ntest`.
+
+!> Functions and reference areas at the quadrature points of a face of a patch, by the axis across it (1..3) and its end there
+!> (0, 1) (isomortar_contact_slave). `nodes` are numbered within the face.
+subroutine slave_tables(patch, axis, side, gauss, reference, n, nlocal, nelements, nquad, nodes, values, area, status)
+  use iso_c_binding, only: c_double, c_int, c_int64_t
+  use isomortar_api_descriptors, only: find
   use isomortar_contact_slave, only: tables => slave_tables
+  use isomortar_nurbs_patch, only: patch_t
   use isomortar_nurbs_surface, only: face_of
   implicit none
-  integer(c_int), intent(in) :: nknots, npoints, n, nlocal, nelements, nquad
-  integer(c_int), intent(in) :: layout(9), axis, side, gauss(2), point(npoints)
-  real(c_double), intent(in) :: knots(nknots), weight(npoints), reference(3, n)
-  integer(c_int), intent(out) :: nodes(nlocal, nelements)
-  real(c_double), intent(out) :: basis(nlocal, nquad), area(nquad)
+  integer(c_int64_t), intent(in) :: patch
+  integer(c_int), intent(in) :: n, nlocal, nelements, nquad, axis, side, gauss(2)
+  real(c_double), intent(in) :: reference(3, n)
+  integer(c_int), intent(out) :: nodes(nlocal, nelements), status
+  real(c_double), intent(out) :: values(nlocal, nquad), area(nquad)
+  type(patch_t), pointer :: body
 
-  call tables(face_of(unpack_patch(layout, knots, point, weight), axis, side), gauss, reference, nodes, basis, area)
+  status = 0
+  call find(patch, body, status)
+  if (status /= 0) return
+  call tables(face_of(body, axis, side), gauss, reference, nodes, values, area)
   nodes = nodes - 1
 end subroutine slave_tables
 
-!> Project every slave quadrature point (isomortar_contact_control). `xi` holds starts where `started` is 1.
-subroutine project_points(nodes, basis, area, point, nlocal, nelements, nquad, nslave, kind, knots, nknots, master_point, &
-    master_weight, nmaster, x, n, started, origin, had, xi, element, fixed, found, doubt, slip, slips, status, place)
-  use iso_c_binding, only: c_double, c_int
-  use isomortar_api_unpack, only: unpack_gap_map, unpack_slave
+!> Project every slave quadrature point (isomortar_contact_control). `xi` holds starts where `started` is 1; `origin` and `had` are
+!> the projections at the last converged load step.
+subroutine project_points(slave, map, x, n, started, origin, had, nquad, xi, element, fixed, found, doubt, slip, slips, status, &
+    place)
+  use iso_c_binding, only: c_double, c_int, c_int64_t
+  use isomortar_api_descriptors, only: find
   use isomortar_contact_control, only: project => project_points
   use isomortar_contact_gap_map_map, only: gap_map_t, projections_t
+  use isomortar_contact_slave, only: slave_t
   implicit none
-  integer(c_int), intent(in) :: nlocal, nelements, nquad, nslave, nknots, nmaster, n
-  integer(c_int), intent(in) :: nodes(nlocal, nelements), point(nslave), kind(11), master_point(nmaster)
-  integer(c_int), intent(in) :: started(nquad), had(nquad)
-  real(c_double), intent(in) :: basis(nlocal, nquad), area(nquad), knots(nknots), master_weight(nmaster), x(3, n)
-  real(c_double), intent(in) :: origin(2, nquad)
+  integer(c_int64_t), intent(in) :: slave, map
+  integer(c_int), intent(in) :: n, nquad, started(nquad), had(nquad)
+  real(c_double), intent(in) :: x(3, n), origin(2, nquad)
   real(c_double), intent(inout) :: xi(2, nquad)
-  integer(c_int), intent(out) :: element(2, nquad), fixed(2, nquad), found(nquad), doubt(nquad), slips(nquad)
+  integer(c_int), intent(out) :: element(2, nquad), fixed(2, nquad), found(nquad), doubt(nquad), slips(nquad), status, place
   real(c_double), intent(out) :: slip(2, nquad)
-  integer(c_int), intent(out) :: status, place
-  class(gap_map_t), allocatable :: map
+  type(slave_t), pointer :: side
+  class(gap_map_t), pointer :: onto
   type(projections_t) :: projections
 
+  status = 0
+  place = 0
+  call find(slave, side, status)
+  call find(map, onto, status)
+  if (status /= 0) return
   allocate (projections%place(2, nquad), projections%fixed(2, nquad), projections%found(nquad), projections%doubt(nquad), &
     projections%slip(2, nquad), projections%slips(nquad))
   projections%xi = xi
@@ -44,9 +57,7 @@ subroutine project_points(nodes, basis, area, point, nlocal, nelements, nquad, n
   projections%fixed = .false.
   projections%found = .false.
   projections%doubt = 0
-  call unpack_gap_map(kind, knots, master_point, master_weight, map)
-  call project(unpack_slave(nodes, basis, area, point), map, x, &
-    started /= 0, origin, had /= 0, projections, status, place)
+  call project(side, onto, x, started /= 0, origin, had /= 0, projections, status, place)
   xi = projections%xi
   element = projections%place - 1
   fixed = merge(1, 0, projections%fixed)
@@ -60,34 +71,37 @@ subroutine project_points(nodes, basis, area, point, nlocal, nelements, nquad, n
 end subroutine project_points
 
 !> Control quantities from projections (isomortar_contact_control).
-subroutine control_quantities(nodes, basis, area, point, nlocal, nelements, nquad, nslave, kind, knots, nknots, master_point, &
-    master_weight, nmaster, x, n, xi, element, fixed, found, slip, weight, square, gap, control_slip, metric, point_metric)
-  use iso_c_binding, only: c_double, c_int
-  use isomortar_api_unpack, only: unpack_gap_map, unpack_slave
+subroutine control_quantities(slave, map, x, n, xi, element, fixed, found, slip, nquad, ntest, weight, square, gap, &
+    control_slip, metric, point_metric, status)
+  use iso_c_binding, only: c_double, c_int, c_int64_t
+  use isomortar_api_descriptors, only: find
   use isomortar_contact_control, only: control_t, integrate => control_quantities
   use isomortar_contact_gap_map_map, only: gap_map_t, projections_t
+  use isomortar_contact_slave, only: slave_t
   implicit none
-  integer(c_int), intent(in) :: nlocal, nelements, nquad, nslave, nknots, nmaster, n
-  integer(c_int), intent(in) :: nodes(nlocal, nelements), point(nslave), kind(11), master_point(nmaster)
-  integer(c_int), intent(in) :: element(2, nquad), fixed(2, nquad), found(nquad)
-  real(c_double), intent(in) :: basis(nlocal, nquad), area(nquad), knots(nknots), master_weight(nmaster), x(3, n)
-  real(c_double), intent(in) :: xi(2, nquad), slip(2, nquad)
-  real(c_double), intent(out) :: weight(nslave), square(nslave), gap(nslave), control_slip(2, nslave), metric(3, nslave)
+  integer(c_int64_t), intent(in) :: slave, map
+  integer(c_int), intent(in) :: n, nquad, ntest, element(2, nquad), fixed(2, nquad), found(nquad)
+  real(c_double), intent(in) :: x(3, n), xi(2, nquad), slip(2, nquad)
+  real(c_double), intent(out) :: weight(ntest), square(ntest), gap(ntest), control_slip(2, ntest), metric(3, ntest)
   real(c_double), intent(out) :: point_metric(3, nquad)
-  class(gap_map_t), allocatable :: map
+  integer(c_int), intent(out) :: status
+  type(slave_t), pointer :: side
+  class(gap_map_t), pointer :: onto
   type(projections_t) :: projections
   type(control_t) :: control
 
+  status = 0
+  call find(slave, side, status)
+  call find(map, onto, status)
+  if (status /= 0) return
   projections%xi = xi
   projections%place = element + 1
   projections%fixed = fixed /= 0
   projections%found = found /= 0
   projections%slip = slip
-  allocate (control%weight(nslave), control%square(nslave), control%gap(nslave), control%slip(2, nslave), &
-    control%metric(3, nslave), control%point_metric(3, nquad))
-  call unpack_gap_map(kind, knots, master_point, master_weight, map)
-  call integrate(unpack_slave(nodes, basis, area, point), map, x, projections, &
-    control)
+  allocate (control%weight(ntest), control%square(ntest), control%gap(ntest), control%slip(2, ntest), control%metric(3, ntest), &
+    control%point_metric(3, nquad))
+  call integrate(side, onto, x, projections, control)
   weight = control%weight
   square = control%square
   gap = control%gap
@@ -96,38 +110,35 @@ subroutine control_quantities(nodes, basis, area, point, nlocal, nelements, nqua
   point_metric = control%point_metric
 end subroutine control_quantities
 
-!> Control pressures, tractions, states and their slopes of the augmented law (isomortar_contact_augmentation).
-!> `friction` and `parameters` name its law of friction (isomortar_contact_friction_table). `field_slip` is the field of control
-!> slips at the quadrature points, with `summed` only.
-subroutine augmented_multipliers(nodes, basis, area, point, nlocal, nelements, nquad, nslave, weight, square, gap, control_slip, &
-    metric, point_metric, summed, penalties, friction, parameters, nparameters, pressure_k, traction_k, slip_margin, forgiving, &
-    held, bears, free, pressure, traction, state, pressure_slope, traction_slope, field_slip, status, place)
-  use iso_c_binding, only: c_double, c_int
-  use isomortar_api_unpack, only: unpack_slave
+!> Control pressures, tractions, states and their slopes of the augmented law (isomortar_contact_augmentation). `field_slip` is the
+!> field of control slips at the quadrature points, with `summed` only.
+subroutine augmented_multipliers(slave, friction, weight, square, gap, control_slip, metric, point_metric, nquad, ntest, summed, &
+    penalties, pressure_k, traction_k, slip_margin, forgiving, held, bears, free, pressure, traction, state, pressure_slope, &
+    traction_slope, field_slip, status)
+  use iso_c_binding, only: c_double, c_int, c_int64_t
+  use isomortar_api_descriptors, only: find
   use isomortar_contact_augmentation, only: law_t, respond, response_t
   use isomortar_contact_control, only: control_t
-  use isomortar_contact_friction_table, only: friction_of
+  use isomortar_contact_friction_law, only: friction_t
+  use isomortar_contact_slave, only: slave_t
   implicit none
-  integer(c_int), intent(in) :: nlocal, nelements, nquad, nslave, friction, nparameters
-  integer(c_int), intent(in) :: nodes(nlocal, nelements), point(nslave), summed, forgiving, held(nslave), bears(nslave)
-  real(c_double), intent(in) :: basis(nlocal, nquad), area(nquad), weight(nslave), square(nslave), gap(nslave)
-  real(c_double), intent(in) :: control_slip(2, nslave), metric(3, nslave), point_metric(3, nquad), penalties(2)
-  real(c_double), intent(in) :: parameters(nparameters), pressure_k(nslave), traction_k(2, nslave), slip_margin, free(2, 2, nslave)
-  real(c_double), intent(out) :: pressure(nslave), traction(2, nslave), pressure_slope(nslave), traction_slope(2, 6, nslave)
+  integer(c_int64_t), intent(in) :: slave, friction
+  integer(c_int), intent(in) :: nquad, ntest, summed, forgiving, held(ntest), bears(ntest)
+  real(c_double), intent(in) :: weight(ntest), square(ntest), gap(ntest), control_slip(2, ntest), metric(3, ntest)
+  real(c_double), intent(in) :: point_metric(3, nquad), penalties(2), pressure_k(ntest), traction_k(2, ntest), slip_margin
+  real(c_double), intent(in) :: free(2, 2, ntest)
+  real(c_double), intent(out) :: pressure(ntest), traction(2, ntest), pressure_slope(ntest), traction_slope(2, 6, ntest)
   real(c_double), intent(out) :: field_slip(2, nquad)
-  integer(c_int), intent(out) :: state(nslave), status, place
+  integer(c_int), intent(out) :: state(ntest), status
+  type(slave_t), pointer :: side
+  class(friction_t), pointer :: rubs
   type(control_t) :: control
   type(law_t) :: law
   type(response_t) :: response
 
-  pressure = 0.0_c_double
-  traction = 0.0_c_double
-  state = 0
-  pressure_slope = 0.0_c_double
-  traction_slope = 0.0_c_double
-  field_slip = 0.0_c_double
-  place = friction
-  call friction_of(friction, parameters, law%friction, status)
+  status = 0
+  call find(slave, side, status)
+  call find(friction, rubs, status)
   if (status /= 0) return
   control%weight = weight
   control%square = square
@@ -135,6 +146,7 @@ subroutine augmented_multipliers(nodes, basis, area, point, nlocal, nelements, n
   control%slip = control_slip
   control%metric = metric
   control%point_metric = point_metric
+  if (associated(rubs)) allocate (law%friction, source=rubs)
   law%normal_penalty = penalties(1)
   law%tangential_penalty = penalties(2)
   law%pressure = pressure_k
@@ -144,7 +156,7 @@ subroutine augmented_multipliers(nodes, basis, area, point, nlocal, nelements, n
   law%held = held /= 0
   law%bears = bears /= 0
   law%free = free
-  call respond(unpack_slave(nodes, basis, area, point), control, law, summed /= 0, response, field_slip)
+  call respond(side, control, law, summed /= 0, response, field_slip)
   pressure = response%multipliers%pressure
   traction = response%multipliers%traction
   state = response%state
@@ -152,114 +164,130 @@ subroutine augmented_multipliers(nodes, basis, area, point, nlocal, nelements, n
   traction_slope = response%traction_slope
 end subroutine augmented_multipliers
 
-!> Largest norms of control tractions that a law of friction (see `augmented_multipliers`) bears under control pressures: 0 where
-!> open, and without friction.
-subroutine friction_radius(friction, parameters, nparameters, pressure, n, radius, status, place)
-  use iso_c_binding, only: c_double, c_int
+!> Largest norms of control tractions that a law of friction bears under control pressures: 0 where open, and without friction.
+subroutine friction_radius(friction, pressure, n, radius, status)
+  use iso_c_binding, only: c_double, c_int, c_int64_t
+  use isomortar_api_descriptors, only: find
   use isomortar_contact_friction_law, only: friction_t
-  use isomortar_contact_friction_table, only: friction_of
   implicit none
-  integer(c_int), intent(in) :: friction, nparameters, n
-  real(c_double), intent(in) :: parameters(nparameters), pressure(n)
+  integer(c_int64_t), intent(in) :: friction
+  integer(c_int), intent(in) :: n
+  real(c_double), intent(in) :: pressure(n)
   real(c_double), intent(out) :: radius(n)
-  integer(c_int), intent(out) :: status, place
-  class(friction_t), allocatable :: law
+  integer(c_int), intent(out) :: status
+  class(friction_t), pointer :: law
   real(c_double) :: slope
   integer :: i
 
   radius = 0.0_c_double
-  place = friction
-  call friction_of(friction, parameters, law, status)
-  if (status /= 0 .or. .not. allocated(law)) return
+  status = 0
+  call find(friction, law, status)
+  if (.not. associated(law)) return
   do i = 1, n
     if (.not. pressure(i) <= 0.0_c_double) call law%limit(pressure(i), radius(i), slope)
   end do
 end subroutine friction_radius
 
-!> Add contact forces; separately on slave and master control points (isomortar_contact_blocks).
-subroutine contact_forces(nodes, basis, area, point, nlocal, nelements, nquad, nslave, kind, knots, nknots, master_point, &
-    master_weight, nmaster, x, n, xi, element, fixed, found, with_friction, pressure, traction, state, forces)
-  use iso_c_binding, only: c_double, c_int
-  use isomortar_api_unpack, only: unpack_gap_map, unpack_slave
+!> Add contact forces on slave and master control points (isomortar_contact_blocks).
+subroutine contact_forces(slave, map, x, n, xi, element, fixed, found, nquad, with_friction, pressure, traction, state, ntest, &
+    forces, status)
+  use iso_c_binding, only: c_double, c_int, c_int64_t
+  use isomortar_api_descriptors, only: find
   use isomortar_contact_blocks, only: integrate_forces, multipliers_t
   use isomortar_contact_gap_map_map, only: gap_map_t, projections_t
+  use isomortar_contact_slave, only: slave_t
   implicit none
-  integer(c_int), intent(in) :: nlocal, nelements, nquad, nslave, nknots, nmaster, n
-  integer(c_int), intent(in) :: nodes(nlocal, nelements), point(nslave), kind(11), master_point(nmaster)
-  integer(c_int), intent(in) :: element(2, nquad), fixed(2, nquad), found(nquad), with_friction, state(nslave)
-  real(c_double), intent(in) :: basis(nlocal, nquad), area(nquad), knots(nknots), master_weight(nmaster), x(3, n)
-  real(c_double), intent(in) :: xi(2, nquad), pressure(nslave), traction(2, nslave)
+  integer(c_int64_t), intent(in) :: slave, map
+  integer(c_int), intent(in) :: n, nquad, ntest, element(2, nquad), fixed(2, nquad), found(nquad), with_friction, state(ntest)
+  real(c_double), intent(in) :: x(3, n), xi(2, nquad), pressure(ntest), traction(2, ntest)
   real(c_double), intent(inout) :: forces(3, n)
-  class(gap_map_t), allocatable :: map
+  integer(c_int), intent(out) :: status
+  type(slave_t), pointer :: side
+  class(gap_map_t), pointer :: onto
   type(projections_t) :: projections
 
+  status = 0
+  call find(slave, side, status)
+  call find(map, onto, status)
+  if (status /= 0) return
   projections%xi = xi
   projections%place = element + 1
   projections%fixed = fixed /= 0
   projections%found = found /= 0
-  call unpack_gap_map(kind, knots, master_point, master_weight, map)
-  call integrate_forces(unpack_slave(nodes, basis, area, point), map, x, &
-    projections, with_friction /= 0, multipliers_t(pressure, traction, state /= 0), forces)
+  call integrate_forces(side, onto, x, projections, with_friction /= 0, multipliers_t(pressure, traction, state /= 0), forces)
 end subroutine contact_forces
 
 !> Add constraint rows and the geometric tangent (isomortar_contact_blocks).
-subroutine contact_blocks(nodes, basis, area, point, nlocal, nelements, nquad, nslave, kind, knots, nknots, master_point, &
-    master_weight, nmaster, x, n, xi, element, fixed, found, slips, with_friction, pressure, traction, state, field_slip, &
-    row_start, row_column, nrows, nkinds, rows, start, nstart, column, nblocks, tangent, status, place)
-  use iso_c_binding, only: c_double, c_int
-  use isomortar_api_unpack, only: unpack_gap_map, unpack_pattern, unpack_slave
+subroutine contact_blocks(slave, map, x, n, xi, element, fixed, found, slips, nquad, with_friction, pressure, traction, state, &
+    ntest, field_slip, row_pattern, nrows, nkinds, rows, pattern, nblocks, tangent, status, place)
+  use iso_c_binding, only: c_double, c_int, c_int64_t
+  use isomortar_api_descriptors, only: find
   use isomortar_contact_blocks, only: integrate_blocks, multipliers_t
   use isomortar_contact_gap_map_map, only: gap_map_t, projections_t
+  use isomortar_contact_slave, only: slave_t
+  use isomortar_sparse_blocks, only: pattern_t
   implicit none
-  integer(c_int), intent(in) :: nlocal, nelements, nquad, nslave, nknots, nmaster, n, nrows, nkinds, nstart, nblocks
-  integer(c_int), intent(in) :: nodes(nlocal, nelements), point(nslave), kind(11), master_point(nmaster)
-  integer(c_int), intent(in) :: element(2, nquad), fixed(2, nquad), found(nquad), slips(nquad), with_friction, state(nslave)
-  integer(c_int), intent(in) :: row_start(nslave + 1), row_column(nrows), start(nstart), column(nblocks)
-  real(c_double), intent(in) :: basis(nlocal, nquad), area(nquad), knots(nknots), master_weight(nmaster), x(3, n)
-  real(c_double), intent(in) :: xi(2, nquad), pressure(nslave), traction(2, nslave), field_slip(2, nquad)
+  integer(c_int64_t), intent(in) :: slave, map, row_pattern, pattern
+  integer(c_int), intent(in) :: n, nquad, ntest, nrows, nkinds, nblocks
+  integer(c_int), intent(in) :: element(2, nquad), fixed(2, nquad), found(nquad), slips(nquad), with_friction, state(ntest)
+  real(c_double), intent(in) :: x(3, n), xi(2, nquad), pressure(ntest), traction(2, ntest), field_slip(2, nquad)
   real(c_double), intent(inout) :: rows(3, nkinds, nrows), tangent(3, 3, nblocks)
   integer(c_int), intent(out) :: status, place
-  class(gap_map_t), allocatable :: map
+  type(slave_t), pointer :: side
+  class(gap_map_t), pointer :: onto
+  type(pattern_t), pointer :: of_rows, of_tangent
   type(projections_t) :: projections
 
+  status = 0
+  place = 0
+  call find(slave, side, status)
+  call find(map, onto, status)
+  call find(row_pattern, of_rows, status)
+  call find(pattern, of_tangent, status)
+  if (status /= 0) return
   projections%xi = xi
   projections%place = element + 1
   projections%fixed = fixed /= 0
   projections%found = found /= 0
   projections%slips = slips /= 0
-  call unpack_gap_map(kind, knots, master_point, master_weight, map)
-  call integrate_blocks(unpack_slave(nodes, basis, area, point), map, x, &
-    projections, with_friction /= 0, multipliers_t(pressure, traction, state /= 0), field_slip, &
-    unpack_pattern(row_start, row_column), rows, unpack_pattern(start, column), tangent, status, place)
+  call integrate_blocks(side, onto, x, projections, with_friction /= 0, multipliers_t(pressure, traction, state /= 0), field_slip, &
+    of_rows, rows, of_tangent, tangent, status, place)
 end subroutine contact_blocks
 
 !> Rows of the multipliers' derivatives of the augmented law (isomortar_contact_augmentation): changes(component, multiplier, block)
 !> and of their trial tractions, trial(component, a, block), on the pattern `wide`; it and `neighbours` differ from the rows'
 !> pattern with `summed` only. `place` is the row of a pattern that lacks a block, 0 where `wide` has other rows.
-subroutine multiplier_rows(nodes, basis, area, point, nlocal, nelements, nquad, nslave, weight, square, control_slip, metric, &
-    point_metric, summed, penalties, state, pressure_slope, traction_slope, row_start, row_column, nrows, nkinds, rows, &
-    neighbour_start, neighbour_column, nneighbours, wide_start, wide_column, nwide, changes, trial, status, place)
-  use iso_c_binding, only: c_double, c_int
-  use isomortar_api_unpack, only: unpack_pattern, unpack_slave
+subroutine multiplier_rows(slave, weight, square, control_slip, metric, point_metric, nquad, ntest, summed, penalties, state, &
+    pressure_slope, traction_slope, row_pattern, nrows, nkinds, rows, neighbours, wide, nwide, changes, trial, status, place)
+  use iso_c_binding, only: c_double, c_int, c_int64_t
+  use isomortar_api_descriptors, only: find
   use isomortar_base_status, only: status_ok, status_pattern
   use isomortar_contact_augmentation, only: combine => multiplier_rows, law_t, response_t, trial_rows, trial_rows_summed
   use isomortar_contact_control, only: control_t
+  use isomortar_contact_slave, only: slave_t
   use isomortar_sparse_blocks, only: pattern_t
   implicit none
-  integer(c_int), intent(in) :: nlocal, nelements, nquad, nslave, nrows, nkinds, nneighbours, nwide
-  integer(c_int), intent(in) :: nodes(nlocal, nelements), point(nslave), summed, state(nslave)
-  integer(c_int), intent(in) :: row_start(nslave + 1), row_column(nrows), neighbour_start(nslave + 1), neighbour_column(nneighbours)
-  integer(c_int), intent(in) :: wide_start(nslave + 1), wide_column(nwide)
-  real(c_double), intent(in) :: basis(nlocal, nquad), area(nquad), weight(nslave), square(nslave)
-  real(c_double), intent(in) :: control_slip(2, nslave), metric(3, nslave), point_metric(3, nquad), penalties(2)
-  real(c_double), intent(in) :: pressure_slope(nslave), traction_slope(2, 6, nslave), rows(3, nkinds, nrows)
+  integer(c_int64_t), intent(in) :: slave, row_pattern, neighbours, wide
+  integer(c_int), intent(in) :: nquad, ntest, nrows, nkinds, nwide, summed, state(ntest)
+  real(c_double), intent(in) :: weight(ntest), square(ntest), control_slip(2, ntest), metric(3, ntest), point_metric(3, nquad)
+  real(c_double), intent(in) :: penalties(2), pressure_slope(ntest), traction_slope(2, 6, ntest), rows(3, nkinds, nrows)
   real(c_double), intent(out) :: changes(3, 3, nwide), trial(3, 2, nwide)
   integer(c_int), intent(out) :: status, place
+  type(slave_t), pointer :: side
+  type(pattern_t), pointer :: of_neighbours, of_rows, of_trial
   type(control_t) :: control
   type(law_t) :: law
   type(response_t) :: response
-  type(pattern_t) :: narrow, neighbours, wide
 
+  status = status_ok
+  place = 0
+  changes = 0.0_c_double
+  trial = 0.0_c_double
+  call find(slave, side, status)
+  call find(row_pattern, of_rows, status)
+  call find(neighbours, of_neighbours, status)
+  call find(wide, of_trial, status)
+  if (status /= status_ok) return
   control%weight = weight
   control%square = square
   control%slip = control_slip
@@ -269,40 +297,39 @@ subroutine multiplier_rows(nodes, basis, area, point, nlocal, nelements, nquad, 
   response%state = state
   response%pressure_slope = pressure_slope
   response%traction_slope = traction_slope
-  changes = 0.0_c_double
-  trial = 0.0_c_double
-  narrow = unpack_pattern(row_start, row_column)
-  neighbours = unpack_pattern(neighbour_start, neighbour_column)
-  wide = unpack_pattern(wide_start, wide_column)
   status = status_pattern
-  place = 0
-  if (summed == 0 .and. any(narrow%start /= wide%start)) return
+  if (summed == 0 .and. any(of_rows%start /= of_trial%start)) return
   if (nkinds > 1 .and. summed /= 0) then
-    call trial_rows_summed(unpack_slave(nodes, basis, area, point), control, law, state /= 0, narrow, rows, neighbours, wide, &
-      trial, place)
+    call trial_rows_summed(side, control, law, state /= 0, of_rows, rows, of_neighbours, of_trial, trial, place)
   else if (nkinds > 1) then
-    call trial_rows(control, law, state /= 0, narrow, rows, trial)
+    call trial_rows(control, law, state /= 0, of_rows, rows, trial)
   end if
-  if (place == 0) call combine(control, response, narrow, rows, wide, trial, changes, place)
+  if (place == 0) call combine(control, response, of_rows, rows, of_trial, trial, changes, place)
   status = merge(status_pattern, status_ok, place > 0)
 end subroutine multiplier_rows
 
 !> Condense multipliers into the tangent (isomortar_contact_augmentation).
-subroutine condense_multipliers(state, nslave, row_start, row_column, nrows, nkinds, rows, wide_start, wide_column, nwide, &
-    changes, start, nstart, column, nblocks, tangent, status, place)
-  use iso_c_binding, only: c_double, c_int
-  use isomortar_api_unpack, only: unpack_pattern
+subroutine condense_multipliers(state, ntest, row_pattern, nrows, nkinds, rows, wide, nwide, changes, pattern, nblocks, tangent, &
+    status, place)
+  use iso_c_binding, only: c_double, c_int, c_int64_t
+  use isomortar_api_descriptors, only: find
   use isomortar_base_status, only: status_ok, status_pattern
   use isomortar_contact_augmentation, only: condense
+  use isomortar_sparse_blocks, only: pattern_t
   implicit none
-  integer(c_int), intent(in) :: nslave, nrows, nkinds, nwide, nstart, nblocks
-  integer(c_int), intent(in) :: state(nslave), row_start(nslave + 1), row_column(nrows), wide_start(nslave + 1), wide_column(nwide)
-  integer(c_int), intent(in) :: start(nstart), column(nblocks)
+  integer(c_int64_t), intent(in) :: row_pattern, wide, pattern
+  integer(c_int), intent(in) :: ntest, nrows, nkinds, nwide, nblocks, state(ntest)
   real(c_double), intent(in) :: rows(3, nkinds, nrows), changes(3, 3, nwide)
   real(c_double), intent(inout) :: tangent(3, 3, nblocks)
   integer(c_int), intent(out) :: status, place
+  type(pattern_t), pointer :: of_changes, of_rows, of_tangent
 
-  call condense(state /= 0, unpack_pattern(row_start, row_column), rows, unpack_pattern(wide_start, wide_column), changes, &
-    unpack_pattern(start, column), tangent, place)
+  status = status_ok
+  place = 0
+  call find(row_pattern, of_rows, status)
+  call find(wide, of_changes, status)
+  call find(pattern, of_tangent, status)
+  if (status /= status_ok) return
+  call condense(state /= 0, of_rows, rows, of_changes, changes, of_tangent, tangent, place)
   status = merge(status_pattern, status_ok, place > 0)
 end subroutine condense_multipliers

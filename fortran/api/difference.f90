@@ -61,7 +61,7 @@ contains
     logical, allocatable :: started(:)
     integer :: n, points
 
-    n = fixed%slave%count
+    n = fixed%slave%test%count
     points = size(fixed%slave%area)
     allocate (quantities%projections%place(2, points), quantities%projections%fixed(2, points), &
       quantities%projections%found(points), quantities%projections%doubt(points), quantities%projections%slip(2, points), &

@@ -1,34 +1,35 @@
 !> Directional derivative of one body's internal forces, by a central difference (isomortar_solid_assembly).
-subroutine solid_difference(layout, knots, nknots, point, weight, npoints, gauss, law, parameters, nparameters, x, along, step, &
-    reference, n, forces, status, place)
-  use iso_c_binding, only: c_double, c_int
+subroutine solid_difference(patch, gauss, material, x, along, step, reference, n, forces, status, place)
+  use iso_c_binding, only: c_double, c_int, c_int64_t
+  use isomortar_api_descriptors, only: find
   use isomortar_api_difference, only: difference
-  use isomortar_api_unpack, only: unpack_patch
   use isomortar_base_kinds, only: wp
+  use isomortar_nurbs_patch, only: patch_t
   use isomortar_solid_assembly, only: add_body
   use isomortar_solid_material_law, only: material_t
-  use isomortar_solid_material_table, only: material_of
   implicit none
-  integer(c_int), intent(in) :: nknots, npoints, nparameters, n
-  integer(c_int), intent(in) :: layout(9), gauss(3), law, point(npoints)
-  real(c_double), intent(in) :: knots(nknots), weight(npoints), parameters(nparameters), x(3, n), along(3, n), step, reference(3, n)
+  integer(c_int64_t), intent(in) :: patch, material
+  integer(c_int), intent(in) :: n, gauss(3)
+  real(c_double), intent(in) :: x(3, n), along(3, n), step, reference(3, n)
   real(c_double), intent(out) :: forces(3, n)
   integer(c_int), intent(out) :: status, place
-  class(material_t), allocatable :: material
+  type(patch_t), pointer :: body
+  class(material_t), pointer :: law
   real(wp), allocatable :: sides(:, :, :)
   real(wp) :: smallest_jacobian
   integer :: side
 
   forces = 0.0_c_double
-  place = law
-  call material_of(law, real(parameters, wp), material, status)
+  status = 0
+  place = 0
+  call find(patch, body, status)
+  call find(material, law, status)
   if (status /= 0) return
   allocate (sides(3, n, 2))
   sides = 0.0_wp
   do side = 1, 2
-    call add_body(unpack_patch(layout, knots, point, weight), gauss, material, &
-      real(x, wp) + (2 * side - 3) * real(step, wp) * real(along, wp), real(reference, wp), sides(:, :, side), smallest_jacobian, &
-      status, place)
+    call add_body(body, gauss, law, real(x, wp) + (2 * side - 3) * real(step, wp) * real(along, wp), real(reference, wp), &
+      sides(:, :, side), smallest_jacobian, status, place)
     if (status /= 0) return
   end do
   forces = real(difference(sides(:, :, 2), sides(:, :, 1), real(step, wp)), c_double)
@@ -38,30 +39,32 @@ end subroutine solid_difference
 !> `along` of the positions and `pressure_along`, `traction_along` of the law's multipliers. `xi`, `element`, `fixed`, `found` and
 !> `state` are those of the double-precision kernel; `switched` counts points and control points for which they are not the same on
 !> both sides.
-subroutine contact_difference(nodes, basis, area, point, nlocal, nelements, nquad, nslave, kind, knots, nknots, master_point, &
-    master_weight, nmaster, x, along, step, n, xi, element, fixed, found, origin, had, summed, penalties, friction, parameters, &
-    nparameters, pressure_k, traction_k, bears, free, pressure_along, traction_along, pressure, traction, state, gap, coordinates, &
-    slip, metric, pressure_change, traction_change, normal_forces, tangential_forces, forces, switched, status, place)
-  use iso_c_binding, only: c_double, c_int
+subroutine contact_difference(slave, map, friction, x, along, step, n, xi, element, fixed, found, origin, had, nquad, summed, &
+    penalties, pressure_k, traction_k, bears, free, pressure_along, traction_along, pressure, traction, state, ntest, gap, &
+    coordinates, slip, metric, pressure_change, traction_change, normal_forces, tangential_forces, forces, switched, status, &
+    place)
+  use iso_c_binding, only: c_double, c_int, c_int64_t
+  use isomortar_api_descriptors, only: find
   use isomortar_api_difference, only: difference, evaluate_contact, fixed_t, quantities_t
-  use isomortar_api_unpack, only: unpack_gap_map, unpack_slave
   use isomortar_base_kinds, only: wp
   use isomortar_contact_augmentation, only: law_t
   use isomortar_contact_blocks, only: multipliers_t
-  use isomortar_contact_friction_table, only: friction_of
+  use isomortar_contact_friction_law, only: friction_t
+  use isomortar_contact_gap_map_map, only: gap_map_t
+  use isomortar_contact_slave, only: slave_t
   implicit none
-  integer(c_int), intent(in) :: nlocal, nelements, nquad, nslave, nknots, nmaster, n, friction, nparameters
-  integer(c_int), intent(in) :: nodes(nlocal, nelements), point(nslave), kind(11), master_point(nmaster)
-  integer(c_int), intent(in) :: element(2, nquad), fixed(2, nquad), found(nquad), had(nquad), summed, state(nslave)
-  integer(c_int), intent(in) :: bears(nslave)
-  real(c_double), intent(in) :: basis(nlocal, nquad), area(nquad), knots(nknots), master_weight(nmaster), x(3, n), along(3, n), step
-  real(c_double), intent(in) :: xi(2, nquad), origin(2, nquad), penalties(2), parameters(nparameters)
-  real(c_double), intent(in) :: pressure_k(nslave), traction_k(2, nslave)
-  real(c_double), intent(in) :: pressure_along(nslave), traction_along(2, nslave), pressure(nslave), traction(2, nslave)
-  real(c_double), intent(in) :: free(2, 2, nslave)
-  real(c_double), intent(out) :: gap(nslave), coordinates(2, nslave), slip(2, nslave), metric(3, nslave), pressure_change(nslave)
-  real(c_double), intent(out) :: traction_change(2, nslave), normal_forces(3, n), tangential_forces(3, n), forces(3, n)
+  integer(c_int64_t), intent(in) :: slave, map, friction
+  integer(c_int), intent(in) :: n, nquad, ntest
+  integer(c_int), intent(in) :: element(2, nquad), fixed(2, nquad), found(nquad), had(nquad), summed, state(ntest), bears(ntest)
+  real(c_double), intent(in) :: x(3, n), along(3, n), step, xi(2, nquad), origin(2, nquad), penalties(2)
+  real(c_double), intent(in) :: pressure_k(ntest), traction_k(2, ntest), free(2, 2, ntest)
+  real(c_double), intent(in) :: pressure_along(ntest), traction_along(2, ntest), pressure(ntest), traction(2, ntest)
+  real(c_double), intent(out) :: gap(ntest), coordinates(2, ntest), slip(2, ntest), metric(3, ntest), pressure_change(ntest)
+  real(c_double), intent(out) :: traction_change(2, ntest), normal_forces(3, n), tangential_forces(3, n), forces(3, n)
   integer(c_int), intent(out) :: switched, status, place
+  type(slave_t), pointer :: slave_side
+  class(gap_map_t), pointer :: onto
+  class(friction_t), pointer :: rubs
   type(fixed_t) :: kept
   type(law_t) :: law
   type(quantities_t) :: sides(2)
@@ -69,11 +72,15 @@ subroutine contact_difference(nodes, basis, area, point, nlocal, nelements, nqua
   integer :: side
 
   switched = 0
-  place = friction
-  call friction_of(friction, real(parameters, wp), law%friction, status)
+  status = 0
+  place = 0
+  call find(slave, slave_side, status)
+  call find(map, onto, status)
+  call find(friction, rubs, status)
   if (status /= 0) return
-  kept%slave = unpack_slave(nodes, basis, area, point)
-  call unpack_gap_map(kind, knots, master_point, master_weight, kept%map)
+  if (associated(rubs)) allocate (law%friction, source=rubs)
+  kept%slave = slave_side
+  allocate (kept%map, source=onto)
   kept%start = real(xi, wp)
   kept%origin = real(origin, wp)
   kept%had = had /= 0
@@ -105,22 +112,30 @@ subroutine contact_difference(nodes, basis, area, point, nlocal, nelements, nqua
   forces = real(difference(sides(2)%forces, sides(1)%forces, h), c_double)
 end subroutine contact_difference
 
-!> Hulls of the elements of a master's face (isomortar_contact_hulls): spheres, boxes, Bezier points, samples, curvatures.
-subroutine surface_hulls(kind, knots, nknots, point, weight, npoints, x, n, nelements, nlocal, centre, radius, frame, half, &
-    corner, sample, curvature)
-  use iso_c_binding, only: c_double, c_int
-  use isomortar_api_unpack, only: unpack_face
+!> Hulls of the elements of a face of a patch, by the axis across it and its end there (isomortar_contact_hulls): spheres, boxes,
+!> Bezier points, samples, curvatures.
+subroutine surface_hulls(patch, axis, side, x, n, nelements, nlocal, centre, radius, frame, half, corner, sample, curvature, &
+    status)
+  use iso_c_binding, only: c_double, c_int, c_int64_t
+  use isomortar_api_descriptors, only: find
   use isomortar_base_kinds, only: wp
   use isomortar_contact_hulls, only: enclose, hulls_t
+  use isomortar_nurbs_patch, only: patch_t
+  use isomortar_nurbs_surface, only: face_of
   implicit none
-  integer(c_int), intent(in) :: nknots, npoints, n, nelements, nlocal
-  integer(c_int), intent(in) :: kind(11), point(npoints)
-  real(c_double), intent(in) :: knots(nknots), weight(npoints), x(3, n)
+  integer(c_int64_t), intent(in) :: patch
+  integer(c_int), intent(in) :: n, nelements, nlocal, axis, side
+  real(c_double), intent(in) :: x(3, n)
   real(c_double), intent(out) :: centre(nelements, 3), radius(nelements), frame(3, 3, nelements), half(3, nelements)
   real(c_double), intent(out) :: corner(3, nlocal, nelements), sample(3, nlocal, nelements), curvature(nelements)
+  integer(c_int), intent(out) :: status
+  type(patch_t), pointer :: body
   type(hulls_t) :: hulls
 
-  call enclose(unpack_face(kind(3:11), knots, point, weight, kind(1), kind(2)), real(x, wp), hulls)
+  status = 0
+  call find(patch, body, status)
+  if (status /= 0) return
+  call enclose(face_of(body, axis, side), real(x, wp), hulls)
   centre = real(hulls%centre, c_double)
   radius = real(hulls%radius, c_double)
   frame = real(hulls%frame, c_double)

@@ -1,19 +1,27 @@
-!> Where each entry of a blocked source goes in a compressed system; 0 where it is dropped (isomortar_sparse_scatter).
-subroutine find_places(start, nstart, column, nblocks, row_of, nrows, column_of, ncolumns, transposed, system_start, nsystem, &
-    system_column, nentries, places, missing)
+!> Where each entry of a source on a pattern (a handle, see isomortar_api_descriptors) goes in a compressed system; 0 where it is
+!> dropped (isomortar_sparse_scatter). The status is that of a pattern where the system lacks an entry.
+subroutine find_places(pattern, nblocks, row_of, nrows, column_of, ncolumns, transposed, system_start, nsystem, system_column, &
+    nentries, places, status)
   use iso_c_binding, only: c_int, c_int64_t
-  use isomortar_sparse_scatter, only: find => find_places
+  use isomortar_api_descriptors, only: find
+  use isomortar_base_status, only: status_ok, status_pattern
+  use isomortar_sparse_blocks, only: pattern_t
+  use isomortar_sparse_scatter, only: places_of => find_places
   implicit none
-  integer(c_int), intent(in) :: nstart, nblocks, nrows, ncolumns, nsystem, transposed
-  integer(c_int64_t), intent(in) :: nentries
-  integer(c_int), intent(in) :: start(nstart), column(nblocks), row_of(nrows), column_of(ncolumns)
+  integer(c_int64_t), intent(in) :: pattern, nentries
+  integer(c_int), intent(in) :: nblocks, nrows, ncolumns, nsystem, transposed
+  integer(c_int), intent(in) :: row_of(nrows), column_of(ncolumns)
   integer(c_int64_t), intent(in) :: system_start(nsystem), system_column(nentries)
   integer(c_int64_t), intent(out) :: places(3, 3, nblocks)
-  integer(c_int), intent(out) :: missing
+  integer(c_int), intent(out) :: status
+  type(pattern_t), pointer :: of_source
   logical :: lacks
 
-  call find(start, column, row_of, column_of, transposed /= 0, system_start, system_column, places, lacks)
-  missing = merge(1, 0, lacks)
+  status = status_ok
+  call find(pattern, of_source, status)
+  if (status /= status_ok) return
+  call places_of(of_source, row_of, column_of, transposed /= 0, system_start, system_column, places, lacks)
+  status = merge(status_pattern, status_ok, lacks)
 end subroutine find_places
 
 !> values(places(k)) += source(k) where places(k) > 0 (isomortar_sparse_scatter).

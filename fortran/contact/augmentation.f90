@@ -54,9 +54,9 @@ contains
     logical, intent(in) :: summed
     type(response_t), intent(out) :: response
     real(wp), intent(out) :: field_slip(:, :)
-    real(wp) :: slips(2, slave%count), totals(2, slave%count), present(1, size(slave%area)), whole(1, slave%count)
+    real(wp) :: slips(2, slave%test%count), totals(2, slave%test%count), present(1, size(slave%area)), whole(1, slave%test%count)
 
-    associate (n => slave%count)
+    associate (n => slave%test%count)
       allocate (response%multipliers%pressure(n), response%multipliers%traction(2, n), response%multipliers%active(n), &
         response%state(n), response%pressure_slope(n), response%traction_slope(2, 6, n))
     end associate
@@ -243,20 +243,19 @@ contains
     type(pattern_t), intent(in) :: neighbours
     real(wp), intent(out) :: metric(:, :)
     integer, intent(out) :: lacking
-    integer :: a, b, columns(slave%count), e, per_element, q
+    integer :: a, b, columns(slave%test%count), e, q
 
     metric = 0.0_wp
     columns = 0
-    per_element = size(slave%area) / size(slave%nodes, 2)
-    do e = 1, size(slave%nodes, 2)
-      do a = 1, size(slave%nodes, 1)
-        lacking = slave%nodes(a, e)
+    do e = 1, size(slave%test%nodes, 2)
+      do a = 1, size(slave%test%nodes, 1)
+        lacking = slave%test%nodes(a, e)
         call mark_row(neighbours, lacking, columns)
-        if (lacks(neighbours, lacking, columns, slave%nodes(:, e))) return
-        do q = (e - 1) * per_element + 1, e * per_element
-          do b = 1, size(slave%nodes, 1)
-            associate (target => metric(:, columns(slave%nodes(b, e))))
-              target = target + slave%basis(a, q) * slave%basis(b, q) * slave%area(q) * control%point_metric(:, q)
+        if (lacks(neighbours, lacking, columns, slave%test%nodes(:, e))) return
+        do q = (e - 1) * slave%per_element + 1, e * slave%per_element
+          do b = 1, size(slave%test%nodes, 1)
+            associate (target => metric(:, columns(slave%test%nodes(b, e))))
+              target = target + slave%test%values(a, q) * slave%test%values(b, q) * slave%area(q) * control%point_metric(:, q)
             end associate
           end do
         end do

@@ -67,12 +67,11 @@ contains
     real(wp), intent(inout) :: forces(:, :)
     type(sample_t) :: sample
     real(wp) :: field(3), row(all_components)
-    integer :: a, e, per_element, q
+    integer :: a, e, q
 
-    per_element = size(slave%area) / size(slave%nodes, 2)
-    do e = 1, size(slave%nodes, 2)
-      if (.not. any(multipliers%active(slave%nodes(:, e)))) cycle
-      do q = (e - 1) * per_element + 1, e * per_element
+    do e = 1, size(slave%test%nodes, 2)
+      if (.not. any(multipliers%active(slave%test%nodes(:, e)))) cycle
+      do q = (e - 1) * slave%per_element + 1, e * slave%per_element
         if (.not. projections%found(q)) cycle
         call take_sample(slave, map, positions, projections, e, q, .false., sample)
         field = fields_at(slave, multipliers, e, q)
@@ -106,7 +105,7 @@ contains
     integer, intent(out) :: status, place
     type(sample_t) :: sample
     type(batch_t) :: batch
-    logical :: pending(size(slave%area) / size(slave%nodes, 2)), together(size(slave%area) / size(slave%nodes, 2))
+    logical :: pending(slave%per_element), together(slave%per_element)
     integer :: columns(size(positions, 2))
     integer :: before, e, k
 
@@ -114,8 +113,8 @@ contains
     place = 0
     columns = 0
     call reserve(slave, map, size(pending), map%vectors(with_friction), size(rows, 2), batch)
-    do e = 1, size(slave%nodes, 2)
-      if (.not. any(multipliers%active(slave%nodes(:, e)))) cycle
+    do e = 1, size(slave%test%nodes, 2)
+      if (.not. any(multipliers%active(slave%test%nodes(:, e)))) cycle
       before = (e - 1) * size(pending)
       pending = projections%found(before + 1:before + size(pending))
       do while (any(pending))
@@ -129,7 +128,7 @@ contains
           call add_sample(slave, map, before + k, projections%slips(before + k), sample, field_slip(:, before + k), &
             fields_at(slave, multipliers, e, before + k), batch)
         end do
-        call scatter_rows(slave%nodes(:, e), multipliers%active, batch, sample%points, row_pattern, columns, rows, place)
+        call scatter_rows(slave%test%nodes(:, e), multipliers%active, batch, sample%points, row_pattern, columns, rows, place)
         if (place == 0 .and. map%bends) call scatter_tangent(batch, sample%points, pattern, columns, tangent, place)
         if (place > 0) return
       end do
@@ -153,8 +152,8 @@ contains
     type(batch_t), intent(out) :: batch
     integer :: n
 
-    n = size(slave%nodes, 1) + map%bearing()
-    allocate (batch%weight(size(slave%nodes, 1), per_element), batch%square_weight(size(slave%nodes, 1), per_element))
+    n = size(slave%shape%nodes, 1) + map%bearing()
+    allocate (batch%weight(size(slave%test%nodes, 1), per_element), batch%square_weight(size(slave%test%nodes, 1), per_element))
     allocate (batch%coefficients(n, vectors, per_element), batch%rows(n, 3, per_element, kinds))
     if (map%bends) allocate (batch%second(n, 3, 3, vectors, per_element))
   end subroutine reserve
@@ -168,9 +167,9 @@ contains
     integer :: a, i
 
     field = 0.0_wp
-    do a = 1, size(slave%nodes, 1)
-      i = slave%nodes(a, e)
-      if (multipliers%active(i)) field = field + slave%basis(a, q) * [multipliers%pressure(i), multipliers%traction(:, i)]
+    do a = 1, size(slave%test%nodes, 1)
+      i = slave%test%nodes(a, e)
+      if (multipliers%active(i)) field = field + slave%test%values(a, q) * [multipliers%pressure(i), multipliers%traction(:, i)]
     end do
   end function fields_at
 
@@ -185,7 +184,7 @@ contains
     type(sample_t), intent(inout) :: sample
     integer :: n
 
-    n = size(slave%nodes, 1)
+    n = size(slave%shape%nodes, 1)
     if (.not. allocated(sample%points)) then
       allocate (sample%points(n + map%bearing()), sample%coefficients(n + map%bearing(), map%vectors(of_slip)))
       sample%coefficients = 0.0_wp
@@ -193,8 +192,8 @@ contains
     call map%at(positions, slave_position(slave, positions, q), projections, q, of_slip, sample%point, sample%points(n + 1:), &
       sample%coefficients(n + 1:, :))
     sample%variations = map%first(sample%point, size(sample%coefficients, 2))
-    sample%points(:n) = slave%point(slave%nodes(:, e))
-    sample%coefficients(:n, 1) = slave%basis(:, q)
+    sample%points(:n) = slave%point(slave%shape%nodes(:, e))
+    sample%coefficients(:n, 1) = slave%shape%values(:, q)
   end subroutine take_sample
 
   !> Add a quadrature point to a batch.
@@ -209,8 +208,8 @@ contains
 
     batch%count = batch%count + 1
     associate (m => batch%count)
-      batch%weight(:, m) = slave%area(q) * slave%basis(:, q)
-      batch%square_weight(:, m) = slave%area(q) * slave%basis(:, q)**2
+      batch%weight(:, m) = slave%area(q) * slave%test%values(:, q)
+      batch%square_weight(:, m) = slave%area(q) * slave%test%values(:, q)**2
       batch%coefficients(:, :, m) = sample%coefficients
       call spread_rows(map, sample, slips, field_slip, size(batch%rows, 4), batch%rows(:, :, m, :))
       if (map%bends) call spread_geometric(map, sample, slave%area(q), field, batch%second(:, :, :, :, m))

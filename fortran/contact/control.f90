@@ -10,7 +10,7 @@ module isomortar_contact_control
 
   public :: control_quantities, integrate_slip_sum, project_points
 
-  !> Control quantities of every slave control point, and what they were integrated from.
+  !> Control quantities of every test function, and what they were integrated from.
   type, public :: control_t
     !> w^I = <R^I> and <R^I R^I>.
     real(wp), allocatable :: weight(:), square(:)
@@ -61,7 +61,7 @@ contains
     real(wp), allocatable :: coefficients(:, :), fields(:, :), totals(:, :)
     integer :: points(map%bearing()), q
 
-    allocate (fields(4, size(slave%area)), totals(4, slave%count))
+    allocate (fields(4, size(slave%area)), totals(4, slave%test%count))
     allocate (coefficients(map%bearing(), map%vectors(of_slip=.false.)))
     fields = 0.0_wp
     control%point_metric = 0.0_wp
@@ -84,16 +84,15 @@ contains
     real(wp), intent(in) :: present(:)
     type(control_t), intent(inout) :: control
     real(wp) :: share
-    integer :: a, e, i, per_element, q
+    integer :: a, e, i, q
 
     control%square = 0.0_wp
     control%metric = 0.0_wp
-    per_element = size(slave%area) / size(slave%nodes, 2)
     do q = 1, size(slave%area)
-      e = (q - 1) / per_element + 1
-      do a = 1, size(slave%nodes, 1)
-        i = slave%nodes(a, e)
-        share = slave%basis(a, q)**2 * slave%area(q) * present(q)
+      e = (q - 1) / slave%per_element + 1
+      do a = 1, size(slave%test%nodes, 1)
+        i = slave%test%nodes(a, e)
+        share = slave%test%values(a, q)**2 * slave%area(q) * present(q)
         control%square(i) = control%square(i) + share
         control%metric(:, i) = control%metric(:, i) + share * control%point_metric(:, q)
       end do
@@ -106,13 +105,12 @@ contains
     real(wp), intent(in) :: point_metric(:, :), control_slip(:, :)
     real(wp), intent(out) :: field_slip(:, :), totals(:, :)
     real(wp), allocatable :: fields(:, :)
-    integer :: e, per_element, q
+    integer :: e, q
 
     allocate (fields(2, size(slave%area)))
-    per_element = size(slave%area) / size(slave%nodes, 2)
     do q = 1, size(slave%area)
-      e = (q - 1) / per_element + 1
-      field_slip(:, q) = matmul(control_slip(:, slave%nodes(:, e)), slave%basis(:, q))
+      e = (q - 1) / slave%per_element + 1
+      field_slip(:, q) = matmul(control_slip(:, slave%test%nodes(:, e)), slave%test%values(:, q))
       fields(1, q) = point_metric(1, q) * field_slip(1, q) + point_metric(2, q) * field_slip(2, q)
       fields(2, q) = point_metric(2, q) * field_slip(1, q) + point_metric(3, q) * field_slip(2, q)
     end do

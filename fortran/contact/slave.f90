@@ -10,17 +10,28 @@ module isomortar_contact_slave
 
   public :: integrate_functions, slave_position, slave_tables
 
-  !> Slave side. Slave control points are numbered from 1 on their own; quadrature points run within elements.
-  type, public :: slave_t
-    !> Number of slave control points.
+  !> Functions on a slave face, given by element and quadrature point.
+  type, public :: functions_t
+    !> Number of them.
     integer :: count
-    !> Slave control points of each element, shape (control points of an element, elements).
+    !> Functions that are not zero on each element, shape (functions of an element, elements).
     integer, allocatable :: nodes(:, :)
-    !> Functions R^I at the quadrature points, shape (control points of an element, quadrature points).
-    real(wp), allocatable :: basis(:, :)
+    !> Their values, shape (functions of an element, quadrature points).
+    real(wp), allocatable :: values(:, :)
+  end type functions_t
+
+  !> Slave side. Its control points are numbered from 1 on their own; quadrature points run within elements.
+  type, public :: slave_t
+    !> Functions that interpolate the positions of its control points.
+    type(functions_t) :: shape
+    !> Functions R^I that constraints are weighted with and multipliers interpolated by (theory 2.8): the mortar method's are those
+    !> of the face.
+    type(functions_t) :: test
+    !> Number of quadrature points of each element.
+    integer :: per_element
     !> Quadrature weight times reference area of each quadrature point.
     real(wp), allocatable :: area(:)
-    !> Global number of each slave control point.
+    !> Global number of each control point.
     integer, allocatable :: point(:)
   end type slave_t
 
@@ -66,27 +77,26 @@ contains
     real(wp) :: x(3)
     integer :: a, e
 
-    e = (q - 1) / (size(slave%area) / size(slave%nodes, 2)) + 1
+    e = (q - 1) / slave%per_element + 1
     x = 0.0_wp
-    do a = 1, size(slave%nodes, 1)
-      x = x + slave%basis(a, q) * positions(:, slave%point(slave%nodes(a, e)))
+    do a = 1, size(slave%shape%nodes, 1)
+      x = x + slave%shape%values(a, q) * positions(:, slave%point(slave%shape%nodes(a, e)))
     end do
   end function slave_position
 
-  !> <R^I f> (theory 2.8) for every slave control point, of fields given at the quadrature points: totals(field, I).
+  !> <R^I f> (theory 2.8) for every test function, of fields given at the quadrature points: totals(field, I).
   pure subroutine integrate_functions(slave, fields, totals)
     type(slave_t), intent(in) :: slave
     real(wp), intent(in) :: fields(:, :)
     real(wp), intent(out) :: totals(:, :)
-    integer :: a, e, per_element, q
+    integer :: a, e, q
 
     totals = 0.0_wp
-    per_element = size(slave%area) / size(slave%nodes, 2)
     do q = 1, size(slave%area)
-      e = (q - 1) / per_element + 1
-      do a = 1, size(slave%nodes, 1)
-        associate (total => totals(:, slave%nodes(a, e)))
-          total = total + slave%basis(a, q) * slave%area(q) * fields(:, q)
+      e = (q - 1) / slave%per_element + 1
+      do a = 1, size(slave%test%nodes, 1)
+        associate (total => totals(:, slave%test%nodes(a, e)))
+          total = total + slave%test%values(a, q) * slave%area(q) * fields(:, q)
         end associate
       end do
     end do

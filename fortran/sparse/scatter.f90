@@ -2,6 +2,7 @@
 module isomortar_sparse_scatter
   use, intrinsic :: iso_c_binding, only: c_int, c_int64_t
   use isomortar_base_kinds, only: wp
+  use isomortar_sparse_blocks, only: pattern_t
   implicit none
   private
 
@@ -13,8 +14,9 @@ contains
   !>
   !> `row_of` and `column_of` number the rows and columns of the system (from 0; negative: dropped). With `transposed`, rows of the
   !> source are columns of the system. `missing` is set where the system lacks an entry.
-  pure subroutine find_places(start, column, row_of, column_of, transposed, system_start, system_column, places, missing)
-    integer(c_int), intent(in) :: start(0:), column(:), row_of(0:), column_of(0:)
+  pure subroutine find_places(pattern, row_of, column_of, transposed, system_start, system_column, places, missing)
+    type(pattern_t), intent(in) :: pattern
+    integer(c_int), intent(in) :: row_of(0:), column_of(0:)
     logical, intent(in) :: transposed
     integer(c_int64_t), intent(in) :: system_start(0:), system_column(:)
     integer(c_int64_t), intent(out) :: places(:, :, :)
@@ -26,21 +28,21 @@ contains
     missing = .false.
     places = 0
     if (transposed) then
-      call find_transposed(start, column, row_of, column_of, system_start, system_column, places, missing)
+      call find_transposed(pattern, row_of, column_of, system_start, system_column, places, missing)
       return
     end if
     allocate (mark(0:max(maxval(column_of), 0)))
     mark = 0
-    do i = 0, size(start) - 2
+    do i = 0, size(pattern%start) - 2
       do r = 1, 3
         row = row_of(3 * i + r - 1)
         if (row < 0) cycle
         do k = system_start(row) + 1, system_start(row + 1)
           if (system_column(k) <= ubound(mark, 1)) mark(system_column(k)) = k
         end do
-        do block = start(i) + 1, start(i + 1)
+        do block = pattern%start(i) + 1, pattern%start(i + 1)
           do j = 1, 3
-            associate (target => column_of(3 * column(block) + j - 1))
+            associate (target => column_of(3 * (pattern%column(block) - 1) + j - 1))
               if (target < 0) cycle
               places(j, r, block) = mark(target)
               missing = missing .or. mark(target) <= system_start(row) .or. mark(target) > system_start(row + 1)
@@ -52,18 +54,19 @@ contains
   end subroutine find_places
 
   !> The same where rows of the source are columns of the system: by bisection, as its rows are met out of order.
-  pure subroutine find_transposed(start, column, row_of, column_of, system_start, system_column, places, missing)
-    integer(c_int), intent(in) :: start(0:), column(:), row_of(0:), column_of(0:)
+  pure subroutine find_transposed(pattern, row_of, column_of, system_start, system_column, places, missing)
+    type(pattern_t), intent(in) :: pattern
+    integer(c_int), intent(in) :: row_of(0:), column_of(0:)
     integer(c_int64_t), intent(in) :: system_start(0:), system_column(:)
     integer(c_int64_t), intent(inout) :: places(:, :, :)
     logical, intent(inout) :: missing
     integer(c_int64_t) :: high, low, middle
     integer :: block, i, j, r, row, wanted
 
-    do i = 0, size(start) - 2
-      do block = start(i) + 1, start(i + 1)
+    do i = 0, size(pattern%start) - 2
+      do block = pattern%start(i) + 1, pattern%start(i + 1)
         do j = 1, 3
-          row = column_of(3 * column(block) + j - 1)
+          row = column_of(3 * (pattern%column(block) - 1) + j - 1)
           if (row < 0) cycle
           do r = 1, 3
             wanted = row_of(3 * i + r - 1)

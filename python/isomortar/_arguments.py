@@ -13,12 +13,18 @@ from isomortar.errors import InputError
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int32]
 
-#: Largest orders by family of the layout of a patch: 1 NURBS, 2 Lagrange.
+#: Largest orders by family of a direction: 1 NURBS, 2 Lagrange.
 MAX_ORDERS = {1: 10, 2: 4}
 #: Largest number of a control point: the unknowns, three of each, are counted in 32 bits.
 MAX_POINT = np.iinfo(np.int32).max // 3 - 1
 #: Largest number of Gauss points per direction: more is taken for a mistake.
 MAX_GAUSS = 64
+
+
+def kind(name: str, value: Any, *allowed: type) -> None:
+    """Refuse what is not of an allowed type."""
+    if not isinstance(value, allowed):
+        raise InputError(f"is {value!r:.60}; allowed: {' or '.join(one.__name__ for one in allowed)}", name)
 
 
 def array(name: str, value: Any, dtype: type, *shape: int | None) -> NDArray[Any]:
@@ -77,17 +83,17 @@ def gauss(name: str, value: Any, directions: int) -> IntArray:
     return np.array([whole(name, points, 1, MAX_GAUSS) for points in value], dtype=np.int32)
 
 
-def patch(layout: Any, knots: Any, point: Any, weight: Any) -> None:
+def patch(families: Any, orders: Any, counts: Any, knots: Any, point: Any, weight: Any) -> None:
     """Refuse the flat arrays of a patch (`PatchArrays`) that do not fit together."""
-    array("layout", layout, np.int32, 9)
-    families, orders, counts = layout[:3].tolist(), layout[3:6].tolist(), layout[6:].tolist()
+    for name, numbers in (("families", families), ("orders", orders), ("counts", counts)):
+        array(name, numbers, np.int32, 3)
     array("knots", knots, np.float64, None)
     first = 0
-    for family, order, count in zip(families, orders, counts, strict=True):
-        whole("layout", family, 1, 2)
-        whole("layout", order, 1, MAX_ORDERS[family])
+    for family, order, count in zip(families.tolist(), orders.tolist(), counts.tolist(), strict=True):
+        whole("families", family, 1, 2)
+        whole("orders", order, 1, MAX_ORDERS[family])
         if count <= order or (family == 2 and (count - 1) % order):
-            raise InputError(f"has {count} control points for order {order} along a direction", "layout")
+            raise InputError(f"has {count} control points for order {order} along a direction", "counts")
         last = first + (count + order + 1 if family == 1 else (count - 1) // order + 1)
         _knots(knots[first:last], last - first, order if family == 1 else 0)
         first = last
@@ -98,6 +104,12 @@ def patch(layout: Any, knots: Any, point: Any, weight: Any) -> None:
     array("weight", weight, np.float64, points)
     if not (finite("weight", weight) > 0).all():
         raise InputError("holds a weight that is not positive", "weight")
+
+
+def face(axis: Any, side: Any) -> None:
+    """Refuse what names no face of a patch: the axis across it, 1 to 3, and its end there, 0 or 1."""
+    whole("axis", axis, 1, 3)
+    whole("side", side, 0, 1)
 
 
 def _knots(knots: FloatArray, count: int, order: int) -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal, get_args
+from typing import ClassVar, Literal, Self, get_args
 
 import numpy as np
 
@@ -23,17 +23,31 @@ LAWS = {name: number for number, name in enumerate(get_args(MaterialLaw), start=
 FRICTION_LAWS = {"none": 0, "coulomb": 1, "capped": 2}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class PatchArrays:
-    """A volume patch, flat: families, orders and counts; knots one after the other; global control points; weights."""
+    """A volume patch, flat.
 
-    layout: IntArray
+    Parameters
+    ----------
+    families, orders, counts : ndarray of int32, shape (3,)
+        By direction: 1 NURBS, 2 Lagrange; order; number of control points.
+    knots : ndarray
+        Knots (of Lagrange elements: boundaries) of the directions, one after the other.
+    point : ndarray of int32
+        Global number of each control point, the first direction fastest.
+    weight : ndarray
+        Weight of each.
+    """
+
+    families: IntArray
+    orders: IntArray
+    counts: IntArray
     knots: FloatArray
     point: IntArray
     weight: FloatArray
 
     def __post_init__(self) -> None:
-        check.patch(self.layout, self.knots, self.point, self.weight)
+        check.patch(self.families, self.orders, self.counts, self.knots, self.point, self.weight)
 
     @cached_property
     def highest(self) -> int:
@@ -43,18 +57,17 @@ class PatchArrays:
     @cached_property
     def elements(self) -> tuple[int, int, int]:
         """Elements (non-empty knot spans) by direction."""
-        family, order, count = self.layout.reshape(3, 3)
-        lengths = np.where(family == 1, count + order + 1, (count - 1) // order + 1)
+        lengths = np.where(self.families == 1, self.counts + self.orders + 1, (self.counts - 1) // self.orders + 1)
         u, v, w = (len(np.unique(part)) - 1 for part in np.split(self.knots, np.cumsum(lengths[:2])))
         return u, v, w
 
     def face(self, axis: int) -> tuple[int, int, int, int]:
         """Functions of an element and elements by direction of the faces across an axis (1 to 3)."""
         first, second = axis % 3, (axis + 1) % 3
-        return int(self.layout[3 + first]) + 1, int(self.layout[3 + second]) + 1, self.elements[first], self.elements[second]
+        return int(self.orders[first]) + 1, int(self.orders[second]) + 1, self.elements[first], self.elements[second]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class MaterialArrays:
     """A material: number of its law (isomortar_solid_material_table) and what that takes, the moduli A1 and A2."""
 
@@ -67,7 +80,7 @@ class MaterialArrays:
             check.real("parameters", float(modulus), lambda value: value > 0, "numbers above 0")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class FrictionArrays:
     """A law of friction: its number (isomortar_contact_friction_table) and what that takes: nothing, mu, or mu, c and tau_max."""
 
@@ -85,57 +98,100 @@ class FrictionArrays:
         return self.law != FRICTION_LAWS["none"]
 
 
-@dataclass(frozen=True)
-class MasterArrays:
-    """A master, flat: axis and end of a face and the layout of its patch, or axis 0 and a plane's vectors in `knots`."""
+@dataclass(frozen=True, eq=False)
+class PlaneArrays:
+    """A rigid plane as a master: a point of it, its normal and a direction in it, each of shape (3,)."""
 
-    kind: IntArray
-    knots: FloatArray
-    point: IntArray
-    weight: FloatArray
+    origin: FloatArray
+    normal: FloatArray
+    tangent: FloatArray
+    #: It has no control points, and no elements.
+    highest: ClassVar[int] = -1
+    elements: ClassVar[None] = None
 
     def __post_init__(self) -> None:
-        check.array("kind", self.kind, np.int32, 11)
-        check.whole("kind", self.kind[0], 0, 3)
-        if self.kind[0]:
-            check.whole("kind", self.kind[1], 0, 1)
-            check.patch(self.kind[2:], self.knots, self.point, self.weight)
-        else:
-            check.finite("knots", check.array("knots", self.knots, np.float64, 9))
-            check.array("point", self.point, np.int32, None)
-            check.array("weight", self.weight, np.float64, len(self.point))
+        for name in ("origin", "normal", "tangent"):
+            check.finite(name, check.array(name, getattr(self, name), np.float64, 3))
 
-    @cached_property
+
+@dataclass(frozen=True, eq=False)
+class FaceArrays:
+    """A face of a deformable body as a master: its patch, the axis across the face (1 to 3) and its end there (0, 1)."""
+
+    patch: PatchArrays
+    axis: int
+    side: int
+
+    def __post_init__(self) -> None:
+        check.kind("patch", self.patch, PatchArrays)
+        check.face(self.axis, self.side)
+
+    @property
     def highest(self) -> int:
-        """Largest number of a control point; -1: a plane has none."""
-        return check.highest(self.point) if self.kind[0] else -1
+        """Largest number of a control point."""
+        return self.patch.highest
 
     @cached_property
-    def elements(self) -> tuple[int, int] | None:
-        """Elements by direction of the surface; None: a plane."""
-        if not self.kind[0]:
-            return None
-        return PatchArrays(self.kind[2:], self.knots, self.point, self.weight).face(int(self.kind[0]))[2:]
+    def elements(self) -> tuple[int, int]:
+        """Elements by direction of the surface."""
+        return self.patch.face(self.axis)[2:]
 
 
-@dataclass(frozen=True)
-class SlaveArrays:
-    """A slave side: control points of each element, functions at the quadrature points, areas, global control points.
+MasterArrays = PlaneArrays | FaceArrays
 
-    Shapes (elements, local), (points, local), (points,), (slave control points,).
-    """
+
+@dataclass(frozen=True, eq=False)
+class FunctionArrays:
+    """Functions on a slave face: those of each element, shape (elements, local), their values, (points, local), and how many they are."""
 
     nodes: IntArray
-    basis: FloatArray
+    values: FloatArray
+    count: int
+
+    def __post_init__(self) -> None:
+        _, local = check.array("nodes", self.nodes, np.int32, None, None).shape
+        check.finite("values", check.array("values", self.values, np.float64, None, local))
+        check.within("nodes", self.nodes, 0, check.whole("count", self.count, 0, check.MAX_POINT) - 1)
+
+
+@dataclass(frozen=True, eq=False)
+class SlaveArrays:
+    """A slave side.
+
+    Parameters
+    ----------
+    shape : FunctionArrays
+        Functions that interpolate the positions of its control points.
+    test : FunctionArrays
+        Functions that constraints are weighted with and multipliers interpolated by; those of the mortar method are the shape functions.
+    area : ndarray, shape (points,)
+        Reference areas of the quadrature points; as many in each element.
+    point : ndarray of int32, shape (slave control points,)
+        Global number of each control point.
+    """
+
+    shape: FunctionArrays
+    test: FunctionArrays
     area: FloatArray
     point: IntArray
 
+    @classmethod
+    def of_points(cls, point: IntArray) -> Self:
+        """Control points, each a quadrature point of area one with an element and a function of its own: what is integrated is its own."""
+        count = len(check.array("point", point, np.int32, None))
+        alone = FunctionArrays(np.arange(count, dtype=np.int32)[:, None].copy(), np.ones((count, 1)), count)
+        return cls(alone, alone, np.ones(count), point)
+
     def __post_init__(self) -> None:
-        elements, local = check.array("nodes", self.nodes, np.int32, None, None).shape
+        check.kind("shape", self.shape, FunctionArrays)
+        check.kind("test", self.test, FunctionArrays)
         points = len(check.finite("area", check.array("area", self.area, np.float64, None)))
-        check.finite("basis", check.array("basis", self.basis, np.float64, points, local))
-        check.array("point", self.point, np.int32, None)
-        check.within("nodes", self.nodes, 0, len(self.point) - 1)
+        elements = len(self.shape.nodes)
+        for name, functions in (("shape", self.shape), ("test", self.test)):
+            if len(functions.nodes) != elements or len(functions.values) != points:
+                found = f"{len(functions.nodes)} elements and {len(functions.values)} points"
+                raise InputError(f"has {found}; allowed: {elements} and {points}, as the other functions and `area`", name)
+        check.array("point", self.point, np.int32, self.shape.count)
         check.within("point", self.point, 0, check.MAX_POINT)
         if not elements or points % elements:
             raise InputError(f"has {points} quadrature points for {elements} elements; allowed: as many in each element", "area")
@@ -145,8 +201,18 @@ class SlaveArrays:
         """Largest number of a control point."""
         return check.highest(self.point)
 
+    @property
+    def elements(self) -> int:
+        """Number of elements."""
+        return len(self.shape.nodes)
 
-@dataclass(frozen=True)
+    @property
+    def per_element(self) -> int:
+        """Number of quadrature points of an element."""
+        return len(self.area) // self.elements
+
+
+@dataclass(frozen=True, eq=False)
 class Pattern:
     """Compressed rows of 3x3 blocks."""
 
@@ -203,7 +269,7 @@ class Projections:
 
 @dataclass(frozen=True)
 class Control:
-    """Control quantities of every slave control point: <R>, <R R>, <R g>, <R slip>, <R R a_ab>; a_ab at the points."""
+    """Control quantities of every test function: <R>, <R R>, <R g>, <R slip>, <R R a_ab>; a_ab at the points."""
 
     weight: FloatArray
     square: FloatArray

@@ -15,57 +15,90 @@ from isomortar import _arguments as check
 from isomortar._arguments import FloatArray, IntArray
 from isomortar._arrays import (
     Control,
+    FaceArrays,
     FrictionArrays,
+    FunctionArrays,
     Law,
     MasterArrays,
     MaterialArrays,
     PatchArrays,
     Pattern,
+    PlaneArrays,
     Projections,
     Response,
     SlaveArrays,
 )
+from isomortar._codes import ROW_KINDS, Status
 from isomortar._compiled import kernel as _kernel
+from isomortar._descriptors import Descriptors
 from isomortar.errors import FoldedElementError, InputError, KernelError, LostProjectionError
 
 LongArray = NDArray[np.int64]
 
 # With the arrays, which those who call take from here.
 __all__ = [
-    "ROW_KINDS", "Control", "FloatArray", "FrictionArrays", "IntArray", "Law", "LongArray", "MasterArrays", "MaterialArrays",
-    "PatchArrays", "Pattern", "Projections", "Response", "SlaveArrays", "add_body", "add_values", "augmented_multipliers",
+    "Control", "FaceArrays", "FloatArray", "FrictionArrays", "FunctionArrays", "IntArray", "Law", "LongArray", "MasterArrays",
+    "MaterialArrays", "PatchArrays", "Pattern", "PlaneArrays", "Projections", "Response", "SlaveArrays", "add_body", "add_values",
+    "augmented_multipliers",
     "condense_multipliers", "contact_blocks", "contact_forces", "control_quantities", "find_places", "friction_radius", "material_stress",
     "multiplier_rows", "project_points", "slave_tables", "surface_functions",
 ]  # fmt: skip
 
-#: Kinds of constraint rows with friction, without, and with the paper's slip sum (isomortar_contact_blocks).
-ROW_KINDS = {"frictionless": 1, "local": 8, "paper": 10}
-#: What stands for a tangent where none is wanted.
-_NO_START, _NO_COLUMN, _NO_BLOCKS = np.zeros(1, np.int32), np.zeros(1, np.int32), np.zeros((1, 3, 3))
+_DESCRIPTORS = Descriptors(_kernel)
+#: What stands for a tangent where none is wanted, and for its pattern.
+_NO_BLOCKS, _NO_PATTERN = np.zeros((1, 3, 3)), -1
 
 
 def _raise(status: int, place: int) -> NoReturn:
-    """Raise the exception of a status of isomortar_base_status; `place` counts from 0."""
+    """Raise the exception of a status; `place` counts from 0."""
     sentences: dict[int, tuple[type[KernelError], str]] = {
-        1: (FoldedElementError, f"element {place} is folded (J <= 0)"),
-        2: (FoldedElementError, f"element {place} is folded (J <= 0) in the reference configuration"),
-        4: (LostProjectionError, f"the master has no normal at the closest point of slave quadrature point {place}"),
-        9: (KernelError, f"a pattern does not fit what is added to it: block missing in row {place} (-1: it has other rows)"),
-        10: (LostProjectionError, f"the position of control point {place} is not finite"),
-        11: (LostProjectionError, f"slave quadrature point {place} has passed through the master's body"),
-        13: (KernelError, f"no law of material or friction has the number {place + 1} and so many parameters"),
+        Status.FOLDED: (FoldedElementError, f"element {place} is folded (J <= 0)"),
+        Status.FOLDED_INITIALLY: (FoldedElementError, f"element {place} is folded (J <= 0) in the reference configuration"),
+        Status.DEGENERATE_SURFACE: (
+            LostProjectionError,
+            f"the master has no normal at the closest point of slave quadrature point {place}",
+        ),
+        Status.PATTERN: (
+            KernelError,
+            f"a pattern does not fit what is added to it: block missing in row {place} (-1: it has other rows)",
+        ),
+        Status.NOT_FINITE: (LostProjectionError, f"the position of control point {place} is not finite"),
+        Status.PASSED_THROUGH: (LostProjectionError, f"slave quadrature point {place} has passed through the master's body"),
     }
-    kind, sentence = sentences.get(status, (KernelError, f"the kernel returned status {status} at {place}"))
+    kind, sentence = sentences.get(status, (KernelError, f"the kernel returned status {Status(status).name} at {place}"))
     raise kind(sentence, place)
 
 
+def _patch(patch: PatchArrays) -> int:
+    return _DESCRIPTORS.handle("patch", patch, PatchArrays)
+
+
+def _slave(slave: SlaveArrays) -> int:
+    return _DESCRIPTORS.handle("slave", slave, SlaveArrays)
+
+
+def _master(master: MasterArrays) -> int:
+    return _DESCRIPTORS.handle("master", master, PlaneArrays, FaceArrays)
+
+
+def _friction(name: str, friction: FrictionArrays) -> int:
+    return _DESCRIPTORS.handle(name, friction, FrictionArrays)
+
+
+def _pattern(name: str, pattern: Pattern) -> int:
+    return _DESCRIPTORS.handle(name, pattern, Pattern)
+
+
 def _check_bodies(positions: FloatArray, slave: SlaveArrays, master: MasterArrays) -> None:
+    check.kind("slave", slave, SlaveArrays)
+    check.kind("master", master, PlaneArrays, FaceArrays)
     check.finite("positions", check.array("positions", positions, np.float64, None, 3))
     check.below("slave.point", slave.highest, len(positions), "control point")
     check.below("master.point", master.highest, len(positions), "control point")
 
 
 def _check_projections(projections: Projections, slave: SlaveArrays, master: MasterArrays) -> None:
+    check.kind("projections", projections, Projections)
     check.array("projections.found", projections.found, np.int32, len(slave.area))
     low, first, second = projections.range
     if master.elements is not None and not (low >= 0 and first < master.elements[0] and second < master.elements[1]):
@@ -73,7 +106,9 @@ def _check_projections(projections: Projections, slave: SlaveArrays, master: Mas
 
 
 def _check_control(control: Control, slave: SlaveArrays) -> None:
-    n = len(slave.point)
+    check.kind("slave", slave, SlaveArrays)
+    check.kind("control", control, Control)
+    n = slave.test.count
     for name, value, shape in (
         ("weight", control.weight, (n,)),
         ("square", control.square, (n,)),
@@ -85,27 +120,24 @@ def _check_control(control: Control, slave: SlaveArrays) -> None:
         check.array(f"control.{name}", value, np.float64, *shape)
 
 
-def _check_friction(name: str, friction: FrictionArrays) -> None:
-    if not isinstance(friction, FrictionArrays):
-        raise InputError(f"is {friction!r:.60}; allowed: a law of friction", name)
-
-
 def _check_law(law: Law, slave: SlaveArrays) -> None:
-    n = len(slave.point)
+    check.kind("law", law, Law)
+    check.kind("law.friction", law.friction, FrictionArrays)
+    n = slave.test.count
     check.array("law.penalties", law.penalties, np.float64, 2)
     check.array("law.pressure", law.pressure, np.float64, n)
     check.array("law.traction", law.traction, np.float64, n, 2)
     check.array("law.bears", law.bears, np.int32, n)
     check.array("law.free", law.free, np.float64, n, 2, 2)
     check.array("law.held", law.held, np.int32, n)
-    _check_friction("law.friction", law.friction)
     check.flag("law.summed", law.summed)
     check.flag("law.forgiving", law.forgiving)
     check.real("law.slip_margin", law.slip_margin, lambda value: 0 <= value <= 1, "a number from 0 to 1")
 
 
 def _check_response(response: Response, slave: SlaveArrays) -> None:
-    n = len(slave.point)
+    check.kind("response", response, Response)
+    n = slave.test.count
     check.array("response.state", response.state, np.int32, n)
     for name, value, shape in (
         ("pressure", response.pressure, (n,)),
@@ -119,6 +151,7 @@ def _check_response(response: Response, slave: SlaveArrays) -> None:
 
 def _check_pattern(name: str, pattern: Pattern, rows: int, columns: int) -> None:
     """Refuse a pattern with another number of rows, or columns beyond theirs."""
+    check.kind(name, pattern, Pattern)
     check.array(f"{name}.start", pattern.start, np.int32, rows + 1)
     check.below(f"{name}.column", pattern.highest, columns, "column")
 
@@ -128,11 +161,6 @@ def _check_rows(pattern: Pattern, rows: FloatArray, slave_points: int, control_p
     kinds = check.array("rows", rows, np.float64, len(pattern.column), None, 3).shape[1]
     if kinds not in ROW_KINDS.values():
         raise InputError(f"has {kinds} kinds; allowed: {', '.join(map(str, ROW_KINDS.values()))}", "rows")
-
-
-def _check_face(axis: int, side: int) -> None:
-    check.whole("axis", axis, 1, 3)
-    check.whole("side", side, 0, 1)
 
 
 def add_body(
@@ -157,18 +185,19 @@ def add_body(
     FoldedElementError
         J <= 0, with the number of the element.
     """
+    check.kind("patch", patch, PatchArrays)
     n = len(check.finite("reference", check.array("reference", reference, np.float64, None, 3)))
     check.finite("positions", check.array("positions", positions, np.float64, n, 3))
     check.array("forces", forces, np.float64, n, 3)
     check.below("patch.point", patch.highest, n, "control point")
     rule = check.gauss("gauss", gauss, 3)
-    start, column, values = _NO_START, _NO_COLUMN, _NO_BLOCKS
+    of_tangent, values = _NO_PATTERN, _NO_BLOCKS
     if pattern is not None and tangent is not None:
         _check_pattern("pattern", pattern, n, n)
-        start, column, values = pattern.start, pattern.column, check.array("tangent", tangent, np.float64, len(pattern.column), 3, 3)
+        of_tangent, values = _pattern("pattern", pattern), check.array("tangent", tangent, np.float64, len(pattern.column), 3, 3)
     jacobian, status, place = _kernel.add_body(
-        patch.layout, patch.knots, patch.point, patch.weight, rule, material.law, material.parameters, positions.T,
-        reference.T, forces.T, int(values is not _NO_BLOCKS), start, column, values.T,
+        _patch(patch), rule, _DESCRIPTORS.handle("material", material, MaterialArrays), positions.T, reference.T, forces.T,
+        int(of_tangent != _NO_PATTERN), of_tangent, values.T,
     )  # fmt: skip
     if status:
         _raise(status, place - 1)
@@ -184,7 +213,8 @@ def material_stress(material: MaterialArrays, gradient: FloatArray) -> FloatArra
         det F <= 0, with the number of the first such gradient.
     """
     check.finite("gradient", check.array("gradient", gradient, np.float64, None, 3, 3))
-    stress, status, place = _kernel.material_stress(material.law, material.parameters, np.asfortranarray(gradient.transpose(1, 2, 0)))
+    handle = _DESCRIPTORS.handle("material", material, MaterialArrays)
+    stress, status, place = _kernel.material_stress(handle, np.asfortranarray(gradient.transpose(1, 2, 0)))
     if status:
         _raise(status, place - 1)
     return np.ascontiguousarray(stress.transpose(2, 0, 1))
@@ -200,30 +230,39 @@ def surface_functions(patch: PatchArrays, axis: int, side: int, xi: FloatArray) 
     functions : ndarray, shape (points, 10, local)
         Values and partial derivatives: 1, u, v, uu, uv, vv, uuu, uuv, uvv, vvv.
     """
-    _check_face(axis, side)
+    check.kind("patch", patch, PatchArrays)
+    check.face(axis, side)
     first, second, *_ = patch.face(axis)
-    local = first * second
     check.finite("xi", check.array("xi", xi, np.float64, None, 2))
-    nodes, functions = _kernel.surface_functions(patch.layout, patch.knots, patch.point, patch.weight, axis, side, xi.T, local)
+    nodes, functions, status = _kernel.surface_functions(_patch(patch), axis, side, xi.T, first * second)
+    if status:
+        _raise(status, -1)
     return np.ascontiguousarray(nodes.T), np.ascontiguousarray(functions.T)
 
 
 def slave_tables(
-    patch: PatchArrays, axis: int, side: int, gauss: tuple[int, int], reference: FloatArray, local: int, elements: int
+    patch: PatchArrays, axis: int, side: int, gauss: tuple[int, int], reference: FloatArray
 ) -> tuple[IntArray, FloatArray, FloatArray]:
-    """Functions and reference areas at the quadrature points of a face; nodes are numbered within the face."""
-    _check_face(axis, side)
+    """Functions and reference areas at the quadrature points of a face.
+
+    Returns
+    -------
+    nodes : ndarray of int32, shape (elements, local)
+        Control points within the face.
+    values : ndarray, shape (points, local)
+    area : ndarray, shape (points,)
+    """
+    check.kind("patch", patch, PatchArrays)
+    check.face(axis, side)
     first, second, *by_direction = patch.face(axis)
-    check.whole("local", local, first * second, first * second)
-    check.whole("elements", elements, math.prod(by_direction), math.prod(by_direction))
     check.finite("reference", check.array("reference", reference, np.float64, None, 3))
     check.below("patch.point", patch.highest, len(reference), "control point")
-    rule = check.gauss("gauss", gauss, 2)
+    rule, elements = check.gauss("gauss", gauss, 2), math.prod(by_direction)
     points = elements * int(rule[0]) * int(rule[1])
-    nodes, basis, area = _kernel.slave_tables(
-        patch.layout, patch.knots, patch.point, patch.weight, axis, side, rule, reference.T, local, elements, points
-    )
-    return np.ascontiguousarray(nodes.T), np.ascontiguousarray(basis.T), area
+    nodes, values, area, status = _kernel.slave_tables(_patch(patch), axis, side, rule, reference.T, first * second, elements, points)
+    if status:
+        _raise(status, -1)
+    return np.ascontiguousarray(nodes.T), np.ascontiguousarray(values.T), area
 
 
 def project_points(slave: SlaveArrays, master: MasterArrays, positions: FloatArray, origin: FloatArray, had: IntArray) -> Projections:
@@ -242,9 +281,8 @@ def project_points(slave: SlaveArrays, master: MasterArrays, positions: FloatArr
     check.array("had", had, np.int32, q)
     xi = origin.copy()
     element, fixed, found, doubt, slip, slips, status, place = _kernel.project_points(
-        slave.nodes.T, slave.basis.T, slave.area, slave.point, master.kind, master.knots, master.point, master.weight, positions.T,
-        had, origin.T, had, xi.T,
-    )  # fmt: skip
+        _slave(slave), _master(master), positions.T, had, origin.T, had, xi.T
+    )
     if status:
         _raise(status, place - 1)
     return Projections(xi, element.T, fixed.T, found, doubt, slip.T, slips)
@@ -254,10 +292,12 @@ def control_quantities(slave: SlaveArrays, master: MasterArrays, positions: Floa
     """Integrate the control quantities of every slave control point."""
     _check_bodies(positions, slave, master)
     _check_projections(projections, slave, master)
-    weight, square, gap, slip, metric, point_metric = _kernel.control_quantities(
-        slave.nodes.T, slave.basis.T, slave.area, slave.point, master.kind, master.knots, master.point, master.weight, positions.T,
-        projections.xi.T, projections.element.T, projections.fixed.T, projections.found, projections.slip.T,
+    weight, square, gap, slip, metric, point_metric, status = _kernel.control_quantities(
+        _slave(slave), _master(master), positions.T, projections.xi.T, projections.element.T, projections.fixed.T, projections.found,
+        projections.slip.T, slave.test.count,
     )  # fmt: skip
+    if status:
+        _raise(status, -1)
     return Control(weight, square, gap, slip.T, metric.T, point_metric.T)
 
 
@@ -271,13 +311,13 @@ def augmented_multipliers(slave: SlaveArrays, control: Control, law: Law) -> Res
     """
     _check_control(control, slave)
     _check_law(law, slave)
-    pressure, traction, state, pressure_slope, traction_slope, field_slip, status, place = _kernel.augmented_multipliers(
-        slave.nodes.T, slave.basis.T, slave.area, slave.point, control.weight, control.square, control.gap, control.slip.T,
-        control.metric.T, control.point_metric.T, int(law.summed), law.penalties, law.friction.law, law.friction.parameters, law.pressure,
-        law.traction.T, law.slip_margin, int(law.forgiving), law.held, law.bears, law.free.T,
+    pressure, traction, state, pressure_slope, traction_slope, field_slip, status = _kernel.augmented_multipliers(
+        _slave(slave), _friction("law.friction", law.friction), control.weight, control.square, control.gap, control.slip.T,
+        control.metric.T, control.point_metric.T, int(law.summed), law.penalties, law.pressure, law.traction.T, law.slip_margin,
+        int(law.forgiving), law.held, law.bears, law.free.T,
     )  # fmt: skip
     if status:
-        _raise(status, place - 1)
+        _raise(status, -1)
     return Response(pressure, traction.T, state, pressure_slope, traction_slope.T, field_slip.T)
 
 
@@ -289,11 +329,10 @@ def friction_radius(friction: FrictionArrays, pressure: FloatArray) -> FloatArra
     KernelError
         No law of friction has that number and so many parameters.
     """
-    _check_friction("friction", friction)
     check.array("pressure", pressure, np.float64, None)
-    radius, status, place = _kernel.friction_radius(friction.law, friction.parameters, pressure)
+    radius, status = _kernel.friction_radius(_friction("friction", friction), pressure)
     if status:
-        _raise(status, place - 1)
+        _raise(status, -1)
     return np.asarray(radius)
 
 
@@ -311,11 +350,12 @@ def contact_forces(
     _check_projections(projections, slave, master)
     _check_response(response, slave)
     check.array("forces", forces, np.float64, len(positions), 3)
-    _kernel.contact_forces(
-        slave.nodes.T, slave.basis.T, slave.area, slave.point, master.kind, master.knots, master.point, master.weight, positions.T,
-        projections.xi.T, projections.element.T, projections.fixed.T, projections.found, check.flag("with_friction", with_friction),
-        response.pressure, response.traction.T, response.state, forces.T,
+    status = _kernel.contact_forces(
+        _slave(slave), _master(master), positions.T, projections.xi.T, projections.element.T, projections.fixed.T, projections.found,
+        check.flag("with_friction", with_friction), response.pressure, response.traction.T, response.state, forces.T,
     )  # fmt: skip
+    if status:
+        _raise(status, -1)
 
 
 def contact_blocks(
@@ -340,14 +380,13 @@ def contact_blocks(
     _check_bodies(positions, slave, master)
     _check_projections(projections, slave, master)
     _check_response(response, slave)
-    _check_rows(row_pattern, rows, len(slave.point), len(positions))
+    _check_rows(row_pattern, rows, slave.test.count, len(positions))
     _check_pattern("pattern", pattern, len(positions), len(positions))
     check.array("tangent", tangent, np.float64, len(pattern.column), 3, 3)
     status, place = _kernel.contact_blocks(
-        slave.nodes.T, slave.basis.T, slave.area, slave.point, master.kind, master.knots, master.point, master.weight, positions.T,
-        projections.xi.T, projections.element.T, projections.fixed.T, projections.found, projections.slips,
-        check.flag("with_friction", with_friction), response.pressure, response.traction.T, response.state, response.field_slip.T,
-        row_pattern.start, row_pattern.column, rows.T, pattern.start, pattern.column, tangent.T,
+        _slave(slave), _master(master), positions.T, projections.xi.T, projections.element.T, projections.fixed.T, projections.found,
+        projections.slips, check.flag("with_friction", with_friction), response.pressure, response.traction.T, response.state,
+        response.field_slip.T, _pattern("row_pattern", row_pattern), rows.T, _pattern("pattern", pattern), tangent.T,
     )  # fmt: skip
     if status:
         _raise(status, place - 1)
@@ -370,17 +409,19 @@ def multiplier_rows(
     KernelError
         A pattern lacks a block.
     """
-    points, columns = len(slave.point), max(row_pattern.highest, wide.highest) + 1
     _check_control(control, slave)
     _check_law(law, slave)
+    check.kind("row_pattern", row_pattern, Pattern)
+    check.kind("wide", wide, Pattern)
+    points, columns = slave.test.count, max(row_pattern.highest, wide.highest) + 1
     _check_response(response, slave)
     _check_rows(row_pattern, rows, points, columns)
     _check_pattern("neighbours", neighbours, points, points)
     _check_pattern("wide", wide, points, columns)
     changes, trial, status, place = _kernel.multiplier_rows(
-        slave.nodes.T, slave.basis.T, slave.area, slave.point, control.weight, control.square, control.slip.T, control.metric.T,
-        control.point_metric.T, int(law.summed), law.penalties, response.state, response.pressure_slope, response.traction_slope.T,
-        row_pattern.start, row_pattern.column, rows.T, neighbours.start, neighbours.column, wide.start, wide.column,
+        _slave(slave), control.weight, control.square, control.slip.T, control.metric.T, control.point_metric.T, int(law.summed),
+        law.penalties, response.state, response.pressure_slope, response.traction_slope.T, _pattern("row_pattern", row_pattern), rows.T,
+        _pattern("neighbours", neighbours), _pattern("wide", wide), len(wide.column),
     )  # fmt: skip
     if status:
         _raise(status, place - 1)
@@ -397,6 +438,7 @@ def condense_multipliers(
     KernelError
         A pattern lacks a block.
     """
+    check.kind("pattern", pattern, Pattern)
     points, columns = len(check.array("state", state, np.int32, None)), len(pattern.start) - 1
     _check_rows(row_pattern, rows, points, columns)
     _check_pattern("wide", wide, points, columns)
@@ -404,7 +446,7 @@ def condense_multipliers(
     _check_pattern("pattern", pattern, columns, columns)
     check.array("tangent", tangent, np.float64, len(pattern.column), 3, 3)
     status, place = _kernel.condense_multipliers(
-        state, row_pattern.start, row_pattern.column, rows.T, wide.start, wide.column, changes.T, pattern.start, pattern.column, tangent.T
+        state, _pattern("row_pattern", row_pattern), rows.T, _pattern("wide", wide), changes.T, _pattern("pattern", pattern), tangent.T
     )
     if status:
         _raise(status, place - 1)
@@ -420,6 +462,7 @@ def find_places(
     KernelError
         The system lacks an entry of the source.
     """
+    check.kind("pattern", pattern, Pattern)
     rows, columns = 3 * (len(pattern.start) - 1), 3 * (pattern.highest + 1)
     unknowns = len(check.array("system_start", system_start, np.int64, None)) - 1
     check.array("system_column", system_column, np.int64, None)
@@ -428,11 +471,14 @@ def find_places(
     check.within("row_of", check.array("row_of", row_of, np.int32, rows), -1, unknowns - 1)
     check.within("column_of", check.array("column_of", column_of, np.int32, None), -1, unknowns - 1)
     check.below("pattern.column", columns - 1, len(column_of), "unknown")
-    places, missing = _kernel.find_places(
-        pattern.start, pattern.column, row_of, column_of, check.flag("transposed", transposed), system_start, system_column
-    )
-    if missing:
+    places, status = _kernel.find_places(
+        _pattern("pattern", pattern), len(pattern.column), row_of, column_of, check.flag("transposed", transposed), system_start,
+        system_column,
+    )  # fmt: skip
+    if status == Status.PATTERN:
         raise KernelError("the pattern of the linear system lacks an entry of one of its sources")
+    if status:
+        _raise(status, -1)
     return places.T
 
 

@@ -11,14 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from isomortar import _arguments as check
+from isomortar._codes import Status
 from isomortar._compiled import kernel as _kernel
 from isomortar.errors import InputError, KernelError, SingularSystemError
 
 FloatArray = NDArray[np.float64]
 LongArray = NDArray[np.int64]
 
-# Status codes of fortran/base/status.f90 that the factorisation returns.
-_OK, _SINGULAR, _STALE_HANDLE, _OUT_OF_MEMORY, _LIBRARY = 0, 5, 6, 7, 8
 #: UMFPACK's code where METIS or AMD gave up, which they do for want of memory.
 _ORDERING_FAILED = -18
 
@@ -152,12 +151,12 @@ class SparseLU:
         with self._lock:
             self._values = None
             found = _kernel.sparse_factorise(self._handle, values, rcond_min)
-            if found[-1] == _OUT_OF_MEMORY and self.index_bits == 32:
+            if found[-1] == Status.OUT_OF_MEMORY and self.index_bits == 32:
                 self._release()
                 self._analyse(0.0)
                 found = _kernel.sparse_factorise(self._handle, values, rcond_min)
             self.rcond, flops, peak_bytes, factor_entries, place, status = found
-            if status == _SINGULAR:
+            if status == Status.SINGULAR:
                 raise SingularSystemError(
                     f"the linear system is singular: reciprocal condition {self.rcond:.1e}, least determined is unknown {place}. "
                     "Something is not held by supports or contact, or constraints repeat each other",
@@ -237,15 +236,15 @@ def _check_finite(values: FloatArray, indptr: LongArray) -> None:
 
 def _check_status(status: int, place: int) -> None:
     """Raise the sentence of a status code; what is singular has its own above."""
-    if status == _OUT_OF_MEMORY:
+    if status == Status.OUT_OF_MEMORY:
         raise KernelError(
             f"too many factorisations are alive: the kernel holds {place} of them; let some go"
             if place >= 0
             else "memory ran out in the sparse LU: take fewer elements or a lower order"
         )
-    if status == _LIBRARY and place == _ORDERING_FAILED:
+    if status == Status.LIBRARY and place == _ORDERING_FAILED:
         raise KernelError("the sparse LU could not order the unknowns: most likely memory ran out; take fewer elements or a lower order")
-    if status == _STALE_HANDLE:
+    if status == Status.STALE_HANDLE:
         raise KernelError("the factorisation was released before, or never made")
-    if status != _OK:
+    if status != Status.OK:
         raise KernelError(f"UMFPACK failed with its code {place}")

@@ -11,11 +11,25 @@ from dataclasses import dataclass
 import numpy as np
 
 from isomortar import _extended
-from isomortar._bindings import FloatArray, Law, MasterArrays, MaterialArrays, PatchArrays, Projections, Response, SlaveArrays
+from isomortar._bindings import (
+    FaceArrays,
+    FloatArray,
+    FrictionArrays,
+    Law,
+    MasterArrays,
+    MaterialArrays,
+    PatchArrays,
+    PlaneArrays,
+    Projections,
+    Response,
+    SlaveArrays,
+)
+from isomortar._descriptors import Descriptors
 from isomortar.errors import KernelError
 
 #: Step of the differences, times the direction: errors of its square and of quadruple round-off over it, both about 1e-22.
 STEP = 1e-11
+_DESCRIPTORS = Descriptors(_extended)
 
 
 @dataclass(frozen=True)
@@ -71,8 +85,8 @@ def solid_difference(
         An element is folded.
     """
     forces, status, place = _extended.solid_difference(
-        patch.layout, patch.knots, patch.point, patch.weight, np.asarray(gauss, np.int32), material.law, material.parameters, positions.T,
-        along.T, step, reference.T,
+        _DESCRIPTORS.handle("patch", patch, PatchArrays), np.asarray(gauss, np.int32),
+        _DESCRIPTORS.handle("material", material, MaterialArrays), positions.T, along.T, step, reference.T,
     )  # fmt: skip
     _check(status, place)
     return np.ascontiguousarray(forces.T)
@@ -117,29 +131,23 @@ def contact_difference(
         A projection is lost.
     """
     *changes, switched, status, place = _extended.contact_difference(
-        slave.nodes.T, slave.basis.T, slave.area, slave.point, master.kind, master.knots, master.point, master.weight, positions.T,
-        along.T, STEP, projections.xi.T, projections.element.T, projections.fixed.T, projections.found, origin.T, had, int(law.summed),
-        law.penalties, law.friction.law, law.friction.parameters, law.pressure, law.traction.T, law.bears, law.free.T, pressure_along,
-        traction_along.T, held.pressure, held.traction.T, held.state,
+        _DESCRIPTORS.handle("slave", slave, SlaveArrays), _DESCRIPTORS.handle("master", master, PlaneArrays, FaceArrays),
+        _DESCRIPTORS.handle("law.friction", law.friction, FrictionArrays), positions.T, along.T, STEP, projections.xi.T,
+        projections.element.T, projections.fixed.T, projections.found, origin.T, had, int(law.summed), law.penalties, law.pressure,
+        law.traction.T, law.bears, law.free.T, pressure_along, traction_along.T, held.pressure, held.traction.T, held.state,
     )  # fmt: skip
     _check(status, place)
     return ContactChange(*[np.ascontiguousarray(change.T) for change in changes]), switched
 
 
-def surface_hulls(master: MasterArrays, positions: FloatArray) -> Hulls:
-    """Hulls of the elements of a master's face, the first direction fastest.
-
-    Raises
-    ------
-    ValueError
-        The master is a plane.
-    """
-    if master.elements is None:
-        raise ValueError("a plane has no hulls")
-    local = np.prod(PatchArrays(master.kind[2:], master.knots, master.point, master.weight).face(int(master.kind[0]))[:2])
-    centre, radius, frame, half, corner, sample, curvature = _extended.surface_hulls(
-        master.kind, master.knots, master.point, master.weight, positions.T, int(np.prod(master.elements)), int(local)
+def surface_hulls(master: FaceArrays, positions: FloatArray) -> Hulls:
+    """Hulls of the elements of a master's face, the first direction fastest."""
+    local = np.prod(master.patch.face(master.axis)[:2])
+    handle = _DESCRIPTORS.handle("patch", master.patch, PatchArrays)
+    centre, radius, frame, half, corner, sample, curvature, status = _extended.surface_hulls(
+        handle, master.axis, master.side, positions.T, int(np.prod(master.elements)), int(local)
     )
+    _check(status, 0)
     return Hulls(centre, radius, frame.T.transpose(0, 2, 1), half.T, corner.T, sample.T, curvature)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from isomortar import _bindings
-from isomortar._bindings import Control, FrictionArrays, Law, Response, SlaveArrays
+from isomortar._bindings import Control, FrictionArrays, FunctionArrays, Law, Response, SlaveArrays
 from isomortar.errors import InputError, KernelError
 
 NONE = FrictionArrays(0, np.zeros(0))
@@ -46,7 +46,8 @@ def answer(
     n = len(pressure)
     metric = np.ascontiguousarray(np.broadcast_to(metric, (n, 3)), dtype=float)
     nodes, one = np.arange(n, dtype=np.int32), np.ones(n)
-    slave = SlaveArrays(nodes[None], np.ones((1, n)), np.ones(1), nodes)
+    functions = FunctionArrays(nodes[None], np.ones((1, n)), n)
+    slave = SlaveArrays(functions, functions, np.ones(1), nodes)
     slip, traction = np.zeros((n, 2)), trial
     if radial is not None:
         traction = np.atleast_2d(radial).astype(float)
@@ -195,9 +196,9 @@ def test_without_friction_there_is_no_traction() -> None:
 
 def test_a_law_with_another_number_of_parameters_is_refused() -> None:
     for friction in (FrictionArrays(0, np.ones(1)), *(replace(law, parameters=np.ones(7)) for law in LAWS.values())):
-        with pytest.raises(KernelError, match="no law of material or friction has the number"):
+        with pytest.raises(KernelError, match="no law of material or friction has that number"):
             answer(friction, 1.0, [0.1, 0.0])
-        with pytest.raises(KernelError, match="no law of material or friction has the number"):
+        with pytest.raises(KernelError, match="no law of material or friction has that number"):
             _bindings.friction_radius(friction, np.ones(1))
     with pytest.raises(InputError, match=r"friction\.law"):
         FrictionArrays(3, np.zeros(0))

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from isomortar import _bindings
-from isomortar._bindings import MasterArrays, Projections, SlaveArrays
+from isomortar._bindings import FaceArrays, Projections, SlaveArrays
 from isomortar.geometry.primitives import box, ring
 from isomortar.geometry.refinement import mesh
 from isomortar.model.numbering import patch_arrays
@@ -16,20 +16,18 @@ from isomortar.model.numbering import patch_arrays
 RADIUS = 0.5
 
 
-def cylinder(order: int, elements: int) -> tuple[MasterArrays, np.ndarray]:
+def cylinder(order: int, elements: int) -> tuple[FaceArrays, np.ndarray]:
     """The outer face of a ring about the y-axis (coordinates: across, round), and the control points of the ring."""
     patch = mesh(ring((0.0, 0.0, 0.0), 0.3, RADIUS, 2.0), ("N", "N", "N"), (order, 1, 1), (elements, 1, 2))
     arrays = patch_arrays(patch, np.arange(len(patch.weights), dtype=np.int32))
-    kind = np.concatenate([[2, 1], arrays.layout]).astype(np.int32)
-    return MasterArrays(kind, arrays.knots, arrays.point, arrays.weight), patch.control_points
+    return FaceArrays(arrays, 2, 1), patch.control_points
 
 
 def project(order: int, elements: int, points: np.ndarray, starts: np.ndarray | None) -> tuple[Projections, np.ndarray]:
     """Projections of points from starts (None: the coarse search), and their gaps."""
     master, control_points = cylinder(order, elements)
     positions = np.ascontiguousarray(np.concatenate([control_points, points]))
-    number = np.arange(len(points), dtype=np.int32)
-    slave = SlaveArrays(number[:, None].copy(), np.ones((len(points), 1)), np.ones(len(points)), number + len(control_points))
+    slave = SlaveArrays.of_points(np.arange(len(points), dtype=np.int32) + np.int32(len(control_points)))
     had = np.full(len(points), int(starts is not None), dtype=np.int32)
     projections = _bindings.project_points(slave, master, positions, np.zeros((len(points), 2)) if starts is None else starts, had)
     control = _bindings.control_quantities(slave, master, positions, replace(projections, slip=np.zeros((len(points), 2))))
@@ -74,9 +72,8 @@ def project_on_roof(points: np.ndarray, starts: np.ndarray | None = None) -> Pro
     top = control_points[:, 2] > -0.5
     control_points[top, 2] = -0.4 * np.abs(control_points[top, 0])
     arrays = patch_arrays(patch, np.arange(len(patch.weights), dtype=np.int32))
-    master = MasterArrays(np.concatenate([[3, 1], arrays.layout]).astype(np.int32), arrays.knots, arrays.point, arrays.weight)
-    number = np.arange(len(points), dtype=np.int32)
-    slave = SlaveArrays(number[:, None].copy(), np.ones((len(points), 1)), np.ones(len(points)), number + np.int32(len(control_points)))
+    master = FaceArrays(arrays, 3, 1)
+    slave = SlaveArrays.of_points(np.arange(len(points), dtype=np.int32) + np.int32(len(control_points)))
     positions = np.ascontiguousarray(np.concatenate([control_points, points]))
     had = np.full(len(points), int(starts is not None), dtype=np.int32)
     return _bindings.project_points(slave, master, positions, np.zeros((len(points), 2)) if starts is None else starts, had)

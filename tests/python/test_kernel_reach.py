@@ -6,25 +6,24 @@ import numpy as np
 import pytest
 
 from isomortar import _bindings
-from isomortar._bindings import MasterArrays, Projections, SlaveArrays
+from isomortar._bindings import FaceArrays, Projections, SlaveArrays
+from isomortar._codes import Status
 from isomortar._compiled import kernel
+from isomortar._descriptors import Descriptors
 from isomortar.errors import LostProjectionError
 from isomortar.geometry.primitives import box
 from isomortar.geometry.refinement import mesh
 from isomortar.model.numbering import patch_arrays
 
 THICKNESS = 0.5
-#: Status of isomortar_base_status.
-NOT_FINITE = 10
 
 
-def bodies(points: np.ndarray) -> tuple[SlaveArrays, MasterArrays, np.ndarray]:
+def bodies(points: np.ndarray) -> tuple[SlaveArrays, FaceArrays, np.ndarray]:
     """Points, each a slave of its own, and the upper face, z = 0, of a plate; with the positions of all."""
     patch = mesh(box((0.0, 0.0, -THICKNESS), (1.0, 1.0, 0.0)), ("N", "N", "N"), (2, 2, 1), (3, 3, 2))
     arrays = patch_arrays(patch, np.arange(len(patch.weights), dtype=np.int32))
-    master = MasterArrays(np.concatenate([[3, 1], arrays.layout]).astype(np.int32), arrays.knots, arrays.point, arrays.weight)
-    number = np.arange(len(points), dtype=np.int32)
-    slave = SlaveArrays(number[:, None].copy(), np.ones((len(points), 1)), np.ones(len(points)), number + np.int32(len(patch.weights)))
+    master = FaceArrays(arrays, 3, 1)
+    slave = SlaveArrays.of_points(np.arange(len(points), dtype=np.int32) + np.int32(len(patch.weights)))
     return slave, master, np.ascontiguousarray(np.concatenate([patch.control_points, points]))
 
 
@@ -61,8 +60,7 @@ def test_a_position_that_is_not_finite_is_an_error_of_the_kernel(value: float, c
     slave, master, positions = bodies(np.array([[0.4, 0.6, 0.1], [0.5, 0.5, 0.1]]))
     positions[point, component] = value
     flags = np.full(2, had, dtype=np.int32)
-    *_, status, place = kernel.project_points(
-        slave.nodes.T, slave.basis.T, slave.area, slave.point, master.kind, master.knots, master.point, master.weight, positions.T,
-        flags, np.full((2, 2), 0.5).T, flags, np.full((2, 2), 0.5).T,
-    )  # fmt: skip
-    assert (status, place) == (NOT_FINITE, point + 1)
+    descriptors = Descriptors(kernel)
+    handles = descriptors.handle("slave", slave, SlaveArrays), descriptors.handle("master", master, FaceArrays)
+    *_, status, place = kernel.project_points(*handles, positions.T, flags, np.full((2, 2), 0.5).T, flags, np.full((2, 2), 0.5).T)
+    assert (status, place) == (Status.NOT_FINITE, point + 1)

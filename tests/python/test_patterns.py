@@ -162,8 +162,9 @@ def test_a_number_of_a_control_point_that_32_bits_do_not_count_is_refused(number
     with pytest.raises(InputError, match="column"):
         Pattern(np.array([0, 1], dtype=np.int32), far)
     with pytest.raises(InputError, match="point"):
-        SlaveArrays(np.zeros((1, 1), dtype=np.int32), np.ones((1, 1)), np.ones(1), far)
+        SlaveArrays.of_points(far)
     point = np.arange(8, dtype=np.int32)
     point[3] = number
+    one = np.ones(3, dtype=np.int32)
     with pytest.raises(InputError, match="point"):
-        PatchArrays(np.array([1, 1, 1, 1, 1, 1, 2, 2, 2], dtype=np.int32), np.tile([0.0, 0.0, 1.0, 1.0], 3), point, np.ones(8))
+        PatchArrays(one, one, 2 * one, np.tile([0.0, 0.0, 1.0, 1.0], 3), point, np.ones(8))

@@ -137,10 +137,10 @@ def control_points(variant: str, summed: bool, law: str) -> dict[str, float]:
     pressure = np.where((weight > 0.0) & (bears > 0), made.pressure + PENALTIES[0] * gap / present, 0.0)
     metric = control.metric / square[:, None]
     slips = np.where((pressure > 0.0)[:, None], control.slip / present[:, None], 0.0)
-    element = np.repeat(pair.slave.nodes, pair.points_per_element, axis=0)
-    at_points = product(control.point_metric, np.einsum("qa,qab->qb", pair.slave.basis, slips[element]))
+    element = np.repeat(pair.slave.test.nodes, pair.slave.per_element, axis=0)
+    at_points = product(control.point_metric, np.einsum("qa,qab->qb", pair.slave.test.values, slips[element]))
     totals = np.zeros((n, 2))
-    np.add.at(totals, element, (pair.slave.basis * pair.slave.area[:, None])[..., None] * at_points[:, None, :])
+    np.add.at(totals, element, (pair.slave.test.values * pair.slave.area[:, None])[..., None] * at_points[:, None, :])
     sums = totals if summed else product(metric, control.slip)
     trial = np.einsum("iba,ib->ia", free, traction + PENALTIES[1] * sums / present[:, None])
     found = [law_at(pressure[i], trial[i], metric[i], made, bool(made.held[i])) for i in range(n)]

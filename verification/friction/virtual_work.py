@@ -215,11 +215,11 @@ def control_quantities(master: str) -> dict[str, float]:
     it = Placed(master)
     kinematics = it.pair.kinematics(it.positions, it.start)
     control, slave = kinematics.control, it.pair.pair.slave
-    element = np.repeat(slave.nodes, it.pair.pair.points_per_element, axis=0)
+    element = np.repeat(slave.shape.nodes, slave.per_element, axis=0)
     one = np.ones(len(it.area))
     slips = (it.now.xi - it.start.projection) * (it.start.projected[:, None] > 0)
     return {
-        "functions": relative(slave.basis, np.take_along_axis(it.functions, element, axis=1)),
+        "functions": relative(slave.shape.values, np.take_along_axis(it.functions, element, axis=1)),
         "area": relative(slave.area, it.area),
         "weight": relative(control.weight, it.integral(one)),
         "square": relative(control.square, it.integral(one, squared=True)),

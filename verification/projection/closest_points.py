@@ -8,7 +8,7 @@ import numpy as np
 from shapes import cylinder_sector, turned_sector
 
 from isomortar import _bindings
-from isomortar._bindings import MasterArrays, Projections, SlaveArrays
+from isomortar._bindings import FaceArrays, Projections, SlaveArrays
 from isomortar.geometry.patch import FloatArray, Patch
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, Shown, case
@@ -57,18 +57,16 @@ class Surface:
     def project(self, targets: FloatArray, starts: FloatArray | None = None) -> Projections:
         """The kernel's projections: each target is a slave of one quadrature point; without starts from its coarse search."""
         n, own = len(targets), len(self.patch.weights)
-        numbers = np.arange(n, dtype=np.int32)
-        slave = SlaveArrays(numbers[:, None].copy(), np.ones((n, 1)), np.ones(n), numbers + np.int32(own))
+        slave = SlaveArrays.of_points(np.arange(own, own + n, dtype=np.int32))
         positions = np.ascontiguousarray(np.concatenate([self.patch.control_points, targets]))
         had = np.full(n, starts is not None, dtype=np.int32)
         origin = np.zeros((n, 2)) if starts is None else np.ascontiguousarray(starts)
         return _bindings.project_points(slave, self.master(), positions, origin, had)
 
-    def master(self) -> MasterArrays:
+    def master(self) -> FaceArrays:
         """The face as the kernel's master."""
         arrays = patch_arrays(self.patch, same_points(self.patch, self.closed))
-        head = ["uvw".index(self.face[0]) + 1, int(self.face[1])]
-        return MasterArrays(np.concatenate([head, arrays.layout]).astype(np.int32), arrays.knots, arrays.point, arrays.weight)
+        return FaceArrays(arrays, "uvw".index(self.face[0]) + 1, int(self.face[1]))
 
     def sampled_distance(self, targets: FloatArray, count: int = 81) -> FloatArray:
         """Least distance of each target to a grid of points, shape (n,)."""

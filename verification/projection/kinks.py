@@ -6,7 +6,7 @@ import numpy as np
 from shapes import roof
 
 from isomortar import _bindings
-from isomortar._bindings import MasterArrays, Projections, Response, SlaveArrays
+from isomortar._bindings import FaceArrays, Projections, Response, SlaveArrays
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, case
 from isomortar.model.numbering import patch_arrays
@@ -27,9 +27,8 @@ def feet(
     patch = roof(order, SLOPE if bend == "valley" else -SLOPE, across)
     own, n = len(patch.weights), len(targets)
     arrays = patch_arrays(patch, np.arange(own, dtype=np.int32))
-    master = MasterArrays(np.concatenate([[3, 1], arrays.layout]).astype(np.int32), arrays.knots, arrays.point, arrays.weight)
-    numbers = np.arange(n, dtype=np.int32)
-    slave = SlaveArrays(numbers[:, None].copy(), np.ones((n, 1)), np.ones(n), numbers + np.int32(own))
+    master = FaceArrays(arrays, 3, 1)
+    slave = SlaveArrays.of_points(np.arange(own, own + n, dtype=np.int32))
     positions = np.ascontiguousarray(np.concatenate([patch.control_points, targets]))
     had = np.full(n, starts is not None, dtype=np.int32)
     projections = _bindings.project_points(slave, master, positions, np.zeros((n, 2)) if starts is None else starts, had)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from isomortar import _bindings
-from isomortar._bindings import MasterArrays, SlaveArrays
+from isomortar._bindings import PlaneArrays, SlaveArrays
 from isomortar.harness import Bound, case
 
 _ROUND_OFF = Bound(at_most=1e-14, reason="round-off: sums of three products of numbers of size one")
@@ -27,10 +27,9 @@ def distance_and_coordinates() -> dict[str, float]:
     for _ in range(10):
         origin, points = random.uniform(-1, 1, 3), random.uniform(-1, 1, (30, 3))
         normal, tangent = np.linalg.qr(random.standard_normal((3, 2)))[0].T
-        kind = np.zeros(11, dtype=np.int32)
-        plane = MasterArrays(kind, np.concatenate([origin, normal, tangent]), np.zeros(1, dtype=np.int32), np.ones(1))
+        plane = PlaneArrays(origin, np.ascontiguousarray(normal), np.ascontiguousarray(tangent))
         number = np.arange(len(points), dtype=np.int32)
-        slave = SlaveArrays(number[:, None].copy(), np.ones((len(points), 1)), np.ones(len(points)), number)
+        slave = SlaveArrays.of_points(number)
         projections = _bindings.project_points(slave, plane, points, np.zeros((len(points), 2)), np.zeros_like(number))
         control = _bindings.control_quantities(slave, plane, points, projections)
         expected = (points - origin) @ np.column_stack([tangent, np.cross(normal, tangent)])

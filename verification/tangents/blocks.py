@@ -9,7 +9,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from isomortar._bindings import Pattern
+from isomortar._bindings import FaceArrays, Pattern
 from isomortar._twin import ContactChange
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness.tangents import PairTangent, solid_twin
@@ -65,7 +65,7 @@ def tangent_blocks(equilibrium: Equilibrium, visit: Visit) -> list[PartBlocks]:
 def _pair_parts(tangent: PairTangent) -> list[PartBlocks]:
     """Parts of one contact pair."""
     pair, state, blocks = tangent.pair.pair, tangent.response.state, tangent.blocks
-    sides = np.union1d(pair.slave.point, pair.master.point)
+    sides = np.union1d(pair.slave.point, pair.master.patch.point) if isinstance(pair.master, FaceArrays) else pair.slave.point
     changes = _by_points(tangent.positions, sides, tangent.twin)
     active, whole = state > 0, np.ones(len(tangent.positions), bool)
 

@@ -65,7 +65,7 @@ def placed_over(given: Problem, xi: FloatArray, height: float) -> tuple[Visit, F
     normal = np.array([0.02, 0.0, 1.0]) @ np.linalg.inv(STRETCH).T if xi[1] == 1.0 else np.cross(*tangents)
     slave, moved = pair.pair.slave, numbering.points["slave"]
     positions[moved] = numbering.reference[moved] + 0.01 * np.random.default_rng(1).standard_normal((len(moved), 3))
-    now = slave.basis[POINT] @ positions[slave.point[slave.nodes[0]]]
+    now = slave.shape.values[POINT] @ positions[slave.point[slave.shape.nodes[0]]]
     positions[moved] += foot + height * normal / np.linalg.norm(normal) - now
     n = len(slave.point)
     visit = PairVisit(start, pair.law(np.array([20.0, 10.0]), np.zeros(n), np.zeros((n, 2))))

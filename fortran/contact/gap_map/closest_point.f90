@@ -62,16 +62,16 @@ contains
     integer, intent(out) :: status, place
     type(hulls_t) :: hulls
     real(wp) :: shallow
-    integer :: e, per_element
+    integer :: e
 
     place = first_not_finite(positions, self%surface%point)
     status = merge(status_not_finite, status_ok, place > 0)
     if (status /= status_ok) return
     call enclose(self%surface, positions, hulls)
     shallow = shallow_share * least_depth(self, positions)
-    per_element = size(slave%area) / size(slave%nodes, 2)
-    do e = 1, size(slave%nodes, 2)
-      call project_element(self, slave, hulls, positions, started, had, shallow, per_element * (e - 1), projections, status, place)
+    do e = 1, size(slave%area) / slave%per_element
+      call project_element(self, slave, hulls, positions, started, had, shallow, slave%per_element * (e - 1), projections, status, &
+        place)
       if (status /= status_ok) return
     end do
   end subroutine locate
@@ -86,7 +86,7 @@ contains
     integer, intent(in) :: before
     type(projections_t), intent(inout) :: projections
     integer, intent(inout) :: status, place
-    type(search_t) :: here(size(slave%area) / size(slave%nodes, 2))
+    type(search_t) :: here(slave%per_element)
     real(wp) :: x(3, size(here)), middle(3), reach
     type(contact_point_t) :: point
     integer :: count, doubt, list(size(hulls%radius)), points(self%bearing()), q

@@ -11,6 +11,7 @@ from scipy import sparse
 
 from isomortar import _twin
 from isomortar._bindings import Pattern
+from isomortar._codes import PointState
 from isomortar.errors import KernelError
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.harness.visits import PairVisit, Visit, visited_states
@@ -160,7 +161,7 @@ def _sticks(state: IntArray) -> np.ndarray:
 
 
 def _slips(state: IntArray) -> np.ndarray:
-    return state == 2
+    return state == PointState.SLIP
 
 
 def _part_error(part: str, samples: list[Sample]) -> PartError | None:
@@ -250,9 +251,9 @@ class PairTangent(PairState):
     def _near_lines(self) -> np.ndarray:
         """Whether a foot within the reach of a slave control point is on a C0 line, shape (slave control points,)."""
         slave = self.pair.pair.slave
-        elements = np.any(self.kinematics.projections.fixed.reshape(len(slave.nodes), -1), axis=1)
-        near = np.zeros(len(slave.point), dtype=bool)
-        near[slave.nodes[elements]] = True
+        elements = np.any(self.kinematics.projections.fixed.reshape(slave.elements, -1), axis=1)
+        near = np.zeros(slave.test.count, dtype=bool)
+        near[slave.test.nodes[elements]] = True
         return near
 
     def along_multipliers(self, random: np.random.Generator, length: float) -> list[Sample]:

@@ -59,9 +59,10 @@ class Numbering:
 
 def patch_arrays(patch: Patch, points: IntArray) -> PatchArrays:
     """A patch with global control point numbers, flat."""
-    layout = [_FAMILY_CODE[d.family] for d in patch.directions] + [d.order for d in patch.directions] + list(patch.shape)
+    families = np.array([_FAMILY_CODE[d.family] for d in patch.directions], dtype=np.int32)
+    orders = np.array([d.order for d in patch.directions], dtype=np.int32)
     knots = np.concatenate([d.knots for d in patch.directions])
-    return PatchArrays(np.asarray(layout, np.int32), knots, points, patch.weights)
+    return PatchArrays(families, orders, np.asarray(patch.shape, dtype=np.int32), knots, points, patch.weights)
 
 
 def same_points(patch: Patch, closed: str | None) -> IntArray:

@@ -6,7 +6,7 @@ import numpy as np
 from scipy import sparse
 
 from isomortar import _bindings
-from isomortar._bindings import MasterArrays, Pattern, SlaveArrays
+from isomortar._bindings import FaceArrays, FunctionArrays, MasterArrays, Pattern, PlaneArrays, SlaveArrays
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model.entities import Contact, Face, Problem, RigidPlane
 from isomortar.model.numbering import Numbering
@@ -24,7 +24,7 @@ class Pair:
     master : MasterArrays
     area : float
         Area of the slave face in the reference configuration.
-    elements_of_point : csr_array, shape (slave control points, slave elements)
+    elements_of_point : csr_array, shape (test functions, slave elements)
     slave_reach : csr_array, shape (slave elements, control points)
         Control points of each slave element.
     master_reach : csr_array or None, shape (master elements, control points)
@@ -34,7 +34,7 @@ class Pair:
     master_edges : list of (int, ndarray of int)
         For each edge of that face the surface coordinate that runs across it, and its control points.
     neighbours : Pattern
-        Slave control points that share an element.
+        Test functions that share an element.
     bodies : ndarray of int
         Numbers of the deformable bodies of the pair.
     softest : ndarray
@@ -45,11 +45,8 @@ class Pair:
         self.contact = contact
         body = problem.body(contact.slave.body)
         face, points = contact.slave.face, numbering.points[body.name]
-        directions = body.patch.face_directions(face)
-        elements = directions[0].elements * directions[1].elements
-        local = (directions[0].order + 1) * (directions[1].order + 1)
-        nodes, basis, area = _bindings.slave_tables(
-            numbering.patch_arrays(body), _axis(face), int(face[1]), contact.quadrature, numbering.reference, local, elements
+        nodes, values, area = _bindings.slave_tables(
+            numbering.patch_arrays(body), _axis(face), int(face[1]), contact.quadrature, numbering.reference
         )
         face_points = points[body.patch.face_points(face)]
         slave_points, first = np.unique(face_points, return_index=True)
@@ -57,12 +54,14 @@ class Pair:
         number = np.empty(len(order), dtype=np.int32)
         number[order] = np.arange(len(order), dtype=np.int32)
         within = number[np.searchsorted(slave_points, face_points)]
-        self.slave = SlaveArrays(np.ascontiguousarray(within[nodes]), basis, area, np.ascontiguousarray(slave_points[order]))
+        functions = FunctionArrays(np.ascontiguousarray(within[nodes]), values, len(order))
+        # The mortar method weights constraints with the functions of the face.
+        self.slave = SlaveArrays(functions, functions, area, np.ascontiguousarray(slave_points[order]))
         self.area = float(area.sum())
         self.master = _master_arrays(contact, problem, numbering)
-        members = incidence(self.slave.nodes, len(self.slave.point))
+        members = incidence(self.slave.test.nodes, self.slave.test.count)
         self.elements_of_point = sparse.csr_array(members.T)
-        self.slave_reach = incidence(self.slave.point[self.slave.nodes], numbering.count)
+        self.slave_reach = incidence(self.slave.point[self.slave.shape.nodes], numbering.count)
         self.master_reach = None
         self.master_face: IntArray = np.zeros(0, dtype=np.int32)
         self.master_edges: list[tuple[int, IntArray]] = []
@@ -83,15 +82,11 @@ class Pair:
         moduli = np.array([problem.bodies[k].material.modulus for k in self.bodies])
         self.softest: FloatArray = moduli.min() / moduli
 
-    @property
-    def points_per_element(self) -> int:
-        """Number of quadrature points of a slave element."""
-        return len(self.slave.area) // len(self.slave.nodes)
-
     def field(self, control_values: FloatArray) -> FloatArray:
         """A field at the quadrature points from its control values, shape (points, ...)."""
-        element = np.repeat(np.arange(len(self.slave.nodes)), self.points_per_element)
-        return np.einsum("qa,qa...->q...", self.slave.basis, control_values[self.slave.nodes[element]])
+        test = self.slave.test
+        element = np.repeat(np.arange(self.slave.elements), self.slave.per_element)
+        return np.einsum("qa,qa...->q...", test.values, control_values[test.nodes[element]])
 
 
 def _axis(face: str) -> int:
@@ -100,9 +95,7 @@ def _axis(face: str) -> int:
 
 def _master_arrays(contact: Contact, problem: Problem, numbering: Numbering) -> MasterArrays:
     if isinstance(contact.master, RigidPlane):
-        vectors = np.concatenate([contact.master.point, contact.master.normal, contact.master.tangent]).astype(np.float64)
-        return MasterArrays(np.zeros(11, np.int32), vectors, np.zeros(1, np.int32), np.ones(1))
+        plane = contact.master
+        return PlaneArrays(*(np.array(vector, dtype=np.float64) for vector in (plane.point, plane.normal, plane.tangent)))
     patch = numbering.patch_arrays(problem.body(contact.master.body))
-    face = contact.master.face
-    kind: IntArray = np.concatenate([[_axis(face), int(face[1])], patch.layout]).astype(np.int32)
-    return MasterArrays(kind, patch.knots, patch.point, patch.weight)
+    return FaceArrays(patch, _axis(contact.master.face), int(contact.master.face[1]))

@@ -35,9 +35,7 @@ def gaps(problem: Problem, contact: Contact, positions: FloatArray, points: Floa
         The projection of a point did not settle.
     """
     count = len(points)
-    number = np.arange(count, dtype=np.int32)
-    # The kernel averages over slave control points: each point is one, with an element and a function of its own.
-    slave = SlaveArrays(number[:, None].copy(), np.ones((count, 1)), np.ones(count), number + np.int32(len(positions)))
+    slave = SlaveArrays.of_points(np.arange(count, dtype=np.int32) + np.int32(len(positions)))
     master = Pair(contact, problem, Numbering(problem)).master
     everywhere = np.concatenate([positions, points])
     projections = _bindings.project_points(slave, master, everywhere, np.zeros((count, 2)), np.zeros(count, dtype=np.int32))

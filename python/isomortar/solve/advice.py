@@ -28,7 +28,7 @@ def advice_on_problem(problem: Problem, pairs: Sequence[PairMechanics]) -> Itera
         stiffer = slave.material.young / master.material.young
         elements = np.prod(pair.pair.master_elements)
         master_area = _area(master.patch.control_points[master.patch.face_points(contact.master.face)])
-        finer = (master_area / elements) / (pair.pair.area / len(pair.pair.slave.nodes))
+        finer = (master_area / elements) / (pair.pair.area / pair.pair.slave.elements)
         if stiffer > STIFFER and finer > 1.0:
             yield (
                 f"contact {contact.name!r}: the slave {slave.name!r} is {stiffer:.0f} times stiffer and its elements are {finer:.1f} times "

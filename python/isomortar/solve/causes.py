@@ -57,7 +57,7 @@ def causes(equilibrium: Equilibrium, positions: FloatArray, error: Exception) ->
 
 def _over_the_edge(pair: PairMechanics, positions: FloatArray) -> Iterator[str]:
     """A slave that goes over an edge of its master, in elements of which a part only has anything below."""
-    elements = pair.initial(positions).projected.reshape(len(pair.pair.slave.nodes), -1) > 0
+    elements = pair.initial(positions).projected.reshape(pair.pair.slave.elements, -1) > 0
     partly = elements.any(axis=1) & ~elements.all(axis=1)
     if partly.any() or not elements.any():
         yield (

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from isomortar import _bindings
-from isomortar._bindings import ROW_KINDS, Control, Law, Pattern, Projections, Response
+from isomortar._bindings import Control, Law, Pattern, Projections, Response
+from isomortar._codes import ROW_KINDS, PointState
 from isomortar.errors import LostProjectionError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import SolverSettings
@@ -90,7 +91,7 @@ class PairMechanics:
         self.friction = pair.contact.friction_law
         self.summed = settings.slip_sum == "paper" and self.friction.acts
         self.reach = Reach(pair, self.summed, settings.method == "uzawa")
-        n = len(pair.slave.point)
+        n = pair.slave.test.count
         self.diagonal = Pattern(np.arange(n + 1, dtype=np.int32), np.arange(n, dtype=np.int32))
         self.held = nothing_held(pair)
         self.shared = np.isin(pair.slave.point, [point for other in others for point in other.slave.point])
@@ -109,7 +110,7 @@ class PairMechanics:
 
     def initial(self, positions: FloatArray) -> ContactState:
         """State before the first load step: no tractions; slips count from where the reference configuration projects (theory 3.20)."""
-        n, q = len(self.pair.slave.point), len(self.pair.slave.area)
+        n, q = self.pair.slave.test.count, len(self.pair.slave.area)
         nowhere = ContactState(np.zeros(n), np.zeros((n, 2)), np.zeros((q, 2)), np.zeros(q, dtype=np.int32))
         projections = self.kinematics(positions, nowhere).projections
         return replace(nowhere, projection=projections.xi, projected=projections.followed)
@@ -209,7 +210,7 @@ class PairMechanics:
         have moved them along a plane slips are given, and where these have them just touch one they leave nothing to a pressure; and of
         elements that reach over an edge of the master there may be more than points on it.
         """
-        nodes = self.pair.slave.nodes
+        nodes = self.pair.slave.test.nodes
         given = self.shared | self.held.moved
         loose: BoolArray = np.column_stack([self.held.rests, given, given])
         loose[nodes[np.any(projections.found.reshape(len(nodes), -1) == 0, axis=1)]] = True
@@ -313,7 +314,7 @@ class PairMechanics:
             moment_slave=moment(positions, slave_forces),
             moment_master=moment(positions, master_forces),
             active=int(np.count_nonzero(response.state)),
-            slip=int(np.count_nonzero(response.state == 2)),
+            slip=int(np.count_nonzero(response.state == PointState.SLIP)),
             traction_norm=self.traction_norms(control, response.traction),
             status=response.state,
             gap=control.gap / weight,

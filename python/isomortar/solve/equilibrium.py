@@ -9,6 +9,7 @@ import numpy as np
 from scipy import sparse
 
 from isomortar._bindings import Law, Response
+from isomortar._codes import PointState
 from isomortar._sparse import Ordering
 from isomortar.errors import SingularSystemError
 from isomortar.geometry.patch import FloatArray
@@ -47,7 +48,7 @@ class Balance:
     @property
     def slipping(self) -> int:
         """Number of slipping slave control points."""
-        return sum(int(np.count_nonzero(r.state == 2)) for r in self.responses)
+        return sum(int(np.count_nonzero(r.state == PointState.SLIP)) for r in self.responses)
 
 
 class Equilibrium:

@@ -9,18 +9,23 @@ import numpy as np
 
 from isomortar import _bindings
 from isomortar._bindings import Projections, Response, SlaveArrays
+from isomortar._codes import Status
 from isomortar.errors import LostProjectionError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.pairs import Pair
 
 #: Doubts with friction alone: the kernel's about a foot on a C0 line, and one of ours beside a pole.
-_NO_SLIP, _SLIPS_AT_POLE = 12, -1
-#: By the kernel's status (isomortar_base_status): what is the matter with a foot, and what to do.
+_NO_SLIP, _SLIPS_AT_POLE = int(Status.NO_SLIP), -1
+#: By the kernel's status: what is the matter with a foot, and what to do.
 _DOUBTS = {
-    3: "the search for its nearest point on the master does not settle, as near a centre of curvature. "
-    "Take smaller load steps, or a master whose centres of curvature are farther away",
-    4: "other points of the master are as near as the nearest one, as from a ring's axis: it has no direction to press in. "
-    "Keep the slave nearer to the master than its centres of curvature, or take a master that is less hollow",
+    Status.LOST_PROJECTION: (
+        "the search for its nearest point on the master does not settle, as near a centre of curvature. "
+        "Take smaller load steps, or a master whose centres of curvature are farther away"
+    ),
+    Status.DEGENERATE_SURFACE: (
+        "other points of the master are as near as the nearest one, as from a ring's axis: it has no direction to press in. "
+        "Keep the slave nearer to the master than its centres of curvature, or take a master that is less hollow"
+    ),
     _NO_SLIP: "its nearest point is on a C0 line of the master, and slips have no measure there: the element beside it has its centre of "
     "curvature nearer. Set friction = 0, without cohesion, or take a master that is less hollow beside its lines",
     _SLIPS_AT_POLE: "its nearest point is beside a pole of the master, an edge that is one point, where slips have no coordinates. "
@@ -57,8 +62,8 @@ class Feet:
             doubt = np.where(doubt == _NO_SLIP, 0, doubt)
         if not doubt.any():
             return
-        active = np.any(response.state[self._pair.slave.nodes] > 0, axis=1)
-        bad = np.flatnonzero((doubt != 0) & np.repeat(active, self._pair.points_per_element))
+        active = np.any(response.state[self._pair.slave.test.nodes] > 0, axis=1)
+        bad = np.flatnonzero((doubt != 0) & np.repeat(active, self._pair.slave.per_element))
         if bad.size:
             q = int(bad[0])
             raise LostProjectionError(
@@ -73,7 +78,7 @@ class Feet:
 
     def _point(self, positions: FloatArray, q: int) -> FloatArray:
         slave = self._pair.slave
-        point: FloatArray = slave.basis[q] @ positions[slave.point[slave.nodes[q // self._pair.points_per_element]]]
+        point: FloatArray = slave.shape.values[q] @ positions[slave.point[slave.shape.nodes[q // slave.per_element]]]
         return point
 
     def _place(self, positions: FloatArray, q: int) -> str:
@@ -83,7 +88,7 @@ class Feet:
 
     def _gap(self, positions: FloatArray, projections: Projections, q: int) -> float:
         """The gap of one quadrature point, negative where it is open: the kernel gives averages, here of this point alone."""
-        slave = SlaveArrays(np.zeros((1, 1), np.int32), np.ones((1, 1)), np.ones(1), np.array([len(positions)], np.int32))
+        slave = SlaveArrays.of_points(np.array([len(positions)], np.int32))
         one = slice(q, q + 1)
         foot = Projections(*(np.ascontiguousarray(getattr(projections, name)[one]) for name in Projections.__dataclass_fields__))
         return float(_bindings.control_quantities(slave, self._pair.master, np.vstack([positions, self._point(positions, q)]), foot).gap[0])

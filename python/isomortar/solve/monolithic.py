@@ -9,6 +9,7 @@ from functools import partial
 import numpy as np
 
 from isomortar._bindings import Law, Response
+from isomortar._codes import PointState
 from isomortar.errors import FoldedElementError, LostProjectionError
 from isomortar.geometry.patch import FloatArray
 from isomortar.solve.bordered import Border, Correction, solve_bordered, solve_with_kept_factors
@@ -155,7 +156,7 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
             return np.zeros(len(target.state), dtype=bool)
         change = correction.tractions[k] + border.trial_change(correction.positions)
         raised = self._equilibrium.pairs[k].contravariant(iterate.balance.kinematics[k].control, iterate.laws[k].traction)
-        return (target.state == 2) & (np.einsum("ia,ia->i", raised, change) < 0.0)
+        return (target.state == PointState.SLIP) & (np.einsum("ia,ia->i", raised, change) < 0.0)
 
     def _update(self, iterate: _BorderedIterate, correction: Correction, iteration: int) -> tuple[_BorderedIterate, tuple[str, ...]]:
         """The next iterate: the full update, or one halved until it is admissible (theory 6)."""

@@ -36,7 +36,7 @@ class Reach:
         self._condensed = condensed
         self._summed = summed
         self._touched = np.zeros(0, dtype=np.int64)
-        self._active = np.zeros(len(pair.slave.point), dtype=bool)
+        self._active = np.zeros(pair.slave.test.count, dtype=bool)
         self._fresh = True
         self.patterns: ContactPatterns | None = None
 
@@ -61,8 +61,8 @@ class Reach:
         pair = self._pair
         if pair.master_reach is None:
             return np.zeros(0, dtype=np.int64)
-        element = np.repeat(np.arange(len(pair.slave.nodes)), pair.points_per_element)
-        counts = (projections.found > 0) & np.any(active[pair.slave.nodes], axis=1)[element]
+        element = np.repeat(np.arange(pair.slave.elements), pair.slave.per_element)
+        counts = (projections.found > 0) & np.any(active[pair.slave.test.nodes], axis=1)[element]
         first, second = projections.element[counts, 0], projections.element[counts, 1]
         return np.unique(element[counts].astype(np.int64) * pair.master_reach.shape[0] + first + pair.master_elements[0] * second)
 
@@ -71,7 +71,7 @@ class Reach:
         reach = pair.slave_reach
         if pair.master_reach is not None:
             elements, masters = np.divmod(touched, pair.master_reach.shape[0])
-            shape = (len(pair.slave.nodes), pair.master_reach.shape[0])
+            shape = (pair.slave.elements, pair.master_reach.shape[0])
             meets = sparse.csr_array((np.ones(len(touched), dtype=np.int32), (elements, masters)), shape=shape)
             reach = reach + meets @ pair.master_reach
         rows = rows_of(pair.elements_of_point, active) @ reach
@@ -79,7 +79,7 @@ class Reach:
         if self._condensed:
             tangent = rows.T.tocsr() @ wide
         else:
-            members = rows_of(reach, np.any(active[pair.slave.nodes], axis=1))
+            members = rows_of(reach, np.any(active[pair.slave.test.nodes], axis=1))
             tangent = members.T.tocsr() @ members
         return ContactPatterns(pattern_of(rows), pattern_of(wide), pattern_of(tangent))
 

@@ -78,7 +78,7 @@ def _active(contact: Multipliers) -> NDArray[np.intp]:
 
 def _points_around(contact: Multipliers, among: NDArray[np.intp]) -> tuple[int, int]:
     """How many quadrature points around some slave control points are on the master, and how many there are."""
-    nodes = contact.pair.pair.slave.nodes
+    nodes = contact.pair.pair.slave.test.nodes
     found = contact.kinematics.projections.found.reshape(len(nodes), -1) > 0
     around = found[np.isin(nodes, among).any(axis=1)]
     return int(np.count_nonzero(around)), around.size

@@ -1,0 +1,158 @@
+! What Python hands over once (see isomortar_api_descriptors). Numbers count from 0 outside and from 1 inside. Status code last; a
+! handle is -1 without success.
+
+!> Keep a patch: families (1 NURBS, 2 Lagrange), orders and numbers of control points of the three directions, whose knots (of
+!> Lagrange elements: boundaries) follow one another; global numbers and weights of the control points.
+subroutine keep_patch(families, orders, counts, knots, nknots, point, weight, npoints, handle, status)
+  use iso_c_binding, only: c_double, c_int, c_int64_t
+  use isomortar_api_descriptors, only: descriptor_t, keep
+  use isomortar_base_kinds, only: wp
+  use isomortar_nurbs_direction, only: family_nurbs, new_direction
+  implicit none
+  integer(c_int), intent(in) :: nknots, npoints, families(3), orders(3), counts(3), point(npoints)
+  real(c_double), intent(in) :: knots(nknots), weight(npoints)
+  integer(c_int64_t), intent(out) :: handle
+  integer(c_int), intent(out) :: status
+  type(descriptor_t) :: descriptor
+  integer :: d, first, length
+
+  allocate (descriptor%patch)
+  first = 1
+  do d = 1, 3
+    length = merge(counts(d) + orders(d) + 1, (counts(d) - 1) / orders(d) + 1, families(d) == family_nurbs)
+    descriptor%patch%direction(d) = new_direction(int(families(d)), int(orders(d)), real(knots(first:first + length - 1), wp))
+    first = first + length
+  end do
+  descriptor%patch%point = point + 1
+  descriptor%patch%weight = real(weight, wp)
+  call keep(descriptor, handle, status)
+end subroutine keep_patch
+
+!> Keep a material by the number of its law and its parameters (isomortar_solid_material_table).
+subroutine keep_material(law, parameters, nparameters, handle, status)
+  use iso_c_binding, only: c_double, c_int, c_int64_t
+  use isomortar_api_descriptors, only: descriptor_t, keep
+  use isomortar_base_kinds, only: wp
+  use isomortar_solid_material_table, only: material_of
+  implicit none
+  integer(c_int), intent(in) :: law, nparameters
+  real(c_double), intent(in) :: parameters(nparameters)
+  integer(c_int64_t), intent(out) :: handle
+  integer(c_int), intent(out) :: status
+  type(descriptor_t) :: descriptor
+
+  handle = -1
+  call material_of(law, real(parameters, wp), descriptor%material, status)
+  if (status == 0) call keep(descriptor, handle, status)
+end subroutine keep_material
+
+!> Keep a law of friction by its number and its parameters (isomortar_contact_friction_table).
+subroutine keep_friction(law, parameters, nparameters, handle, status)
+  use iso_c_binding, only: c_double, c_int, c_int64_t
+  use isomortar_api_descriptors, only: descriptor_t, keep
+  use isomortar_base_kinds, only: wp
+  use isomortar_contact_friction_table, only: friction_of
+  implicit none
+  integer(c_int), intent(in) :: law, nparameters
+  real(c_double), intent(in) :: parameters(nparameters)
+  integer(c_int64_t), intent(out) :: handle
+  integer(c_int), intent(out) :: status
+  type(descriptor_t) :: descriptor
+
+  handle = -1
+  call friction_of(law, real(parameters, wp), descriptor%friction, status)
+  if (status == 0) call keep(descriptor, handle, status)
+end subroutine keep_friction
+
+!> Keep a slave side: by element and quadrature point the functions that interpolate its positions, and those that constraints are
+!> weighted with; reference areas of the points; global numbers of its control points.
+subroutine keep_slave(shape_nodes, shape_values, nshape, test_nodes, test_values, ntest, tests, area, nelements, nquad, point, &
+    npoints, handle, status)
+  use iso_c_binding, only: c_double, c_int, c_int64_t
+  use isomortar_api_descriptors, only: descriptor_t, keep
+  use isomortar_base_kinds, only: wp
+  use isomortar_contact_slave, only: functions_t
+  implicit none
+  integer(c_int), intent(in) :: nshape, ntest, tests, nelements, nquad, npoints
+  integer(c_int), intent(in) :: shape_nodes(nshape, nelements), test_nodes(ntest, nelements), point(npoints)
+  real(c_double), intent(in) :: shape_values(nshape, nquad), test_values(ntest, nquad), area(nquad)
+  integer(c_int64_t), intent(out) :: handle
+  integer(c_int), intent(out) :: status
+  type(descriptor_t) :: descriptor
+
+  allocate (descriptor%slave)
+  descriptor%slave%shape = functions_t(npoints, shape_nodes + 1, real(shape_values, wp))
+  descriptor%slave%test = functions_t(tests, test_nodes + 1, real(test_values, wp))
+  descriptor%slave%per_element = nquad / nelements
+  descriptor%slave%area = real(area, wp)
+  descriptor%slave%point = point + 1
+  call keep(descriptor, handle, status)
+end subroutine keep_slave
+
+!> Keep the gap map of a rigid plane (isomortar_contact_gap_map_plane).
+subroutine keep_plane(origin, normal, tangent, handle, status)
+  use iso_c_binding, only: c_double, c_int, c_int64_t
+  use isomortar_api_descriptors, only: descriptor_t, keep
+  use isomortar_base_kinds, only: wp
+  use isomortar_contact_gap_map_plane, only: plane_through
+  implicit none
+  real(c_double), intent(in) :: origin(3), normal(3), tangent(3)
+  integer(c_int64_t), intent(out) :: handle
+  integer(c_int), intent(out) :: status
+  type(descriptor_t) :: descriptor
+
+  allocate (descriptor%map, source=plane_through(real(origin, wp), real(normal, wp), real(tangent, wp)))
+  call keep(descriptor, handle, status)
+end subroutine keep_plane
+
+!> Keep the gap map of the closest point on a face of a patch, by the axis across it (1..3) and its end there (0, 1)
+!> (isomortar_contact_gap_map_closest_point).
+subroutine keep_closest_point(patch, axis, side, handle, status)
+  use iso_c_binding, only: c_int, c_int64_t
+  use isomortar_api_descriptors, only: descriptor_t, find, keep
+  use isomortar_contact_gap_map_closest_point, only: closest_point_t
+  use isomortar_nurbs_patch, only: patch_t
+  use isomortar_nurbs_surface, only: face_of
+  implicit none
+  integer(c_int64_t), intent(in) :: patch
+  integer(c_int), intent(in) :: axis, side
+  integer(c_int64_t), intent(out) :: handle
+  integer(c_int), intent(out) :: status
+  type(descriptor_t) :: descriptor
+  type(patch_t), pointer :: body
+
+  handle = -1
+  status = 0
+  call find(patch, body, status)
+  if (status /= 0) return
+  allocate (descriptor%map, source=closest_point_t(surface=face_of(body, axis, side), opposite=face_of(body, axis, 1 - side)))
+  call keep(descriptor, handle, status)
+end subroutine keep_closest_point
+
+!> Keep a pattern of blocks in compressed rows.
+subroutine keep_pattern(start, nrows, column, nblocks, handle, status)
+  use iso_c_binding, only: c_int, c_int64_t
+  use isomortar_api_descriptors, only: descriptor_t, keep
+  implicit none
+  integer(c_int), intent(in) :: nrows, nblocks
+  integer(c_int), intent(in) :: start(nrows + 1), column(nblocks)
+  integer(c_int64_t), intent(out) :: handle
+  integer(c_int), intent(out) :: status
+  type(descriptor_t) :: descriptor
+
+  allocate (descriptor%pattern)
+  allocate (descriptor%pattern%start(0:nrows), source=int(start))
+  descriptor%pattern%column = column + 1
+  call keep(descriptor, handle, status)
+end subroutine keep_pattern
+
+!> Free what a handle stands for.
+subroutine release_descriptor(handle, status)
+  use iso_c_binding, only: c_int, c_int64_t
+  use isomortar_api_descriptors, only: release
+  implicit none
+  integer(c_int64_t), intent(in) :: handle
+  integer(c_int), intent(out) :: status
+
+  call release(handle, status)
+end subroutine release_descriptor

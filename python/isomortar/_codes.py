@@ -1,0 +1,49 @@
+"""The kernel's numbers, by name: statuses, states of control points, kinds of constraint rows.
+
+They are given in Fortran; a test compares these with the sources.
+"""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+
+class Status(IntEnum):
+    """How a call of the kernel ended (isomortar_base_status)."""
+
+    OK = 0
+    FOLDED = 1
+    FOLDED_INITIALLY = 2
+    LOST_PROJECTION = 3
+    DEGENERATE_SURFACE = 4
+    SINGULAR = 5
+    STALE_HANDLE = 6
+    OUT_OF_MEMORY = 7
+    LIBRARY = 8
+    PATTERN = 9
+    NOT_FINITE = 10
+    PASSED_THROUGH = 11
+    NO_SLIP = 12
+    NO_SUCH_LAW = 13
+
+
+class PointState(IntEnum):
+    """State of a control point of a slave (isomortar_contact_friction_return_map)."""
+
+    OPEN = 0
+    STICK = 1
+    SLIP = 2
+
+
+class Row(IntEnum):
+    """First constraint row of each kind, from 1 (isomortar_contact_blocks): <R dg>, <R slip>, <R dxi>, <R R da_ab>, <R da_ab zeta^b>."""
+
+    GAP = 1
+    WORK = 2
+    SLIP = 4
+    METRIC = 6
+    SLIP_SUM = 9
+
+
+#: How many rows there are without friction, with it, and with the paper's slip sum.
+ROW_KINDS = {"frictionless": Row.WORK - 1, "local": Row.SLIP_SUM - 1, "paper": Row.SLIP_SUM + 1}

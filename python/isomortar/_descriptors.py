@@ -1,0 +1,90 @@
+"""Handles of what the kernel is handed once: patches, laws, slave sides, masters, patterns (isomortar_api_descriptors)."""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Callable
+from typing import Any
+from weakref import WeakKeyDictionary
+
+from isomortar import _arguments as check
+from isomortar._arrays import (
+    FaceArrays,
+    FrictionArrays,
+    MaterialArrays,
+    PatchArrays,
+    Pattern,
+    PlaneArrays,
+    SlaveArrays,
+)
+from isomortar._codes import Status
+from isomortar.errors import KernelError
+
+
+class Descriptors:
+    """What a compiled library holds for arrays: handed over when first asked for, and let go with them.
+
+    The library keeps a copy: the arrays must not change once they were used.
+
+    Parameters
+    ----------
+    library : module
+        The kernel, or its extended-precision twin.
+    """
+
+    def __init__(self, library: Any) -> None:
+        self._library = library
+        self._handles: WeakKeyDictionary[Any, int] = WeakKeyDictionary()
+        self._keepers: dict[type, Callable[[Any], tuple[int, int]]] = {
+            PatchArrays: self._patch,
+            MaterialArrays: self._law_by(library.keep_material),
+            FrictionArrays: self._law_by(library.keep_friction),
+            PlaneArrays: lambda plane: library.keep_plane(plane.origin, plane.normal, plane.tangent),
+            FaceArrays: lambda face: library.keep_closest_point(self.handle("patch", face.patch, PatchArrays), face.axis, face.side),
+            SlaveArrays: self._slave,
+            Pattern: lambda pattern: library.keep_pattern(pattern.start, pattern.column),
+        }
+
+    def handle(self, name: str, arrays: Any, *allowed: type) -> int:
+        """The library's handle of some arrays, which are the argument `name` and must be of an allowed type.
+
+        Raises
+        ------
+        InputError
+            They are not.
+        KernelError
+            No law has that number and so many parameters; memory ran out; too many descriptors are alive.
+        """
+        check.kind(name, arrays, *allowed)
+        handle = self._handles.get(arrays)
+        if handle is None:
+            handle, status = self._keepers[type(arrays)](arrays)
+            if status:
+                raise KernelError(_REFUSALS[Status(status)])
+            self._handles[arrays] = handle
+            weakref.finalize(arrays, self._library.release_descriptor, handle).atexit = False
+        return handle
+
+    def _patch(self, patch: PatchArrays) -> tuple[int, int]:
+        found: tuple[int, int] = self._library.keep_patch(
+            patch.families, patch.orders, patch.counts, patch.knots, patch.point, patch.weight
+        )
+        return found
+
+    def _slave(self, slave: SlaveArrays) -> tuple[int, int]:
+        shape, test = slave.shape, slave.test
+        found: tuple[int, int] = self._library.keep_slave(
+            shape.nodes.T, shape.values.T, test.nodes.T, test.values.T, test.count, slave.area, slave.point
+        )
+        return found
+
+    @staticmethod
+    def _law_by(keeper: Callable[..., tuple[int, int]]) -> Callable[[Any], tuple[int, int]]:
+        return lambda law: keeper(law.law, law.parameters)
+
+
+_REFUSALS = {
+    Status.NO_SUCH_LAW: "no law of material or friction has that number and so many parameters",
+    Status.OUT_OF_MEMORY: "memory ran out, or too many patches, laws, contacts and patterns are alive: let some go",
+    Status.STALE_HANDLE: "the patch of a face was released before",
+}

@@ -1,0 +1,36 @@
+"""Numbers that Fortran and Python share are the same in both."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from isomortar._arrays import FRICTION_LAWS, LAWS
+from isomortar._codes import ROW_KINDS, PointState, Row, Status
+
+FORTRAN = Path(__file__).parents[2] / "fortran"
+
+
+def parameters(file: str, prefix: str) -> dict[str, int]:
+    """Named whole numbers of a source file that begin with a prefix, without it."""
+    return {name: int(number) for name, number in re.findall(rf"\b{prefix}_(\w+) = (\d+)", (FORTRAN / file).read_text())}
+
+
+@pytest.mark.parametrize(
+    ("file", "prefix", "ours"),
+    [
+        ("base/status.f90", "status", {status.name.lower(): status.value for status in Status}),
+        ("contact/friction/return_map.f90", "state", {state.name.lower(): state.value for state in PointState}),
+        ("contact/blocks.f90", "row", {row.name.lower(): row.value for row in Row}),
+        ("solid/material/table.f90", "law", {name.replace("-", "_"): number for name, number in LAWS.items()}),
+        ("contact/friction/table.f90", "law", FRICTION_LAWS),
+    ],
+)
+def test_names_and_numbers_of_fortran_are_those_of_python(file: str, prefix: str, ours: dict[str, int]) -> None:
+    assert parameters(file, prefix) == ours
+
+
+def test_the_paper_s_slip_sum_has_all_rows() -> None:
+    assert ROW_KINDS["paper"] == int(re.findall(r"\ball_rows = (\d+)", (FORTRAN / "contact/blocks.f90").read_text())[0])
