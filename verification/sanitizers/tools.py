@@ -126,12 +126,21 @@ def _of_kernel(path: Path) -> list[str]:
     reports = []
     for error in Xml.parse(path).getroot().iter("error"):
         frames = list(error.find("stack").iter("frame"))  # type: ignore[union-attr]
-        if any(Path(frame.findtext("obj", "")).name == _KERNEL for frame in frames):
+        if any(Path(frame.findtext("obj", "")).name == _KERNEL for frame in frames) and not _is_python_s(
+            error.findtext("kind", ""), frames
+        ):
             where = " < ".join(
                 f"{frame.findtext('fn', '?')} ({frame.findtext('file', '?')}:{frame.findtext('line', '?')})" for frame in frames[:6]
             )
             reports.append(f"{error.findtext('kind')}: {where}")
     return reports
+
+
+def _is_python_s(kind: str, frames: Sequence[Xml.Element]) -> bool:
+    """Whether a leak is of memory that the interpreter took for itself, as for the names of a module that it loads."""
+    takers = (Path(frame.findtext("obj", "")).name for frame in frames)
+    taker = next((name for name in takers if not name.startswith("vgpreload")), "")
+    return kind.startswith("Leak") and taker.startswith(("python", "libpython"))
 
 
 def _run(command: list[str], folder: Path) -> None:
