@@ -1,6 +1,6 @@
-! What Python sees of contact. `slave`, `map`, `friction` and patterns are handles (see isomortar_api_descriptors); numbers of control
-! points, elements and blocks count from 0 outside and from 1 inside. Fields at quadrature points have `nquad` entries, those of
-! test functions `ntest`.
+! What Python sees of contact. `slave`, `map`, `friction` and patterns are handles (see isomortar_api_descriptors); numbers of
+! control points, elements and blocks count from 0 outside and from 1 inside. Fields at quadrature points have `nquad` entries,
+! those of test functions `ntest`.
 
 !> Functions and reference areas at the quadrature points of a face of a patch, by the axis across it (1..3) and its end there
 !> (0, 1) (isomortar_contact_slave). `nodes` are numbered within the face.

@@ -40,7 +40,7 @@ module isomortar_api_descriptors
     type(descriptor_t), pointer :: descriptor => null()
   end type entry_t
 
-  type(entry_t), save :: table(0:slots - 1)
+  type(entry_t) :: table(0:slots - 1)
 
 contains
 

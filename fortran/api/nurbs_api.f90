@@ -1,6 +1,6 @@
-!> Functions of a face of a patch (a handle, see isomortar_api_descriptors) at given coordinates and their derivatives to order three
-!> (isomortar_nurbs_surface): nodes within the face, from 0, and functions(node, derivative, point) in the order 1, u, v, uu, uv, vv,
-!> uuu, uuv, uvv, vvv.
+!> Functions of a face of a patch (a handle, see isomortar_api_descriptors) at given coordinates and their derivatives to order
+!> three (isomortar_nurbs_surface): nodes within the face, from 0, and functions(node, derivative, point) in the order 1, u, v, uu,
+!> uv, vv, uuu, uuv, uvv, vvv.
 subroutine surface_functions(patch, axis, side, xi, m, nlocal, nodes, functions, status)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: find

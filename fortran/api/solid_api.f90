@@ -1,7 +1,7 @@
 ! What Python sees of solids. `patch`, `material` and `pattern` are handles (see isomortar_api_descriptors).
 
-!> Add internal forces and, if `with_tangent`, the tangent of one body on a pattern (isomortar_solid_assembly). On failure `place` is
-!> the element.
+!> Add internal forces and, if `with_tangent`, the tangent of one body on a pattern (isomortar_solid_assembly). On failure `place`
+!> is the element.
 subroutine add_body(patch, gauss, material, x, reference, n, forces, with_tangent, pattern, nblocks, tangent, smallest_jacobian, &
     status, place)
   use iso_c_binding, only: c_double, c_int, c_int64_t

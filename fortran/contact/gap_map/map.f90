@@ -1,8 +1,8 @@
 !> How a slave point finds its master point, and what varies with it.
 !>
-!> A gap map is one file beside this one, with a routine that keeps one in api/descriptor_api.f90. The two passes over the slave quadrature points do not
-!> know which they serve. Variations are linear forms in short vectors, three components each: the first is dx - dS, the others are
-!> the map's own, as sums over the master control points that bear on the point.
+!> A gap map is one file beside this one, with a routine that keeps one in api/descriptor_api.f90. The two passes over the slave
+!> quadrature points do not know which they serve. Variations are linear forms in short vectors, three components each: the first
+!> is dx - dS, the others are the map's own, as sums over the master control points that bear on the point.
 module isomortar_contact_gap_map_map
   use isomortar_base_kinds, only: wp
   use isomortar_contact_slave, only: slave_t
