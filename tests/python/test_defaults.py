@@ -8,9 +8,8 @@ from pydantic import BaseModel
 
 from isomortar.geometry.patch import Direction
 from isomortar.geometry.quadrature import contact_points, volume_points
-from isomortar.model import entities
+from isomortar.model import constants, entities
 from isomortar.scene import Scene, schema
-from isomortar.solve import simulation
 from isomortar.solve.record import StepResult
 from isomortar.solve.simulation import Simulation
 
@@ -189,4 +188,4 @@ def test_uzawa_has_the_penalties_and_tolerances_that_are_documented():
 
 
 def test_when_increments_grow_back():
-    assert (simulation.EASY_ITERATIONS, simulation.HARD_TANGENTS) == (12, 25)
+    assert (constants.EASY_ITERATIONS, constants.HARD_TANGENTS) == (12, 25)

@@ -10,12 +10,13 @@ import pytest
 
 from isomortar import run
 from isomortar.errors import ConvergenceError
+from isomortar.model import constants
+from isomortar.model.constants import EASY_ITERATIONS, HARD_TANGENTS
 from isomortar.model.entities import Motion, Problem, Stage
 from isomortar.scene import Scene
-from isomortar.solve import system
 from isomortar.solve.method import Increment
 from isomortar.solve.record import AugmentationRecord, IterationRecord, Observer, State, StepResult
-from isomortar.solve.simulation import EASY_ITERATIONS, HARD_TANGENTS, Simulation
+from isomortar.solve.simulation import Simulation
 
 SCENE = """
 format = 1
@@ -237,7 +238,7 @@ def test_resumed_at_any_step_a_run_comes_to_the_same_bits(settings):
 @pytest.mark.parametrize("settings", [[], ["solver.method=uzawa"]])
 def test_resumed_with_the_orderings_that_were_chosen_a_run_comes_to_the_same_bits(tmp_path, monkeypatch, settings):
     """Both are tried on the first matrix alone; that of a later load step might choose the other."""
-    monkeypatch.setattr(system, "UNDOUBTED", (0, 10**9))
+    monkeypatch.setattr(constants, "UNDOUBTED", (0, 10**9))
     scene, path = Scene.from_toml(TWO_BODIES, overrides=settings), tmp_path / "parts.h5"
     with pytest.raises(KeyboardInterrupt):
         run(scene, path, Stops(1))

@@ -10,11 +10,12 @@ import numpy as np
 import pytest
 
 from isomortar.errors import ConvergenceError
+from isomortar.model import constants
 from isomortar.model.entities import Motion, Problem, Stage
 from isomortar.scene import Scene
-from isomortar.solve import bordered, monolithic, newton
+from isomortar.solve import bordered, monolithic
 from isomortar.solve.equilibrium import Equilibrium
-from isomortar.solve.newton import KEPT_FACTORS, KEPT_SHARE
+from isomortar.solve.newton import KEPT_FACTORS
 from isomortar.solve.record import IterationRecord, Observer, StepResult
 from isomortar.solve.simulation import Simulation
 
@@ -96,7 +97,7 @@ def test_factors_are_kept_while_they_serve(method: str) -> None:
     factors = [sum(r.counters["factorisations"] for r in results) for results in (one, other)]
     assert factors[0] < 0.8 * factors[1]
     for augmentation, before, now in iterations_by_kept_factors(one):
-        assert now.residual <= KEPT_SHARE * before.residual, "after a change of penalties, or of states, others are made"
+        assert now.residual <= constants.KEPT_SHARE * before.residual, "after a change of penalties, or of states, others are made"
         assert augmentation > 1 or now.iteration > 1, "an increment begins with a tangent of its own"
         assert method == "uzawa" or (before.active, before.slip) == (now.active, now.slip)
     np.testing.assert_allclose(one[-1].state.positions, other[-1].state.positions, atol=1e-8)
@@ -144,7 +145,7 @@ def test_kept_factors_are_those_of_the_same_increment_and_states(monkeypatch: py
 
     Factors are kept here as long as they gain anything, or changes of state would hide behind poor gains.
     """
-    monkeypatch.setattr(newton, "KEPT_SHARE", 0.95)
+    monkeypatch.setattr(constants, "KEPT_SHARE", 0.95)
     factors = Factors(monkeypatch)
     run(small_iron())
     assert factors.again > 10

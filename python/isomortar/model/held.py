@@ -15,12 +15,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from isomortar.geometry.patch import FloatArray, IntArray
+from isomortar.model import constants
 from isomortar.model.entities import RigidPlane, unit
 from isomortar.model.pairs import Pair
 from isomortar.model.supports import BoolArray, Supports
-
-#: Share of a unit vector below which it has no component in a direction.
-_NOTHING = 1e-6
 
 
 @dataclass(frozen=True)
@@ -75,14 +73,14 @@ def _beside_plane(held: Held, supports: Supports, pair: Pair, start: FloatArray,
     heights = (start[point] + increment[point] - pair.contact.master.point) @ normal
     for i in np.flatnonzero(supports.held[point].any(axis=1)):
         prescribed = supports.held[point[i]]
-        held.bears[i] = int(np.linalg.norm(normal[~prescribed]) >= _NOTHING)
-        held.rests[i] = not held.bears[i] and abs(heights[i]) <= _NOTHING * np.ptp(start, axis=0).max()
+        held.bears[i] = int(np.linalg.norm(normal[~prescribed]) >= constants.NO_PART)
+        held.rests[i] = not held.bears[i] and abs(heights[i]) <= constants.NO_PART * np.ptp(start, axis=0).max()
         directions, sizes, _ = np.linalg.svd(tangents[prescribed & ~moved[point[i]]].T, full_matrices=False)
-        taken = directions[:, sizes > _NOTHING]
+        taken = directions[:, sizes > constants.NO_PART]
         held.free[i] -= taken @ taken.T
         along = held.free[i] @ (increment[point[i]] @ tangents)
         held.pushed[i] = along / (np.linalg.norm(along) or 1.0)
-        held.moved[i] = bool(np.any(np.linalg.norm(tangents[prescribed & moved[point[i]]], axis=1) > _NOTHING))
+        held.moved[i] = bool(np.any(np.linalg.norm(tangents[prescribed & moved[point[i]]], axis=1) > constants.NO_PART))
 
 
 def _beside_surface(held: Held, pair: Pair, start: FloatArray, still: BoolArray) -> None:
@@ -93,9 +91,9 @@ def _beside_surface(held: Held, pair: Pair, start: FloatArray, still: BoolArray)
     for coordinate, edge in pair.master_edges:
         for component in np.flatnonzero(np.all(still[edge], axis=0)):
             place = start[edge, component]
-            if np.ptp(place) > _NOTHING * size:
+            if np.ptp(place) > constants.NO_PART * size:
                 continue
-            same = slice_[component] | (np.abs(start[point, component] - place[0]) <= _NOTHING * size)
+            same = slice_[component] | (np.abs(start[point, component] - place[0]) <= constants.NO_PART * size)
             held.free[still[point, component] & same, :, coordinate] = 0.0
             held.free[still[point, component] & same, coordinate, :] = 0.0
 

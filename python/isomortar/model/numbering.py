@@ -7,10 +7,9 @@ import numpy as np
 from isomortar._bindings import PatchArrays
 from isomortar.errors import InputError
 from isomortar.geometry.patch import FloatArray, IntArray, Patch
+from isomortar.model import constants
 from isomortar.model.entities import Body, Problem
 
-#: Share of a body's size within which control points are the same.
-SAME = 1e-9
 _FAMILY_CODE = {"N": 1, "L": 2}
 
 
@@ -77,7 +76,7 @@ def same_points(patch: Patch, closed: str | None) -> IntArray:
     numbers = np.arange(len(first), dtype=np.int32).reshape(patch.shape[::-1])
     for axis in range(3):
         lines = np.moveaxis(numbers, axis, 0).reshape(numbers.shape[axis], -1)
-        of_no_length = np.linalg.norm(np.ptp(patch.control_points[lines], axis=0), axis=1) <= SAME * size
+        of_no_length = np.linalg.norm(np.ptp(patch.control_points[lines], axis=0), axis=1) <= constants.SAME_POINT * size
         first[lines[:, of_no_length]] = first[lines[0, of_no_length]]
     return first[first]
 
@@ -89,7 +88,7 @@ def _numbers(body: Body) -> tuple[IntArray, IntArray]:
         start, end = patch.face_points(body.closed + "0"), patch.face_points(body.closed + "1")
         apart = np.linalg.norm(patch.control_points[start] - patch.control_points[end], axis=1).max()
         size = np.linalg.norm(np.ptp(patch.control_points, axis=0))
-        if not apart <= SAME * size or not np.allclose(patch.weights[start], patch.weights[end], rtol=SAME):
+        if not apart <= constants.SAME_POINT * size or not np.allclose(patch.weights[start], patch.weights[end], rtol=constants.SAME_POINT):
             raise InputError(
                 f"the first and last row of control points of a closed ring must coincide; they are {apart:.3g} apart",
                 f"bodies.{body.name}.closed",

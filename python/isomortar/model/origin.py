@@ -7,11 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from isomortar.geometry.patch import FloatArray
+from isomortar.model import constants
 from isomortar.model.entities import Body, Contact, Problem, RigidPlane, Support, unit
-
-#: Bodies that are centred within so many times their size of the origin, and planes given by points as near to them, are computed as they
-#: are, to the last bit.
-NEAR = 16.0
 
 Point = tuple[float, float, float]
 
@@ -21,7 +18,7 @@ def origin_of(problem: Problem) -> FloatArray:
     ends = np.array([end(body.patch.control_points, axis=0) for body in problem.bodies for end in (np.min, np.max)])
     low, high = ends.min(axis=0), ends.max(axis=0)
     centre = low + 0.5 * (high - low)
-    return np.where(np.abs(centre) > NEAR * (high - low).max(), centre, 0.0)
+    return np.where(np.abs(centre) > constants.NEAR_ORIGIN * (high - low).max(), centre, 0.0)
 
 
 def about(problem: Problem, origin: FloatArray) -> Problem:
@@ -49,7 +46,7 @@ def _by_near_point(problem: Problem, contact: Contact) -> Contact:
     low, high = body.patch.control_points.min(axis=0), body.patch.control_points.max(axis=0)
     arm = np.asarray(contact.master.point) - (low + 0.5 * (high - low))
     aside = arm - arm @ normal * normal
-    if np.linalg.norm(aside) <= NEAR * body.size:
+    if np.linalg.norm(aside) <= constants.NEAR_ORIGIN * body.size:
         return contact
     return replace(contact, master=replace(contact.master, point=_point(contact.master.point, aside)))
 

@@ -8,14 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from isomortar.geometry.patch import FloatArray, IntArray
+from isomortar.model import constants
 from isomortar.model.entities import Problem, Stage, Support, unit
 from isomortar.model.numbering import Numbering
 
 BoolArray = NDArray[np.bool_]
-
-#: Degrees that a support turns in one load increment at the most: an increment knows where control points go, and of half a turn or more
-#: not which way.
-LARGEST_TURN = 36.0
 
 
 def progress(stages: Sequence[Stage], time: float) -> FloatArray:
@@ -81,7 +78,7 @@ class Supports:
         """The largest share of a recorded load step in which no support turns by more than LARGEST_TURN (theory 5.2): 1 / n."""
         stage = int(np.searchsorted(np.cumsum([stage.steps for stage in self._problem.stages]), step))
         turns = [abs(support.motions[stage].rotate) / self._problem.stages[stage].steps for support in self._problem.supports]
-        return 1.0 / max(1, int(np.ceil(max(turns, default=0.0) / LARGEST_TURN)))
+        return 1.0 / max(1, int(np.ceil(max(turns, default=0.0) / constants.LARGEST_TURN)))
 
     def moved(self, time: float) -> BoolArray:
         """Prescribed components that their supports have moved, or move, by a load time, shape (control points, 3)."""

@@ -11,6 +11,7 @@ from isomortar.errors import InputError
 from isomortar.geometry.patch import FACES, Direction, Patch
 from isomortar.geometry.quadrature import contact_points, volume_points
 from isomortar.geometry.refinement import mesh
+from isomortar.model import constants
 from isomortar.model.entities import Body, Contact, Face, Material, Motion, Problem, RigidPlane, Stage, Support
 from isomortar.model.messages import located
 from isomortar.scene.geometry_file import read_geometry
@@ -158,7 +159,7 @@ def _plane(table: PlaneTable, path: str) -> RigidPlane:
     along = _unit(wanted, f"{path}.tangent")
     out = sum(a * n for a, n in zip(along, normal, strict=True))
     across = (along[0] - out * normal[0], along[1] - out * normal[1], along[2] - out * normal[2])
-    if hypot(*across) < 1e-6:
+    if hypot(*across) < constants.NO_PART:
         raise InputError(f"is {list(wanted)}, parallel to the normal; allowed: any other direction", f"{path}.tangent")
     return RigidPlane(table.point, normal, _unit(across, f"{path}.tangent"))
 

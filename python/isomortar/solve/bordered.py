@@ -16,15 +16,12 @@ import numpy as np
 
 from isomortar._bindings import Law, Pattern, Response
 from isomortar.geometry.patch import FloatArray, IntArray
+from isomortar.model import constants
 from isomortar.model.supports import BoolArray
 from isomortar.solve.contact import Blocks, PairMechanics, median
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.singular import Multipliers
 from isomortar.solve.system import Source, block_product
-
-#: What multipliers resist their own change where conditions may repeat each other (theory 6.4). What no other row tells stays as it is, and
-#: the conditions are the same.
-RESISTANCE = 1e-6
 
 
 @dataclass(frozen=True)
@@ -74,7 +71,7 @@ class Border:
         slope = self.target.traction_slope[active]  # (control points, pressure | trial | metric, component)
         own[active, 1:, 0] = -slope[:, 0]
         own[active, 1:, 1:] -= slope[:, 1:3].transpose(0, 2, 1)
-        own[:, [0, 1, 2], [0, 1, 2]] += RESISTANCE * (self.loose & active[:, None])
+        own[:, [0, 1, 2], [0, 1, 2]] += constants.RESISTANCE * (self.loose & active[:, None])
         return own
 
     def trial_change(self, correction: FloatArray) -> FloatArray:

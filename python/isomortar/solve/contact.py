@@ -13,6 +13,7 @@ from isomortar._bindings import Control, Law, Pattern, Projections, Response
 from isomortar._codes import ROW_KINDS, PointState
 from isomortar.errors import LostProjectionError
 from isomortar.geometry.patch import FloatArray
+from isomortar.model import constants
 from isomortar.model.entities import SolverSettings
 from isomortar.model.held import held_by, nothing_held
 from isomortar.model.pairs import Pair
@@ -22,10 +23,6 @@ from isomortar.solve.reach import ContactPatterns, Reach
 from isomortar.solve.record import ContactResult, ContactState
 from isomortar.solve.scales import Scales
 from isomortar.solve.timing import Ledger
-
-#: Tangential over normal complementarity parameter of the monolithic method. It changes no solution; at one, stick and slip take longer
-#: to settle on presses of high order (14 solves per load step at order 4 on 12 x 12 elements, 11 at ten).
-TANGENTIAL_FACTOR = 10.0
 
 
 @dataclass(frozen=True)
@@ -145,7 +142,7 @@ class PairMechanics:
         """Complementarity parameters, normal and tangential (theory 6.1): stiffness / median of w^I and a multiple of it."""
         present = control.weight[control.weight > 0]
         normal = self.stiffness(scales) / (median(present) if present.size else self.pair.area)
-        return np.array([normal, TANGENTIAL_FACTOR * normal])
+        return np.array([normal, constants.TANGENTIAL_FACTOR * normal])
 
     def law(self, penalties: FloatArray, pressure: FloatArray, traction: FloatArray) -> Law:
         """The augmented law with given penalties (normal, tangential) and multipliers."""
@@ -263,7 +260,7 @@ class PairMechanics:
         squares = self.traction_squares(control, np.stack([t - s, s])).sum(axis=1)
         noise = np.square(round_off)
         changes = np.maximum(np.array([(p - q) @ (p - q), squares[0]]) - noise, 0.0)
-        cone = 0.01 * np.minimum(self.radius(q), q)
+        cone = constants.LEAST_TRACTION * np.minimum(self.radius(q), q)
         least = np.maximum(cone @ cone, noise[1])
         return ratio(float(changes[0]), size), ratio(float(changes[1]), float(np.maximum(squares[1], least)))
 

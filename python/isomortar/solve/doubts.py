@@ -9,6 +9,7 @@ import numpy as np
 
 from isomortar.errors import FoldedElementError
 from isomortar.geometry.patch import MAX_ORDER
+from isomortar.model import constants
 from isomortar.model.contrasts import element_lengths
 from isomortar.model.entities import Body, Contact, Face, Problem, RigidPlane, Support, unit
 from isomortar.model.memory import memory_needed, memory_of_machine
@@ -24,8 +25,6 @@ TOLD_OVERLAP = 0.02
 NEAR = 0.5
 #: Faces whose sizes (square roots of their areas) differ by more were given in different units, most likely.
 SIZE_RATIO = 100.0
-#: Share of a unit vector, or of a body's size, that is round-off.
-BESIDE = 1e-6
 #: Coefficients of friction above this one were meant in per cent, or to make things stick.
 HIGH_FRICTION = 10.0
 #: Bulk over shear modulus above which elements of order 1 lock; a tenfold of it for every order more (docs/method.md).
@@ -134,10 +133,10 @@ def _pushed_in(problem: Problem) -> Iterator[str]:
         if isinstance(contact.master, RigidPlane):
             body, normal = problem.body(contact.slave.body), unit(contact.master.normal)
             points = np.unique(numbering.points[body.name][body.patch.face_points(contact.slave.face)])
-            points = points[np.all(supports.held[points] | (np.abs(normal) < BESIDE), axis=1)]
+            points = points[np.all(supports.held[points] | (np.abs(normal) < constants.NO_PART), axis=1)]
             ends = np.cumsum([stage.steps for stage in problem.stages])
             depths = [-((supports.place(float(end))[points] - contact.master.point) @ normal).min(initial=np.inf) for end in ends]
-            if max(depths) > BESIDE * body.size:
+            if max(depths) > constants.NO_PART * body.size:
                 stage = problem.stages[int(np.argmax(depths))].name
                 yield (
                     f"contact {contact.name!r}: supports put {len(points)} of its slave control points behind the plane, by "
@@ -151,7 +150,7 @@ def _seam(body: Body) -> Iterator[str]:
     points = body.patch.control_points
     for axis in "uvw":
         apart = np.abs(points[body.patch.face_points(f"{axis}0")] - points[body.patch.face_points(f"{axis}1")]).max()
-        if axis != body.closed and apart <= 1e-9 * body.size:
+        if axis != body.closed and apart <= constants.SAME_POINT * body.size:
             yield (
                 f"body {body.name!r}: faces {axis}0 and {axis}1 lie on each other, but are not joined, and will part; "
                 f'bodies.{body.name}.closed = "{axis}" joins them'

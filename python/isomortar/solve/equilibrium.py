@@ -13,6 +13,7 @@ from isomortar._codes import PointState
 from isomortar._sparse import Ordering
 from isomortar.errors import SingularSystemError
 from isomortar.geometry.patch import FloatArray
+from isomortar.model import constants
 from isomortar.model.entities import Problem
 from isomortar.model.numbering import Numbering
 from isomortar.model.origin import about, by_near_points, origin_of
@@ -25,9 +26,6 @@ from isomortar.solve.scales import BodyMeasures, Scales
 from isomortar.solve.singular import Multipliers, explain
 from isomortar.solve.system import LinearSystem, Source, block_product, entries
 from isomortar.solve.timing import Ledger
-
-#: Depth inside its master, as a share of the bodies' size, from which a control point that supports hold along the normal bears on it.
-SUNK = 1e-6
 
 
 @dataclass(frozen=True)
@@ -137,7 +135,7 @@ class Equilibrium:
 
     def bear(self, balance: Balance) -> bool:
         """Whether control points that supports hold along the normal are inside their master, and bear on it from now on (theory 4.11)."""
-        depth = SUNK * self.numbering.size
+        depth = constants.SUNK * self.numbering.size
         return any(pair.bear(k, depth) for pair, k in zip(self.pairs, balance.kinematics, strict=True))
 
     def tangents(self, balance: Balance, laws: Sequence[Law]) -> tuple[list[Source], list[FloatArray]]:

@@ -12,18 +12,14 @@ from isomortar._bindings import Law, Response
 from isomortar._codes import PointState
 from isomortar.errors import FoldedElementError, LostProjectionError
 from isomortar.geometry.patch import FloatArray
+from isomortar.model import constants
 from isomortar.solve.bordered import Border, Correction, solve_bordered, solve_with_kept_factors
 from isomortar.solve.contact import Kinematics, Multipliers, largest
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.method import Increment, Method, augmentation_record
-from isomortar.solve.newton import CYCLE_FREE, MAX_HALVINGS, Iterate, Newton
+from isomortar.solve.newton import Iterate, Newton
 from isomortar.solve.record import State
 from isomortar.solve.scales import Scales
-
-#: Share of the cone within which a trial counts as slip at the start of an increment (theory 6.5).
-SLIP_MARGIN = 1e-6
-#: How often the predictor is solved again with reversed slips held.
-MAX_REVERSALS = 2
 
 
 class Monolithic(Method):
@@ -72,7 +68,7 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
 
     def __init__(self, equilibrium: Equilibrium, start: State, scales: Scales) -> None:
         super().__init__(equilibrium, start, scales)
-        self._margin = SLIP_MARGIN if "margin" in self._settings.measures else 0.0
+        self._margin = constants.SLIP_MARGIN if "margin" in self._settings.measures else 0.0
         self._borders: list[Border | None] = []
 
     def first(self) -> _BorderedIterate:
@@ -124,7 +120,7 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
         if prescribed is None or "reversal" not in self._settings.measures:
             return iterate, correction, ()
         held, notes = [law.held for law in iterate.laws], tuple[str, ...]()
-        for _ in range(MAX_REVERSALS):
+        for _ in range(constants.MAX_REVERSALS):
             reversed_ = [self._reversals(k, iterate, correction) for k in range(len(held))]
             if not any(r.any() for r in reversed_):
                 break
@@ -160,7 +156,7 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
 
     def _update(self, iterate: _BorderedIterate, correction: Correction, iteration: int) -> tuple[_BorderedIterate, tuple[str, ...]]:
         """The next iterate: the full update, or one halved until it is admissible (theory 6)."""
-        halvings = MAX_HALVINGS if "halving" in self._settings.measures and iteration > 0 else 0
+        halvings = constants.MAX_HALVINGS if "halving" in self._settings.measures and iteration > 0 else 0
         reason = ""
         for halving in range(halvings + 1):
             try:
@@ -170,14 +166,16 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
                     raise
                 reason = "folded element" if isinstance(error, FoldedElementError) else "lost projection"
             else:
-                objection = self._objection(iterate, following, halving) if iteration >= CYCLE_FREE and halving < halvings else ""
+                objection = self._objection(iterate, following, iteration, halving) if halving < halvings else ""
                 if not objection:
                     break
                 reason = objection
         return following, (f"halved {halving} times: {reason}",) if reason else ()
 
-    def _objection(self, iterate: _BorderedIterate, following: _BorderedIterate, halving: int) -> str:
+    def _objection(self, iterate: _BorderedIterate, following: _BorderedIterate, iteration: int, halving: int) -> str:
         """What is said against an update after the iterations that find the active set; empty: nothing."""
+        if iteration < constants.ACTIVE_SET_ITERATIONS:
+            return ""
         if following.states != iterate.states and following.states in self._trail.states and halving == 0:
             return "cycle"
-        return "" if following.merit <= 2.0 * iterate.merit else "merit"
+        return "" if following.merit <= constants.MERIT_GROWTH * iterate.merit else "merit"

@@ -12,17 +12,12 @@ import numpy as np
 
 from isomortar.errors import ConvergenceError, FoldedElementError, LostProjectionError
 from isomortar.geometry.patch import FloatArray
+from isomortar.model import constants
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.record import IterationRecord, State
 from isomortar.solve.scales import Scales
 from isomortar.solve.trail import Trail, states
 
-#: Factors are kept as long as a solve leaves at most this share of the residual.
-KEPT_SHARE = 0.2
-#: Iterations that find the active set: before, states may return and what is left may grow without an update being halved.
-CYCLE_FREE = 5
-#: How often an update is halved.
-MAX_HALVINGS = 5
 #: Note of an iteration that was solved with factors of an earlier tangent.
 KEPT_FACTORS = "kept factors"
 
@@ -152,7 +147,7 @@ class Newton(ABC, Generic[Iterated, Corrected]):
 
     def _serve(self, iterate: Iterated, following: Iterated) -> bool:
         """Whether factors that led from one iterate to the next are good enough for another solve."""
-        return following.merit <= KEPT_SHARE * iterate.merit
+        return following.merit <= constants.KEPT_SHARE * iterate.merit
 
     def _by_kept_factors(self, iterate: Iterated) -> Iterated | None:
         """The next iterate with the factors of an earlier tangent; None if these do not serve."""

@@ -7,12 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from isomortar.geometry.patch import FloatArray
+from isomortar.model import constants
 from isomortar.model.numbering import Numbering
 from isomortar.model.solid import Solid
 from isomortar.model.supports import Supports
-
-#: Forces of a body are round-off below so many times what the last bits of its positions make of them (0.2 to 1.2 times were seen).
-ROUND_OFF = 8.0
 
 
 @dataclass(frozen=True)
@@ -64,7 +62,8 @@ class BodyMeasures:
         size = _power_of_two(forces)
         forces /= size
         shares = np.add.reduceat(np.einsum("kij,kij->ki", forces, forces), pattern.start[:-1])
-        return Scales(np.maximum.reduceat(diagonal.max(axis=1), self._starts), ROUND_OFF * self.free_norms(np.sqrt(shares) * size))
+        round_off = constants.ROUND_OFF * self.free_norms(np.sqrt(shares) * size)
+        return Scales(np.maximum.reduceat(diagonal.max(axis=1), self._starts), round_off)
 
 
 def _power_of_two(values: FloatArray) -> float:

@@ -9,6 +9,7 @@ import numpy as np
 
 from isomortar.errors import ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError
 from isomortar.geometry.patch import FloatArray
+from isomortar.model import constants
 from isomortar.model.checks import check
 from isomortar.model.entities import Problem
 from isomortar.solve.advice import StepAdvice, advice_on_problem
@@ -27,9 +28,6 @@ from isomortar.solve.uzawa import Uzawa
 
 _REASONS_TO_CUT = (ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError)
 
-
-#: Newton loops of at most this many linear solves let a cut load increment grow back; of this many tangents make the next one shorter.
-EASY_ITERATIONS, HARD_TANGENTS = 12, 25
 
 _METHODS: dict[str, type[Method]] = {"monolithic": Monolithic, "uzawa": Uzawa}
 
@@ -108,7 +106,7 @@ class Simulation:
         longest = self.equilibrium.supports.longest_increment(step)
         while time < step:
             increment = min(self._increment * longest, step - time)
-            target = float(step) if increment > step - time - 1e-12 else time + increment
+            target = float(step) if increment > step - time - constants.SAME_TIME else time + increment
             try:
                 parts = self._advance(state, time, target, step)
             except _REASONS_TO_CUT as error:
@@ -147,9 +145,9 @@ class Simulation:
 
     def _grow(self, increment: float, parts: Sequence[Increment]) -> None:
         """The next load increment, a share of the longest: longer after few linear solves, shorter after many tangents."""
-        if max(part.iterations for part in parts) <= EASY_ITERATIONS:
+        if max(part.iterations for part in parts) <= constants.EASY_ITERATIONS:
             self._increment = min(1.0, 2.0 * increment)
-        elif max(part.tangents for part in parts) >= HARD_TANGENTS:
+        elif max(part.tangents for part in parts) >= constants.HARD_TANGENTS:
             self._increment = 0.5 * increment
         else:
             self._increment = min(1.0, max(increment, self._increment))

@@ -13,20 +13,13 @@ from isomortar._bindings import Pattern
 from isomortar._sparse import Ordering, SparseLU
 from isomortar.errors import KernelError, SingularSystemError
 from isomortar.geometry.patch import FloatArray, IntArray
+from isomortar.model import constants
 from isomortar.solve.timing import Ledger
-
-#: Systems with fewer unknowns than the first are ordered by minimum degree, with more than the second by nested dissection. In between
-#: either can take up to twice as long as the other: there the first matrix is factorised both ways.
-UNDOUBTED = (1000, 5000)
-#: A solution that leaves more than the first share of the right-hand side is refined; one that then leaves more than the second is none.
-REFINED_ABOVE, REFUSED_ABOVE = 1e-6, 0.1
-#: What the diagonal of a singular matrix gets to be factorised, as a share of its largest entry.
-SHIFT = 1e-11
 
 
 def orderings(size: int) -> tuple[Ordering, ...]:
     """Orderings to try for a system of so many unknowns."""
-    return (*(("amd",) if size <= UNDOUBTED[1] else ()), *(("metis",) if size >= UNDOUBTED[0] else ()))
+    return (*(("amd",) if size <= constants.UNDOUBTED[1] else ()), *(("metis",) if size >= constants.UNDOUBTED[0] else ()))
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,10 +123,10 @@ class LinearSystem:
         """
         with self._ledger.phase("solve"):
             solution = self._rivals[0].solve(right, refine=0)
-            if not self._left(solution, right) <= REFINED_ABOVE:
+            if not self._left(solution, right) <= constants.REFINED_ABOVE:
                 solution = self._rivals[0].solve(right)
                 left = self._left(solution, right)
-                if not left <= REFUSED_ABOVE:
+                if not left <= constants.REFUSED_ABOVE:
                     raise SingularSystemError(
                         f"the solution of the linear system leaves {left:.1e} of its right-hand side: round-off has taken its digits "
                         f"(reciprocal condition {self.rcond:.1e})",
@@ -154,7 +147,7 @@ class LinearSystem:
         """
         matrix = self.matrix()
         size = matrix.shape[0]
-        beside = sparse.csr_array(matrix + SHIFT * float(np.abs(self.values).max()) * sparse.eye_array(size))
+        beside = sparse.csr_array(matrix + constants.SHIFT * float(np.abs(self.values).max()) * sparse.eye_array(size))
         beside.sort_indices()
         direction = np.random.default_rng(0).standard_normal(size)
         try:

@@ -11,18 +11,13 @@ import numpy as np
 from isomortar._bindings import Law
 from isomortar.errors import ConvergenceError
 from isomortar.geometry.patch import FloatArray
+from isomortar.model import constants
 from isomortar.solve.contact import Kinematics, PairMechanics, largest, median, ratio
 from isomortar.solve.equilibrium import Balance
 from isomortar.solve.method import Increment, Method, augmentation_record
-from isomortar.solve.newton import CYCLE_FREE, MAX_HALVINGS, Iterate, Newton
+from isomortar.solve.newton import Iterate, Newton
 from isomortar.solve.record import State
 from isomortar.solve.scales import Scales
-
-#: How far from the contact conditions augmentations may end, in their tolerance, by the norm of their changes: the paper's mixes
-#: units and hides the tangential part, which at 0.01 is some per cent off. Its answer stays the paper's, but for what is grossly wrong.
-DISTANCE_ALLOWED = {"separate": 1.0, "paper": 10.0}
-#: How much more of the multipliers than forces of just `newton_tolerance` change from one augmentation to the next (0.5 to 2.5 were seen).
-LEFT_OPEN = 4.0
 
 
 class _PositionNewton(Newton[Iterate, FloatArray]):
@@ -54,10 +49,10 @@ class _PositionNewton(Newton[Iterate, FloatArray]):
         full update it is.
         """
         whole = self._moved(iterate, correction, 1.0)
-        late = iteration >= CYCLE_FREE and "halving" in self._settings.measures
+        late = iteration >= constants.ACTIVE_SET_ITERATIONS and "halving" in self._settings.measures
         if not late or whole.residual < iterate.residual:
             return whole, ()
-        for halving in range(1, MAX_HALVINGS + 1):
+        for halving in range(1, constants.MAX_HALVINGS + 1):
             following = self._moved(iterate, correction, 0.5**halving)
             if following.residual < iterate.residual:
                 return following, (f"halved {halving} times: residual",)
@@ -84,7 +79,7 @@ class Uzawa(Method):
             changes, distances = self._changes(laws, balance), self._distances(laws, balance, scales)
             records.append(augmentation_record(augmentation, laws, changes, found.log))
             self._observer.augmented(step, time, records[-1])
-            off = np.array(distances) / DISTANCE_ALLOWED[self._settings.augmentation_norm]
+            off = np.array(distances) / constants.DISTANCE_ALLOWED[self._settings.augmentation_norm]
             if np.max([*changes, *off]) <= self._settings.augmentation_tolerance and not equilibrium.bear(balance):
                 return Increment(balance, tuple(records), tuple(orders))
             growth = min(growth * self._settings.penalty_growth, max(self._settings.penalty_growth_max, 1.0))
@@ -138,4 +133,4 @@ class Uzawa(Method):
         if not present.size:
             return 0.0
         forces = float(self._equilibrium.measures.norms(balance.internal)[pair.pair.bodies].max())
-        return LEFT_OPEN * self._settings.newton_tolerance * forces / median(present)
+        return constants.LEFT_OPEN * self._settings.newton_tolerance * forces / median(present)

@@ -1,0 +1,76 @@
+"""Constants that decide how a computation goes, beside `SolverSettings`: what each one is, and why it is what it is.
+
+None of them is part of a problem. Thresholds at which something is refused, warned of or explained stand with their sentences.
+"""
+
+# ---- The problem: positions and directions (theory 3 to 5)
+
+#: Share of a body's size within which control points are one: ends of rings and rows of poles are computed, and meet to round-off.
+SAME_POINT = 1e-9
+#: Share of a unit vector, or of the size of all, below which there is nothing of it: normals and axes are given to some digits.
+NO_PART = 1e-6
+#: Bodies that are centred within so many times their size of the origin, and planes given by points as near to them, are computed as they
+#: are, to the last bit: at most four bits of positions are lost there. Farther off coordinates count from the bodies' centre (theory 5.10).
+NEAR_ORIGIN = 16.0
+#: Degrees that a support turns in one load increment at the most (theory 5.2): an increment knows where control points go, and of half a
+#: turn or more not which way; a tenth of a turn is far from that, and near enough for Newton's method.
+LARGEST_TURN = 36.0
+
+# ---- Load increments (theory 5)
+
+#: Newton loops of at most so many linear solves let a cut load increment grow back: they were no harder than usual.
+EASY_ITERATIONS = 12
+#: Loops of so many tangents make the next increment shorter: a few more, and this one would have been cut (`max_iterations`: 30).
+HARD_TANGENTS = 25
+#: Load steps before the end of one that an increment still ends there: times are sums of increments, to round-off.
+SAME_TIME = 1e-12
+
+# ---- Newton's method (theory 6.5, 6.6, 7.5)
+
+#: Factors are kept as long as a solve with them leaves at most this share of the residual: it saves the tangents and their factors, most
+#: of an iteration, and three such solves gain two digits.
+KEPT_SHARE = 0.2
+#: Iterations that find the active set: before, states may return and what is left may grow without an update being halved.
+ACTIVE_SET_ITERATIONS = 5
+#: How often an update is halved: a shorter load increment helps more than an update of less than a thirtieth.
+MAX_HALVINGS = 5
+#: Late updates of the monolithic method are halved that leave more than so many times what was left: they may pass over a hump.
+MERIT_GROWTH = 2.0
+#: Share of the cone within which a trial counts as slip at the start of an increment (theory 6.5): what slid is off its cone by no more
+#: than the tolerances of the last increment, and is not to stick for that.
+SLIP_MARGIN = 1e-6
+#: How often the first solve is repeated with reversed slips held: each repetition may find more of them; the loop settles the rest.
+MAX_REVERSALS = 2
+#: Forces of a body are round-off below so many times what the last bits of its positions make of them (0.2 to 1.2 times were seen).
+ROUND_OFF = 8.0
+
+# ---- Contact conditions (theory 5.8, 6.1, 6.4, 7.4, 7.5)
+
+#: Tangential over normal complementarity parameter of the monolithic method. It changes no solution; at one, stick and slip take longer
+#: to settle on presses of high order (14 solves per load step at order 4 on 12 x 12 elements, 11 at ten).
+TANGENTIAL_FACTOR = 10.0
+#: What multipliers resist their own change where conditions may repeat each other (theory 6.4). What no other row tells stays as it is, and
+#: the conditions are the same; it is far above round-off, and far below what other rows say.
+RESISTANCE = 1e-6
+#: Depth inside its master, as a share of the bodies' size, from which a control point that supports hold along the normal bears on it
+#: (theory 4.11): one that just touches is inside by less, by what the tolerances leave.
+SUNK = 1e-6
+#: Share of what friction bears that tractions count for at the least (theory 5.8): where nothing pulls, they are round-off.
+LEAST_TRACTION = 0.01
+#: How far from the contact conditions augmentations may end, in their tolerance, by the norm of their changes: the paper's mixes
+#: units and hides the tangential part, which at 0.01 is some per cent off. Its answer stays the paper's, but for what is grossly wrong.
+DISTANCE_ALLOWED = {"separate": 1.0, "paper": 10.0}
+#: How much more of the multipliers than forces of just `newton_tolerance` change from one augmentation to the next (0.5 to 2.5 were seen).
+LEFT_OPEN = 4.0
+
+# ---- The linear system
+
+#: Systems with fewer unknowns than the first are ordered by minimum degree, with more than the second by nested dissection. In between
+#: either can take up to twice as long as the other: there the first matrix is factorised both ways.
+UNDOUBTED = (1000, 5000)
+#: A solution that leaves more than this share of the right-hand side is refined: what is less is gone with Newton's next correction.
+REFINED_ABOVE = 1e-6
+#: A refined solution that leaves more than this share is none: it has not one digit.
+REFUSED_ABOVE = 0.1
+#: What the diagonal of a singular matrix gets to be factorised, as a share of its largest entry: it is asked for what it leaves free.
+SHIFT = 1e-11
