@@ -1,15 +1,22 @@
 """The page of the extremes: intervals, counts and words of sweeps, beside those of an earlier program."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
+import typer
 from extremes.endings import Ending
-from extremes.points import Earlier, Point, read, right_in, write
+from extremes.points import Earlier, Point, read, right_in, sweeps, write
+from extremes.statements import AsEnded, statement
+from extremes.study import study
 from typer.testing import CliRunner
 
 from isomortar.cli.commands import app
+from isomortar.cli.verification import conduct
 from isomortar.errors import InputError
+from isomortar.harness.collection import collect
+from isomortar.harness.runner import not_measured, select
 
 CASES = """
 from isomortar.harness import Bound, Words, case
@@ -41,29 +48,31 @@ def point(ending: Ending) -> Point:
 
 
 @pytest.fixture
-def page(tmp_path, monkeypatch):
-    """The page of a small family, its exit code, and the folder of its cases."""
-    monkeypatch.chdir(tmp_path)
+def family(tmp_path, monkeypatch):
+    """The folder of a small family, with points of an earlier program."""
     monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parents[2] / "verification"))  # for the measuring processes
     folder = tmp_path / "cases" / f"family_{tmp_path.name}"
     folder.mkdir(parents=True)
     (folder / "sweeps.py").write_text(CASES)
-    (folder / "page.py").write_text("from extremes.page import write\n")
     name = f"{folder.name}/sizes"
     before = {
         f"{name}[size=0.001]": point(Ending.WRONG),
         f"{name}[size=1.0]": point(Ending.RIGHT),
         f"{name}[size=1000.0]": point(Ending.RIGHT),
+        f"{name}[size=1000000.0]": point(Ending.WARNED),
     }
     write(folder / "before.json", Earlier("0123456789abcdef", before))
-    done = CliRunner().invoke(app, ["verify", "--cases", "cases", "--results", "out", "-j", "1"])
-    assert f"{folder.name}.html" in done.output
-    return (tmp_path / "out" / f"{folder.name}.html").read_text(), done.exit_code
+    return folder
 
 
-def test_the_page_says_what_is_right_where_and_what_is_wrong(page):
-    text, exit_code = page
-    assert exit_code == 1
+def test_the_page_says_what_is_right_where_and_what_is_wrong(family, tmp_path, capsys):
+    with pytest.raises(typer.Exit) as ended:
+        conduct(study(family, "gate"), tmp_path / "out", 1)
+    assert ended.value.exit_code == 1
+    said = capsys.readouterr().out
+    assert "2 right, 3 warned, 1 refused, 0 stopped, 2 wrong" in said
+    assert str(tmp_path / "out" / "extremes.html") in said
+    text = (tmp_path / "out" / "extremes.html").read_text()
     assert "<title>2 of 8 wrong" in text
     assert "0.001 to 1</td>" in text  # right now
     assert "1 to 1000</td>" in text  # right before
@@ -74,17 +83,39 @@ def test_the_page_says_what_is_right_where_and_what_is_wrong(page):
     assert "no word of it" in text
     assert "Nothing of an ending." in text
     assert text.count("<svg") == 2
+    assert text.count(">does not hold</td>") == 3  # both now, and the one that was measured before
+    assert text.count(">not measured</td>") == 2  # of pairs, before: in place of an interval, and of a verdict
 
 
-def test_a_run_without_sweeps_writes_no_page(tmp_path, monkeypatch):
+def test_a_sweep_states_where_the_program_is_right(family):
+    (sizes,) = [sweep for sweep in sweeps(results(family), Earlier("", {})) if sweep.case.name.endswith("sizes")]
+    ends = {
+        "right": (Ending.STOPPED, Ending.RIGHT, Ending.WARNED, Ending.REFUSED),
+        "off": (Ending.RIGHT, Ending.WARNED, *[Ending.RIGHT] * 2),
+    }
+    judged = {}
+    for name, endings in ends.items():
+        swept = replace(sizes, now=[point(ending) for ending in endings], before=[None] * 4)
+        judged[name] = statement(swept).judged([AsEnded("now", [swept]), AsEnded("before", [swept])])
+    assert {name: judgement.verdicts[0].state for name, judgement in judged.items()} == {"right": "holds", "off": "does not hold"}
+    assert judged["off"].verdicts[0].values["size 1"] == float(Ending.WARNED - Ending.RIGHT)
+    assert judged["right"].verdicts[1].why == "4 of 4 points were not measured"
+
+
+def test_a_family_without_sweeps_has_a_page_of_its_cases(family, tmp_path):
+    (family / "sweeps.py").unlink()
+    (family / "plain.py").write_text(CASES[: CASES.index("def ended")] + CASES[CASES.index('@case(claim="Nothing') :])
+    conduct(study(family, "gate"), tmp_path / "out", 1)
+    assert "Nothing of an ending." in (tmp_path / "out" / "extremes.html").read_text()
+
+
+def test_the_command_needs_a_checkout(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parents[2] / "verification"))  # for the measuring processes
-    folder = tmp_path / "cases" / f"family_{tmp_path.name}"
-    folder.mkdir(parents=True)
-    (folder / "page.py").write_text("from extremes.page import write\n")
-    (folder / "plain.py").write_text(CASES[: CASES.index("def ended")] + CASES[CASES.index('@case(claim="Nothing') :])
-    assert CliRunner().invoke(app, ["verify", "--cases", "cases", "--results", "out", "-j", "1"]).exit_code == 0
-    assert not (tmp_path / "out" / f"{folder.name}.html").exists()
+    assert "studies are run in a checkout" in str(CliRunner().invoke(app, ["report", "extremes"]).exception)
+
+
+def results(family):
+    return not_measured(select(collect(family.parent), "gate"), lambda *_: None)
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from typing import Any
 from extremes.endings import Ending
 
 from isomortar.errors import InputError
-from isomortar.harness.cases import Case, Cell
+from isomortar.harness.cases import Bound, Case, Cell
 from isomortar.harness.measurement import Measurement, words_of
 from isomortar.harness.runner import Result
 from isomortar.harness.store import write_whole
@@ -36,6 +36,17 @@ class Sweep:
     settings: list[dict[str, Any]]
     now: list[Point]
     before: list[Point | None]
+
+    def label(self, number: int) -> str:
+        """A point by its settings, as people read them."""
+        settings = self.settings[number]
+        return ", ".join(f"{name} {value:.13g}" if isinstance(value, float) else f"{name} {value}" for name, value in settings.items())
+
+    def claimed(self, number: int) -> Ending:
+        """The worst ending that a point may have."""
+        bound = self.case.bounds_of(self.settings[number])["ending"]
+        assert isinstance(bound, Bound)
+        return Ending(int(bound.at_least or 0))
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from isomortar.cli.verification import CASES, CasesOption, conduct
+from isomortar.cli.verification import CASES, CORES, RESULTS, CasesOption, JobsOption, TierOption, conduct, tier_of
 
 report = typer.Typer(no_args_is_help=True, rich_markup_mode="markdown", help="Reports that take many runs of a scene.")
 
@@ -49,3 +49,26 @@ def orders(
     loaded, names = Scene.load(scene), [kind.strip() for kind in kinds.split(",") if kind.strip()]
     study = study_module(cases, "orders").study(loaded, names, body, quick)
     conduct(study, out or Path("results") / f"orders-{loaded.name}", jobs)
+
+
+@report.command()
+def extremes(
+    tier: TierOption = "gate",
+    jobs: JobsOption = CORES,
+    out: Annotated[Path, typer.Option(file_okay=False, help="Folder of the page; what verify measured there counts.")] = RESULTS,
+    cases: CasesOption = CASES,
+) -> None:
+    """Where the program can be trusted: scenes over decades of their numbers, each right, warned of, refused, stopped or wrong.
+
+    Every sweep states in which interval the program is right, judged now and as an earlier program was; the page is extremes.html.
+    The points are the cells of `isomortar verify --family extremes`. Exit code 1 if one did not end as stated. Run it in a checkout, from
+    its folder: the study stands in verification/extremes.
+
+    For example:
+
+    - `isomortar report extremes`
+    - `isomortar report extremes --tier nightly -j 2`
+    """
+    from isomortar.harness.study import study_module
+
+    conduct(study_module(cases, "extremes").study(cases / "extremes", tier_of(tier)), out, jobs)

@@ -18,7 +18,7 @@ from rich.table import Table
 
 if TYPE_CHECKING:
     from isomortar.harness import blessing
-    from isomortar.harness.cases import Cell
+    from isomortar.harness.cases import Cell, Tier
     from isomortar.harness.compare import Lookup
     from isomortar.harness.runner import Result, Submit
     from isomortar.harness.study import Study
@@ -29,6 +29,7 @@ CasesOption = Annotated[Path, typer.Option("--cases", file_okay=False, help="Fol
 ReferencesOption = Annotated[Path, typer.Option("--references", file_okay=False, help="Folder of references.")]
 ResultsOption = Annotated[Path, typer.Option("--results", file_okay=False, help="Folder of measurements, history and report.")]
 JobsOption = Annotated[int, typer.Option("-j", "--jobs", min=1, help="Cells measured at the same time.", show_default="one a core")]
+TierOption = Annotated[str, typer.Option(help="gate (seconds a cell), nightly (minutes) or weekly; each holds those before it.")]
 DaskOption = Annotated[str | None, typer.Option("--dask", metavar="ADDRESS", help="Measure on a Dask cluster: tcp://HOST:PORT.")]
 
 KernelOption = Annotated[
@@ -40,7 +41,7 @@ CASES, REFERENCES, RESULTS = Path("verification"), Path("reference_data"), Path(
 
 
 def verify(
-    tier: Annotated[str, typer.Option(help="gate (seconds a cell), nightly (minutes) or weekly; each holds those before it.")] = "gate",
+    tier: TierOption = "gate",
     family: Annotated[str | None, typer.Option(help="Only this family.")] = None,
     case: Annotated[str | None, typer.Option(help="Only this case, FAMILY/NAME, or one cell of it, FAMILY/NAME[SETTINGS].")] = None,
     jobs: JobsOption = CORES,
@@ -70,20 +71,16 @@ def verify(
     from isomortar.errors import InputError
     from isomortar.harness import history
     from isomortar.harness import report as reports
-    from isomortar.harness.cases import TIERS
     from isomortar.harness.collection import collect
     from isomortar.harness.references import finder
     from isomortar.harness.runner import not_measured, select
-    from isomortar.harness.study import family_pages
 
     if kernel:
         _take(kernel, dask)
-    if tier not in TIERS:
-        raise InputError(f"is {tier!r}; allowed: {', '.join(TIERS)}", "tier")
     page = report or results / "report.html"
     if page.suffix != ".html":
         raise InputError(f"is {page}; the page is an .html file, with .xml and .json beside it", "report")
-    cells = select(collect(cases), next(t for t in TIERS if t == tier), family, case)
+    cells = select(collect(cases), tier_of(tier), family, case)
     only = ", ".join(f"{what} {name}" for what, name in (("family", family), ("case", case)) if name)
     started, clock, lookup = datetime.now().astimezone(), time.perf_counter(), finder(references)
     # A run that is killed must not leave the green page of the one before.
@@ -95,8 +92,6 @@ def verify(
     counts = Counter(result.state for result in measured)
     print(", ".join(f"{count} {state}" for state, count in counts.items()))
     print(page)
-    for path in family_pages(cases, page.parent, measured):
-        print(path)
     if set(counts) != {"passed"}:
         raise typer.Exit(FAILED)
 
@@ -137,6 +132,22 @@ def bless(
         typer.confirm("Make these the reference?", abort=True)
     for path in blessing.bless(chosen, found, references, reason, "self" if kind == "self" else "over-refined", uncertainty):
         print(path)
+
+
+def tier_of(name: str) -> Tier:
+    """The tier of a name.
+
+    Raises
+    ------
+    InputError
+        There is none.
+    """
+    from isomortar.errors import InputError
+    from isomortar.harness.cases import TIERS
+
+    if name not in TIERS:
+        raise InputError(f"is {name!r}; allowed: {', '.join(TIERS)}", "tier")
+    return next(tier for tier in TIERS if tier == name)
 
 
 def _take(kernel: Path, dask: str | None) -> None:

@@ -1,12 +1,12 @@
 """Studies: runs of scenes that are compared with each other, and the page that says what comes of it.
 
 A study stands in ``FOLDER/<name>/study.py``, whose function ``study`` makes it of the options of a command; what it runs, measures and
-draws stands beside it. A family of cases may have a page too.
+draws stands beside it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import datetime
 from pathlib import Path
@@ -67,13 +67,14 @@ class Study:
 
     Parameters
     ----------
-    runs : tuple of Run
+    runs : tuple of Run or Cell
+        A cell where the case makes its scenes of its settings.
     page : callable
         From the folder, the results of the runs in their order, and the time of the start: compares them, judges what is stated of them
         and writes the page.
     """
 
-    runs: tuple[Run, ...]
+    runs: tuple[Run | Cell, ...]
     page: Callable[[Path, Sequence[Result], datetime], Conclusion]
 
     def cells(self, folder: Path) -> list[Cell]:
@@ -84,20 +85,12 @@ class Study:
         InputError
             The results file of a run that was measured is gone.
         """
-        cells, store = [run.cell(folder / "scenes") for run in self.runs], Store(folder / "cells")
+        cells, store = [run.cell(folder / "scenes") if isinstance(run, Run) else run for run in self.runs], Store(folder / "cells")
         for run, cell in zip(self.runs, cells, strict=True):
-            left = run.leaves(Path(cell.settings["scene"])) if run.leaves else None
+            left = run.leaves(Path(cell.settings["scene"])) if isinstance(run, Run) and run.leaves else None
             if left and store.get(cell) and not left.exists():
                 raise InputError(f"{left} is gone; remove {store.folder} too, and what is missing is run again")
         return cells
-
-
-def family_pages(cases: Path, folder: Path, results: Sequence[Result]) -> Iterator[Path]:
-    """Write the pages of families that have one of their own, by the function ``write`` of ``FOLDER/<family>/page.py``; yields paths."""
-    for family in sorted({result.cell.case.family for result in results}):
-        source, path = cases / family / "page.py", folder / f"{family}.html"
-        if source.is_file() and module_at(source).write(path, [result for result in results if result.cell.case.family == family]):
-            yield path
 
 
 def study_module(cases: Path, name: str) -> ModuleType:
