@@ -73,6 +73,15 @@ def test_ctrl_c_while_the_program_loads(tmp_path: Path) -> None:
         assert process.returncode in (0, 1, 2, 130)
 
 
+def test_a_name_longer_than_any_path_is_shortened_in_its_sentence(tmp_path: Path) -> None:
+    scene = tmp_path / "scene.toml"
+    scene.write_text(f'format = 1\nname = "{"a" * 100_000}"\n"{"b" * 100_000}" = 1\n')
+    done = subprocess.run([sys.executable, "-m", "isomortar", "run", str(scene)], capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert len(done.stderr) < 5000
+    assert "bbb...bbb" in done.stderr
+
+
 def test_output_that_nobody_takes() -> None:
     for words in (["scenes"], ["schema"], ["--help"], ["--version"]):
         with Path("/dev/full").open("w") as full:

@@ -169,6 +169,12 @@ CASES = {
         "stages.turn.motions.tip",
         "there is no such support; allowed: top, base",
     ),
+    "turns without end": (
+        "motions.top.rotate = 10",
+        "motions.top.rotate = -1e20",
+        "stages.turn.motions.top.rotate",
+        "turns support 'top' 2.78e+17 times in 2 load steps; allowed: 10 times in each",
+    ),
     "stage twice": ('name = "turn"', 'name = "press"', "stages.1.name", "is the name of two stages"),
     "free body": ('[supports.top]\nface = "upper.w1"', '[supports.top]\nface = "lower.u0"', "bodies.upper", "body 'upper' is free"),
     "conflict": (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 import traceback
 from collections.abc import Iterator
@@ -12,6 +13,9 @@ from isomortar.errors import InputError, IsomortarError
 
 #: Exit codes; 130 is what shells expect of a program that Ctrl-C ended.
 FAILED, BAD_INPUT, OWN_FAULT, INTERRUPTED = 1, 2, 3, 130
+
+#: Letters that are left of a longer word.
+LONGEST_WORD = 600
 
 
 @contextmanager
@@ -28,7 +32,7 @@ def told() -> Iterator[None]:
         code, sentence = INTERRUPTED, "interrupted"
     else:
         return
-    print(f"isomortar: {sentence}", file=sys.stderr)
+    print(f"isomortar: {_readable(sentence)}", file=sys.stderr)
     sys.exit(code)
 
 
@@ -46,6 +50,11 @@ def _ending(error: Exception) -> tuple[int, str]:
         case ImportError():
             return FAILED, f"the installation is not complete: {error}"
     return OWN_FAULT, f"{_place(error)}. This is a fault of the program, not of your input: please report it with the scene and the command"
+
+
+def _readable(sentence: str) -> str:
+    """The sentence with words shortened in their middle that are longer than any path: names by mistake, or by malice."""
+    return re.sub(rf"(\S{{{LONGEST_WORD // 2}}})\S+(\S{{{LONGEST_WORD // 2}}})", r"\1...\2", sentence)
 
 
 def _of_the_system(error: OSError) -> str:

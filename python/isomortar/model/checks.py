@@ -25,6 +25,8 @@ SIZES, FORCES = (1e-76, 1e76), (1e-153, 1e153)
 #: Share of a body's size that the last bit of its coordinates may be.
 LAST_BIT = 1e-3
 
+#: Most turns of a support in one load step. Each takes ten increments: with more a run would seem to hang.
+MOST_TURNS = 10
 #: Share of the forces by which the quadrature of rational functions makes them nonsense.
 QUADRATURE_LOST = 0.1
 
@@ -35,8 +37,8 @@ def check(problem: Problem) -> None:
     Raises
     ------
     InputError
-        Settings of the solver that are not allowed; units that no number holds; more memory than there is; a body that nothing holds;
-        supports that contradict each other; contacts that cannot be meant; too few Gauss points for a body's weights.
+        Settings of the solver that are not allowed; units that no number holds; more memory than there is; a support that turns too
+        often in a load step; a body that nothing holds; supports that contradict each other; contacts that cannot be meant; too few Gauss points for a body's weights.
     """
     _check_settings(problem.settings)
     for body in problem.bodies:
@@ -44,6 +46,7 @@ def check(problem: Problem) -> None:
         _check_weights(body)
     _check_memory(problem)
     check_contacts(problem)
+    _check_turns(problem)
     _check_held(problem)
     for one, other in combinations(problem.supports, 2):
         if one.place.body == other.place.body:
@@ -101,6 +104,19 @@ def _check_memory(problem: Problem) -> None:
             "take fewer elements or a lower order",
             f"bodies.{largest.name}.mesh",
         )
+
+
+def _check_turns(problem: Problem) -> None:
+    """A support that turns too often in one load step: a mistake in the angle's unit or digits, most likely."""
+    for support in problem.supports:
+        for stage, motion in zip(problem.stages, support.motions, strict=True):
+            turns = abs(motion.rotate) / 360.0
+            if turns > MOST_TURNS * stage.steps:
+                raise InputError(
+                    f"turns support {support.name!r} {turns:.3g} times in {stage.steps} load steps; allowed: {MOST_TURNS} times in each. "
+                    "Angles are degrees; a longer way takes more steps",
+                    f"stages.{stage.name}.motions.{support.name}.rotate",
+                )
 
 
 def _check_held(problem: Problem) -> None:
