@@ -38,7 +38,8 @@ def check(problem: Problem) -> None:
     ------
     InputError
         Settings of the solver that are not allowed; units that no number holds; more memory than there is; a support that turns too
-        often in a load step; a body that nothing holds; supports that contradict each other; contacts that cannot be meant; too few Gauss points for a body's weights.
+        often in a load step; a body that nothing holds; supports that contradict each other; contacts that cannot be meant; too few
+        Gauss points for a body's weights.
     """
     _check_settings(problem.settings)
     for body in problem.bodies:
