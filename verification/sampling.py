@@ -9,7 +9,7 @@ import numpy as np
 from isomortar.geometry.patch import Direction, FloatArray, Patch
 from isomortar.harness.discretisations import coarse_geometry
 from isomortar.model.entities import Problem
-from isomortar.results.bezier import bernstein, bezier_matrix, rational
+from isomortar.results.bezier import functions_at, rational
 from isomortar.scene.scene import Scene
 
 #: Cells of the grid that the fields of a slave face are compared on.
@@ -61,17 +61,8 @@ def values_at(directions: tuple[Direction, ...], weights: FloatArray, values: Fl
     -------
     ndarray, shape (cells, k)
     """
-    matrices = [basis_matrix(d, places) for d, places in zip(directions, grid.places, strict=True)]
+    matrices = [functions_at(d, places)[0] for d, places in zip(directions, grid.places, strict=True)]
     return rational(matrices, weights, values)[0]
-
-
-def basis_matrix(direction: Direction, places: FloatArray) -> FloatArray:
-    """Matrix from the coefficients of a direction to values at parameters, shape (places, count)."""
-    ends, order = direction.boundaries, direction.order
-    element = np.clip(np.searchsorted(ends, places, side="right") - 1, 0, direction.elements - 1)
-    values = bernstein(order, (places - ends[element]) / np.diff(ends)[element])
-    rows = order * element[:, None] + np.arange(order + 1)
-    return np.einsum("ij,ijk->ik", values, bezier_matrix(direction)[rows])
 
 
 def _grid(directions: tuple[Direction, ...], weights: FloatArray, points: FloatArray, cells: int) -> Grid:
@@ -79,14 +70,10 @@ def _grid(directions: tuple[Direction, ...], weights: FloatArray, points: FloatA
     axes = range(len(directions) - 1, -1, -1)
     lengths = np.array([np.linalg.norm(np.diff(net, axis=axis), axis=-1).sum(axis=axis).mean() for axis in axes])
     parts = np.maximum(1, np.rint(lengths * (cells / lengths.prod()) ** (1 / len(lengths)) / [d.elements for d in directions])).astype(int)
-    edges = [_subdivided(d.boundaries, n) for d, n in zip(directions, parts, strict=True)]
-    corners = rational([basis_matrix(d, e) for d, e in zip(directions, edges, strict=True)], weights, points)[0]
+    edges = [d.subdivided(n) for d, n in zip(directions, parts, strict=True)]
+    corners = rational([functions_at(d, e)[0] for d, e in zip(directions, edges, strict=True)], weights, points)[0]
     measures = _measures(corners.reshape(*(len(e) for e in reversed(edges)), 3))
     return Grid(tuple(0.5 * (e[1:] + e[:-1]) for e in edges), measures.ravel())
-
-
-def _subdivided(boundaries: FloatArray, parts: int) -> FloatArray:
-    return np.interp(np.arange(parts * (len(boundaries) - 1) + 1) / parts, np.arange(len(boundaries)), boundaries)
 
 
 def _measures(corners: FloatArray) -> FloatArray:

@@ -48,7 +48,7 @@ class Cap:
         """
         radial, upward = self._radial(kind), self._upward(kind, below)
         grid = np.einsum("ab,jc->abjc", np.ones((radial.count, upward.count)), np.ones((3, 4)))
-        s, t = np.meshgrid(nodes(radial), self._share(upward, below), indexing="ij")
+        s, t = np.meshgrid(radial.greville, self._share(upward, below), indexing="ij")
         x, _, z, weight = self._column(s, 0.0 * s, t)
         cosine, sine, arc = _QUARTER_POINTS.T
         for component, values in enumerate((np.multiply.outer(x, cosine), np.multiply.outer(x, sine))):
@@ -59,13 +59,13 @@ class Cap:
     def block(self, kind: str, below: bool = False) -> Patch:
         """The body over the square -width <= x, y <= width; u, v, w run along x, y, z. Nowhere singular."""
         across, upward = self._across(kind), self._upward(kind, below)
-        x, y, z, weight = self._column(*np.meshgrid(nodes(across), nodes(across), self._share(upward, below), indexing="ij"))
+        x, y, z, weight = self._column(*np.meshgrid(across.greville, across.greville, self._share(upward, below), indexing="ij"))
         return fitted((across, across, upward), np.stack([x, y, -z if below else z, weight], axis=-1), (0, 1, 2))
 
     def cylinder(self, kind: str, length: float, below: bool = False) -> Patch:
         """The body over -width <= x <= width with a cylinder about the y-axis in place of the sphere, one element long."""
         across, upward = self._across(kind), self._upward(kind, below)
-        s, t = np.meshgrid(nodes(across), self._share(upward, below), indexing="ij")
+        s, t = np.meshgrid(across.greville, self._share(upward, below), indexing="ij")
         x, y, z, weight = self._column(s, 0.0 * s, t)
         ends = [np.stack([x, y + end * weight, -z if below else z, weight], axis=-1) for end in (0.0, length)]
         return fitted((across, _LINE, upward), np.stack(ends, axis=1), (0, 2))
@@ -83,7 +83,7 @@ class Cap:
 
     def _share(self, upward: Direction, below: bool) -> FloatArray:
         """Shares of the way from the sphere to the top; a body below the plane is the mirror image with its top first."""
-        return 1.0 - nodes(upward) if below else nodes(upward)
+        return 1.0 - upward.greville if below else upward.greville
 
     def _column(self, x: FloatArray, y: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Weighted coordinates and weights over points of the plane, a share t of the way from the sphere to the top."""
@@ -112,14 +112,6 @@ def direction(kind: str, boundaries: FloatArray) -> Direction:
     return Direction(family, order, np.pad(boundaries, ends, mode="edge"))
 
 
-def nodes(line: Direction) -> FloatArray:
-    """Places that determine a function: Greville points of B-splines, nodes of Lagrange elements."""
-    p, knots = line.order, line.knots
-    if line.family == "N":
-        return np.array([knots[k + 1 : k + p + 1].mean() for k in range(line.count)])
-    return np.append(knots[:-1, None] + np.diff(knots)[:, None] * (np.arange(p) / p), knots[-1])
-
-
 def fitted(directions: tuple[Direction, Direction, Direction], grid: FloatArray, axes: Sequence[int]) -> Patch:
     """Patch through weighted points and weights, shape (n1, n2, n3, 4), given at the nodes of some axes, coefficients of the others.
 
@@ -128,7 +120,7 @@ def fitted(directions: tuple[Direction, Direction, Direction], grid: FloatArray,
     exact = [axis for axis in axes if directions[axis].family == "N" and directions[axis].order > 1]
     for axis in exact:
         line = directions[axis]
-        matrix = BSpline.design_matrix(nodes(line), line.knots, line.order).toarray()
+        matrix = BSpline.design_matrix(line.greville, line.knots, line.order).toarray()
         grid = np.moveaxis(np.tensordot(np.linalg.inv(matrix), grid, axes=(1, axis)), 0, axis)
     weights = grid[..., 3]
     points = (grid[..., :3] / weights[..., None]).reshape((-1, 3), order="F")

@@ -12,11 +12,12 @@ from measures import (
     relative_error,
     roughness,
 )
-from sampling import basis_matrix, body_grid, face_grid, values_at
+from sampling import body_grid, face_grid, values_at
 
 from isomortar.errors import InputError
 from isomortar.geometry.primitives import bowl, box, ring
 from isomortar.geometry.refinement import mesh
+from isomortar.results.bezier import functions_at
 
 
 def test_relative_error_of_known_values():
@@ -127,5 +128,5 @@ def test_samples_of_a_curved_patch_are_on_it():
 def test_basis_at_the_ends_and_on_knots():
     direction = mesh(box((0.0, 0.0, 0.0), (1.0, 1.0, 1.0)), ("N", "L", "N"), (2, 3, 1), (4, 4, 1)).directions
     for d in direction[:2]:
-        assert basis_matrix(d, d.boundaries).sum(axis=1) == pytest.approx(np.ones(5), abs=1e-14)
-        assert basis_matrix(d, np.array([0.0, 1.0]))[[0, 1], [0, -1]] == pytest.approx([1.0, 1.0], abs=1e-14)
+        assert functions_at(d, d.boundaries)[0].sum(axis=1) == pytest.approx(np.ones(5), abs=1e-14)
+        assert functions_at(d, np.array([0.0, 1.0]))[0][[0, 1], [0, -1]] == pytest.approx([1.0, 1.0], abs=1e-14)

@@ -29,7 +29,7 @@ from isomortar.geometry.patch import Direction
 from isomortar.model.numbering import Numbering
 from isomortar.results import Results, ResultsWriter
 from isomortar.results import bodies as faces
-from isomortar.results.bezier import functions_at, sampling_matrix, sampling_places
+from isomortar.results.bezier import functions_at, sampling_matrix
 from isomortar.results.gaps import gaps
 from isomortar.solve.record import StepResult
 from results_samples import problem, step_result
@@ -48,7 +48,7 @@ def test_functions_and_their_derivatives_anywhere(order: int, seed: int) -> None
 
 def test_functions_agree_with_samples() -> None:
     direction = Direction("L", 3, [0.0, 1.0, 1.5])
-    assert functions_at(direction, sampling_places(direction, 4))[0] == pytest.approx(sampling_matrix(direction, 4), abs=1e-13)
+    assert functions_at(direction, direction.subdivided(4))[0] == pytest.approx(sampling_matrix(direction, 4), abs=1e-13)
 
 
 def test_gaps_to_a_plane_and_to_a_face() -> None:

@@ -14,7 +14,6 @@ from isomortar.errors import ResultsError
 from isomortar.geometry.patch import Direction
 from isomortar.model.numbering import Numbering
 from isomortar.results import Results, ResultsWriter
-from isomortar.results.bezier import greville
 from isomortar.results.bodies import draw_bodies
 from isomortar.results.curves import draw_curve, draw_reactions
 from isomortar.results.maps import draw_map
@@ -87,8 +86,8 @@ def test_the_map_shows_each_state_at_its_control_points() -> None:
 
 
 def test_places_of_control_points() -> None:
-    assert greville(Direction("N", 2, [0, 0, 0, 1, 3, 3, 3])) == pytest.approx([0, 0.5, 2, 3])
-    assert greville(Direction("L", 2, [0, 1, 3])) == pytest.approx([0, 0.5, 1, 2, 3])
+    assert Direction("N", 2, [0, 0, 0, 1, 3, 3, 3]).greville == pytest.approx([0, 0.5, 2, 3])
+    assert Direction("L", 2, [0, 1, 3]).greville == pytest.approx([0, 0.5, 1, 2, 3])
 
 
 def test_bodies_are_drawn_with_the_pressure_in_colour() -> None:

@@ -18,10 +18,9 @@ from isomortar.solve.simulation import Simulation
 def graded(span: float) -> Patch:
     """A unit block of order 2 whose first knot span along x and y is as given, with no strain in its control points."""
     knots = np.array([0.0, 0.0, 0.0, span, 0.5, 1.0, 1.0, 1.0])
-    along = (knots[1:-2] + knots[2:-1]) / 2  # Greville's points: the functions then reproduce the coordinates
     deep = np.array([0.0, 0.5, 1.0])
-    z, y, x = np.meshgrid(deep, along, along, indexing="ij")
     fine, whole = Direction("N", 2, knots), Direction("N", 2, np.array([0.0, 0.0, 0.0, 1.0, 1.0, 1.0]))
+    z, y, x = np.meshgrid(deep, fine.greville, fine.greville, indexing="ij")  # the functions then reproduce the coordinates
     return Patch((fine, fine, whole), np.column_stack([x.ravel(), y.ravel(), z.ravel()]), np.ones(x.size))
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import splinepy
 
-from isomortar.geometry.patch import Direction, FloatArray, Patch
+from isomortar.geometry.patch import FloatArray, Patch, opposite
 
 #: Cells in a direction, at least: round a ring they then are off it by a five-hundredth of its radius.
 CELLS = 48
@@ -34,9 +34,9 @@ class Cells:
 
 def cells(patch: Patch, face: str) -> Cells:
     """The cells of a face, whichever handedness its patch has."""
-    grid, opposite = _grid(patch, face), _grid(patch, face[0] + "10"[int(face[1])])
+    grid, other = _grid(patch, face), _grid(patch, opposite(face))
     across = np.cross(grid[1:, 1:] - grid[:-1, :-1], grid[1:, :-1] - grid[:-1, 1:]).reshape(-1, 3)
-    inward = _centres(opposite) - _centres(grid)
+    inward = _centres(other) - _centres(grid)
     if np.einsum("ij,ij->", across, inward) > 0.0:
         across = -across
     length = np.linalg.norm(across, axis=1)
@@ -58,13 +58,6 @@ def _grid(patch: Patch, face: str) -> FloatArray:
     surface = splinepy.NURBS(
         degrees=[first.order, second.order], knot_vectors=[first.knots, second.knots], control_points=points, weights=weights
     )
-    u, v = (_parameters(direction) for direction in (first, second))
+    u, v = (direction.subdivided(-(-CELLS // direction.elements)) for direction in (first, second))  # elements, and these in parts
     queries = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
     return np.asarray(surface.evaluate(queries)).reshape(len(u), len(v), 3)
-
-
-def _parameters(direction: Direction) -> FloatArray:
-    """Element boundaries, and what divides the elements into cells."""
-    parts = -(-CELLS // direction.elements)
-    start = direction.boundaries[:-1, None] + np.diff(direction.boundaries)[:, None] * (np.arange(parts) / parts)
-    return np.append(start, direction.boundaries[-1])

@@ -31,6 +31,11 @@ def _usual(values: ArrayLike) -> FloatArray:
     return np.ldexp(array, -power) if abs(power) > _USUAL else array
 
 
+def opposite(face: str) -> str:
+    """The face at the other end of the same direction."""
+    return face[0] + "10"[int(face[1])]
+
+
 @dataclass(frozen=True)
 class Direction:
     """One parametric direction of a patch.
@@ -97,6 +102,25 @@ class Direction:
     def elements(self) -> int:
         """Number of elements: non-empty knot spans."""
         return len(self.boundaries) - 1
+
+    @property
+    def first_points(self) -> NDArray[np.intp]:
+        """Number of the first control point of each element, which has `order + 1` of them, shape (elements,)."""
+        if self.family == "L":
+            return np.arange(self.elements) * self.order
+        return np.flatnonzero(np.diff(self.knots) > 0) - self.order
+
+    @property
+    def greville(self) -> FloatArray:
+        """Where each function belongs, shape (count,): means of its inner knots (Greville's abscissae), or its node."""
+        if self.family == "L":
+            return self.subdivided(self.order)
+        return np.array([self.knots[i + 1 : i + self.order + 1].mean() for i in range(self.count)])
+
+    def subdivided(self, parts: int) -> FloatArray:
+        """Element boundaries of elements cut into equal parts each, shape (parts * elements + 1,)."""
+        inside = self.boundaries[:-1, None] + np.diff(self.boundaries)[:, None] * (np.arange(parts) / parts)
+        return np.append(inside, self.boundaries[-1])
 
 
 @dataclass(frozen=True)

@@ -48,10 +48,8 @@ def mesh(patch: Patch, families: Sequence[Family], orders: Sequence[int], elemen
     grid = _homogeneous(refined)
     for axis in (a for a in range(3) if families[a] == "L"):
         source = directions[axis]
-        boundaries = _subdivided(source.boundaries, elements[axis])
-        nodes = _subdivided(boundaries, orders[axis] * elements[axis])
-        grid = _evaluated(source, grid, axis, nodes)
-        directions[axis] = Direction("L", orders[axis], boundaries)
+        directions[axis] = Direction("L", orders[axis], source.subdivided(elements[axis] // source.elements))
+        grid = _evaluated(source, grid, axis, directions[axis].greville)
     weights = grid[..., 3]
     points = grid[..., :3] / weights[..., None]
     if "L" in families:
@@ -97,7 +95,7 @@ def _k_refined(patch: Patch, orders: Sequence[int], elements: Sequence[int]) -> 
     if raises:
         spline.elevate_degrees(raises)
     for axis, own in enumerate(patch.directions):
-        fresh = np.setdiff1d(_subdivided(own.boundaries, elements[axis]), own.boundaries)
+        fresh = np.setdiff1d(own.subdivided(elements[axis] // own.elements), own.boundaries)
         if len(fresh):
             spline.insert_knots(axis, fresh)
     return from_splinepy(spline)
@@ -116,10 +114,3 @@ def _homogeneous(patch: Patch) -> FloatArray:
     """Weighted control points and weights, shape (n1, n2, n3, 4)."""
     weights = patch.weights[:, None]
     return np.hstack([patch.control_points * weights, weights]).reshape((*patch.shape, 4), order="F")
-
-
-def _subdivided(boundaries: FloatArray, count: int) -> FloatArray:
-    """`count` spans out of the given ones, each cut into the same number of equal parts."""
-    parts = count // (len(boundaries) - 1)
-    inside = boundaries[:-1, None] + np.diff(boundaries)[:, None] * (np.arange(parts) / parts)
-    return np.append(inside, boundaries[-1])

@@ -16,7 +16,7 @@ from isomortar.model.contact_checks import check_contacts
 from isomortar.model.entities import Body, Contact, Face, Problem, SolverSettings, Support
 from isomortar.model.memory import memory_needed, memory_of_machine
 from isomortar.model.messages import input_error, located
-from isomortar.model.numbering import same_points
+from isomortar.model.numbering import check_closed, same_points
 from isomortar.model.rational import QUADRATURE_TOLD, quadrature_error, too_few_points
 
 #: Sizes of bodies, and forces and force densities (Young's modulus times the square of the size, and over the size) whose squares and
@@ -44,6 +44,7 @@ def check(problem: Problem) -> None:
     _check_settings(problem.settings)
     for body in problem.bodies:
         _check_units(body)
+        check_closed(body)
         _check_weights(body)
     _check_memory(problem)
     check_contacts(problem)
@@ -159,7 +160,7 @@ def _rigid_rank(problem: Problem, body: Body) -> int:
     rows = []
     for support in (s for s in problem.supports if s.place.body == body.name):
         points = body.patch.control_points[body.patch.face_points(support.place.face)]
-        arms = (points - body.patch.control_points.mean(axis=0)) / np.ptp(body.patch.control_points, axis=0).max()
+        arms = (points - body.patch.control_points.mean(axis=0)) / body.size
         for component in support.components:
             direction = np.zeros_like(arms)
             direction[:, component] = 1.0
@@ -186,7 +187,7 @@ def _unknowns(body: Body, support: Support) -> IntArray:
 
 
 def _agree(one: Support, other: Support, component: int) -> bool:
-    if not any(motion.rotate for motion in (*one.motions, *other.motions)):
+    if not (one.turns or other.turns):
         paths: list[FloatArray] = [np.array([motion.translate[component] for motion in s.motions]) for s in (one, other)]
         return bool(np.array_equal(paths[0], paths[1]))
     return (one.motions, one.centre, one.axis) == (other.motions, other.centre, other.axis)

@@ -100,4 +100,4 @@ def _check_stance(problem: Problem, contact: Contact, found: Stance) -> None:
 
 
 def _turns(problem: Problem) -> bool:
-    return any(motion.rotate for support in problem.supports for motion in support.motions)
+    return any(support.turns for support in problem.supports)

@@ -124,6 +124,11 @@ class Motion:
     rotate: Real = 0.0
     """Total angle of the stage in degrees about the support's axis."""
 
+    @property
+    def moves(self) -> bool:
+        """Whether it is any motion at all."""
+        return any(self.translate) or self.rotate != 0.0
+
 
 @dataclass(frozen=True)
 class Support:
@@ -142,7 +147,12 @@ class Support:
     @property
     def moves(self) -> bool:
         """Whether it moves in some stage."""
-        return any(any(motion.translate) or motion.rotate for motion in self.motions)
+        return any(motion.moves for motion in self.motions)
+
+    @property
+    def turns(self) -> bool:
+        """Whether it turns in some stage."""
+        return any(motion.rotate for motion in self.motions)
 
 
 @dataclass(frozen=True)

@@ -44,18 +44,11 @@ def blocks(patch: Patch) -> int:
 
 def _neighbours(direction: Direction) -> np.ndarray:
     """For each control point along a direction, how many share an element with it."""
-    starts = _first_points(direction)
+    starts = direction.first_points
     points = np.arange(direction.count)
     first = np.searchsorted(starts + direction.order, points)
     last = np.searchsorted(starts, points, side="right") - 1
     return starts[last] + direction.order - starts[first] + 1
-
-
-def _first_points(direction: Direction) -> np.ndarray:
-    """First control point of each element."""
-    if direction.family == "L":
-        return np.arange(direction.elements) * direction.order
-    return np.flatnonzero(np.diff(direction.knots) > 0) - direction.order
 
 
 def factor_entries(patch: Patch) -> float:

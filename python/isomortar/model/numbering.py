@@ -81,19 +81,35 @@ def same_points(patch: Patch, closed: str | None) -> IntArray:
     return first[first]
 
 
+def ends_apart(patch: Patch, axis: str) -> float:
+    """How far the control points at the two ends of a direction are from each other at most."""
+    ends = [patch.control_points[patch.face_points(axis + end)] for end in "01"]
+    return float(np.linalg.norm(ends[1] - ends[0], axis=1).max())
+
+
+def check_closed(body: Body) -> None:
+    """Refuse a ring that does not close.
+
+    Raises
+    ------
+    InputError
+        Its first and last control points, or their weights, differ.
+    """
+    if body.closed is None:
+        return
+    apart = ends_apart(body.patch, body.closed)
+    first, last = (body.patch.weights[body.patch.face_points(body.closed + end)] for end in "01")
+    if apart > constants.SAME_POINT * body.size or not np.allclose(first, last, rtol=constants.SAME_POINT):
+        raise InputError(
+            f"is {body.closed!r}, but the first and last control points along {body.closed} differ (by {apart:g}, or in their weights)",
+            f"bodies.{body.name}.closed",
+        )
+
+
 def _numbers(body: Body) -> tuple[IntArray, IntArray]:
     """For each control point of a body its number among those kept, and the kept ones."""
-    patch = body.patch
-    if body.closed is not None:
-        start, end = patch.face_points(body.closed + "0"), patch.face_points(body.closed + "1")
-        apart = np.linalg.norm(patch.control_points[start] - patch.control_points[end], axis=1).max()
-        size = np.linalg.norm(np.ptp(patch.control_points, axis=0))
-        if not apart <= constants.SAME_POINT * size or not np.allclose(patch.weights[start], patch.weights[end], rtol=constants.SAME_POINT):
-            raise InputError(
-                f"the first and last row of control points of a closed ring must coincide; they are {apart:.3g} apart",
-                f"bodies.{body.name}.closed",
-            )
-    first = same_points(patch, body.closed)
+    check_closed(body)
+    first = same_points(body.patch, body.closed)
     kept = np.flatnonzero(first == np.arange(len(first))).astype(np.int32)
     number = np.empty(len(first), dtype=np.int32)
     number[kept] = np.arange(len(kept), dtype=np.int32)

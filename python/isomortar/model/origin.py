@@ -9,8 +9,7 @@ import numpy as np
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
 from isomortar.model.entities import Body, Contact, Problem, RigidPlane, Support, unit
-
-Point = tuple[float, float, float]
+from isomortar.model.values import Point
 
 
 def origin_of(problem: Problem) -> FloatArray:

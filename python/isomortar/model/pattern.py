@@ -46,11 +46,7 @@ def element_points(patch: Patch, points: IntArray) -> IntArray:
 
 def _direction_points(direction: Direction) -> IntArray:
     """Control points along a direction of each of its elements, shape (elements, order + 1)."""
-    if direction.family == "L":
-        first = np.arange(direction.elements) * direction.order
-    else:
-        first = np.flatnonzero(np.diff(direction.knots) > 0) - direction.order
-    return (first[:, None] + np.arange(direction.order + 1)).astype(np.int32)
+    return (direction.first_points[:, None] + np.arange(direction.order + 1)).astype(np.int32)
 
 
 def surface_element_points(patch: Patch, face: str, points: IntArray) -> IntArray:

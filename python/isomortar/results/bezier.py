@@ -56,20 +56,6 @@ def sampling_matrix(direction: Direction, per_element: int) -> FloatArray:
     return np.concatenate([*inner, bezier[-1:]])
 
 
-def sampling_places(direction: Direction, per_element: int) -> FloatArray:
-    """Parameters of the rows of `sampling_matrix`."""
-    ends = direction.boundaries
-    return np.interp(np.arange(per_element * direction.elements + 1) / per_element, np.arange(len(ends)), ends)
-
-
-def greville(direction: Direction) -> FloatArray:
-    """Where each function of a direction belongs: means of its inner knots, or its node."""
-    p = direction.order
-    if direction.family == "L":
-        return sampling_places(direction, p)
-    return np.array([direction.knots[i + 1 : i + p + 1].mean() for i in range(direction.count)])
-
-
 def functions_at(direction: Direction, parameters: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Functions of a direction and their derivatives at any of its parameters, each of shape (parameters, count).
 

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from isomortar.geometry.patch import Direction, FloatArray
 from isomortar.model.entities import Problem
 from isomortar.results import style
-from isomortar.results.bezier import greville, sampling_matrix, sampling_places
+from isomortar.results.bezier import sampling_matrix
 from isomortar.results.fields import contact_surfaces
 from isomortar.solve.record import StepResult
 
@@ -28,10 +28,10 @@ def draw_map(problem: Problem, step: StepResult, number: int) -> Figure:
     directions = surface.directions
     lengths = surface.lengths
     parts = [max(4, _SAMPLES // d.elements) for d in directions]
-    samples = [sampling_places(d, n) for d, n in zip(directions, parts, strict=True)]
+    samples = [d.subdivided(n) for d, n in zip(directions, parts, strict=True)]
     _, field, _ = surface.fields((sampling_matrix(directions[0], parts[0]), sampling_matrix(directions[1], parts[1])))
     grid = field.reshape(len(samples[1]), len(samples[0]))
-    points = np.stack(np.meshgrid(greville(directions[0]), greville(directions[1])), axis=-1).reshape(-1, 2)
+    points = np.stack(np.meshgrid(directions[0].greville, directions[1].greville), axis=-1).reshape(-1, 2)
     if lengths[0] < lengths[1]:  # the longer coordinate runs to the right
         samples, grid, points = samples[::-1], grid.T, points[:, ::-1]
         directions, letters, lengths = directions[::-1], letters[::-1], lengths[::-1]

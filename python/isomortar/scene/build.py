@@ -5,8 +5,6 @@ from __future__ import annotations
 from math import hypot
 from pathlib import Path
 
-import numpy as np
-
 from isomortar.errors import InputError
 from isomortar.geometry.patch import FACES, Direction, Patch
 from isomortar.geometry.quadrature import contact_points, volume_points
@@ -105,20 +103,7 @@ def _body(name: str, table: BodyTable, coarse: Patch, plan: _MeshPlan, material:
     u, v, w = patch.directions
     quadrature = table.mesh.quadrature or (volume_points(u), volume_points(v), volume_points(w))
     closed = table.closed or (table.geometry.closed if table.geometry else None)
-    if closed:
-        _check_closed(name, patch, closed)
     return Body(name, patch, material, quadrature, closed)
-
-
-def _check_closed(name: str, patch: Patch, closed: str) -> None:
-    first, last = patch.face_points(f"{closed}0"), patch.face_points(f"{closed}1")
-    distance = np.abs(patch.control_points[first] - patch.control_points[last]).max()
-    size = np.ptp(patch.control_points, axis=0).max()
-    if distance > 1e-9 * size or not np.allclose(patch.weights[first], patch.weights[last], rtol=1e-9):
-        raise InputError(
-            f"is {closed!r}, but the first and last control points along {closed} differ (by {distance:g}, or in their weights)",
-            f"bodies.{name}.closed",
-        )
 
 
 def _material(scene: SceneTable, body: str) -> Material:

@@ -96,7 +96,7 @@ class Scene:
         """The curves to draw: the scene's own, or force and moment of every support that moves."""
         if self.record.curves is not None:
             return tuple(self.record.curves)
-        moving = [name for name in self.tables.supports if any(name in stage.motions for stage in self.tables.stages)]
+        moving = [s for s in self.tables.supports if any(s in stage.motions and stage.motions[s].moves for stage in self.tables.stages)]
         return tuple(
             CurveTable(name=f"{name} {quantity} {component}", support=name, quantity=quantity, component=component)
             for name in moving

@@ -13,7 +13,7 @@ from isomortar.model import constants
 from isomortar.model.contrasts import element_lengths
 from isomortar.model.entities import Body, Contact, Face, Problem, RigidPlane, Support, unit
 from isomortar.model.memory import memory_needed, memory_of_machine
-from isomortar.model.numbering import Numbering
+from isomortar.model.numbering import Numbering, ends_apart
 from isomortar.model.rational import QUADRATURE_TOLD, quadrature_error, too_few_points
 from isomortar.model.stance import Stance, stance
 from isomortar.model.supports import Supports
@@ -56,7 +56,7 @@ def doubts(problem: Problem, state: State) -> Iterator[str]:
     yield from _pushed_in(problem)
     stances = [stance(problem, contact) for contact in problem.contacts]
     travel = _travel(problem)
-    if travel == 0.0 and not any(_overlaps(found) for found in stances):
+    if not any(support.moves for support in problem.supports) and not any(_overlaps(found) for found in stances):
         yield "no support moves in any stage, and nothing overlaps at the start: nothing will happen"
     for contact, found, contact_state in zip(problem.contacts, stances, state.contacts, strict=True):
         yield from _of_stance(contact, found, travel, beside=not np.any(contact_state.projected))
@@ -147,10 +147,8 @@ def _pushed_in(problem: Problem) -> Iterator[str]:
 
 def _seam(body: Body) -> Iterator[str]:
     """Opposite faces that lie on each other and are not joined."""
-    points = body.patch.control_points
     for axis in "uvw":
-        apart = np.abs(points[body.patch.face_points(f"{axis}0")] - points[body.patch.face_points(f"{axis}1")]).max()
-        if axis != body.closed and apart <= constants.SAME_POINT * body.size:
+        if axis != body.closed and ends_apart(body.patch, axis) <= constants.SAME_POINT * body.size:
             yield (
                 f"body {body.name!r}: faces {axis}0 and {axis}1 lie on each other, but are not joined, and will part; "
                 f'bodies.{body.name}.closed = "{axis}" joins them'

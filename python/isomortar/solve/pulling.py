@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from isomortar import _bindings
-from isomortar.geometry.patch import FloatArray, IntArray
+from isomortar.geometry.patch import FloatArray, IntArray, opposite
 from isomortar.model.entities import Contact, RigidPlane
 from isomortar.solve.equilibrium import Balance, Equilibrium
 
@@ -50,7 +50,7 @@ class _Outward:
         first, second = patch.face_directions(face)
         self.points: IntArray = numbers[patch.face_points(face)]
         self._shape, self._sign = (second.count, first.count, 3), 1.0
-        inward = reference[numbers[patch.face_points(face[0] + "10"[int(face[1])])]] - reference[self.points]
+        inward = reference[numbers[patch.face_points(opposite(face))]] - reference[self.points]
         self._sign = -1.0 if np.einsum("ij,ij->", self.normals(reference), inward) > 0.0 else 1.0
 
     def normals(self, positions: FloatArray) -> FloatArray:

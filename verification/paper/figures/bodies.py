@@ -15,7 +15,6 @@ from isomortar.errors import InputError
 from isomortar.geometry.patch import FACES, FloatArray
 from isomortar.model.entities import Body, Contact, Problem, RigidPlane
 from isomortar.results import style
-from isomortar.results.bezier import sampling_places
 from isomortar.results.bodies import FINENESS, Paint, add_body, face_parts, plain, plane_corners
 from isomortar.results.fields import body_points
 from isomortar.results.reader import Results
@@ -85,7 +84,7 @@ def _face_values(body: Body, points: FloatArray, face: str, field: Field) -> Flo
     directions = body.patch.directions
     parameters = [d.boundaries[[0 if face[1] == "0" else -1]] for d in directions]
     for number, count in zip(along, face_parts(body.patch.face_directions(face), FINENESS), strict=True):
-        places = sampling_places(directions[number], count)
+        places = directions[number].subdivided(count)
         parameters[number] = 0.5 * (places[:-1] + places[1:])
     f = deformation_gradient(body, points, parameters)
     values = f[:, 2, 2] if field == "stretch" else np.linalg.norm(first_piola_stress(body.material, f), axis=(1, 2))

@@ -12,7 +12,7 @@ from paper.figures.picture import Panel
 
 from isomortar.errors import InputError
 from isomortar.geometry.patch import Direction, FloatArray
-from isomortar.results.bezier import functions_at, greville
+from isomortar.results.bezier import functions_at
 from isomortar.results.fields import ContactSurface, contact_surfaces
 from isomortar.results.gaps import gaps
 
@@ -106,7 +106,7 @@ def _axes(surface: ContactSurface) -> tuple[_Axis, _Axis]:
 
 def _places(surface: ContactSurface) -> FloatArray:
     """The control points laid flat, shape (n, 2)."""
-    return np.stack(np.meshgrid(*(axis.lengths(greville(axis.direction)) for axis in _axes(surface))), axis=-1).reshape(-1, 2)
+    return np.stack(np.meshgrid(*(axis.lengths(axis.direction.greville) for axis in _axes(surface))), axis=-1).reshape(-1, 2)
 
 
 def _contact_corners(surface: ContactSurface) -> FloatArray:
