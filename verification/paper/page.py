@@ -17,7 +17,7 @@ from paper.sections import METHODS, Section
 from paper.settled import Settled
 
 from isomortar.harness.report import percent, plain, template
-from isomortar.harness.statement import STATES, Judgement
+from isomortar.harness.statement import STATEMENT_STATES, Judgement
 from isomortar.harness.store import identity, write_whole
 
 
@@ -39,7 +39,7 @@ class Report:
     def counts(self) -> dict[str, int]:
         """Statements by verdict."""
         found = Counter(judgement.state for judgement in self.judgements)
-        return {state: found[state] for state in reversed(STATES)}
+        return {state: found[state] for state in reversed(STATEMENT_STATES)}
 
     @property
     def failed(self) -> list[Outcome]:

@@ -15,8 +15,8 @@ from isomortar.harness.measurement import Measurement, Stored, convergence_of, c
 from isomortar.harness.orders import OrderEstimate, estimate_order
 
 #: Best first. Only ``passed`` passes.
-State = Literal["passed", "missing reference", "not measured", "skipped", "failed", "crashed", "timed out"]
-STATES: tuple[State, ...] = ("passed", "missing reference", "not measured", "skipped", "failed", "crashed", "timed out")
+CheckState = Literal["passed", "missing reference", "not measured", "skipped", "failed", "crashed", "timed out"]
+CHECK_STATES: tuple[CheckState, ...] = ("passed", "missing reference", "not measured", "skipped", "failed", "crashed", "timed out")
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Check:
     """
 
     name: str
-    state: State
+    state: CheckState
     value: float
     limit: str
     found: str
@@ -58,9 +58,9 @@ class Expected:
 Lookup = Callable[[str, Cell, str], Expected | None]
 
 
-def worst(states: Iterable[State]) -> State:
+def worst(states: Iterable[CheckState]) -> CheckState:
     """The worst of some states; of none: not measured."""
-    return max(states, key=STATES.index, default="not measured")
+    return max(states, key=CHECK_STATES.index, default="not measured")
 
 
 def agree(measured: ArrayLike, expected: ArrayLike, tolerance: ArrayLike) -> Agreement:
@@ -92,7 +92,7 @@ def judge(cell: Cell, measurement: Measurement, lookup: Lookup) -> list[Check]:
     claims = cell.case.bounds_of(cell.settings)
     ending = measurement.ending
     if ending != "measured":
-        state: State = "failed" if ending == "not converged" or ending == "refused" or ending == "trouble" else ending
+        state: CheckState = "failed" if ending == "not converged" or ending == "refused" or ending == "trouble" else ending
         line = measurement.message.strip().splitlines()[-1] if measurement.message.strip() else ending
         return [Check(name, state, np.nan, _limit(claim), line, claim.reason) for name, claim in claims.items()]
     checks = []
@@ -151,7 +151,7 @@ def _check_order(name: str, claim: Order, value: Stored) -> Check:
     if convergence is None:
         return Check(name, "failed", np.nan, _limit(claim), "not a Convergence", claim.reason)
     estimate = estimate_order(convergence, claim.expected)
-    state: State = "passed" if estimate.judgement == "confirmed" else "failed"
+    state: CheckState = "passed" if estimate.judgement == "confirmed" else "failed"
     return Check(name, state, estimate.order, _limit(claim), f"{estimate.judgement}: {estimate.why}", claim.reason, estimate)
 
 
@@ -162,7 +162,7 @@ def _check_match(name: str, claim: Matches, entries: FloatArray, expected: Expec
     allowance = claim.allowance * float(np.max(np.abs(expected.values), initial=0.0))
     agreement = agree(entries, expected.values, 2 * expected.uncertainty + allowance)
     note = " (shows change, not correctness)" if expected.kind == "self" else ""
-    state: State = "passed" if agreement.agrees else "failed"
+    state: CheckState = "passed" if agreement.agrees else "failed"
     found = f"reference of class {expected.kind}{note}: {agreement.why}"
     return Check(name, state, shown, _limit(claim), found, claim.reason, reference=expected.kind)
 

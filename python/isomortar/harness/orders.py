@@ -11,7 +11,7 @@ from scipy import stats
 
 from isomortar.geometry.patch import FloatArray
 
-Judgement = Literal["confirmed", "pre-asymptotic", "at the floor", "diverging", "invalid"]
+OrderJudgement = Literal["confirmed", "pre-asymptotic", "at the floor", "diverging", "invalid"]
 
 #: Meshes that the regression takes, the finest ones, and fewest meshes that make an order.
 WINDOW = 4
@@ -54,7 +54,7 @@ class OrderEstimate:
     low: float
     high: float
     steps: tuple[float, ...]
-    judgement: Judgement
+    judgement: OrderJudgement
     why: str
 
 
@@ -121,7 +121,7 @@ def _over_budget(convergence: Convergence, errors: FloatArray) -> str:
     return ""
 
 
-def _judge(order: float, half: float, expected: float, steps: FloatArray, over_budget: str) -> tuple[Judgement, str]:
+def _judge(order: float, half: float, expected: float, steps: FloatArray, over_budget: str) -> tuple[OrderJudgement, str]:
     found = f"order {order:.2f} ± {half:.2f}, expected {expected:g}"
     if order < RESOLUTION:
         return "diverging", f"{found}: the error does not fall"

@@ -18,7 +18,7 @@ import numpy as np
 
 from isomortar.harness import history, svg
 from isomortar.harness.cases import Bound, Order
-from isomortar.harness.compare import STATES, Check, worst
+from isomortar.harness.compare import CHECK_STATES, Check, worst
 from isomortar.harness.measurement import convergence_of, curve_of
 from isomortar.harness.runner import Result
 from isomortar.harness.store import identity, write_whole
@@ -133,7 +133,7 @@ def page(results: Sequence[Result], context: Context) -> str:
     counts = Counter(result.state for result in results)
     return template("report.html").render(
         context=context,
-        counts=[(state, counts[state]) for state in STATES if counts[state]],
+        counts=[(state, counts[state]) for state in CHECK_STATES if counts[state]],
         total=len(results),
         left_out=len(left_out(results)),
         bad=[(result, _bad(result)) for result in _worst_first(results) if result.state != "passed"],
@@ -266,7 +266,7 @@ def _change_points(result: Result, name: str, values: Sequence[float]) -> list[i
 
 
 def _worst_first(results: Sequence[Result]) -> list[Result]:
-    return sorted(results, key=lambda result: -STATES.index(result.state))
+    return sorted(results, key=lambda result: -CHECK_STATES.index(result.state))
 
 
 def _bad(result: Result) -> list[Check]:

@@ -11,7 +11,7 @@ from typing import Any
 
 from isomortar.errors import InputError
 from isomortar.harness.cases import TIERS, Case, Cell, Tier
-from isomortar.harness.compare import Check, Lookup, State, judge, worst
+from isomortar.harness.compare import Check, CheckState, Lookup, judge, worst
 from isomortar.harness.crew import Crew
 from isomortar.harness.measurement import Measurement
 from isomortar.harness.store import Store, sources_hash
@@ -31,7 +31,7 @@ class Result:
     fresh: bool
 
     @property
-    def state(self) -> State:
+    def state(self) -> CheckState:
         """The worst state of its checks."""
         return worst(check.state for check in self.checks)
 

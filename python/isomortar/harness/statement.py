@@ -9,9 +9,9 @@ from typing import Any, Generic, Literal, Protocol, TypeVar
 
 from isomortar.errors import IsomortarError
 
-State = Literal["holds", "partly measured", "does not hold", "not measured"]
+StatementState = Literal["holds", "partly measured", "does not hold", "not measured"]
 #: Worst first. ``partly measured``: what was measured is within the limit, by one of the methods or of some runs only.
-STATES: tuple[State, ...] = ("does not hold", "not measured", "partly measured", "holds")
+STATEMENT_STATES: tuple[StatementState, ...] = ("does not hold", "not measured", "partly measured", "holds")
 #: Values by what they are of ("N3 / N2"); all of them are judged.
 Values = Mapping[str, float]
 
@@ -40,7 +40,7 @@ class Verdict:
     """What a statement says of the runs by one method; `why` it was not measured, or not as a whole."""
 
     method: str
-    state: State
+    state: StatementState
     values: Values
     why: str = ""
 
@@ -98,7 +98,7 @@ class Statement(Generic[_Evidence]):
             return Verdict(evidence.method, "not measured", values, why)
         low, high = (-math.inf if self.at_least is None else self.at_least), (math.inf if self.at_most is None else self.at_most)
         kept = all(low <= v <= high for v in values.values())
-        state: State = "does not hold" if not kept else "partly measured" if without else "holds"
+        state: StatementState = "does not hold" if not kept else "partly measured" if without else "holds"
         return Verdict(evidence.method, state, values, without)
 
 
@@ -110,7 +110,7 @@ class Judgement:
     verdicts: tuple[Verdict, ...]
 
     @property
-    def state(self) -> State:
+    def state(self) -> StatementState:
         """What all methods agree on; that it does not hold where one of them says so; else it is partly measured."""
         found = {verdict.state for verdict in self.verdicts} or {"not measured"}
         if "does not hold" in found:

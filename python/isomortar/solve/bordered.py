@@ -20,7 +20,7 @@ from isomortar.model import constants
 from isomortar.model.supports import BoolArray
 from isomortar.solve.contact import Blocks, PairMechanics, median
 from isomortar.solve.equilibrium import Balance, Equilibrium
-from isomortar.solve.singular import Multipliers
+from isomortar.solve.singular import PairConditions
 from isomortar.solve.system import Source, block_product
 
 
@@ -109,7 +109,7 @@ def solve_bordered(
         values += more_values
         size += int(np.count_nonzero(border.equation >= 0))
     right = _right_hand_side(equilibrium, balance, targets, borders, sources, values, prescribed, size)
-    multipliers = [Multipliers(b.pair, b.equation, k) for b, k in zip(borders, balance.kinematics, strict=True) if b is not None]
+    multipliers = [PairConditions(b.pair, b.equation, k) for b, k in zip(borders, balance.kinematics, strict=True) if b is not None]
     solution = equilibrium.solve(sources, values, right, balance.positions, multipliers)
     correction = _correction(equilibrium, solution, targets, borders)
     if prescribed is not None:

@@ -23,7 +23,7 @@ from isomortar.model.supports import Supports
 from isomortar.solve.contact import Kinematics, PairMechanics
 from isomortar.solve.record import State
 from isomortar.solve.scales import BodyMeasures, Scales
-from isomortar.solve.singular import Multipliers, explain
+from isomortar.solve.singular import PairConditions, explain
 from isomortar.solve.system import LinearSystem, Source, block_product, entries
 from isomortar.solve.timing import Ledger
 
@@ -181,7 +181,7 @@ class Equilibrium:
         values: list[FloatArray],
         right: FloatArray,
         positions: FloatArray,
-        multipliers: Sequence[Multipliers] = (),
+        multipliers: Sequence[PairConditions] = (),
     ) -> FloatArray:
         """Solve the system of the given sources; the first is the solid's. Free unknowns come first, multipliers after them.
 

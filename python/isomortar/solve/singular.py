@@ -20,7 +20,7 @@ _PART = 0.1
 
 
 @dataclass(frozen=True)
-class Multipliers:
+class PairConditions:
     """A pair with the equations of its multipliers, shape (3 * slave control points,), -1: none; and its kinematics."""
 
     pair: PairMechanics
@@ -29,7 +29,7 @@ class Multipliers:
 
 
 def explain(
-    rcond: float, null: FloatArray, free: NDArray[np.intp], positions: FloatArray, numbering: Numbering, contacts: Sequence[Multipliers]
+    rcond: float, null: FloatArray, free: NDArray[np.intp], positions: FloatArray, numbering: Numbering, contacts: Sequence[PairConditions]
 ) -> SingularSystemError:
     """The error that says what a singular tangent leaves free.
 
@@ -64,19 +64,19 @@ def explain(
     return SingularSystemError(f"{said}: {sentence or _soft(place, numbering)}", place)
 
 
-def _of_pair(contact: Multipliers, null: FloatArray) -> FloatArray:
+def _of_pair(contact: PairConditions, null: FloatArray) -> FloatArray:
     """Entries of a direction for the multipliers of a pair, largest by slave control point, shape (slave control points,)."""
     values = np.zeros(len(contact.equation))
     values[contact.equation >= 0] = null[contact.equation[contact.equation >= 0]]
     return np.abs(values).reshape(-1, 3).max(axis=1)
 
 
-def _active(contact: Multipliers) -> NDArray[np.intp]:
+def _active(contact: PairConditions) -> NDArray[np.intp]:
     """Slave control points that have conditions."""
     return np.flatnonzero(contact.equation.reshape(-1, 3)[:, 0] >= 0)
 
 
-def _points_around(contact: Multipliers, among: NDArray[np.intp]) -> tuple[int, int]:
+def _points_around(contact: PairConditions, among: NDArray[np.intp]) -> tuple[int, int]:
     """How many quadrature points around some slave control points are on the master, and how many there are."""
     nodes = contact.pair.pair.slave.test.nodes
     found = contact.kinematics.projections.found.reshape(len(nodes), -1) > 0
@@ -85,7 +85,7 @@ def _points_around(contact: Multipliers, among: NDArray[np.intp]) -> tuple[int, 
 
 
 def _repeated(
-    said: str, contact: Multipliers, among: NDArray[np.intp], contacts: Sequence[Multipliers], held: NDArray[np.bool_]
+    said: str, contact: PairConditions, among: NDArray[np.intp], contacts: Sequence[PairConditions], held: NDArray[np.bool_]
 ) -> SingularSystemError:
     """Contact conditions without effect: too few points on the master, or too few unknowns that they bear on."""
     prescribed = int(np.count_nonzero(held.reshape(-1, 3)[contact.pair.pair.slave.point[among]].any(axis=1)))
@@ -118,7 +118,7 @@ def _repeated(
     return SingularSystemError(f"{said}. {where}, {reason}", int(among[0]))
 
 
-def _shared(contact: Multipliers, among: NDArray[np.intp], other: Multipliers) -> int:
+def _shared(contact: PairConditions, among: NDArray[np.intp], other: PairConditions) -> int:
     """How many of some slave control points of a contact are active slave control points of another one."""
     return int(np.isin(contact.pair.pair.slave.point[among], other.pair.pair.slave.point[_active(other)]).sum())
 

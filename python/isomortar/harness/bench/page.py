@@ -15,7 +15,7 @@ from isomortar.harness.bench.declaration import ASIDE, NOTE, Benchmark, Plot, Ro
 from isomortar.harness.bench.history import Trend, label, read
 from isomortar.harness.bench.processes import Answer
 from isomortar.harness.bench.record import HISTORY, Record, as_data
-from isomortar.harness.bench.standings import STATES, standings, state
+from isomortar.harness.bench.standings import LIMIT_STATES, standings, state
 from isomortar.harness.history import change_points
 from isomortar.harness.store import write_whole
 
@@ -36,7 +36,7 @@ def page(record: Record, trends: Mapping[str, Trend]) -> str:
         record=record,
         sections=[_section(answer, trends[answer.benchmark.name]) for answer in record.answers],
         failed=[answer.benchmark.name for answer in record.answers if answer.failed],
-        counts=[(kind, sum(v.state == kind for v in judged)) for kind in STATES],
+        counts=[(kind, sum(v.state == kind for v in judged)) for kind in LIMIT_STATES],
     )
 
 

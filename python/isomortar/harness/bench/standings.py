@@ -11,9 +11,9 @@ from isomortar.harness.bench.declaration import ASIDE, Row
 from isomortar.harness.bench.history import label
 from isomortar.harness.bench.processes import Answer
 
-State = Literal["met", "missed", "not compared", "not measured"]
+LimitState = Literal["met", "missed", "not compared", "not measured"]
 #: Best first.
-STATES: tuple[State, ...] = get_args(State)
+LIMIT_STATES: tuple[LimitState, ...] = get_args(LimitState)
 
 
 @dataclass(frozen=True)
@@ -23,12 +23,12 @@ class Standing:
     column: str
     at_most: float
     why: str
-    state: State
+    state: LimitState
     worst: float
     row: str
 
 
-def state(value: object, at_most: float) -> State:
+def state(value: object, at_most: float) -> LimitState:
     """How one value stands; where there is none nothing was compared, and no number, or one below zero, was not measured."""
     if value is None:
         return "not compared"
@@ -50,5 +50,5 @@ def _standing(rows: Sequence[Row], column: str, at_most: float, why: str) -> Sta
     spoken = [(state(row.get(column), at_most), row) for row in rows if row.get(column) != ASIDE]
     states = {found for found, _ in spoken}
     worst, where = max(((float(row[column]), label(row)) for found, row in spoken if found in ("met", "missed")), default=(math.nan, ""))
-    found: State = next((kind for kind in ("missed", "not measured", "not compared", "met") if kind in states), "not measured")
+    found: LimitState = next((kind for kind in ("missed", "not measured", "not compared", "met") if kind in states), "not measured")
     return Standing(column, at_most, why, found, worst, where)
