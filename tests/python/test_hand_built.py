@@ -52,6 +52,10 @@ def _of_far_weights(problem: Problem) -> Problem:
     return replace(problem, bodies=(*problem.bodies, body), supports=(*problem.supports, held))
 
 
+def _ring_of_a_box(problem: Problem) -> Problem:
+    return replace(problem, bodies=(replace(problem.bodies[0], closed="u"), *problem.bodies[1:]))
+
+
 def _with_settings(**settings: object) -> Callable[[Problem], Problem]:
     return lambda problem: replace(problem, settings=replace(problem.settings, **settings))
 
@@ -72,6 +76,7 @@ def _with_settings(**settings: object) -> Callable[[Problem], Problem]:
             _with_settings(measures=("haste",)),
             "solver.measures.0: is 'haste'; allowed: 'forgiving', 'margin'",
         ),
+        (_ring_of_a_box, r"closed: is 'u', but the first and last control points along u differ \(by 0.8, or"),
         (_of_far_weights, r"mesh.quadrature = \[16, 16, 16\]"),
     ],
 )
