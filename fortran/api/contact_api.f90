@@ -2,9 +2,9 @@
 ! control points, elements and blocks count from 0 outside and from 1 inside. Fields at quadrature points have `nquad` entries,
 ! those of test functions `ntest`.
 
-!> Functions and reference areas at the quadrature points of a face of a patch, by the axis across it (1..3) and its end there
+!> Functions, their derivatives and reference areas at the quadrature points of a face of a patch, by the axis across it (1..3) and its end there
 !> (0, 1) (isomortar_contact_slave). `nodes` are numbered within the face.
-subroutine slave_tables(patch, axis, side, gauss, reference, n, nlocal, nelements, nquad, nodes, values, area, status)
+subroutine slave_tables(patch, axis, side, gauss, reference, n, nlocal, nelements, nquad, nodes, values, slopes, area, status)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: find
   use isomortar_contact_slave, only: tables => slave_tables
@@ -15,13 +15,13 @@ subroutine slave_tables(patch, axis, side, gauss, reference, n, nlocal, nelement
   integer(c_int), intent(in) :: n, nlocal, nelements, nquad, axis, side, gauss(2)
   real(c_double), intent(in) :: reference(3, n)
   integer(c_int), intent(out) :: nodes(nlocal, nelements), status
-  real(c_double), intent(out) :: values(nlocal, nquad), area(nquad)
+  real(c_double), intent(out) :: values(nlocal, nquad), slopes(nlocal, 2, nquad), area(nquad)
   type(patch_t), pointer :: body
 
   status = 0
   call find(patch, body, status)
   if (status /= 0) return
-  call tables(face_of(body, axis, side), gauss, reference, nodes, values, area)
+  call tables(face_of(body, axis, side), gauss, reference, nodes, values, slopes, area)
   nodes = nodes - 1
 end subroutine slave_tables
 
@@ -218,8 +218,8 @@ subroutine contact_forces(slave, map, x, n, xi, element, fixed, found, nquad, wi
 end subroutine contact_forces
 
 !> Add constraint rows and the geometric tangent (isomortar_contact_blocks).
-subroutine contact_blocks(slave, map, x, n, xi, element, fixed, found, slips, nquad, with_friction, pressure, traction, state, &
-    ntest, field_slip, row_pattern, nrows, nkinds, rows, pattern, nblocks, tangent, status, place)
+subroutine contact_blocks(slave, map, x, n, xi, element, fixed, found, origin, slips, nquad, with_friction, pressure, traction, &
+    state, ntest, field_slip, row_pattern, nrows, nkinds, rows, pattern, nblocks, tangent, status, place)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: find
   use isomortar_contact_blocks, only: integrate_blocks, multipliers_t
@@ -230,7 +230,8 @@ subroutine contact_blocks(slave, map, x, n, xi, element, fixed, found, slips, nq
   integer(c_int64_t), intent(in) :: slave, map, row_pattern, pattern
   integer(c_int), intent(in) :: n, nquad, ntest, nrows, nkinds, nblocks
   integer(c_int), intent(in) :: element(2, nquad), fixed(2, nquad), found(nquad), slips(nquad), with_friction, state(ntest)
-  real(c_double), intent(in) :: x(3, n), xi(2, nquad), pressure(ntest), traction(2, ntest), field_slip(2, nquad)
+  real(c_double), intent(in) :: x(3, n), xi(2, nquad), origin(2, nquad), field_slip(2, nquad)
+  real(c_double), intent(in) :: pressure(ntest), traction(2, ntest)
   real(c_double), intent(inout) :: rows(3, nkinds, nrows), tangent(3, 3, nblocks)
   integer(c_int), intent(out) :: status, place
   type(slave_t), pointer :: side
@@ -249,6 +250,7 @@ subroutine contact_blocks(slave, map, x, n, xi, element, fixed, found, slips, nq
   projections%place = element + 1
   projections%fixed = fixed /= 0
   projections%found = found /= 0
+  projections%origin = origin
   projections%slips = slips /= 0
   call integrate_blocks(side, onto, x, projections, with_friction /= 0, multipliers_t(pressure, traction, state /= 0), field_slip, &
     of_rows, rows, of_tangent, tangent, status, place)
@@ -263,6 +265,7 @@ subroutine multiplier_rows(slave, weight, square, control_slip, metric, point_me
   use isomortar_api_descriptors, only: find
   use isomortar_base_status, only: status_ok, status_pattern
   use isomortar_contact_augmentation, only: combine => multiplier_rows, law_t, response_t, trial_rows, trial_rows_summed
+  use isomortar_contact_blocks, only: has_friction
   use isomortar_contact_control, only: control_t
   use isomortar_contact_slave, only: slave_t
   use isomortar_sparse_blocks, only: pattern_t
@@ -299,9 +302,9 @@ subroutine multiplier_rows(slave, weight, square, control_slip, metric, point_me
   response%traction_slope = traction_slope
   status = status_pattern
   if (summed == 0 .and. any(of_rows%start /= of_trial%start)) return
-  if (nkinds > 1 .and. summed /= 0) then
+  if (has_friction(nkinds) .and. summed /= 0) then
     call trial_rows_summed(side, control, law, state /= 0, of_rows, rows, of_neighbours, of_trial, trial, place)
-  else if (nkinds > 1) then
+  else if (has_friction(nkinds)) then
     call trial_rows(control, law, state /= 0, of_rows, rows, trial)
   end if
   if (place == 0) call combine(control, response, of_rows, rows, of_trial, trial, changes, place)

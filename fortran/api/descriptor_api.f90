@@ -64,18 +64,21 @@ subroutine keep_friction(law, parameters, nparameters, handle, status)
   if (status == 0) call keep(descriptor, handle, status)
 end subroutine keep_friction
 
-!> Keep a slave side: by element and quadrature point the functions that interpolate its positions, and those that constraints are
-!> weighted with; reference areas of the points; global numbers of its control points.
-subroutine keep_slave(shape_nodes, shape_values, nshape, test_nodes, test_values, ntest, tests, area, nelements, nquad, point, &
-    npoints, handle, status)
+!> Keep a slave side: by element and quadrature point the functions that interpolate its positions, with derivatives, and those that
+!> constraints are weighted with; reference areas of the points; global numbers of its control points; sign of t_1 x t_2 that points
+!> out of it.
+subroutine keep_slave(shape_nodes, shape_values, shape_slopes, nshape, test_nodes, test_values, ntest, tests, area, nelements, &
+    nquad, point, npoints, outward, handle, status)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: descriptor_t, keep
   use isomortar_base_kinds, only: wp
   use isomortar_contact_slave, only: functions_t
   implicit none
   integer(c_int), intent(in) :: nshape, ntest, tests, nelements, nquad, npoints
-  integer(c_int), intent(in) :: shape_nodes(nshape, nelements), test_nodes(ntest, nelements), point(npoints)
-  real(c_double), intent(in) :: shape_values(nshape, nquad), test_values(ntest, nquad), area(nquad)
+  integer(c_int), intent(in) :: shape_nodes(nshape, nelements), test_nodes(ntest, nelements)
+  integer(c_int), intent(in) :: point(npoints), outward
+  real(c_double), intent(in) :: shape_values(nshape, nquad), shape_slopes(nshape, 2, nquad)
+  real(c_double), intent(in) :: test_values(ntest, nquad), area(nquad)
   integer(c_int64_t), intent(out) :: handle
   integer(c_int), intent(out) :: status
   type(descriptor_t) :: descriptor
@@ -83,6 +86,8 @@ subroutine keep_slave(shape_nodes, shape_values, nshape, test_nodes, test_values
   allocate (descriptor%slave)
   descriptor%slave%shape = functions_t(npoints, shape_nodes + 1, real(shape_values, wp))
   descriptor%slave%test = functions_t(tests, test_nodes + 1, real(test_values, wp))
+  descriptor%slave%slopes = real(shape_slopes, wp)
+  descriptor%slave%outward = real(outward, wp)
   descriptor%slave%per_element = nquad / nelements
   descriptor%slave%area = real(area, wp)
   descriptor%slave%point = point + 1
@@ -128,6 +133,29 @@ subroutine keep_closest_point(patch, axis, side, handle, status)
   allocate (descriptor%map, source=closest_point_t(surface=face_of(body, axis, side), opposite=face_of(body, axis, 1 - side)))
   call keep(descriptor, handle, status)
 end subroutine keep_closest_point
+
+!> Keep the gap map of the averaged normal on a face of a patch (isomortar_contact_gap_map_averaged), named as above.
+subroutine keep_averaged(patch, axis, side, handle, status)
+  use iso_c_binding, only: c_int, c_int64_t
+  use isomortar_api_descriptors, only: descriptor_t, find, keep
+  use isomortar_contact_gap_map_averaged, only: averaged_on
+  use isomortar_nurbs_patch, only: patch_t
+  use isomortar_nurbs_surface, only: face_of
+  implicit none
+  integer(c_int64_t), intent(in) :: patch
+  integer(c_int), intent(in) :: axis, side
+  integer(c_int64_t), intent(out) :: handle
+  integer(c_int), intent(out) :: status
+  type(descriptor_t) :: descriptor
+  type(patch_t), pointer :: body
+
+  handle = -1
+  status = 0
+  call find(patch, body, status)
+  if (status /= 0) return
+  allocate (descriptor%map, source=averaged_on(face_of(body, axis, side)))
+  call keep(descriptor, handle, status)
+end subroutine keep_averaged
 
 !> Keep a pattern of blocks in compressed rows.
 subroutine keep_pattern(start, nrows, column, nblocks, handle, status)

@@ -1,7 +1,7 @@
 !> Control pressures and tractions of an augmented penalty law, and their derivatives as rows (theory 4).
 module isomortar_contact_augmentation
   use isomortar_base_kinds, only: wp
-  use isomortar_contact_blocks, only: multipliers_t, row_gap, row_metric, row_slip, row_slip_sum
+  use isomortar_contact_blocks, only: gap_row, has_friction, multipliers_t, row_metric, row_slip, row_slip_sum
   use isomortar_contact_control, only: control_t, integrate_slip_sum
   use isomortar_contact_friction_law, only: friction_t
   use isomortar_contact_friction_return_map, only: metric_matrix, return_map, state_open, state_stick
@@ -286,14 +286,14 @@ contains
       if (lacks(wide, i, columns, pattern%column(pattern%start(i - 1) + 1:pattern%start(i)))) return
       do k = pattern%start(i - 1) + 1, pattern%start(i)
         associate (target => result(:, :, columns(pattern%column(k))), by => response%traction_slope(:, :, i))
-          target(:, 1) = response%pressure_slope(i) * rows(:, row_gap, k)
-          if (size(rows, 2) == 1) cycle
+          target(:, 1) = response%pressure_slope(i) * rows(:, gap_row(size(rows, 2)), k)
+          if (.not. has_friction(size(rows, 2))) cycle
           target(:, 2:3) = matmul(rows(:, row_metric:row_metric + 2, k) / control%square(i), transpose(by(:, 4:6)))
           target(:, 2) = target(:, 2) + by(1, 1) * target(:, 1)
           target(:, 3) = target(:, 3) + by(2, 1) * target(:, 1)
         end associate
       end do
-      if (size(rows, 2) == 1) cycle
+      if (.not. has_friction(size(rows, 2))) cycle
       do k = wide%start(i - 1) + 1, wide%start(i)
         result(:, 2:3, k) = result(:, 2:3, k) + matmul(trial(:, :, k), transpose(response%traction_slope(:, 2:3, i)))
       end do
@@ -313,7 +313,7 @@ contains
     integer :: a, b, i, multipliers
 
     allocate (columns(size(target_pattern%start) - 1), source=0)
-    multipliers = merge(1, 3, size(rows, 2) == 1)
+    multipliers = merge(3, 1, has_friction(size(rows, 2)))
     do i = 1, size(active)
       if (.not. active(i)) cycle
       do a = pattern%start(i - 1) + 1, pattern%start(i)

@@ -4,7 +4,8 @@ module isomortar_contact_control
   use isomortar_base_kinds, only: wp
   use isomortar_base_status, only: status_not_finite, status_ok
   use isomortar_contact_gap_map_map, only: contact_point_t, gap_map_t, projections_t
-  use isomortar_contact_slave, only: integrate_functions, slave_position, slave_t
+  use isomortar_contact_gap_map_nodal_normals, only: normals_t
+  use isomortar_contact_slave, only: integrate_functions, slave_t, slave_tangents
   implicit none
   private
 
@@ -37,20 +38,26 @@ contains
     real(wp), intent(in) :: origin(:, :)
     type(projections_t), intent(inout) :: projections
     integer, intent(out) :: status, place
+    type(normals_t) :: normals
+    real(wp), allocatable :: all(:, :)
     integer :: q
 
     place = first_not_finite(positions, slave%point)
     status = merge(status_not_finite, status_ok, place > 0)
-    if (status == status_ok) call map%locate(slave, positions, started, had, projections, status, place)
     if (status /= status_ok) return
+    call map%extend(positions, normals, all)
+    call map%locate(slave, all, started, had, projections, status, place)
+    if (status /= status_ok) return
+    projections%origin = origin
     projections%slips = projections%found .and. had
     do q = 1, size(slave%area)
       projections%slip(:, q) = 0.0_wp
-      if (projections%slips(q)) projections%slip(:, q) = map%slip(origin(:, q), projections%xi(:, q))
+      if (projections%slips(q)) projections%slip(:, q) = map%slip(slave, all, projections, q)
     end do
   end subroutine project_points
 
-  !> Integrate the control quantities. Points without a projection take no part in any of them (theory 4.1).
+  !> Integrate the control quantities. Points without a projection take no part in any of them (theory 4.1), but in those that need
+  !> none where the map is of that kind (theory 3.30).
   pure subroutine control_quantities(slave, map, positions, projections, control)
     type(slave_t), intent(in) :: slave
     class(gap_map_t), intent(in) :: map
@@ -58,25 +65,47 @@ contains
     type(projections_t), intent(in) :: projections
     type(control_t), intent(inout) :: control
     type(contact_point_t) :: point
-    real(wp), allocatable :: coefficients(:, :), fields(:, :), totals(:, :)
+    type(normals_t) :: normals
+    real(wp), allocatable :: all(:, :), coefficients(:, :), fields(:, :), totals(:, :)
+    real(wp) :: tangents(3, 2)
     integer :: points(map%bearing()), q
 
+    call map%extend(positions, normals, all)
     allocate (fields(4, size(slave%area)), totals(4, slave%test%count))
     allocate (coefficients(map%bearing(), map%vectors(of_slip=.false.)))
     fields = 0.0_wp
     control%point_metric = 0.0_wp
     do q = 1, size(slave%area)
+      if (map%whole .and. .not. projections%found(q)) then
+        tangents = slave_tangents(slave, positions, q)
+        fields(1, q) = 1.0_wp
+        control%point_metric(:, q) = [sum(tangents(:, 1)**2), dot_product(tangents(:, 1), tangents(:, 2)), sum(tangents(:, 2)**2)]
+      end if
       if (.not. projections%found(q)) cycle
-      call map%at(positions, slave_position(slave, positions, q), projections, q, .false., point, points, coefficients)
+      call map%at(slave, all, projections, q, .false., point, points, coefficients)
       fields(:, q) = [1.0_wp, point%gap, projections%slip(:, q)]
       control%point_metric(:, q) = [point%metric(1, 1), point%metric(1, 2), point%metric(2, 2)]
     end do
     call integrate_functions(slave, fields, totals)
     control%weight(:) = totals(1, :)
+    if (map%whole) where (.not. has_foot(slave, projections)) control%weight = 0.0_wp
     control%gap(:) = totals(2, :)
     control%slip(:, :) = totals(3:4, :)
     call integrate_squares(slave, fields(1, :), control)
   end subroutine control_quantities
+
+  !> Which control points have a foot of a quadrature point within their reach.
+  pure function has_foot(slave, projections) result(has)
+    type(slave_t), intent(in) :: slave
+    type(projections_t), intent(in) :: projections
+    logical :: has(slave%test%count)
+    integer :: e
+
+    has = .false.
+    do e = 1, size(slave%test%nodes, 2)
+      if (any(projections%found((e - 1) * slave%per_element + 1:e * slave%per_element))) has(slave%test%nodes(:, e)) = .true.
+    end do
+  end function has_foot
 
   !> <R^I R^I> and <R^I R^I a_ab> over the points whose `present` is 1 (theory 4.2).
   pure subroutine integrate_squares(slave, present, control)

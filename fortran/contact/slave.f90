@@ -1,6 +1,6 @@
 !> The slave side of a contact pair: its functions and quadrature, fixed for a whole computation.
 module isomortar_contact_slave
-  use isomortar_base_algebra, only: cross
+  use isomortar_base_algebra, only: add_product, cross
   use isomortar_base_kinds, only: wp
   use isomortar_nurbs_direction, only: direction_t
   use isomortar_nurbs_quadrature, only: gauss_legendre
@@ -8,7 +8,7 @@ module isomortar_contact_slave
   implicit none
   private
 
-  public :: integrate_functions, slave_position, slave_tables
+  public :: integrate_functions, slave_normal, slave_position, slave_tables, slave_tangents
 
   !> Functions on a slave face, given by element and quadrature point.
   type, public :: functions_t
@@ -29,6 +29,10 @@ module isomortar_contact_slave
     type(functions_t) :: test
     !> Number of quadrature points of each element.
     integer :: per_element
+    !> Derivatives of the shape functions by the face's coordinates, shape (functions of an element, 2, quadrature points).
+    real(wp), allocatable :: slopes(:, :, :)
+    !> Sign of t_1 x t_2 that points out of the body.
+    real(wp) :: outward
     !> Quadrature weight times reference area of each quadrature point.
     real(wp), allocatable :: area(:)
     !> Global number of each control point.
@@ -37,14 +41,14 @@ module isomortar_contact_slave
 
 contains
 
-  !> Functions and reference areas at the quadrature points of a contact patch (theory 2.8).
+  !> Functions, their derivatives and reference areas at the quadrature points of a contact patch (theory 2.8).
   !> `nodes` are numbered within the surface.
-  pure subroutine slave_tables(surface, points, references, nodes, basis, area)
+  pure subroutine slave_tables(surface, points, references, nodes, basis, slopes, area)
     type(surface_t), intent(in) :: surface
     integer, intent(in) :: points(2)
     real(wp), intent(in) :: references(:, :)
     integer, intent(out) :: nodes(:, :)
-    real(wp), intent(out) :: basis(:, :), area(:)
+    real(wp), intent(out) :: basis(:, :), slopes(:, :, :), area(:)
     real(wp) :: at1(points(1)), at2(points(2)), weight1(points(1)), weight2(points(2))
     real(wp) :: low(2), length(2), tangents(3, 2), values(size(basis, 1), 3)
     integer :: e, i, j, k, place(2)
@@ -62,6 +66,7 @@ contains
           k = k + 1
           call surface_basis(surface, place, nodes(:, e), low + length * [at1(i), at2(j)], 1, values)
           basis(:, k) = values(:, 1)
+          slopes(:, :, k) = values(:, 2:3)
           tangents = matmul(references(:, surface%point(nodes(:, e))), values(:, 2:3))
           area(k) = weight1(i) * weight2(j) * product(length) * norm2(cross(tangents(:, 1), tangents(:, 2)))
         end do
@@ -83,6 +88,33 @@ contains
       x = x + slave%shape%values(a, q) * positions(:, slave%point(slave%shape%nodes(a, e)))
     end do
   end function slave_position
+
+  !> Tangent vectors t_1, t_2 of the slave at a quadrature point.
+  pure function slave_tangents(slave, positions, q) result(tangents)
+    type(slave_t), intent(in) :: slave
+    real(wp), intent(in) :: positions(:, :)
+    integer, intent(in) :: q
+    real(wp) :: tangents(3, 2)
+    integer :: a, e
+
+    e = (q - 1) / slave%per_element + 1
+    tangents = 0.0_wp
+    do a = 1, size(slave%shape%nodes, 1)
+      call add_product(1.0_wp, positions(:, slave%point(slave%shape%nodes(a, e))), slave%slopes(a, :, q), tangents)
+    end do
+  end function slave_tangents
+
+  !> Unit normal of the slave, out of it, at a quadrature point.
+  pure function slave_normal(slave, positions, q) result(normal)
+    type(slave_t), intent(in) :: slave
+    real(wp), intent(in) :: positions(:, :)
+    integer, intent(in) :: q
+    real(wp) :: normal(3), tangents(3, 2)
+
+    tangents = slave_tangents(slave, positions, q)
+    normal = slave%outward * cross(tangents(:, 1), tangents(:, 2))
+    normal = normal / norm2(normal)
+  end function slave_normal
 
   !> <R^I f> (theory 2.8) for every test function, of fields given at the quadrature points: totals(field, I).
   pure subroutine integrate_functions(slave, fields, totals)

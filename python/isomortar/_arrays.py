@@ -137,6 +137,11 @@ class FaceArrays:
         return self.patch.face(self.axis)[2:]
 
 
+@dataclass(frozen=True, eq=False)
+class AveragedFaceArrays(FaceArrays):
+    """A face as a master on which feet are found along the averaged normal."""
+
+
 MasterArrays = PlaneArrays | FaceArrays
 
 
@@ -168,19 +173,25 @@ class SlaveArrays:
         Reference areas of the quadrature points; as many in each element.
     point : ndarray of int32, shape (slave control points,)
         Global number of each control point.
+    slopes : ndarray, shape (points, 2, local)
+        Derivatives of the shape functions by the coordinates of the face.
+    outward : int
+        Sign of t_1 x t_2, the product of the tangents along these, that points out of the body.
     """
 
     shape: FunctionArrays
     test: FunctionArrays
     area: FloatArray
     point: IntArray
+    slopes: FloatArray
+    outward: int
 
     @classmethod
     def of_points(cls, point: IntArray) -> Self:
         """Control points, each a quadrature point of area one with an element and a function of its own: what is integrated is its own."""
         count = len(check.array("point", point, np.int32, None))
         alone = FunctionArrays(np.arange(count, dtype=np.int32)[:, None].copy(), np.ones((count, 1)), count)
-        return cls(alone, alone, np.ones(count), point)
+        return cls(alone, alone, np.ones(count), point, np.zeros((count, 2, 1)), 1)
 
     def __post_init__(self) -> None:
         check.kind("shape", self.shape, FunctionArrays)
@@ -193,6 +204,8 @@ class SlaveArrays:
                 raise InputError(f"has {found}; allowed: {elements} and {points}, as the other functions and `area`", name)
         check.array("point", self.point, np.int32, self.shape.count)
         check.within("point", self.point, 0, check.MAX_POINT)
+        check.finite("slopes", check.array("slopes", self.slopes, np.float64, points, 2, self.shape.nodes.shape[1]))
+        check.whole("outward", self.outward, -1, 1)
         if not elements or points % elements:
             raise InputError(f"has {points} quadrature points for {elements} elements; allowed: as many in each element", "area")
 
@@ -235,6 +248,7 @@ class Projections:
     `doubt`: 0, or for a point that is found, but whose foot does not follow it, a status (isomortar_base_status) that says why: then its
     distance alone means something.
     `fixed`: 1 for coordinates that stay while the point moves, on lines across which the master is only continuous, shape (points, 2).
+    `origin`: coordinates from where slips count.
     """
 
     xi: FloatArray
@@ -242,6 +256,7 @@ class Projections:
     fixed: IntArray
     found: IntArray
     doubt: IntArray
+    origin: FloatArray
     slip: FloatArray
     slips: IntArray
 
@@ -251,6 +266,7 @@ class Projections:
         check.array("element", self.element, np.int32, points, 2)
         check.array("fixed", self.fixed, np.int32, points, 2)
         check.array("doubt", self.doubt, np.int32, points)
+        check.finite("origin", check.array("origin", self.origin, np.float64, points, 2))
         check.array("slip", self.slip, np.float64, points, 2)
         check.array("slips", self.slips, np.int32, points)
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from isomortar import _arguments as check
 from isomortar._arguments import FloatArray, IntArray
 from isomortar._arrays import (
+    AveragedFaceArrays,
     Control,
     FaceArrays,
     FrictionArrays,
@@ -37,7 +38,7 @@ LongArray = NDArray[np.int64]
 
 # With the arrays, which those who call take from here.
 __all__ = [
-    "Control", "FaceArrays", "FloatArray", "FrictionArrays", "FunctionArrays", "IntArray", "Law", "LongArray", "MasterArrays",
+    "AveragedFaceArrays", "Control", "FaceArrays", "FloatArray", "FrictionArrays", "FunctionArrays", "IntArray", "Law", "LongArray", "MasterArrays",
     "MaterialArrays", "PatchArrays", "Pattern", "PlaneArrays", "Projections", "Response", "SlaveArrays", "add_body", "add_values",
     "augmented_multipliers",
     "condense_multipliers", "contact_blocks", "contact_forces", "control_quantities", "find_places", "friction_radius", "material_stress",
@@ -242,14 +243,16 @@ def surface_functions(patch: PatchArrays, axis: int, side: int, xi: FloatArray) 
 
 def slave_tables(
     patch: PatchArrays, axis: int, side: int, gauss: tuple[int, int], reference: FloatArray
-) -> tuple[IntArray, FloatArray, FloatArray]:
-    """Functions and reference areas at the quadrature points of a face.
+) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
+    """Functions, their derivatives and reference areas at the quadrature points of a face.
 
     Returns
     -------
     nodes : ndarray of int32, shape (elements, local)
         Control points within the face.
     values : ndarray, shape (points, local)
+    slopes : ndarray, shape (points, 2, local)
+        Derivatives by the coordinates of the face.
     area : ndarray, shape (points,)
     """
     check.kind("patch", patch, PatchArrays)
@@ -259,10 +262,12 @@ def slave_tables(
     check.below("patch.point", patch.highest, len(reference), "control point")
     rule, elements = check.gauss("gauss", gauss, 2), math.prod(by_direction)
     points = elements * int(rule[0]) * int(rule[1])
-    nodes, values, area, status = _kernel.slave_tables(_patch(patch), axis, side, rule, reference.T, first * second, elements, points)
+    nodes, values, slopes, area, status = _kernel.slave_tables(
+        _patch(patch), axis, side, rule, reference.T, first * second, elements, points
+    )
     if status:
         _raise(status, -1)
-    return np.ascontiguousarray(nodes.T), np.ascontiguousarray(values.T), area
+    return np.ascontiguousarray(nodes.T), np.ascontiguousarray(values.T), np.ascontiguousarray(slopes.T), area
 
 
 def project_points(slave: SlaveArrays, master: MasterArrays, positions: FloatArray, origin: FloatArray, had: IntArray) -> Projections:
@@ -285,7 +290,7 @@ def project_points(slave: SlaveArrays, master: MasterArrays, positions: FloatArr
     )
     if status:
         _raise(status, place - 1)
-    return Projections(xi, element.T, fixed.T, found, doubt, slip.T, slips)
+    return Projections(xi, element.T, fixed.T, found, doubt, origin, slip.T, slips)
 
 
 def control_quantities(slave: SlaveArrays, master: MasterArrays, positions: FloatArray, projections: Projections) -> Control:
@@ -385,7 +390,7 @@ def contact_blocks(
     check.array("tangent", tangent, np.float64, len(pattern.column), 3, 3)
     status, place = _kernel.contact_blocks(
         _slave(slave), _master(master), positions.T, projections.xi.T, projections.element.T, projections.fixed.T, projections.found,
-        projections.slips, check.flag("with_friction", with_friction), response.pressure, response.traction.T, response.state,
+        projections.origin.T, projections.slips, check.flag("with_friction", with_friction), response.pressure, response.traction.T, response.state,
         response.field_slip.T, _pattern("row_pattern", row_pattern), rows.T, _pattern("pattern", pattern), tangent.T,
     )  # fmt: skip
     if status:

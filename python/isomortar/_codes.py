@@ -38,12 +38,19 @@ class PointState(IntEnum):
 class Row(IntEnum):
     """First constraint row of each kind, from 1 (isomortar_contact_blocks): <R dg>, <R slip>, <R dxi>, <R R da_ab>, <R da_ab zeta^b>."""
 
-    GAP = 1
+    PUSH = 1
     WORK = 2
     SLIP = 4
     METRIC = 6
     SLIP_SUM = 9
 
 
-#: How many rows there are without friction, with it, and with the paper's slip sum.
-ROW_KINDS = {"frictionless": Row.WORK - 1, "local": Row.SLIP_SUM - 1, "paper": Row.SLIP_SUM + 1}
+#: How many rows there are without friction, with it, and with the paper's slip sum; along averaged normals one more: <R dg> as it is,
+#: not as pressures work on it.
+ROW_KINDS = {
+    "frictionless": Row.WORK - 1,
+    "frictionless, averaged": Row.WORK,
+    "local": Row.SLIP_SUM - 1,
+    "local, averaged": Row.SLIP_SUM + 0,
+    "paper": Row.SLIP_SUM + 1,
+}

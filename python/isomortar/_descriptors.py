@@ -9,6 +9,7 @@ from weakref import WeakKeyDictionary
 
 from isomortar import _arguments as check
 from isomortar._arrays import (
+    AveragedFaceArrays,
     FaceArrays,
     FrictionArrays,
     MaterialArrays,
@@ -40,7 +41,8 @@ class Descriptors:
             MaterialArrays: self._law_by(library.keep_material),
             FrictionArrays: self._law_by(library.keep_friction),
             PlaneArrays: lambda plane: library.keep_plane(plane.origin, plane.normal, plane.tangent),
-            FaceArrays: lambda face: library.keep_closest_point(self.handle("patch", face.patch, PatchArrays), face.axis, face.side),
+            FaceArrays: self._face_by(library.keep_closest_point),
+            AveragedFaceArrays: self._face_by(library.keep_averaged),
             SlaveArrays: self._slave,
             Pattern: lambda pattern: library.keep_pattern(pattern.start, pattern.column),
         }
@@ -74,9 +76,12 @@ class Descriptors:
     def _slave(self, slave: SlaveArrays) -> tuple[int, int]:
         shape, test = slave.shape, slave.test
         found: tuple[int, int] = self._library.keep_slave(
-            shape.nodes.T, shape.values.T, test.nodes.T, test.values.T, test.count, slave.area, slave.point
+            shape.nodes.T, shape.values.T, slave.slopes.T, test.nodes.T, test.values.T, test.count, slave.area, slave.point, slave.outward
         )
         return found
+
+    def _face_by(self, keeper: Callable[..., tuple[int, int]]) -> Callable[[Any], tuple[int, int]]:
+        return lambda face: keeper(self.handle("patch", face.patch, PatchArrays), face.axis, face.side)
 
     @staticmethod
     def _law_by(keeper: Callable[..., tuple[int, int]]) -> Callable[[Any], tuple[int, int]]:

@@ -126,7 +126,7 @@ contains
       projections%found(before + q) = here(q)%outcome == projection_inside
       projections%doubt(before + q) = merge(doubt, status_ok, projections%found(before + q))
       if (projections%found(before + q) .and. doubt == status_ok .and. any(here(q)%fixed)) then
-        call self%at(positions, x(:, q), projections, before + q, .false., point, points, coefficients)
+        call self%at(slave, positions, projections, before + q, .false., point, points, coefficients)
         if (.not. point%slips) projections%doubt(before + q) = status_no_slip
       end if
     end do
@@ -145,18 +145,22 @@ contains
   end function least_depth
 
   !> The difference of the coordinates, the shortest way round a closed face (theory 3.20).
-  pure function slip(self, origin, xi)
+  pure function slip(self, slave, positions, projections, q)
     class(closest_point_t), intent(in) :: self
-    real(wp), intent(in) :: origin(2), xi(2)
+    type(slave_t), intent(in) :: slave
+    real(wp), intent(in) :: positions(:, :)
+    type(projections_t), intent(in) :: projections
+    integer, intent(in) :: q
     real(wp) :: slip(2)
 
-    slip = shortest_way(self%surface, xi - origin)
+    slip = shortest_way(self%surface, projections%xi(:, q) - projections%origin(:, q))
   end function slip
 
   !> Kinematics of a foot inside an element, on C0 lines or at a pole (theory 3.2, 3.3, 3.11).
-  pure subroutine at(self, positions, x, projections, q, of_slip, point, points, coefficients)
+  pure subroutine at(self, slave, positions, projections, q, of_slip, point, points, coefficients)
     class(closest_point_t), intent(in) :: self
-    real(wp), intent(in) :: positions(:, :), x(3)
+    type(slave_t), intent(in) :: slave
+    real(wp), intent(in) :: positions(:, :)
     type(projections_t), intent(in) :: projections
     integer, intent(in) :: q
     logical, intent(in) :: of_slip
@@ -164,9 +168,10 @@ contains
     integer, intent(out) :: points(:)
     real(wp), intent(out) :: coefficients(:, :)
     integer :: nodes(size(points)), order, pole
-    real(wp) :: functions(size(points), derivative_columns(merge(3, 2, of_slip)))
+    real(wp) :: functions(size(points), derivative_columns(merge(3, 2, of_slip))), x(3)
 
     order = merge(3, 2, of_slip)
+    x = slave_position(slave, positions, q)
     associate (surface => self%surface, place => projections%place(:, q), xi => projections%xi(:, q))
       call surface_nodes(surface, place, nodes)
       call surface_basis(surface, place, nodes, xi, order, functions)

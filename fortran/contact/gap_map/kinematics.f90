@@ -6,12 +6,14 @@ module isomortar_contact_gap_map_kinematics
   use isomortar_base_algebra, only: add_product, cross, inverse2
   use isomortar_base_kinds, only: wp
   use isomortar_contact_gap_map_kink_line, only: add_turn
-  use isomortar_contact_gap_map_map, only: all_components, contact_point_t, variations_t
+  use isomortar_contact_gap_map_map, only: all_of_any => all_components, contact_point_t, variations_t
   implicit none
   private
 
   public :: contact_point, first_variations, metric_variation, second_variations
 
+  !> Components of all six short vectors.
+  integer, parameter :: all_components = 18
   !> Number of the short vector dS,ab.
   integer, parameter :: second_vector(2, 2) = reshape([4, 5, 5, 6], [2, 2])
   !> Column of S,ab and of S,abc in the table of surface derivatives.
@@ -61,17 +63,19 @@ contains
 
     self%gap = 0.0_wp
     self%gap(1:3) = -point%normal
+    self%push = self%gap
     right = 0.0_wp
     do a = 1, 2
       right(1:3, a) = point%tangent(:, a)
       if (vectors > 1) right(components(1 + a), a) = -point%gap * point%normal
     end do
-    self%slip = matmul(right, point%inverse_h)
-    self%projection = self%slip
+    self%slip(:all_components, :) = matmul(right, point%inverse_h)
+    self%projection(:all_components, :) = self%slip(:all_components, :)
     if (.not. any(point%fixed)) return
     do a = 1, 2
       self%projection(:, a) = 0.0_wp
-      if (.not. point%fixed(a)) self%projection(:, a) = right(:, a) / (point%metric(a, a) + point%gap * point%curvature(a, a))
+      if (point%fixed(a)) cycle
+      self%projection(:all_components, a) = right(:, a) / (point%metric(a, a) + point%gap * point%curvature(a, a))
     end do
   end function first_variations
 
@@ -87,7 +91,7 @@ contains
     do i = 1, 3
       rows(3 * a + i, i) = 1.0_wp
       do b = 1, 2
-        rows(:, i) = rows(:, i) + point%surface(i, second_column(a, b)) * projection(:, b)
+        rows(:, i) = rows(:, i) + point%surface(i, second_column(a, b)) * projection(:all_components, b)
       end do
     end do
   end function moving_tangent
@@ -96,14 +100,14 @@ contains
   pure function metric_variation(point, variations) result(rows)
     type(contact_point_t), intent(in) :: point
     type(variations_t), intent(in) :: variations
-    real(wp) :: rows(all_components, 3)
+    real(wp) :: rows(all_of_any, 3)
     real(wp) :: first(all_components, 3), second(all_components, 3)
 
     first = moving_tangent(point, variations%projection, 1)
     second = moving_tangent(point, variations%projection, 2)
-    rows(:, 1) = 2.0_wp * matmul(first, point%tangent(:, 1))
-    rows(:, 2) = matmul(first, point%tangent(:, 2)) + matmul(second, point%tangent(:, 1))
-    rows(:, 3) = 2.0_wp * matmul(second, point%tangent(:, 2))
+    rows(:all_components, 1) = 2.0_wp * matmul(first, point%tangent(:, 1))
+    rows(:all_components, 2) = matmul(first, point%tangent(:, 2)) + matmul(second, point%tangent(:, 1))
+    rows(:all_components, 3) = 2.0_wp * matmul(second, point%tangent(:, 2))
   end function metric_variation
 
   !> Add pressure * Ddg + traction_a D(slip)^a to a bilinear form over the components (theory 3.9, 3.10, 3.13).
@@ -153,7 +157,7 @@ contains
     rows = 0.0_wp
     do i = 1, 3
       rows(i, i) = 1.0_wp
-      rows(:, i) = rows(:, i) - matmul(projection, point%tangent(i, :))
+      rows(:, i) = rows(:, i) - matmul(projection(:all_components, :), point%tangent(i, :))
     end do
   end function moving_distance
 
@@ -184,8 +188,8 @@ contains
     end do
     do c = 1, 2
       call second_row(point, theta, variations%projection, c, row, carried)
-      call add_product(1.0_wp, row, variations%projection(:, c), form)
-      call add_product(1.0_wp, variations%slip(:, c), row + carried, form)
+      call add_product(1.0_wp, row, variations%projection(:all_components, c), form)
+      call add_product(1.0_wp, variations%slip(:all_components, c), row + carried, form)
     end do
   end subroutine traction_variation
 
@@ -208,7 +212,7 @@ contains
       do m = 1, 2
         factor = dot_product(d, point%surface(:, third_column(b, c, m))) &
           - dot_product(point%tangent(:, b), point%surface(:, second_column(c, m)))
-        carried = carried + theta(b) * factor * projection(:, m)
+        carried = carried + theta(b) * factor * projection(:all_components, m)
       end do
     end do
   end subroutine second_row

@@ -5,12 +5,13 @@
 !> is dx - dS, the others are the map's own, as sums over the master control points that bear on the point.
 module isomortar_contact_gap_map_map
   use isomortar_base_kinds, only: wp
+  use isomortar_contact_gap_map_nodal_normals, only: normals_t
   use isomortar_contact_slave, only: slave_t
   implicit none
   private
 
   !> Components of all short vectors of any map.
-  integer, parameter, public :: all_components = 18
+  integer, parameter, public :: all_components = 27
 
   !> Where the slave quadrature points stand on the master.
   type, public :: projections_t
@@ -23,7 +24,9 @@ module isomortar_contact_gap_map_map
     logical, allocatable :: found(:)
     !> Of a point that is found: status_ok, or why its foot does not follow it. Then its distance alone means something.
     integer, allocatable :: doubt(:)
-    !> Slip increment since the last converged load step; zero without a history.
+    !> Master coordinates at the last converged load step, from where slips count.
+    real(wp), allocatable :: origin(:, :)
+    !> Slip increment since then; zero without a history.
     real(wp), allocatable :: slip(:, :)
     !> The slip follows the motion: found now and at the last converged load step.
     logical, allocatable :: slips(:)
@@ -50,11 +53,16 @@ module isomortar_contact_gap_map_map
     logical :: slips = .true.
     !> Surface derivatives by column (derivative_column), up to the order that is needed.
     real(wp) :: surface(3, 10)
+    !> Of an averaged normal: the field that it is the direction of, and its derivatives; unit normal of the slave; way from the foot
+    !> of the last converged load step to the foot; inverse of the derivative of the foot's equation by foot and gap.
+    real(wp) :: field(3, 3), facing(3), way(3), inverse_foot(3, 3)
   end type contact_point_t
 
   !> First variations as rows over the components of the short vectors.
   type, public :: variations_t
     real(wp) :: gap(all_components)
+    !> What pressures do their work on: dg, but without its spurious part where the map `leans`.
+    real(wp) :: push(all_components)
     !> dxi.
     real(wp) :: projection(all_components, 2)
     !> The slip that tractions do their work on: dxi; on a C0 line, where that is zero, as if the element's face went on.
@@ -65,7 +73,15 @@ module isomortar_contact_gap_map_map
   type, abstract, public :: gap_map_t
     !> Variations change with the positions.
     logical :: bends = .true.
+    !> Slave points without a foot count in weights and metric, which are the slave's.
+    logical :: whole = .false.
+    !> Pressures do not work on the gap's own variation.
+    logical :: leans = .false.
+    !> Number of the first of two short vectors that are variations of the slave's tangents; 0: none are.
+    integer :: of_tangents = 0
   contains
+    procedure :: extend => add_nothing
+    procedure :: stencils => elements
     procedure(count_bearing), deferred :: bearing
     procedure(count_vectors), deferred :: vectors
     procedure(locate_points), deferred :: locate
@@ -77,7 +93,7 @@ module isomortar_contact_gap_map_map
   end type gap_map_t
 
   abstract interface
-    !> Number of master control points that bear on one slave point.
+    !> Number of master control points, and normals of nodes, that bear on one slave point.
     pure integer function count_bearing(self)
       import :: gap_map_t
       implicit none
@@ -105,22 +121,26 @@ module isomortar_contact_gap_map_map
       integer, intent(out) :: status, place
     end subroutine locate_points
 
-    !> Slip from one place of the master to another one.
-    pure function slip_between(self, origin, xi) result(slip)
-      import :: gap_map_t, wp
+    !> Slip of quadrature point q from its foot at the last converged load step to that which it has now.
+    pure function slip_between(self, slave, positions, projections, q) result(slip)
+      import :: gap_map_t, projections_t, slave_t, wp
       implicit none
       class(gap_map_t), intent(in) :: self
-      real(wp), intent(in) :: origin(2), xi(2)
+      type(slave_t), intent(in) :: slave
+      real(wp), intent(in) :: positions(:, :)
+      type(projections_t), intent(in) :: projections
+      integer, intent(in) :: q
       real(wp) :: slip(2)
     end function slip_between
 
-    !> Kinematics of slave quadrature point q, which is at x and has a projection; the master control points that bear on it, and
-    !> their coefficients in the short vectors, (control points, vectors).
-    pure subroutine point_at(self, positions, x, projections, q, of_slip, point, points, coefficients)
-      import :: contact_point_t, gap_map_t, projections_t, wp
+    !> Kinematics of slave quadrature point q, which has a projection; the master control points (and normals of nodes, counted on
+    !> from these) that bear on it, and their coefficients in the short vectors, (control points, vectors).
+    pure subroutine point_at(self, slave, positions, projections, q, of_slip, point, points, coefficients)
+      import :: contact_point_t, gap_map_t, projections_t, slave_t, wp
       implicit none
       class(gap_map_t), intent(in) :: self
-      real(wp), intent(in) :: positions(:, :), x(3)
+      type(slave_t), intent(in) :: slave
+      real(wp), intent(in) :: positions(:, :)
       type(projections_t), intent(in) :: projections
       integer, intent(in) :: q
       logical, intent(in) :: of_slip
@@ -129,7 +149,7 @@ module isomortar_contact_gap_map_map
       real(wp), intent(out) :: coefficients(:, :)
     end subroutine point_at
 
-    !> Rows of dg, dxi and the slip that tractions work on.
+    !> Rows of dg, dxi and what pressures and tractions work on.
     pure function first_of(point, vectors) result(variations)
       import :: contact_point_t, variations_t
       implicit none
@@ -157,5 +177,28 @@ module isomortar_contact_gap_map_map
       real(wp), intent(inout) :: form(:, :)
     end subroutine second_of
   end interface
+
+contains
+
+  !> Normals of nodes, which bear on points like control points do, and the list of positions of both that all the above take: of
+  !> control points alone.
+  pure subroutine add_nothing(self, positions, normals, all)
+    class(gap_map_t), intent(in) :: self
+    real(wp), intent(in) :: positions(:, :)
+    type(normals_t), intent(out) :: normals
+    real(wp), allocatable, intent(out) :: all(:, :)
+
+    normals%count = 0
+    allocate (all, source=positions)
+  end subroutine add_nothing
+
+  !> What decides which control points bear on each quadrature point, by column: its master element.
+  pure function elements(self, projections) result(stencils)
+    class(gap_map_t), intent(in) :: self
+    type(projections_t), intent(in) :: projections
+    integer, allocatable :: stencils(:, :)
+
+    stencils = projections%place
+  end function elements
 
 end module isomortar_contact_gap_map_map

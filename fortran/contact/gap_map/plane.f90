@@ -76,18 +76,22 @@ contains
   end subroutine locate
 
   !> The difference of the coordinates.
-  pure function slip(self, origin, xi)
+  pure function slip(self, slave, positions, projections, q)
     class(plane_t), intent(in) :: self
-    real(wp), intent(in) :: origin(2), xi(2)
+    type(slave_t), intent(in) :: slave
+    real(wp), intent(in) :: positions(:, :)
+    type(projections_t), intent(in) :: projections
+    integer, intent(in) :: q
     real(wp) :: slip(2)
 
-    slip = xi - origin
+    slip = projections%xi(:, q) - projections%origin(:, q)
   end function slip
 
   !> Kinematics (theory 3.4); no master control points.
-  pure subroutine at(self, positions, x, projections, q, of_slip, point, points, coefficients)
+  pure subroutine at(self, slave, positions, projections, q, of_slip, point, points, coefficients)
     class(plane_t), intent(in) :: self
-    real(wp), intent(in) :: positions(:, :), x(3)
+    type(slave_t), intent(in) :: slave
+    real(wp), intent(in) :: positions(:, :)
     type(projections_t), intent(in) :: projections
     integer, intent(in) :: q
     logical, intent(in) :: of_slip
@@ -100,7 +104,7 @@ contains
     point%surface = 0.0_wp
     point%normal = self%normal
     point%tangent = self%tangent
-    point%gap = -dot_product(x - self%origin, self%normal)
+    point%gap = -dot_product(slave_position(slave, positions, q) - self%origin, self%normal)
     point%metric = reshape([1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [2, 2])
     point%inverse_metric = point%metric
     point%curvature = 0.0_wp
@@ -116,6 +120,7 @@ contains
     variations%gap = 0.0_wp
     variations%slip = 0.0_wp
     variations%gap(1:3 * vectors) = -point%normal
+    variations%push = variations%gap
     variations%slip(1:3 * vectors, :) = point%tangent
     variations%projection = variations%slip
   end function first

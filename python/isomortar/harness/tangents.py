@@ -230,17 +230,19 @@ class PairTangent(PairState):
         twin = self.twin(along)
         state = self.response.state
         rows = row_product(self.blocks.patterns.rows, self.blocks.rows, along)
+        averaged = self.pair.pair.contact.averaged
         off_lines = _active(state) & ~self._near_lines()  # on C0 lines tractions work on more than the projection's change
         changes = row_product(self.blocks.patterns.wide, self.blocks.changes, along)
         samples = [
             ("normal, geometric", block_product(self.pattern, self.normal, along), twin.normal_forces),
-            ("normal, gap", rows[_active(state), 0], twin.gap[_active(state)]),
+            ("normal, gap", rows[_active(state), -1 if averaged else 0], twin.gap[_active(state)]),
             ("normal, pressure", changes[:, 0], twin.pressure),
         ]
+        if self.pair.friction.acts and not averaged:  # along it they work in the slave's basis, not on coordinates of the master
+            samples.append(("tangential, projection", rows[off_lines, 1:3], twin.coordinates[off_lines]))
         if self.pair.friction.acts:
             samples += [
                 ("tangential, geometric", block_product(self.pattern, self.tangential, along), twin.tangential_forces),
-                ("tangential, projection", rows[off_lines, 1:3], twin.coordinates[off_lines]),
                 ("tangential, slip increment", rows[_active(state), 3:5], twin.slip[_active(state)]),
                 ("tangential, metric", rows[_active(state), 5:8], twin.metric[_active(state)]),
                 ("stick", changes[_sticks(state), 1:], twin.traction[_sticks(state)]),
@@ -313,7 +315,8 @@ def _sample(
             yield from tangent.along_positions(along)[0]
         if tangent.pair.friction.acts:
             yield from tangent.along_multipliers(random, length)
-    yield _symmetry(equilibrium, solid, linear)
+    if not any(tangent.pair.pair.contact.averaged for tangent in linear):  # along an averaged normal pressures are not conservative
+        yield _symmetry(equilibrium, solid, linear)
 
 
 def solid_twin(equilibrium: Equilibrium, positions: FloatArray, along: FloatArray) -> FloatArray:

@@ -13,6 +13,10 @@ from isomortar.geometry.patch import FloatArray, Patch
 from isomortar.model.values import TABLE, Count, Point, Positive, Real
 
 
+#: How a slave point finds its point on a face of its master: the closest one, or along the averaged normal.
+Projection = Literal["closest", "averaged"]
+
+
 @dataclass(frozen=True)
 class Material:
     """A solid; the defaults are the paper's."""
@@ -91,6 +95,7 @@ class Contact:
     `reference_area` divides the penalties (theory 7.1); None: the area of the slave face in the reference configuration.
     Where there is pressure p, tractions are up to min(`cohesion` + `friction` p, `traction_max`), force per area (theory 4.6);
     None: no largest one.
+    `projection`: how a slave point finds its point on a master that is a face: the closest one, or along the averaged normal.
     """
 
     name: str
@@ -101,6 +106,12 @@ class Contact:
     reference_area: float | None = None
     cohesion: float = 0.0
     traction_max: float | None = None
+    projection: Projection = "closest"
+
+    @property
+    def averaged(self) -> bool:
+        """Whether slave points find theirs along the averaged normal of a face."""
+        return self.projection == "averaged" and isinstance(self.master, Face)
 
     @property
     def friction_law(self) -> FrictionArrays:

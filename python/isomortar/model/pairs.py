@@ -6,11 +6,11 @@ import numpy as np
 from scipy import sparse
 
 from isomortar import _bindings
-from isomortar._bindings import FaceArrays, FunctionArrays, MasterArrays, Pattern, PlaneArrays, SlaveArrays
+from isomortar._bindings import AveragedFaceArrays, FaceArrays, FunctionArrays, MasterArrays, Pattern, PlaneArrays, SlaveArrays
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model.entities import Contact, Face, Problem, RigidPlane
 from isomortar.model.numbering import Numbering
-from isomortar.model.pattern import incidence, pattern_of, surface_element_points
+from isomortar.model.pattern import elements_about, incidence, pattern_of, surface_element_points
 
 
 class Pair:
@@ -28,7 +28,9 @@ class Pair:
     slave_reach : csr_array, shape (slave elements, control points)
         Control points of each slave element.
     master_reach : csr_array or None, shape (master elements, control points)
-        Control points of each master element; None for a rigid plane.
+        Control points that a foot in each master element depends on, those that turn its normals too; None for a rigid plane.
+    master_boundaries : tuple of ndarray
+        Bounds of the master's elements by direction; none of a rigid plane.
     master_face : ndarray of int
         Control points of the master's face; none of a rigid plane.
     master_edges : list of (int, ndarray of int)
@@ -45,7 +47,7 @@ class Pair:
         self.contact = contact
         body = problem.body(contact.slave.body)
         face, points = contact.slave.face, numbering.points[body.name]
-        nodes, values, area = _bindings.slave_tables(
+        nodes, values, slopes, area = _bindings.slave_tables(
             numbering.patch_arrays(body), _axis(face), int(face[1]), contact.quadrature, numbering.reference
         )
         face_points = points[body.patch.face_points(face)]
@@ -56,7 +58,8 @@ class Pair:
         within = number[np.searchsorted(slave_points, face_points)]
         functions = FunctionArrays(np.ascontiguousarray(within[nodes]), values, len(order))
         # The mortar method weights constraints with the functions of the face.
-        self.slave = SlaveArrays(functions, functions, area, np.ascontiguousarray(slave_points[order]))
+        outward = 1 if face[1] == "1" else -1
+        self.slave = SlaveArrays(functions, functions, area, np.ascontiguousarray(slave_points[order]), slopes, outward)
         self.area = float(area.sum())
         self.master = _master_arrays(contact, problem, numbering)
         members = incidence(self.slave.test.nodes, self.slave.test.count)
@@ -66,11 +69,16 @@ class Pair:
         self.master_face: IntArray = np.zeros(0, dtype=np.int32)
         self.master_edges: list[tuple[int, IntArray]] = []
         self.master_elements = (0, 0)
+        self.master_boundaries: tuple[FloatArray, ...] = ()
         if not isinstance(contact.master, RigidPlane):
             body = problem.body(contact.master.body)
             reached = surface_element_points(body.patch, contact.master.face, numbering.points[body.name])
             self.master_reach = incidence(reached, numbering.count)
+            if contact.averaged:
+                about = elements_about(body.patch, contact.master.face, numbering.points[body.name])
+                self.master_reach = sparse.csr_array(about @ self.master_reach)
             directions = body.patch.face_directions(contact.master.face)
+            self.master_boundaries = (directions[0].boundaries, directions[1].boundaries)
             self.master_elements = (directions[0].elements, directions[1].elements)
             grid = numbering.points[body.name][body.patch.face_points(contact.master.face)].reshape(directions[1].count, -1)
             self.master_face = grid.ravel()
@@ -98,4 +106,5 @@ def _master_arrays(contact: Contact, problem: Problem, numbering: Numbering) -> 
         plane = contact.master
         return PlaneArrays(*(np.array(vector, dtype=np.float64) for vector in (plane.point, plane.normal, plane.tangent)))
     patch = numbering.patch_arrays(problem.body(contact.master.body))
-    return FaceArrays(patch, _axis(contact.master.face), int(contact.master.face[1]))
+    kind = AveragedFaceArrays if contact.averaged else FaceArrays
+    return kind(patch, _axis(contact.master.face), int(contact.master.face[1]))

@@ -49,6 +49,30 @@ def _direction_points(direction: Direction) -> IntArray:
     return (direction.first_points[:, None] + np.arange(direction.order + 1)).astype(np.int32)
 
 
+def elements_about(patch: Patch, face: str, points: IntArray) -> sparse.csr_array:
+    """Which elements of a face meet at the nodes of each, shape (elements, elements); `points` are the patch's global control points."""
+    first, second = patch.face_directions(face)
+    grid = points[patch.face_points(face)].reshape(second.count, first.count)
+    closed = bool(np.all(grid[:, 0] == grid[:, -1])), bool(np.all(grid[0] == grid[-1]))
+    return sparse.csr_array(sparse.kron(_meeting(second, closed[1]), _meeting(first, closed[0])))
+
+
+def _meeting(direction: Direction, closed: bool) -> sparse.csr_array:
+    """Elements along a direction that meet at a node of each, shape (elements, elements) (theory 3.21)."""
+    bounds, points = direction.boundaries, _direction_points(direction)
+    if direction.family == "L":
+        nodes = np.interp(np.arange(direction.count) / direction.order, np.arange(len(bounds)), bounds)
+    else:
+        nodes = np.array([direction.knots[j + 1 : j + direction.order + 1].mean() for j in range(direction.count)])
+    slack = 1e-6 * np.diff(bounds)
+    beside = (nodes[:, None] >= bounds[:-1] - slack) & (nodes[:, None] <= bounds[1:] + slack)
+    if closed:  # the first and the last node are the same
+        beside[[0, -1]] |= beside[[-1, 0]]
+    has = np.zeros((len(points), direction.count), dtype=np.int32)
+    np.put_along_axis(has, points, 1, axis=1)
+    return sparse.csr_array((has @ beside > 0).astype(np.int32))
+
+
 def surface_element_points(patch: Patch, face: str, points: IntArray) -> IntArray:
     """Global control points of each element of a face, shape (elements, control points of an element)."""
     first, second = patch.face_directions(face)

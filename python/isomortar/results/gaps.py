@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from isomortar import _bindings
@@ -36,7 +38,7 @@ def gaps(problem: Problem, contact: Contact, positions: FloatArray, points: Floa
     """
     count = len(points)
     slave = SlaveArrays.of_points(np.arange(count, dtype=np.int32) + np.int32(len(positions)))
-    master = Pair(contact, problem, Numbering(problem)).master
+    master = Pair(replace(contact, projection="closest"), problem, Numbering(problem)).master
     everywhere = np.concatenate([positions, points])
     projections = _bindings.project_points(slave, master, everywhere, np.zeros((count, 2)), np.zeros(count, dtype=np.int32))
     found = projections.found.astype(bool)

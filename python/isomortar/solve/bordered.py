@@ -49,7 +49,7 @@ class Border:
         """Geometric tangent, constraint columns, condition rows, and the multipliers' own block."""
         patterns = self.blocks.patterns
         columns = np.zeros((len(patterns.rows.column), 3, 3))
-        kinds = min(3, self.blocks.rows.shape[1])
+        kinds = 3 if self.blocks.rows.shape[1] > 2 else 1
         columns[:, :kinds] = self.column_scale[:kinds, None] * self.blocks.rows[:, :kinds]
         owner = np.repeat(np.arange(len(self.row_scale)), np.diff(patterns.wide.start))
         conditions = -self.row_scale[owner, :, None] * self.blocks.changes

@@ -93,7 +93,8 @@ class PairMechanics:
         self.held = nothing_held(pair)
         self.shared = np.isin(pair.slave.point, [point for other in others for point in other.slave.point])
         self._ledger = ledger
-        self._kinds = ROW_KINDS["frictionless" if not self.friction.acts else ("paper" if self.summed else "local")]
+        kinds = "frictionless" if not self.friction.acts else ("paper" if self.summed else "local")
+        self._kinds = ROW_KINDS[kinds + ", averaged" * pair.contact.averaged]
 
     @property
     def penalty_area(self) -> float:

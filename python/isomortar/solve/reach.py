@@ -63,8 +63,14 @@ class Reach:
             return np.zeros(0, dtype=np.int64)
         element = np.repeat(np.arange(pair.slave.elements), pair.slave.per_element)
         counts = (projections.found > 0) & np.any(active[pair.slave.test.nodes], axis=1)[element]
-        first, second = projections.element[counts, 0], projections.element[counts, 1]
-        return np.unique(element[counts].astype(np.int64) * pair.master_reach.shape[0] + first + pair.master_elements[0] * second)
+        meets = [(element[counts], projections.element[counts])]
+        if pair.contact.averaged:  # slips are measured from where the foot was
+            counts &= projections.slips > 0
+            origin = projections.origin[counts]
+            before = [np.searchsorted(bounds[1:-1], xi, side="right") for bounds, xi in zip(pair.master_boundaries, origin.T, strict=True)]
+            meets.append((element[counts], np.column_stack(before)))
+        elements, places = (np.concatenate(parts).astype(np.int64) for parts in zip(*meets, strict=True))
+        return np.unique(elements * pair.master_reach.shape[0] + places[:, 0] + pair.master_elements[0] * places[:, 1])
 
     def _build(self, active: np.ndarray, touched: np.ndarray) -> ContactPatterns:
         pair = self._pair
