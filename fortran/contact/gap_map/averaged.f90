@@ -132,7 +132,7 @@ contains
     projections%doubt = status_ok
   end subroutine locate
 
-  !> Components, in the slave's basis, of the way from the last foot to that now (theory 3.24).
+  !> Components, in the slave's basis, of the way from the last foot to that now (theory 3.25).
   pure function slip(self, slave, positions, projections, q)
     class(averaged_t), intent(in) :: self
     type(slave_t), intent(in) :: slave
@@ -149,7 +149,7 @@ contains
     slip = matmul(point%inverse_metric, slip)
   end function slip
 
-  !> Kinematics at a foot (theory 3.23, 3.24). `tangent` and `metric` are the slave's.
+  !> Kinematics at a foot (theory 3.24). `tangent` and `metric` are the slave's.
   pure subroutine at(self, slave, positions, projections, q, of_slip, point, points, coefficients)
     class(averaged_t), intent(in) :: self
     type(slave_t), intent(in) :: slave
@@ -217,7 +217,7 @@ contains
     matrix = matrix / norm2(point%field(:, 1))
   end function turning
 
-  !> Rows of the foot's coordinates (1, 2) and the gap (3) (theory 3.25).
+  !> Rows of the foot's coordinates (1, 2) and the gap (3) (theory 3.26).
   pure function foot_rows(point) result(rows)
     type(contact_point_t), intent(in) :: point
     real(wp) :: rows(all_components, 3)
@@ -231,7 +231,7 @@ contains
     rows(components(field), :) = point%gap * by_field
   end function foot_rows
 
-  !> Rows of dg, of what pressures and tractions work on, and of the slip (theory 3.25 to 3.27).
+  !> Rows of dg, of what pressures and tractions work on, and of the slip (theory 3.26 to 3.28).
   pure function first(point, vectors) result(variations)
     type(contact_point_t), intent(in) :: point
     integer, intent(in) :: vectors
@@ -285,7 +285,7 @@ contains
     rows(components(slave_along + 2), 3) = 2.0_wp * point%tangent(:, 2)
   end function metric
 
-  !> Add the variation of the work of a pressure and a traction to a bilinear form over the components (theory 3.28, 3.29).
+  !> Add the variation of the work of a pressure and a traction to a bilinear form over the components (theory 3.29).
   pure subroutine second(point, variations, pressure, traction, form)
     type(contact_point_t), intent(in) :: point
     type(variations_t), intent(in) :: variations

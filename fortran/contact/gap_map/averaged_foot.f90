@@ -1,4 +1,4 @@
-!> Feet of slave points along the averaged normal of a master (theory 3.23, 3.30).
+!> Feet of slave points along the averaged normal of a master (theory 3.24, 3.30).
 !>
 !> Newton's method on coordinates and gap. Within an element the equation is smooth, from one to the next it is continuous: the path
 !> of Newton's steps is followed through the elements that it crosses.
@@ -42,7 +42,7 @@ module isomortar_contact_gap_map_averaged_foot
 
 contains
 
-  !> Where to look for feet on a face. `positions` end with the normals of its nodes.
+  !> Where to look for feet on a face (theory 3.30). `positions` end with the normals of its nodes.
   pure function scope_of(surface, positions) result(self)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :)
@@ -83,7 +83,7 @@ contains
     accept = foot%gap <= scope%deepest .and. foot%gap >= -scope%widest .and. -dot_product(foot%normal, across) > least_facing
   end function accept
 
-  !> Derivative of S - g n by the coordinates and the gap (theory 3.25).
+  !> Derivative of S - g n by the coordinates and the gap (theory 3.26).
   pure function foot_equation(tangents, field, gap) result(matrix)
     real(wp), intent(in) :: tangents(3, 2), field(3, 3), gap
     real(wp) :: matrix(3, 3)
