@@ -2,8 +2,8 @@
 ! control points, elements and blocks count from 0 outside and from 1 inside. Fields at quadrature points have `nquad` entries,
 ! those of test functions `ntest`.
 
-!> Functions, their derivatives and reference areas at the quadrature points of a face of a patch, by the axis across it (1..3) and its end there
-!> (0, 1) (isomortar_contact_slave). `nodes` are numbered within the face.
+!> Functions, their derivatives and reference areas at the quadrature points of a face of a patch, by the axis across it (1..3) and
+!> its end there (0, 1) (isomortar_contact_slave). `nodes` are numbered within the face.
 subroutine slave_tables(patch, axis, side, gauss, reference, n, nlocal, nelements, nquad, nodes, values, slopes, area, status)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: find

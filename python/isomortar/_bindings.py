@@ -38,9 +38,9 @@ LongArray = NDArray[np.int64]
 
 # With the arrays, which those who call take from here.
 __all__ = [
-    "AveragedFaceArrays", "Control", "FaceArrays", "FloatArray", "FrictionArrays", "FunctionArrays", "IntArray", "Law", "LongArray", "MasterArrays",
-    "MaterialArrays", "PatchArrays", "Pattern", "PlaneArrays", "Projections", "Response", "SlaveArrays", "add_body", "add_values",
-    "augmented_multipliers",
+    "AveragedFaceArrays", "Control", "FaceArrays", "FloatArray", "FrictionArrays", "FunctionArrays", "IntArray", "Law", "LongArray",
+    "MasterArrays", "MaterialArrays", "PatchArrays", "Pattern", "PlaneArrays", "Projections", "Response", "SlaveArrays", "add_body",
+    "add_values", "augmented_multipliers",
     "condense_multipliers", "contact_blocks", "contact_forces", "control_quantities", "find_places", "friction_radius", "material_stress",
     "multiplier_rows", "project_points", "slave_tables", "surface_functions",
 ]  # fmt: skip
@@ -390,8 +390,8 @@ def contact_blocks(
     check.array("tangent", tangent, np.float64, len(pattern.column), 3, 3)
     status, place = _kernel.contact_blocks(
         _slave(slave), _master(master), positions.T, projections.xi.T, projections.element.T, projections.fixed.T, projections.found,
-        projections.origin.T, projections.slips, check.flag("with_friction", with_friction), response.pressure, response.traction.T, response.state,
-        response.field_slip.T, _pattern("row_pattern", row_pattern), rows.T, _pattern("pattern", pattern), tangent.T,
+        projections.origin.T, projections.slips, check.flag("with_friction", with_friction), response.pressure, response.traction.T,
+        response.state, response.field_slip.T, _pattern("row_pattern", row_pattern), rows.T, _pattern("pattern", pattern), tangent.T,
     )  # fmt: skip
     if status:
         _raise(status, place - 1)

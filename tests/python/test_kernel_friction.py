@@ -47,7 +47,7 @@ def answer(
     metric = np.ascontiguousarray(np.broadcast_to(metric, (n, 3)), dtype=float)
     nodes, one = np.arange(n, dtype=np.int32), np.ones(n)
     functions = FunctionArrays(nodes[None], np.ones((1, n)), n)
-    slave = SlaveArrays(functions, functions, np.ones(1), nodes)
+    slave = SlaveArrays(functions, functions, np.ones(1), nodes, np.zeros((1, 2, n)), 1)
     slip, traction = np.zeros((n, 2)), trial
     if radial is not None:
         traction = np.atleast_2d(radial).astype(float)

@@ -69,7 +69,7 @@ def area(patch: Patch, face: str, gauss: tuple[int, int]) -> float:
     """Sum of the areas of all quadrature points of a face."""
     arrays = patch_arrays(patch, np.arange(len(patch.weights), dtype=np.int32))
     axis, side = "uvw".index(face[0]) + 1, int(face[1])
-    return float(_bindings.slave_tables(arrays, axis, side, gauss, patch.control_points)[2].sum())
+    return float(_bindings.slave_tables(arrays, axis, side, gauss, patch.control_points)[3].sum())
 
 
 def surface(patch: Patch, face: str, xi: FloatArray) -> FloatArray:

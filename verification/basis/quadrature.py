@@ -32,7 +32,7 @@ def gauss_points(count: int) -> dict[str, float]:
     """Largest error of the points on a unit square of one element, and of the weights, relative; one more point across."""
     patch = box((0, 0, 0), (1, 1, 1))
     arrays = patch_arrays(patch, np.arange(len(patch.weights), dtype=np.int32))
-    nodes, values, area = _bindings.slave_tables(arrays, 3, 1, (count, count + 1), patch.control_points)
+    nodes, values, _, area = _bindings.slave_tables(arrays, 3, 1, (count, count + 1), patch.control_points)
     corners = patch.control_points[patch.face_points("w1")][nodes[0], :2]
     (x, across), (y, along) = (leggauss(n) for n in (count, count + 1))
     points = np.stack(np.meshgrid((1 + x) / 2, (1 + y) / 2), axis=-1).reshape(-1, 2)

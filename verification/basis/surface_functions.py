@@ -22,7 +22,7 @@ def functions(kind: str) -> FloatArray:
     weights = 10.0 ** np.random.default_rng(order).uniform(-3, 3, len(meshed.weights))
     patch = Patch(meshed.directions, meshed.control_points, weights if family == "N" else meshed.weights)
     arrays = patch_arrays(patch, np.arange(len(weights), dtype=np.int32))
-    _, values, _ = _bindings.slave_tables(arrays, 3, 1, (order + 2, order + 2), patch.control_points)
+    _, values, *_ = _bindings.slave_tables(arrays, 3, 1, (order + 2, order + 2), patch.control_points)
     return values
 
 

@@ -10,6 +10,7 @@ from tangents.placed import placed
 
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, case
+from isomortar.harness.cases import Tier
 from isomortar.harness.tangents import BOUND, PARTS, measure
 from isomortar.harness.visits import PairVisit, Visit
 from isomortar.model.entities import Problem
@@ -98,7 +99,7 @@ def beside(pose: Posed, off: float, directions: tuple[int, ...]) -> Posed:
 def bounds(master: str, place: str, state: str) -> dict[str, Bound]:  # noqa: ARG001
     """A bound for every part that a state has, for the balances, and that the place is what it is called."""
     absent: dict[str, tuple[str, ...]] = {
-        "frictionless": tuple(part for part in ALONG if part.startswith("tangential")) + ("stick", "slip", "multipliers"),
+        "frictionless": (*(part for part in ALONG if part.startswith("tangential")), "stick", "slip", "multipliers"),
         "stick": ("slip",),
         "slip": ("stick",),
     }
@@ -112,7 +113,7 @@ def bounds(master: str, place: str, state: str) -> dict[str, Bound]:  # noqa: AR
     )
 
 
-def tier(master: str, place: str, state: str) -> str:
+def tier(master: str, place: str, state: str) -> Tier:
     """The gate has every place, state and master, not all of their products."""
     chosen = master in ("L1", "L2") and (state == "mixed" or place == "inside")
     return "gate" if chosen or (place, state) == ("inside", "mixed") else "nightly"
@@ -135,9 +136,7 @@ def averaged(master: str, place: str, state: str) -> dict[str, float]:
     visit = placed(pair, pose.positions, PairVisit(pose.start, law), pressure, length)
     kinematics = pair.kinematics(pose.positions, pose.start)
     result = pair.result(pose.positions, kinematics, pair.respond(kinematics, visit.law))
-    report = measure(
-        pose.problem, 1, [Visit(pose.positions, (visit,))], directions=1, length=SHORT if ":" in place else 1e-3
-    )
+    report = measure(pose.problem, 1, [Visit(pose.positions, (visit,))], directions=1, length=SHORT if ":" in place else 1e-3)
     sums = (result.force_slave, result.force_master), (result.moment_slave, result.moment_master)
     forces, moments = (float(np.abs(slave + main).max() / np.abs(slave).max()) for slave, main in sums)
     return {row.part: row.error for row in report.rows} | {"forces": forces, "moments": moments, "there": there(pose, place)}
@@ -151,5 +150,7 @@ def there(pose: Posed, place: str) -> float:
     if ":" not in place:
         return float(np.count_nonzero(projections.found))
     lines = [direction.boundaries for direction in pose.problem.body("master").patch.face_directions("w1")]
-    near = [np.abs(xi[:, None] - line).min(axis=1) < 2.0 * OFF * np.diff(line).min() for xi, line in zip(projections.xi.T, lines, strict=True)]
+    near = [
+        np.abs(xi[:, None] - line).min(axis=1) < 2.0 * OFF * np.diff(line).min() for xi, line in zip(projections.xi.T, lines, strict=True)
+    ]
     return float(np.count_nonzero(near[0] & near[1] if place.startswith("corner") else near[1]))

@@ -1,8 +1,8 @@
 !> The gap map of the averaged normal on a face of a deformable body (theory 3.21 to 3.30): nothing in it jumps at a C0 line.
 !>
-!> Feet are found along a continuous field of normals, forces act along it, and slips are measured in the slave's basis. Short
-!> vectors: dx - dS, dm, dS,1, dS,2, dm,1, dm,2 with m the field before it is made a unit vector; with friction the variations of the
-!> slave's tangents as well, and that of the way from the foot to the place of the last one.
+!> Feet are found along a continuous field of normals, forces act along it, slips are measured in the slave's basis. Short vectors:
+!> dx - dS, dm, dS,1, dS,2, dm,1, dm,2 with m the field before it is made a unit vector; with friction the variations of the slave's
+!> tangents as well, and that of the way from the foot to the place of the last one.
 module isomortar_contact_gap_map_averaged
   use isomortar_base_algebra, only: add_product, cross, determinant, first_not_finite, identity, inverse, inverse2
   use isomortar_base_kinds, only: wp
@@ -231,7 +231,7 @@ contains
     rows(components(field), :) = point%gap * by_field
   end function foot_rows
 
-  !> Rows of dg, of what pressures and tractions work on, and of the slip (theory 3.26 to 3.28).
+  !> Rows of dg, of what pressures and tractions work on, and of the slip (theory 3.26, 3.27, 3.28).
   pure function first(point, vectors) result(variations)
     type(contact_point_t), intent(in) :: point
     integer, intent(in) :: vectors

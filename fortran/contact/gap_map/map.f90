@@ -53,8 +53,8 @@ module isomortar_contact_gap_map_map
     logical :: slips = .true.
     !> Surface derivatives by column (derivative_column), up to the order that is needed.
     real(wp) :: surface(3, 10)
-    !> Of an averaged normal: the field that it is the direction of, and its derivatives; unit normal of the slave; way from the foot
-    !> of the last converged load step to the foot; inverse of the derivative of the foot's equation by foot and gap.
+    !> Of an averaged normal: the field that it is the direction of, and its derivatives; unit normal t_1 x t_2 of the slave; way
+    !> from the foot of the last converged load step to the foot; inverse of the derivative of the foot's equation by foot and gap.
     real(wp) :: field(3, 3), facing(3), way(3), inverse_foot(3, 3)
   end type contact_point_t
 

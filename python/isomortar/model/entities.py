@@ -12,7 +12,6 @@ from isomortar._arrays import FRICTION_LAWS, LAWS, FrictionArrays, MaterialArray
 from isomortar.geometry.patch import FloatArray, Patch
 from isomortar.model.values import TABLE, Count, Point, Positive, Real
 
-
 #: How a slave point finds its point on a face of its master: the closest one, or along the averaged normal.
 Projection = Literal["closest", "averaged"]
 
