@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import asdict, replace
+from functools import cache
 from itertools import combinations
 
 import numpy as np
@@ -55,11 +56,16 @@ def check(problem: Problem) -> None:
             _check_agreement(problem.body(one.place.body), one, other)
 
 
+@cache
+def _allowed() -> TypeAdapter[SolverSettings]:
+    return TypeAdapter(SolverSettings)
+
+
 def _check_settings(settings: SolverSettings) -> None:
     """Settings made in Python are what those of a scene file may be."""
     values = asdict(settings)
     try:
-        TypeAdapter(SolverSettings).validate_python(values)
+        _allowed().validate_python(values)
     except ValidationError as error:
         with located("solver"):
             raise input_error(error, values) from error

@@ -8,8 +8,8 @@ from typing import Annotated, Any
 from pydantic import AllowInfNan, BeforeValidator, ConfigDict, Field, Strict
 from pydantic_core import PydanticCustomError
 
-#: Of a dataclass that is a table of a scene file as well: it has no other keys, and its docstrings explain them there.
-TABLE = ConfigDict(extra="forbid", use_attribute_docstrings=True)
+#: Of a dataclass that is a table of a scene file as well: it has no other keys.
+TABLE = ConfigDict(extra="forbid")
 
 Real = Annotated[float, Strict(), AllowInfNan(False)]
 Positive = Annotated[Real, Field(gt=0)]

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import ast
+import inspect
+from itertools import pairwise
+from textwrap import dedent
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
@@ -263,8 +267,14 @@ class SceneTable(Table):
     """What to keep."""
 
 
-class _WithoutNull(GenerateJsonSchema):
-    """TOML has no null: what is optional is left out."""
+class _Published(GenerateJsonSchema):
+    """TOML has no null: what is optional is left out. Docstrings explain the keys: they are read here alone, for that takes its time."""
+
+    def model_schema(self, schema: core_schema.ModelSchema) -> JsonSchemaValue:
+        return _explained(super().model_schema(schema), schema["cls"])
+
+    def dataclass_schema(self, schema: core_schema.DataclassSchema) -> JsonSchemaValue:
+        return _explained(super().dataclass_schema(schema), schema["cls"])
 
     def nullable_schema(self, schema: core_schema.NullableSchema) -> JsonSchemaValue:
         return self.generate_inner(schema["schema"])
@@ -278,7 +288,18 @@ class _WithoutNull(GenerateJsonSchema):
         return TypeAdapter(type(dft)).dump_python(dft, mode="json", exclude_none=True)
 
 
+def _explained(schema: JsonSchemaValue, kind: type) -> JsonSchemaValue:
+    """A table's schema with the docstrings below its attributes."""
+    declaration = ast.parse(dedent(inspect.getsource(kind))).body[0]
+    assert isinstance(declaration, ast.ClassDef)
+    for attribute, said in pairwise(declaration.body):
+        match attribute, said:
+            case ast.AnnAssign(target=ast.Name(id=key)), ast.Expr(value=ast.Constant(value=str(text))):
+                schema["properties"][key]["description"] = text
+    return schema
+
+
 def json_schema() -> dict[str, Any]:
     """The JSON schema of scene files (draft 2020-12), for editors and other programs."""
-    schema = SceneTable.model_json_schema(schema_generator=_WithoutNull)
+    schema = SceneTable.model_json_schema(schema_generator=_Published)
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
