@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +22,7 @@ from isomortar.program.declaration import NotInstalledError, Program, load_step
 from isomortar.program.getfem import ENERGIES, GetFEM, has_module
 from isomortar.program.lagrange import LagrangeProblem
 from isomortar.program.own import Isomortar
-from isomortar.program.process import End, Finished, run
+from isomortar.program.process import End, Finished, Process, run
 from isomortar.scene import Scene
 
 COARSE = (
@@ -305,3 +306,15 @@ def test_another_kernel_is_verified_by_one_option(tmp_path: Path, monkeypatch: p
     folders = ["--cases", str(tmp_path / "cases"), "--results", str(tmp_path / "results"), "--references", str(tmp_path)]
     words = ["verify", "-j", "1", *folders, "--kernel", str(tmp_path / "mine.py")]
     assert CliRunner().invoke(app, words).exit_code == code
+
+
+def test_what_a_process_has_started_ends_with_it() -> None:
+    code = "import subprocess, time; print(subprocess.Popen(['sleep', '60']).pid, flush=True); time.sleep(60)"
+    with Process([sys.executable, "-c", code]) as process:
+        child = int(process.line(30) or 0)
+    for _ in range(100):
+        state = Path(f"/proc/{child}/stat")
+        if not state.exists() or state.read_text().rpartition(")")[2].split()[0] == "Z":
+            return
+        time.sleep(0.05)
+    raise AssertionError("it goes on")

@@ -104,8 +104,10 @@ class Process:
                 file.close()
 
     def kill(self) -> None:
-        """End it now. Who waits for a line of it gets none."""
-        self._process.kill()
+        """End it now, with what it has started and is still its own. Who waits for a line of it gets none."""
+        if self._process.poll() is None:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(self._process.pid, signal.SIGKILL)
         self._process.wait()
 
     def send(self, line: bytes) -> None:

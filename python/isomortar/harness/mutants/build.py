@@ -8,7 +8,6 @@ from __future__ import annotations
 import hashlib
 import os
 import shutil
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -19,6 +18,7 @@ from isomortar.harness.mutants.faults import Fault
 from isomortar.harness.mutants.layers import Layer
 from isomortar.harness.mutants.meaning import meaning
 from isomortar.harness.store import kernel_hash, package_hash
+from isomortar.program.process import run
 
 #: What of a checkout makes the kernel.
 _PARTS = ("meson.build", "meson.options", "fortran", "tools/f2py_wrap.py")
@@ -160,13 +160,13 @@ def _hash_of_files(folder: Path) -> str:
 
 def _run(command: list[str], folder: Path) -> list[str]:
     """Run one of the environment's build tools; the lines it says."""
-    environment = os.environ | {"PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ.get('PATH', os.defpath)}"}
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ.get('PATH', os.defpath)}"
     try:
-        done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=_SECONDS, check=True)
+        done = run(command, seconds=_SECONDS, folder=folder, environment={"PATH": path})
     except FileNotFoundError:
         raise IsomortarError(f"{command[0]} is not installed: `make setup` installs it") from None
-    except subprocess.TimeoutExpired:
-        raise IsomortarError(f"{' '.join(command)} took longer than {_SECONDS} s in {folder}") from None
-    except subprocess.CalledProcessError as error:
-        raise IsomortarError(f"{' '.join(command)} failed in {folder}:\n{error.stdout[-2000:]}{error.stderr[-2000:]}") from None
-    return done.stdout.splitlines()
+    if done.end.status is None:
+        raise IsomortarError(f"{' '.join(command)} took longer than {_SECONDS} s in {folder}")
+    if done.end.status != 0:
+        raise IsomortarError(f"{' '.join(command)} failed in {folder}:\n{done.output[-2000:]}{done.errors[-2000:]}")
+    return done.output.splitlines()

@@ -1,0 +1,22 @@
+"""What tests of several files are given."""
+
+import sys
+
+import pytest
+
+
+@pytest.fixture
+def root(tmp_path, monkeypatch):
+    """A folder of cases with one family; the test works beside it."""
+    from harness_cases import GOOD  # within: most tests do not need the harness
+
+    monkeypatch.chdir(tmp_path)
+    folder = tmp_path / f"cases_{tmp_path.name}"
+    family = folder / f"family_{tmp_path.name}"  # a name of its own: modules stay imported
+    family.mkdir(parents=True)
+    (folder / "helper.py").write_text("SCALE = 1\n")
+    (family / "good.py").write_text(GOOD)
+    yield folder
+    for name in [n for n in sys.modules if n == "helper" or n.startswith("family_")]:
+        del sys.modules[name]
+    sys.path[:] = [p for p in sys.path if p != str(folder)]

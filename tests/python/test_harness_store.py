@@ -1,0 +1,168 @@
+"""Measurements are kept by all that their numbers depend on, with the history of runs, and taken again when any of it changes."""
+
+import importlib.metadata
+import json
+import sys
+from concurrent.futures import Future
+
+import numpy as np
+import pytest
+
+from harness_cases import GOOD, measured
+from isomortar.harness import history, store
+from isomortar.harness.collection import collect
+from isomortar.harness.measurement import Measurement
+from isomortar.harness.references import finder
+from isomortar.harness.runner import run, select, start
+from isomortar.harness.store import Store, cell_key
+
+
+def test_measured_once_until_something_changes(root):
+    first = measured(root)
+    assert {r.state for r in first.values()} == {"passed"}
+    assert all(r.fresh for r in first.values())
+    again = measured(root)
+    assert not any(r.fresh for r in again.values())
+    assert {n: r.measurement.numbers for n, r in again.items()} == {n: r.measurement.numbers for n, r in first.items()}
+    assert all(r.fresh for r in measured(root, fresh=True).values())
+
+
+def test_the_key_holds_what_the_numbers_depend_on(root):
+    cells = select(collect(root), "gate")
+    keys = {cell_key(cell) for cell in cells}
+    assert len(keys) == len(cells)
+    (root / "helper.py").write_text("SCALE = 2\n")
+    store._case_hash.cache_clear()
+    assert keys.isdisjoint({cell_key(cell) for cell in cells})
+
+
+@pytest.fixture
+def unhashed():
+    """Hashes are taken anew, in the test and after it."""
+    hashes = (store.package_hash, store.program_hash, store.identity, store._case_hash)
+    for hashed in hashes:
+        hashed.cache_clear()
+    yield lambda: [hashed.cache_clear() for hashed in hashes]
+    for hashed in hashes:
+        hashed.cache_clear()
+
+
+@pytest.mark.parametrize("name", ["numpy", "scipy", "splinepy", "h5py"])
+def test_an_upgraded_library_is_measured_anew(root, monkeypatch, unhashed, name):
+    cells = select(collect(root), "gate")
+    keys = {cell_key(cell) for cell in cells}
+    real = importlib.metadata.version
+    monkeypatch.setattr("importlib.metadata.version", lambda of: real(of) + ".post1" * (of == name))
+    unhashed()
+    assert keys.isdisjoint({cell_key(cell) for cell in cells})
+
+
+def test_what_is_stored_names_what_it_was_measured_with(root):
+    measured(root)
+    for path in (root.parent / "store").rglob("*.json"):
+        libraries = json.loads(path.read_text())["libraries"]
+        assert libraries["numpy"] == np.__version__
+        assert libraries["libumfpack"].startswith("libumfpack.so.")
+
+
+def test_what_the_kernel_is_linked_with_counts(root, monkeypatch, unhashed):
+    names = " ".join(path.name for path in store.linked())
+    assert all(f"lib{name}." in names for name in ("umfpack", "openblas", "metis", "gfortran"))
+    library = root / "libumfpack.so"
+    library.write_text("5.7.9")
+    monkeypatch.setattr(store, "linked", lambda: [library])
+    unhashed()
+    cells = select(collect(root), "gate")
+    keys = {cell_key(cell) for cell in cells}
+    library.write_text("6.0.0")
+    unhashed()
+    assert keys.isdisjoint({cell_key(cell) for cell in cells})
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [lambda text: text[:40], lambda _: "", lambda _: "[]", lambda _: "null", lambda text: text.replace("1", "0"),
+     lambda text: text.replace("measured", "skipped"), lambda text: text.replace("[order=", "[order=0")],
+)  # fmt: skip
+def test_a_damaged_file_is_measured_again(root, damage):
+    measured(root)
+    for path in (root.parent / "store").rglob("*.json"):
+        path.write_text(damage(path.read_text()))
+    assert all(r.fresh for r in measured(root).values())
+
+
+def test_a_file_of_another_cell_is_not_taken(root):
+    measured(root)
+    one, other = sorted((root.parent / "store").rglob("sine*.json"))[:2]
+    one.write_text(other.read_text())
+    assert sum(r.fresh for r in measured(root).values()) == 1
+
+
+@pytest.mark.parametrize(
+    "how", ["from .near import SCALE", "from . import near", "from package import SCALE", "from package.part import SCALE"]
+)
+def test_all_ways_to_import_count(root, how):
+    family = next(root.glob("family_*"))
+    (root / "package").mkdir()
+    for path in (family / "near.py", root / "package" / "__init__.py", root / "package" / "part.py"):
+        path.write_text("SCALE = 1\n")
+    (family / "good.py").write_text(f"{how}\n{GOOD}")
+    cell = select(collect(root), "gate")[0]
+    key = cell_key(cell)
+    for path in (family / "near.py", root / "package" / "__init__.py", root / "package" / "part.py"):
+        path.write_text("SCALE = 2\n")
+    store._case_hash.cache_clear()
+    assert cell_key(cell) != key
+    for name in [n for n in sys.modules if n == "package" or n.startswith("package.")]:
+        del sys.modules[name]
+
+
+def test_packages_beside_an_installed_program_are_not_read(root, monkeypatch):
+    packages = root.parent / "site-packages"
+    for name in ("isomortar/ours.py", "isomortar/__init__.py", "beside/__init__.py"):
+        (packages / name).parent.mkdir(parents=True, exist_ok=True)
+        (packages / name).write_text("SCALE = 1\n")
+    monkeypatch.setattr(store, "_PACKAGE", packages / "isomortar")
+    path = root / "family" / "case.py"
+    path.parent.mkdir()
+    path.write_text("import beside\nimport isomortar.ours\n")
+    assert store._with_imports(path, root, set()) == {path, packages / "isomortar/ours.py"}
+
+
+@pytest.mark.parametrize("sources", ["another", ""])
+def test_numbers_from_other_sources_are_not_taken(root, sources):
+    store, futures = Store(root.parent / "store"), []
+
+    def submit(_):
+        futures.append(Future())
+        futures[-1].set_result(Measurement("measured", {"error": 0.0, "seen": [0.0]}, host="node7", sources=sources))
+        return futures[-1]
+
+    cells = select(collect(root), "gate")[-1:]
+    (result,) = run(start(cells, store, submit), finder(root.parent / "references"), store)
+    assert result.state == "failed"
+    assert "node7 has other sources" in result.measurement.message
+    assert store.get(cells[0]) is None
+
+
+def test_a_line_that_was_cut_short_does_not_take_the_next_one_with_it(root, tmp_path):
+    path = tmp_path / "history.jsonl"
+    results = list(measured(root).values())
+    history.append(path, results)
+    whole = path.read_text()
+    path.write_text(whole + whole[:70])
+    history.append(path, results)
+    runs = history.read(path)
+    assert [sorted(run.cells) for run in runs] == [sorted(result.cell.name for result in results)] * 2
+
+
+def test_history_marks_changes_and_not_noise():
+    rng = np.random.default_rng(1)
+    noise = 1 + 0.01 * rng.standard_normal(30)
+    assert history.change_points(list(noise)) == []
+    stepped = noise * np.where(np.arange(30) < 12, 1.0, 1.5)
+    assert history.change_points(list(stepped)) == [12]
+    assert history.change_points([1.0] * 9 + [2.0]) == [9]
+    assert history.change_points([1.0, 1.0, 9.0, 1.0, 1.0]) == []  # an outlier
+    assert history.change_points([np.nan, 1.0, np.nan, 1.0]) == []
+    assert history.change_points([1e-16, 5e-16], least=1e-14) == []
