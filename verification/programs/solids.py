@@ -10,6 +10,7 @@ import numpy as np
 from isomortar._arrays import MaterialLaw
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, Shown, case, skip
+from isomortar.model.entities import Problem
 from isomortar.program import getfem
 from isomortar.program.calculix import LAWS, CalculiX
 from isomortar.program.declaration import NotInstalledError, Outcome, Program
@@ -51,9 +52,13 @@ newton_tolerance = 1e-11
 """
 
 
-def run(program: Program, law: str, orders: str, elements: tuple[int, int, int]) -> Outcome:
-    """All load steps of the block, of orders by direction as in "123"; skipped where the program is not installed."""
-    problem = Scene.from_toml(BLOCK.format(law=law, order=[int(order) for order in orders], elements=list(elements))).problem()
+def block(law: str, orders: str, elements: tuple[int, int, int]) -> Problem:
+    """The block, of orders by direction as in "123"."""
+    return Scene.from_toml(BLOCK.format(law=law, order=[int(order) for order in orders], elements=list(elements))).problem()
+
+
+def run(program: Program, problem: Problem) -> Outcome:
+    """All load steps; skipped where the program is not installed."""
     try:
         found = program.run(problem)
     except NotInstalledError as error:
@@ -90,7 +95,8 @@ def apart(one: Outcome, other: Outcome) -> dict[str, float]:
 def as_in_getfem(law: str, orders: str) -> dict[str, float]:
     """Lagrange elements of one order, of another by direction."""
     elements = (3, 2, 2) if orders == "111" else (2, 2, 1)
-    return apart(run(Isomortar(), law, orders, elements), run(GetFEM(), law, orders, elements))
+    problem = block(law, orders, elements)
+    return apart(run(Isomortar(), problem), run(GetFEM(), problem))
 
 
 _DIGITS = "reference: seven digits in CalculiX' output file, some units of the last in sums; C3D8 is L1 with 2 x 2 x 2 Gauss points"
@@ -107,9 +113,8 @@ _DIGITS = "reference: seven digits in CalculiX' output file, some units of the l
 )
 def as_in_calculix(law: str) -> dict[str, float]:
     """Linear elements, full integration; and how far off the paper's law would be."""
-    own, other, paper = (
-        run(program, name, "111", (8, 6, 5)) for program, name in ((Isomortar(), law), (CalculiX(), law), (Isomortar(), "neo-hookean"))
-    )
+    chosen = ((Isomortar(), law), (CalculiX(), law), (Isomortar(), "neo-hookean"))
+    own, other, paper = (run(program, block(name, "111", (8, 6, 5))) for program, name in chosen)
     return {**apart(own, other), "force, the paper's law": apart(paper, other)["force"]}
 
 
@@ -124,6 +129,6 @@ def as_in_calculix(law: str) -> dict[str, float]:
 def with_other_elements() -> dict[str, FloatArray]:
     """L2 against C3D20, which has no nodes within faces and elements, on meshes of which each halves the elements of the one before."""
     meshes = [(2 * n, 2 * n, n) for n in (1, 2, 4)]
-    pairs = [[run(program, "neo-hookean-j", "222", mesh) for program in (Isomortar(), CalculiX())] for mesh in meshes]
+    pairs = [[run(program, block("neo-hookean-j", "222", mesh)) for program in (Isomortar(), CalculiX())] for mesh in meshes]
     force = np.array([apart(*pair)["force"] for pair in pairs])
     return {"force": force, "share of the coarser mesh's": force[1:] / force[:-1]}

@@ -1,0 +1,45 @@
+"""A block pressed onto another one, by isomortar and by programs that enforce contact by other means."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from programs.solids import reactions, run
+
+from isomortar.geometry.patch import FloatArray
+from isomortar.harness import Bound, case
+from isomortar.program import getfem
+from isomortar.program.calculix import CalculiX
+from isomortar.program.declaration import Program
+from isomortar.program.getfem import GetFEM
+from isomortar.program.own import Isomortar
+from isomortar.scene import Scene
+
+#: The scene `block` without its slide, with the law that all of these programs have.
+PRESS = (
+    'stages=[{name="press", steps=5, motions.top.translate=[0,0,-0.2]}]',
+    "materials.rubber.law=neo-hookean-j",
+)
+OTHERS: dict[str, Program] = {"GetFEM": GetFEM(), "CalculiX": CalculiX()}
+
+
+@case(
+    claim="A block is pressed onto another one with the same force, by whatever means contact is enforced on the same elements.",
+    tier="nightly",
+    grid={"program": list(OTHERS)},
+    bounds={
+        "force": Bound(
+            at_most=3e-3,
+            reason="discretisation: CalculiX' penalty lets the blocks overlap by the mean pressure, 2.7, over 1e4, 0.15 % of the way; "
+            "GetFEM's multipliers hold at other points of the edge elements",
+        )
+    },
+    files=[Path(getfem.__file__).with_name("getfem_job.py")],
+)
+def pressed(program: str) -> dict[str, FloatArray]:
+    """Force on the top after each of five load steps; differences over the largest."""
+    problem = Scene.load("block", PRESS).problem()
+    programs: tuple[Program, ...] = (Isomortar(), OTHERS[program])
+    own, other = (reactions(run(which, problem))[0][:, 0] for which in programs)
+    return {"force": np.abs(own - other).max(axis=1) / np.abs(own).max()}
