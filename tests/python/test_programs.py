@@ -276,8 +276,8 @@ KERNEL = """
 from isomortar import _kernel
 from isomortar._kernel import *
 
-def material_stress(law, parameters, gradient):
-    stress, status, place = _kernel.material_stress(law, parameters, gradient)
+def material_stress(*arguments):
+    stress, status, place = _kernel.material_stress(*arguments)
     return {factor} * stress, status, place
 """
 
