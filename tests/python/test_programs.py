@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 
 from isomortar import _compiled
 from isomortar.cli.commands import app
-from isomortar.errors import InputError
+from isomortar.errors import InputError, IsomortarError
 from isomortar.model.entities import Problem
 from isomortar.model.numbering import Numbering
 from isomortar.program import calculix, getfem
@@ -22,7 +22,7 @@ from isomortar.program.declaration import NotInstalledError, Program, load_step
 from isomortar.program.getfem import ENERGIES, GetFEM, has_module
 from isomortar.program.lagrange import LagrangeProblem
 from isomortar.program.own import Isomortar
-from isomortar.program.process import End, Finished, Process, run
+from isomortar.program.process import End, Finished, Process, output_of, run
 from isomortar.scene import Scene
 
 COARSE = (
@@ -306,6 +306,16 @@ def test_another_kernel_is_verified_by_one_option(tmp_path: Path, monkeypatch: p
     folders = ["--cases", str(tmp_path / "cases"), "--results", str(tmp_path / "results"), "--references", str(tmp_path)]
     words = ["verify", "-j", "1", *folders, "--kernel", str(tmp_path / "mine.py")]
     assert CliRunner().invoke(app, words).exit_code == code
+
+
+def test_a_program_that_must_end_well_says_why_it_did_not() -> None:
+    assert output_of([sys.executable, "-c", "print('all')"]) == "all\n"
+    with pytest.raises(IsomortarError, match=r"/no/such/program is not there"):
+        output_of(["/no/such/program"])
+    with pytest.raises(IsomortarError, match=r"(?s)ended with status 1\n.*ValueError: the last words"):
+        output_of([sys.executable, "-c", "raise ValueError('the last words')"])
+    with pytest.raises(IsomortarError, match=r"no end after 0.2 s"):
+        output_of([sys.executable, "-c", "import time; time.sleep(60)"], seconds=0.2)
 
 
 def test_what_a_process_has_started_ends_with_it() -> None:

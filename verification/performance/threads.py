@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -12,6 +11,7 @@ from time import perf_counter, process_time
 
 from isomortar.harness.bench import Row, benchmark
 from isomortar.harness.bench.declaration import REPEATS
+from isomortar.program.process import output_of
 
 #: What a process of its own runs: OpenMP asks for the number of threads once, when it is loaded.
 PROGRAM = "import sys; from performance.threads import assemble; assemble(int(sys.argv[1]), *map(int, sys.argv[2:]))"
@@ -33,11 +33,10 @@ def assemble(order: int, *elements: int) -> None:
 
 
 def _in_process(many: int, order: int, elements: tuple[int, int, int]) -> tuple[float, float]:
-    """Wall-clock and CPU seconds of `assemble` with some threads; what goes wrong there is on the standard error."""
+    """Wall-clock and CPU seconds of `assemble` with some threads."""
     folders = os.pathsep.join(filter(None, [str(Path(__file__).parents[1]), os.environ.get("PYTHONPATH")]))
     command = [sys.executable, "-c", PROGRAM, str(order), *map(str, elements)]
-    environment = {**os.environ, "OMP_NUM_THREADS": str(many), "PYTHONPATH": folders}
-    wall, cpu = subprocess.run(command, env=environment, stdout=subprocess.PIPE, text=True, check=True).stdout.split()
+    wall, cpu = output_of(command, environment={"OMP_NUM_THREADS": str(many), "PYTHONPATH": folders}).split()
     return float(wall), float(cpu)
 
 

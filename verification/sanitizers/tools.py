@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import os
 import re
 import shutil
-import subprocess
 import sys
 import xml.etree.ElementTree as Xml
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.machinery import EXTENSION_SUFFIXES
 from pathlib import Path
+
+from isomortar.program.process import output_of, run, tools_first
 
 PROJECT = Path(__file__).resolve().parents[2]
 #: What of a checkout makes the kernel.
@@ -37,7 +37,7 @@ class Tool:
 
 
 def _library(name: str) -> str:
-    return subprocess.run(["gcc", f"-print-file-name={name}"], capture_output=True, text=True, check=True).stdout.strip()
+    return output_of(["gcc", f"-print-file-name={name}"]).strip()
 
 
 TOOLS = {
@@ -80,8 +80,8 @@ def sources(folder: Path) -> Path:
 def build(tool: Tool, folder: Path) -> Path:
     """The kernel for a tool, from the sources in a folder; built again where they changed."""
     if not (folder / "build").exists():
-        _run(["meson", "setup", "build", "-Db_lto=false", *tool.build], folder)
-    _run(["ninja", "-C", "build", f"fortran/{_KERNEL}"], folder)
+        output_of(["meson", "setup", "build", "-Db_lto=false", *tool.build], _BUILD, folder, tools_first())
+    output_of(["ninja", "-C", "build", f"fortran/{_KERNEL}"], _BUILD, folder, tools_first())
     return folder / "build/fortran" / _KERNEL
 
 
@@ -99,15 +99,15 @@ def watched(tool: Tool, kernel: Path, package: Path, work: Path, words: Sequence
     start += f"sys.argv = {[str(work), *words]!r}; runpy.run_path({str(work)!r}, run_name='__main__')"
     variables = {name: _preloaded(value) if name == "LD_PRELOAD" else value.format(log=log) for name, value in tool.variables}
     command = [*(word.format(log=log) for word in tool.words), sys.executable, "-S", "-X", "faulthandler", "-c", start]
-    done = subprocess.run(
-        command, cwd=package, env=os.environ | _ENVIRONMENT | variables, capture_output=True, text=True, errors="replace", timeout=_WORK
-    )
-    said = [done.stdout, done.stderr, *(path.read_text(errors="replace") for path in package.glob("reports*") if path.suffix != ".xml")]
+    done = run(command, seconds=_WORK, folder=package, environment=_ENVIRONMENT | variables)
+    said = [done.output, done.errors, *(path.read_text(errors="replace") for path in package.glob("reports*") if path.suffix != ".xml")]
     reports = [found for text in said for found in re.findall(tool.report, text)] if tool.report else []
     reports += [report for path in package.glob("reports*.xml") for report in _of_kernel(path)]
-    if done.returncode and not reports:
-        raise RuntimeError(f"{' '.join(tool.words[:1] or ['the program'])} ended with {done.returncode}: {_words_of(done.stderr)}")
-    return reports, done.returncode
+    status = done.end.status
+    if status is None or (status and not reports):
+        ended = done.end.words.splitlines()[-1]
+        raise RuntimeError(f"{' '.join(tool.words[:1] or ['the program'])}: {ended}: {_words_of(done.errors)}")
+    return reports, status
 
 
 def _words_of(text: str) -> str:
@@ -141,10 +141,3 @@ def _is_python_s(kind: str, frames: Sequence[Xml.Element]) -> bool:
     takers = (Path(frame.findtext("obj", "")).name for frame in frames)
     taker = next((name for name in takers if not name.startswith("vgpreload")), "")
     return kind.startswith("Leak") and taker.startswith(("python", "libpython"))
-
-
-def _run(command: list[str], folder: Path) -> None:
-    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ.get('PATH', os.defpath)}"
-    done = subprocess.run(command, cwd=folder, env=os.environ | {"PATH": path}, capture_output=True, text=True, timeout=_BUILD)
-    if done.returncode:
-        raise RuntimeError(f"{' '.join(command)} failed: {done.stdout[-2000:]}{done.stderr[-2000:]}")

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import os
 import re
 import shutil
-import subprocess
 import sys
 import tempfile
 from itertools import islice
@@ -14,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from isomortar.harness import Bound, Matches, case, skip
+from isomortar.program.process import output_of
 from isomortar.scene import Scene
 from isomortar.solve.simulation import Simulation
 
@@ -61,27 +60,13 @@ def count() -> dict[str, float]:
         options = ["--tool=callgrind", f"--callgrind-out-file={output}", *(f"--toggle-collect={name}" for name in routines)]
         # This file's folder is put on the path of the process.
         command = ["valgrind", *options, sys.executable, "-c", "import instructions; instructions.run()"]
-        _finish(command, Path(__file__).parent)
-        said = _finish(["callgrind_annotate", "--inclusive=yes", "--threshold=100", str(output)], Path(folder))
+        output_of(command, folder=Path(__file__).parent, environment=CORE)
+        said = output_of(["callgrind_annotate", "--inclusive=yes", "--threshold=100", str(output)], folder=Path(folder))
     found = {name: float(number.replace(",", "")) for number, name in re.findall(r"^ *([\d,]+)[^:\n]*:(\w+_) ", said, re.MULTILINE)}
     total = re.search(r"^ *([\d,]+).* PROGRAM TOTALS", said, re.MULTILINE)
     assert total, "callgrind_annotate prints totals"
     counts = {work: sum(found[name] for name in names) for work, names in WORK.items()}
     return {**counts, "load steps": float(total.group(1).replace(",", ""))}
-
-
-def _finish(command: list[str], folder: Path) -> str:
-    """Run a program to its end.
-
-    Raises
-    ------
-    RuntimeError
-        It failed: with its last words.
-    """
-    finished = subprocess.run(command, cwd=folder, env={**os.environ, **CORE}, capture_output=True, text=True)
-    if finished.returncode != 0:
-        raise RuntimeError(f"{command[0]} ended with status {finished.returncode}: {finished.stderr[-2000:]}")
-    return finished.stdout
 
 
 _SAME = "reference: counts of the same work repeat to far less than one per cent; a smaller one is to be blessed, lest it grow back unseen"

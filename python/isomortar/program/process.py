@@ -9,6 +9,7 @@ import resource
 import select
 import signal
 import subprocess
+import sys
 import tempfile
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -16,6 +17,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import Literal
+
+from isomortar.errors import IsomortarError
 
 #: Why something ended. The first two are results: it was measured, or it does not converge, which it will not the next time either.
 #: ``refused``: what it was given; ``crashed``: a mistake of the program; ``trouble``: the machine's, of memory, disk or connection.
@@ -245,6 +248,31 @@ def run(
         end = process.wait(GRACE) if output is not None else End("timed out", f"no end after {seconds:g} s", None)
         process.kill()
         return Finished(end, (output or b"").decode(errors="replace"), process.said(), _children_seconds() - before)
+
+
+def output_of(
+    command: Sequence[str], seconds: float = math.inf, folder: Path | None = None, environment: Mapping[str, str] | None = None
+) -> str:
+    """What a program writes on its standard output; arguments as of `run`.
+
+    Raises
+    ------
+    IsomortarError
+        It is not installed, or did not end well in its time: with its last words.
+    """
+    try:
+        done = run(command, seconds=seconds, folder=folder, environment=environment)
+    except FileNotFoundError as error:
+        raise IsomortarError(f"{command[0]} is not there: {error.strerror}") from None
+    if done.end.status != 0:
+        said = f"{done.output[-2000:]}{done.errors[-2000:]}"
+        raise IsomortarError(f"{' '.join(command)} in {folder or Path()}: {done.end.words.splitlines()[-1]}\n{said}")
+    return done.output
+
+
+def tools_first() -> dict[str, str]:
+    """The environment in which programs that stand beside this interpreter, such as meson and ninja, are found first."""
+    return {"PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ.get('PATH', os.defpath)}"}
 
 
 def _children_seconds() -> float:

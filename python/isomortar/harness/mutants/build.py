@@ -6,9 +6,7 @@ A kernel with a fault is built from a copy of the sources that is built once, an
 from __future__ import annotations
 
 import hashlib
-import os
 import shutil
-import sys
 import tempfile
 from pathlib import Path
 from typing import Protocol
@@ -18,7 +16,7 @@ from isomortar.harness.mutants.faults import Fault
 from isomortar.harness.mutants.layers import Layer
 from isomortar.harness.mutants.meaning import meaning
 from isomortar.harness.store import kernel_hash, package_hash
-from isomortar.program.process import run
+from isomortar.program.process import output_of, tools_first
 
 #: What of a checkout makes the kernel.
 _PARTS = ("meson.build", "meson.options", "fortran", "tools/f2py_wrap.py")
@@ -160,13 +158,4 @@ def _hash_of_files(folder: Path) -> str:
 
 def _run(command: list[str], folder: Path) -> list[str]:
     """Run one of the environment's build tools; the lines it says."""
-    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ.get('PATH', os.defpath)}"
-    try:
-        done = run(command, seconds=_SECONDS, folder=folder, environment={"PATH": path})
-    except FileNotFoundError:
-        raise IsomortarError(f"{command[0]} is not installed: `make setup` installs it") from None
-    if done.end.status is None:
-        raise IsomortarError(f"{' '.join(command)} took longer than {_SECONDS} s in {folder}")
-    if done.end.status != 0:
-        raise IsomortarError(f"{' '.join(command)} failed in {folder}:\n{done.output[-2000:]}{done.errors[-2000:]}")
-    return done.output.splitlines()
+    return output_of(command, _SECONDS, folder, tools_first()).splitlines()
