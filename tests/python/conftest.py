@@ -20,3 +20,17 @@ def root(tmp_path, monkeypatch):
     for name in [n for n in sys.modules if n == "helper" or n.startswith("family_")]:
         del sys.modules[name]
     sys.path[:] = [p for p in sys.path if p != str(folder)]
+
+
+@pytest.fixture
+def unhashed():
+    """Hashes are taken anew, in the test and after it."""
+    from isomortar.harness import store  # within: as above
+
+    def clear():
+        for hashed in (store.kernel_hash, store.package_hash, store.program_hash, store.identity, store._case_hash):
+            hashed.cache_clear()
+
+    clear()
+    yield clear
+    clear()

@@ -36,17 +36,6 @@ def test_the_key_holds_what_the_numbers_depend_on(root):
     assert keys.isdisjoint({cell_key(cell) for cell in cells})
 
 
-@pytest.fixture
-def unhashed():
-    """Hashes are taken anew, in the test and after it."""
-    hashes = (store.package_hash, store.program_hash, store.identity, store._case_hash)
-    for hashed in hashes:
-        hashed.cache_clear()
-    yield lambda: [hashed.cache_clear() for hashed in hashes]
-    for hashed in hashes:
-        hashed.cache_clear()
-
-
 @pytest.mark.parametrize("name", ["numpy", "scipy", "splinepy", "h5py"])
 def test_an_upgraded_library_is_measured_anew(root, monkeypatch, unhashed, name):
     cells = select(collect(root), "gate")

@@ -297,6 +297,7 @@ def swelling():
 
 
 @pytest.mark.parametrize(("factor", "code"), [("1.0", 0), ("(1.0 + 1e-9)", 1)])
+@pytest.mark.usefixtures("unhashed")
 def test_another_kernel_is_verified_by_one_option(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, factor: str, code: int) -> None:
     monkeypatch.setenv(_compiled.KERNEL, "")  # taken back at the end, whatever the command writes there
     monkeypatch.delenv(_compiled.KERNEL)
