@@ -218,6 +218,20 @@ WRONG = {
         "contacts.floor.traction_max",
         "greater than 0",
     ),
+    "averaged normals of a plane": (
+        PRESS,
+        "[supports.top]",
+        'projection = "averaged"\n[supports.top]',
+        "contacts.floor.projection",
+        "one normal everywhere",
+    ),
+    "another projection": (
+        PRESS,
+        "[supports.top]",
+        'projection = "nearest"\n[supports.top]',
+        "contacts.floor.projection",
+        "'closest' or 'averaged'",
+    ),
     "friction overflows": (PRESS, "[supports.top]", "[contacts.floor.nothing]\n[supports.top]", "contacts.floor", ""),
     "steps": (PRESS, "steps = 1", "steps = 1000000000000", "stages.press.steps", "less than or equal to 1000000"),
 }

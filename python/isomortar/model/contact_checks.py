@@ -7,6 +7,7 @@ from itertools import combinations
 import numpy as np
 
 from isomortar.errors import InputError
+from isomortar.model.constants import SAME_POINT
 from isomortar.model.entities import Body, Contact, Face, Problem, RigidPlane
 from isomortar.model.stance import Stance, stance
 
@@ -25,10 +26,11 @@ def check_contacts(problem: Problem) -> None:
     ------
     InputError
         Faces without an area, that look away from each other, or have passed through each other; the same contact twice; a friction
-        whose numbers contradict each other.
+        whose numbers contradict each other; averaged normals where there are none.
     """
     for contact in problem.contacts:
         _check_friction(contact)
+        _check_projection(problem, contact)
         found = stance(problem, contact)
         _check_area(problem, contact, found)
         _check_stance(problem, contact, found)
@@ -57,6 +59,30 @@ def _check_friction(contact: Contact) -> None:
             "larger one, or, for tractions up to a constant, friction = 0 and that constant as the cohesion",
             field,
         )
+
+
+def _check_projection(problem: Problem, contact: Contact) -> None:
+    """Refuse averaged normals of a master that has none, and the paper's slip sum along them."""
+    if contact.projection != "averaged":
+        return
+    path = f"contacts.{contact.name}.projection"
+    if isinstance(contact.master, RigidPlane):
+        raise InputError('is "averaged", but a rigid plane has one normal everywhere; remove it', path)
+    if _has_pole(problem.body(contact.master.body), contact.master.face):
+        raise InputError(
+            f'is "averaged", but the master {contact.master.body}.{contact.master.face} has a pole, an edge that is one point, where '
+            'elements have no normal; take "closest", or a mesh without a pole',
+            path,
+        )
+    if problem.settings.slip_sum == "paper" and contact.friction_law.acts:
+        raise InputError('is "averaged", and solver.slip_sum is "paper", which counts slips on the master; take slip_sum = "local"', path)
+
+
+def _has_pole(body: Body, face: str) -> bool:
+    """Whether an edge of a face is one point."""
+    first, second = body.patch.face_directions(face)
+    grid = body.patch.control_points[body.patch.face_points(face)].reshape(second.count, first.count, 3)
+    return any(float(np.ptp(edge, axis=0).max()) <= SAME_POINT * body.size for edge in (grid[0], grid[-1], grid[:, 0], grid[:, -1]))
 
 
 def _check_area(problem: Problem, contact: Contact, found: Stance) -> None:

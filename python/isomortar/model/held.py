@@ -88,14 +88,22 @@ def _beside_surface(held: Held, pair: Pair, start: FloatArray, still: BoolArray)
     point = pair.slave.point
     size = np.ptp(start, axis=0).max()
     slice_ = np.all(still[pair.master_face], axis=0)
-    for coordinate, edge in pair.master_edges:
+    for across, edge in pair.master_edges:
         for component in np.flatnonzero(np.all(still[edge], axis=0)):
             place = start[edge, component]
             if np.ptp(place) > constants.NO_PART * size:
                 continue
+            coordinate = _slave_coordinate(pair, start, int(component)) if pair.contact.averaged else across
             same = slice_[component] | (np.abs(start[point, component] - place[0]) <= constants.NO_PART * size)
             held.free[still[point, component] & same, :, coordinate] = 0.0
             held.free[still[point, component] & same, coordinate, :] = 0.0
+
+
+def _slave_coordinate(pair: Pair, start: FloatArray, component: int) -> int:
+    """The coordinate of the slave, whose basis tractions along averaged normals have, that goes along a component most."""
+    values = start[pair.slave.point, component][pair.slave.shape.nodes]
+    slopes = pair.slave.slopes.reshape(pair.slave.elements, pair.slave.per_element, 2, -1)
+    return int(np.argmax(np.square(np.einsum("eqal,el->eqa", slopes, values)).sum(axis=(0, 1))))
 
 
 def _axes(plane: RigidPlane) -> tuple[FloatArray, FloatArray]:

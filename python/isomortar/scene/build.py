@@ -135,7 +135,8 @@ def _contact(name: str, table: ContactTable, bodies: dict[str, Body]) -> Contact
         raise InputError(f"is the slave face {table.slave!r} itself; allowed: another face", f"{path}.master")
     first, second = bodies[slave.body].patch.face_directions(slave.face)
     quadrature = table.quadrature or (contact_points(first), contact_points(second))
-    return Contact(name, slave, master, table.friction, quadrature, table.reference_area, table.cohesion, table.traction_max)
+    law = (table.friction, quadrature, table.reference_area, table.cohesion, table.traction_max)
+    return Contact(name, slave, master, *law, table.projection or "closest")
 
 
 def _plane(table: PlaneTable, path: str) -> RigidPlane:
