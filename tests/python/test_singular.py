@@ -12,7 +12,7 @@ from isomortar.scene import Scene
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.record import Observer
 from isomortar.solve.simulation import Simulation
-from isomortar.solve.singular import Multipliers, explain
+from isomortar.solve.singular import PairConditions, explain
 from isomortar.solve.timing import Ledger
 
 BLOCK = """
@@ -58,7 +58,7 @@ def explained(directions: list[int], multipliers: list[int], found: int = 1) -> 
     null = np.zeros(len(free) + len(equation[::3]))
     null[directions] = 1.0
     null[len(free) + np.array(multipliers, dtype=int)] = 2.0
-    contact = Multipliers(pair, equation, replace(kinematics, projections=projections))
+    contact = PairConditions(pair, equation, replace(kinematics, projections=projections))
     return str(explain(0.0, null, free, state.positions, equilibrium.numbering, [contact]))
 
 
