@@ -18,7 +18,7 @@ JUDGES = {
     "advice", "causes", "checks", "contact_checks", "doubts", "lost", "memory", "pulling", "rational", "singular", "stance",
 }  # fmt: skip
 #: Numbers that stand for something else.
-CODES = {"_FAMILY_CODE", "_NO_SLIP", "_SLIPS_AT_POLE"}
+CODES = {"RECENT", "_FAMILY_CODE", "_NO_SLIP", "_SLIPS_AT_POLE"}
 NAMES = [name for name in vars(constants) if name.isupper()]
 
 

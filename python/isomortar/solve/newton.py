@@ -118,7 +118,7 @@ class Newton(ABC, Generic[Iterated, Corrected]):
                 self._factorised, moves = True, False
             keep = self._keeps and self._serve(iterate, following)
             iterate = following
-        toggling = self._trail.toggling(self._equilibrium.pairs, iterate.balance.kinematics)
+        toggling = self._trail.toggling(self._equilibrium.pairs)
         raise ConvergenceError(f"Newton's method stopped at {iterate.left} after {iteration} iterations{toggling}")
 
     def _converged(self, iterate: Iterated) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Sequence
 
 import numpy as np
@@ -11,15 +12,18 @@ from isomortar.solve.contact import Kinematics, PairMechanics
 from isomortar.solve.equilibrium import Balance
 from isomortar.solve.feet import beside_poles
 
+#: Iterations that what goes to and fro is looked for in.
+RECENT = 6
+
 
 def states(balance: Balance) -> bytes:
     """The states of all slave control points, to compare with."""
     return b"".join(response.state.tobytes() for response in balance.responses)
 
 
-def _elements(balance: Balance) -> IntArray:
+def _elements(kinematics: Sequence[Kinematics]) -> IntArray:
     """Master elements and fixed coordinates of the slave quadrature points, shape (points of all pairs, 4)."""
-    places = [np.hstack([k.projections.element, k.projections.fixed]) for k in balance.kinematics]
+    places = [np.hstack([k.projections.element, k.projections.fixed]) for k in kinematics]
     return np.concatenate(places or [np.zeros((0, 4), dtype=np.int32)])
 
 
@@ -34,28 +38,28 @@ class Trail:
 
     def __init__(self) -> None:
         self.states: list[bytes] = []
-        self._elements: list[IntArray] = []
+        self._last: deque[tuple[Kinematics, ...]] = deque(maxlen=RECENT)
 
     def add(self, balance: Balance) -> None:
         """Note an iterate."""
         self.states.append(states(balance))
-        self._elements.append(_elements(balance))
+        self._last.append(balance.kinematics)
 
-    def toggling(self, pairs: Sequence[PairMechanics], kinematics: Sequence[Kinematics]) -> str:
-        """What changed to and fro in the last iterations, as a part of a sentence; `kinematics` are those of the last one."""
-        poles = [beside_poles(pair.pair, k.projections) for pair, k in zip(pairs, kinematics, strict=True)]
+    def toggling(self, pairs: Sequence[PairMechanics]) -> str:
+        """What changed to and fro in the last iterations, as a part of a sentence."""
+        poles = [beside_poles(pair.pair, k.projections) for pair, k in zip(pairs, self._last[-1], strict=True)]
         by_poles = np.concatenate(poles or [np.zeros(0, dtype=np.bool_)])
-        return toggling(self.states, self._elements, by_poles, any(pair.summed for pair in pairs))
+        return toggling(self.states[-RECENT:], [_elements(k) for k in self._last], by_poles, any(pair.summed for pair in pairs))
 
 
 def toggling(seen: Sequence[bytes], visited: Sequence[IntArray], by_poles: np.ndarray, summed: bool) -> str:
-    """What changed to and fro in the last iterations, as a part of a sentence."""
-    states = np.array([np.frombuffer(s, dtype=np.int32) for s in seen[-6:]])
+    """What changed to and fro in some iterations, as a part of a sentence."""
+    states = np.array([np.frombuffer(s, dtype=np.int32) for s in seen])
     points = np.flatnonzero(np.any(states != states[0], axis=0))
     if points.size:
         hint = ' (solver.slip_sum = "local" has no jump where a neighbour becomes active)' if summed else ""
         return f"; slave control points {_first_few(points)} change their states from iteration to iteration{hint}"
-    elements = np.array(visited[-6:])
+    elements = np.array(visited)
     crossing = np.flatnonzero(np.any(elements != elements[0], axis=(0, 2)))
     about = crossing[by_poles[crossing]]
     if about.size:
