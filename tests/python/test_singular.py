@@ -130,7 +130,7 @@ def test_a_corner_whose_support_pushes_its_edge_into_the_wall_says_so(elements: 
     assert not any("slave control points of contact" in reason for reason in heard.reasons), heard.reasons
 
 
-STICKING = CORNER.replace("[-0.05, 0, -0.05]", "MOTION").replace("max_cuts = 1", "max_cuts = 0")
+STICKING = CORNER.replace("[-0.05, 0, -0.05]", "MOTION").replace("max_cuts = 1", "max_cuts = 4")
 
 
 @pytest.mark.parametrize(
@@ -149,15 +149,21 @@ STICKING = CORNER.replace("[-0.05, 0, -0.05]", "MOTION").replace("max_cuts = 1",
         ([2, 2, 2], 0.5, [0.0, 0.03, -0.05]),
     ],
 )
-def test_a_corner_that_sticks_to_two_planes(elements: list[int], friction: float, motion: list[float]) -> None:
-    """Six conditions for three components at the edge: all of them hold, forces are in balance, and what is left open is told."""
+def test_a_corner_that_sticks_to_two_planes(
+    elements: list[int], friction: float, motion: list[float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Six conditions for three components at the edge: all of them hold, forces are in balance, and what is left open is told.
+
+    On the way control points toggle: whether a load step is cut is a matter of round-off, and of the processor.
+    """
     overrides = [f"contacts.{name}.friction={friction}" for name in ("floor", "wall")] + [f"bodies.block.mesh.elements={elements}"]
     observer = Heard()
     simulation = Simulation(Scene.from_toml(STICKING.replace("MOTION", str(motion)), overrides=overrides).problem(), observer)
-    start = simulation.state
+    starts, advance = [], simulation._method.advance
+    monkeypatch.setattr(simulation._method, "advance", lambda start, *others: starts.append(start) or advance(start, *others))
     (result,) = simulation.run()
     for pair, before, found, state in zip(
-        simulation.equilibrium.pairs, start.contacts, result.contacts, result.state.contacts, strict=True
+        simulation.equilibrium.pairs, starts[-1].contacts, result.contacts, result.state.contacts, strict=True
     ):
         control = pair.kinematics(result.state.positions, before).control
         sticks, active = found.status == 1, found.status > 0

@@ -45,6 +45,17 @@ SCENES = {
             { name = "more", steps = 2, motions.top.translate = [0, 0, -0.01] },
         ]
     """,
+    "a sole that was pushed, at rest": """
+        contacts.floor = { slave = "block.w0", plane = { point = [0, 0, 0] }, friction = 0.3 }
+        supports.top = { face = "block.w1", components = ["z"] }
+        supports.sole = { face = "block.w0", components = ["x", "y"] }
+        stages = [
+            { name = "press", steps = 1, motions.top.translate = [0, 0, -0.03] },
+            { name = "push", steps = 1, motions.sole.translate = [0.2, 0.1, 0] },
+            { name = "more", steps = 2, motions.top.translate = [0, 0, -0.02] },
+            { name = "less", steps = 2, motions.top.translate = [0, 0, 0.03] },
+        ]
+    """,
     "pushed askew": """
         contacts.floor = { slave = "block.w0", plane = { point = [0, 0, 0] }, friction = 0.3 }
         supports.top = { face = "block.w1", components = ["z"] }

@@ -36,6 +36,9 @@ class Held:
         Directions in which supports push along the plane in this increment: unit vectors, or zero.
     rests : ndarray of bool, shape (slave control points,)
         Where supports that hold the normal have them just touch a rigid plane: if they bear, their conditions follow from the others'.
+    still : ndarray of int32, shape (slave control points,)
+        1 where supports that have moved prescribe every direction along a rigid plane, here and round about, and move none of it in this
+        increment: slips and balance tell nothing of the traction, which stays as it is, as far as friction bears it.
     moved : ndarray of bool, shape (slave control points,)
         Where a component along the plane is prescribed, and by now has moved: slips there are given, so that they tell nothing of the
         traction along it while that sticks, nor of the one across while it slips.
@@ -45,14 +48,15 @@ class Held:
     free: FloatArray
     pushed: FloatArray
     rests: BoolArray
+    still: IntArray
     moved: BoolArray
 
 
 def nothing_held(pair: Pair) -> Held:
     """All multipliers are free."""
     n = len(pair.slave.point)
-    nowhere = np.zeros((2, n), dtype=np.bool_)
-    return Held(np.ones(n, dtype=np.int32), np.tile(np.eye(2), (n, 1, 1)), np.zeros((n, 2)), *nowhere)
+    here, there = np.zeros((2, n), dtype=np.bool_)
+    return Held(np.ones(n, dtype=np.int32), np.tile(np.eye(2), (n, 1, 1)), np.zeros((n, 2)), here, np.zeros(n, dtype=np.int32), there)
 
 
 def held_by(supports: Supports, pair: Pair, start: FloatArray, time: float) -> Held:
@@ -71,6 +75,7 @@ def _beside_plane(held: Held, supports: Supports, pair: Pair, start: FloatArray,
     tangents, normal = _axes(pair.contact.master)
     point, increment, moved = pair.slave.point, supports.increment(start, time), supports.moved(time)
     heights = (start[point] + increment[point] - pair.contact.master.point) @ normal
+    given = np.zeros(len(point), dtype=np.bool_)
     for i in np.flatnonzero(supports.held[point].any(axis=1)):
         prescribed = supports.held[point[i]]
         held.bears[i] = int(np.linalg.norm(normal[~prescribed]) >= constants.NO_PART)
@@ -81,6 +86,9 @@ def _beside_plane(held: Held, supports: Supports, pair: Pair, start: FloatArray,
         along = held.free[i] @ (increment[point[i]] @ tangents)
         held.pushed[i] = along / (np.linalg.norm(along) or 1.0)
         held.moved[i] = bool(np.any(np.linalg.norm(tangents[prescribed & moved[point[i]]], axis=1) > constants.NO_PART))
+        given[i] = np.all(np.linalg.norm(tangents[~prescribed], axis=1) <= constants.NO_PART)
+    alone = pair.neighbour_matrix @ (~given).astype(np.int32) == 0
+    held.still[:] = given & alone & held.moved & ~np.any(held.pushed, axis=1)
 
 
 def _beside_surface(held: Held, pair: Pair, start: FloatArray, still: BoolArray) -> None:

@@ -162,6 +162,18 @@ class PairMechanics:
         pushed = np.any(self.held.pushed != 0.0, axis=1)
         return np.where(pushed[:, None], self.radius(start.pressure)[:, None] * self.held.pushed, start.traction)
 
+    def resting(self, start: ContactState, control: Control, pressure: FloatArray, traction: FloatArray) -> FloatArray:
+        """The tractions, where supports keep control points still those of `start` as far as friction bears them (theory 4.12); (n, 2).
+
+        Nothing else tells them there: a pressure that was too low for an iteration would lower them for good.
+        """
+        still = self.held.still > 0
+        if not still.any():
+            return traction
+        length, borne = self.traction_norms(control, start.traction), self.radius(pressure)
+        share = np.divide(borne, length, out=np.ones_like(length), where=length > borne)
+        return np.where(still[:, None], share[:, None] * start.traction, traction)
+
     def radius(self, pressure: FloatArray) -> FloatArray:
         """Largest norms of control tractions under control pressures, 0 where open, shape (n,) (theory 4.6)."""
         return _bindings.friction_radius(self.friction, pressure)

@@ -72,9 +72,13 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
         self._borders: list[Border | None] = []
 
     def first(self) -> _BorderedIterate:
-        """The converged state of the last increment as the first iterate; what supports push along a plane slides (theory 6.5)."""
-        pairs = zip(self._equilibrium.pairs, self._start.contacts, strict=True)
-        return self._evaluate(self._start.positions, [(contact.pressure, pair.sliding(contact)) for pair, contact in pairs], self._margin)
+        """The converged state of the last increment as the first iterate (theory 6.5).
+
+        What supports push along a plane slides; what they keep still there sticks, or its traction would grow with the pressure.
+        """
+        pairs = self._equilibrium.pairs
+        multipliers = [(contact.pressure, pair.sliding(contact)) for pair, contact in zip(pairs, self._start.contacts, strict=True)]
+        return self._evaluate(self._start.positions, multipliers, self._margin, [pair.held.still for pair in pairs])
 
     def _evaluate(
         self, positions: FloatArray, multipliers: Sequence[Multipliers], margin: float = 0.0, held: Sequence[np.ndarray] | None = None

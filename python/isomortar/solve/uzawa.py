@@ -84,8 +84,10 @@ class Uzawa(Method):
                 return Increment(balance, tuple(records), tuple(orders))
             growth = min(growth * self._settings.penalty_growth, max(self._settings.penalty_growth_max, 1.0))
             laws = [
-                replace(law, penalties=growth * b, pressure=r.pressure, traction=r.traction)
-                for law, b, r in zip(laws, base, balance.responses, strict=True)
+                replace(law, penalties=growth * b, pressure=r.pressure, traction=pair.resting(s, k.control, r.pressure, r.traction))
+                for pair, law, b, s, k, r in zip(
+                    equilibrium.pairs, laws, base, start.contacts, balance.kinematics, balance.responses, strict=True
+                )
             ]
             positions, prescribed = balance.positions, np.zeros_like(prescribed)
         raise ConvergenceError(
