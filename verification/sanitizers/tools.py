@@ -126,7 +126,7 @@ def _of_kernel(path: Path) -> list[str]:
     reports = []
     for error in Xml.parse(path).getroot().iter("error"):
         frames = list(error.find("stack").iter("frame"))  # type: ignore[union-attr]
-        if any(Path(frame.findtext("obj", "")).name == _KERNEL for frame in frames) and not _is_python_s(
+        if any(Path(frame.findtext("obj", "")).name == _KERNEL for frame in frames) and not _is_another_s(
             error.findtext("kind", ""), frames
         ):
             where = " < ".join(
@@ -136,8 +136,8 @@ def _of_kernel(path: Path) -> list[str]:
     return reports
 
 
-def _is_python_s(kind: str, frames: Sequence[Xml.Element]) -> bool:
-    """Whether a leak is of memory that the interpreter took for itself, as for the names of a module that it loads."""
+def _is_another_s(kind: str, frames: Sequence[Xml.Element]) -> bool:
+    """Whether a leak is of memory that the interpreter took for itself, as for names, or the loader, for a thread's variables."""
     takers = (Path(frame.findtext("obj", "")).name for frame in frames)
     taker = next((name for name in takers if not name.startswith("vgpreload")), "")
-    return kind.startswith("Leak") and taker.startswith(("python", "libpython"))
+    return kind.startswith("Leak") and taker.startswith(("python", "libpython", "ld-linux"))
