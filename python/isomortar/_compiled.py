@@ -45,14 +45,14 @@ def kernel_at(path: Path, own: ModuleType) -> ModuleType:
     Raises
     ------
     InputError
-        There is no such file, it is no module, or routines are missing.
+        There is no such file, it is no module of that name, or routines are missing.
     """
     name = path.name.partition(".")[0]
     spec = importlib.util.spec_from_file_location(name, path)
     if spec is None or spec.loader is None or not path.is_file():
         raise InputError(f"{path} is no file of a module: name a compiled one (.so), or one of Python (.py)", "kernel")
-    module = importlib.util.module_from_spec(spec)
     try:
+        module = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(module)
     except (ImportError, SyntaxError) as error:
         raise InputError(f"{path} cannot be imported: {error}", "kernel") from error

@@ -268,6 +268,10 @@ def test_a_kernel_that_lacks_routines_is_refused(tmp_path: Path) -> None:
         path.write_text(text)
         with pytest.raises(InputError, match=said):
             _compiled.kernel_at(path, _compiled.kernel)
+    renamed = tmp_path / "mine.so"
+    renamed.write_bytes(Path(str(_compiled.kernel.__file__)).read_bytes())
+    with pytest.raises(InputError, match=r"mine.so cannot be imported: .*PyInit_mine"):
+        _compiled.kernel_at(renamed, _compiled.kernel)
     with pytest.raises(InputError, match=r"is no file of a module"):
         _compiled.kernel_at(tmp_path / "not_there.so", _compiled.kernel)
 
