@@ -280,8 +280,8 @@ def project_points(slave: SlaveArrays, master: MasterArrays, positions: FloatArr
     LostProjectionError
         With the number of the quadrature point.
     """
-    q = len(slave.area)
     _check_bodies(positions, slave, master)
+    q = len(slave.area)
     check.finite("origin", check.array("origin", origin, np.float64, q, 2))
     check.array("had", had, np.int32, q)
     xi = origin.copy()
