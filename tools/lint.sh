@@ -12,12 +12,6 @@ check() {
   "$@" || failed+=("$name")
 }
 
-# The kernel with run-time checks compiled in, every compiler warning an error.
-compile_without_warnings() {
-  [ -f build/debug/build.ninja ] || meson setup build/debug --buildtype=debug -Dwerror=true >/dev/null || return
-  ninja --quiet -C build/debug
-}
-
 # Without the import hook of the editable install, behind which import-linter finds no files. The standard library comes before
 # site-packages, where a dependency of universalmutator leaves an old `typing`.
 layers() {
@@ -36,7 +30,7 @@ check "types of the cases (mypy)" mypy verification
 check "layers of the package (import-linter)" layers
 check "Fortran format (findent)" bash tools/format_fortran.sh --check
 check "Fortran (fortitude)" fortitude check --quiet --output-format=concise
-check "compiler warnings" compile_without_warnings
+check "compiler warnings" bash tools/build_debug.sh
 
 if [ ${#failed[@]} -gt 0 ]; then
   printf 'failed: %s\n' "${failed[@]}" >&2
