@@ -106,6 +106,7 @@ contains
     type(scope_t) :: scope
     type(foot_t) :: foot
     real(wp) :: across(3), x(3)
+    logical :: deep
     integer :: q
 
     place = first_not_finite(positions, self%surface%point)
@@ -117,12 +118,14 @@ contains
       across = slave_normal(slave, positions, q)
       foot%found = .false.
       if (started(q)) call follow(self%surface, positions, x, projections%xi(:, q), foot)
-      if (foot%found .and. had(q) .and. foot%gap > scope%deepest) then
+      deep = foot%found .and. had(q)
+      if (deep) deep = foot%gap > scope%deepest
+      if (.not. accept(scope, foot, across)) call find_foot(self%surface, scope, positions, x, across, foot)
+      if (deep .and. .not. foot%found) then
         status = status_passed_through
         place = q
         return
       end if
-      if (.not. accept(scope, foot, across)) call find_foot(self%surface, scope, positions, x, across, foot)
       projections%found(q) = foot%found
       if (.not. foot%found) cycle
       projections%xi(:, q) = foot%xi
