@@ -20,6 +20,7 @@ from isomortar.model.entities import Body, Face, Material, Motion, Problem, Stag
 from isomortar.model.rational import QUADRATURE_TOLD, points_enough
 from isomortar.scene import Scene
 from isomortar.scene.source import bundled_scenes
+from isomortar.solve.advice import by_default
 from isomortar.solve.doubts import doubts
 from isomortar.solve.record import Observer
 from isomortar.solve.simulation import Simulation
@@ -90,6 +91,14 @@ def test_what_is_doubtful_is_told_once(case: str) -> None:
     said = warnings(scene.replace(old, new))
     assert len(said) == 1
     assert words in said[0]
+
+
+def test_averaged_normals_that_nobody_asked_for_are_told() -> None:
+    (contact,) = Scene.from_toml(PAIR, overrides=["bodies.lower.mesh.family=L"]).problem().contacts
+    (said,) = by_default(contact)
+    assert "master lower.w1 has C0 lines" in said
+    assert 'contacts.pair.projection = "averaged"' in said
+    assert list(by_default(replace(contact, by_default=False))) == []
 
 
 @pytest.mark.parametrize(

@@ -58,6 +58,7 @@ geometry = { kind = "ring", inner = 1.0, outer = 1.5, width = 0.5 }
 mesh = { elements = [16, 1, 1] }
 [contacts.fit]
 slave = "inside.v1"
+projection = "closest"
 master = "outside.v0"
 [supports.hub]
 face = "inside.v0"
@@ -292,3 +293,21 @@ def test_what_can_be_meant_is_let_through(case: str) -> None:
 @pytest.mark.parametrize("name", bundled_scenes())
 def test_bundled_scenes_are_let_through(name: str) -> None:
     Scene.load(name).problem()
+
+
+@pytest.mark.parametrize(
+    ("change", "projection", "by_default"),
+    [
+        ((), "closest", False),
+        (("bodies.lower.mesh.family=L",), "averaged", True),
+        (("bodies.lower.mesh.order=[2,1,2]", "bodies.lower.mesh.elements=[2,2,1]"), "averaged", True),
+        (("bodies.lower.mesh.family=L", "bodies.lower.mesh.elements=[1,1,2]"), "closest", False),
+        (("bodies.lower.mesh.family=L", "solver.method=uzawa", "solver.slip_sum=paper"), "closest", False),
+        (("bodies.lower.mesh.family=L", "contacts.pair.projection=closest"), "closest", False),
+        (("contacts.pair.projection=averaged",), "averaged", False),
+        (("bodies.upper.mesh.family=L",), "closest", False),
+    ],
+)
+def test_masters_with_lines_inside_have_averaged_normals(change: tuple[str, ...], projection: str, by_default: bool) -> None:
+    (contact,) = Scene.from_toml(PAIR, overrides=change).problem().contacts
+    assert (contact.projection, contact.by_default) == (projection, by_default)

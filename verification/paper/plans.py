@@ -13,6 +13,8 @@ FORCE, MOMENT, DRAG, TORQUE = (
     Quantity("rolling torque", "moment", "y"),
 )
 TOLERANCE, TIGHT = "solver.augmentation_tolerance=0.001", "solver.augmentation_tolerance=0.0001"
+#: What the paper says of masters of Lagrange elements, it says of closest points.
+CLOSEST = ('contacts.interface.projection="closest"',)
 SOFT = ("solver.penalty_normal=10.0", "solver.penalty_tangential=1.0")
 
 
@@ -77,8 +79,8 @@ TWIST = Section(
         own_method("tight", "N2", (5, 5, 3), "N2 with tolerance 0.0001", TIGHT),
         own_method("soft", "N2", (5, 5, 3), "N2 with penalties 10 and 1", *SOFT),
         own_method("soft-tolerance", "N2", (5, 5, 3), "N2 with penalties 10 and 1, tolerance 0.001", *SOFT, TOLERANCE),
-        Variant("L1", "L1", (5, 5, 3), "master of Lagrange elements of order 1"),
-        Variant("L2", "L2", (3, 3, 3), "master of Lagrange elements of order 2, 7 x 7 nodes as N2"),
+        Variant("L1", "L1", (5, 5, 3), "master of Lagrange elements of order 1", CLOSEST),
+        Variant("L2", "L2", (3, 3, 3), "master of Lagrange elements of order 2, 7 x 7 nodes as N2", CLOSEST),
         Variant("slave-L1", "N2", (5, 5, 3), "slave of Lagrange elements of order 1, 5 x 5 nodes as N2", lagrange_slave(1, (4, 4, 3))),
         Variant("slave-L2", "N2", (5, 5, 3), "slave of Lagrange elements of order 2, 5 x 5 nodes as N2", lagrange_slave(2, (2, 2, 3))),
     ),
@@ -100,8 +102,8 @@ IRON = Section(
         Variant("C", "N2", (10, 5, 3), "N2 pressed down by 0.4 in place of 0.5", ("stages.press.motions.top.translate=[0,0,-0.4]",)),
         Variant("D", "N2", (10, 5, 3), "N2 pressed down by 0.3", ("stages.press.motions.top.translate=[0,0,-0.3]",)),
         own_method("fewer-steps", "N2", (10, 5, 3), "N2 in 5 and 20 load steps", "stages.press.steps=5", "stages.drag.steps=20"),
-        Variant("L1", "L1", (10, 5, 3), "master of Lagrange elements of order 1"),
-        Variant("L2", "L2", (5, 5, 3), "master of Lagrange elements of order 2 along the drag, as many nodes as L1"),
+        Variant("L1", "L1", (10, 5, 3), "master of Lagrange elements of order 1", CLOSEST),
+        Variant("L2", "L2", (5, 5, 3), "master of Lagrange elements of order 2 along the drag, as many nodes as L1", CLOSEST),
         Variant("slave-L1", "N2", (10, 5, 3), "slave of Lagrange elements of order 1, 7 x 7 nodes as N2", lagrange_slave(1, (6, 6, 3))),
         Variant("slave-L2", "N2", (10, 5, 3), "slave of Lagrange elements of order 2, 7 x 7 nodes as N2", lagrange_slave(2, (3, 3, 3))),
     ),

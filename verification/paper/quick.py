@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from paper.plans import DRAG, FORCE, MOMENT, TOLERANCE, TORQUE, nurbs, own_method
+from paper.plans import CLOSEST, DRAG, FORCE, MOMENT, TOLERANCE, TORQUE, nurbs, own_method
 from paper.sections import Section, Variant
 
 PRESS = Section(
@@ -37,8 +37,8 @@ TWIST = Section(
     variants=(
         *nurbs((3, 3, 1), 2, 3),
         Variant("fine-N3", "N3", (4, 4, 1), "reference: four elements laterally", (), ("monolithic",)),
-        Variant("L1", "L1", (3, 3, 1), "master of Lagrange elements of order 1", (), ("monolithic",)),
-        Variant("L2", "L2", (2, 2, 1), "master of Lagrange elements of order 2", (), ("monolithic",)),
+        Variant("L1", "L1", (3, 3, 1), "master of Lagrange elements of order 1", CLOSEST, ("monolithic",)),
+        Variant("L2", "L2", (2, 2, 1), "master of Lagrange elements of order 2", CLOSEST, ("monolithic",)),
     ),
     changes=(
         "bodies.slave.mesh.elements=[2,2,1]",
@@ -61,8 +61,8 @@ IRON = Section(
         *nurbs((5, 2, 2), 2, 3),
         Variant("A", "N2", (8, 2, 2), "N2 with 8 elements along the drag", (), ("monolithic",)),
         Variant("C", "N2", (5, 2, 2), "N2 pressed down by 0.4", ("stages.press.motions.top.translate=[0,0,-0.4]",), ("monolithic",)),
-        Variant("L1", "L1", (5, 2, 2), "master of Lagrange elements of order 1", (), ("monolithic",)),
-        Variant("L2", "L2", (3, 2, 2), "master of Lagrange elements of order 2", (), ("monolithic",)),
+        Variant("L1", "L1", (5, 2, 2), "master of Lagrange elements of order 1", CLOSEST, ("monolithic",)),
+        Variant("L2", "L2", (3, 2, 2), "master of Lagrange elements of order 2", CLOSEST, ("monolithic",)),
     ),
     changes=(
         "bodies.slave.mesh.elements=[2,2,2]",

@@ -29,6 +29,7 @@ mesh = {{ family = "L", order = [{order}, {order}, 1], elements = [6, 5, 1] }}
 [contacts.interface]
 slave = "slave.w0"
 master = "master.w1"
+projection = "closest"
 friction = 0.3
 
 [supports.top]

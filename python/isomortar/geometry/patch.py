@@ -104,6 +104,14 @@ class Direction:
         return len(self.boundaries) - 1
 
     @property
+    def kinks(self) -> bool:
+        """Whether functions are only continuous somewhere between the elements (theory 2.9)."""
+        if self.family == "L" or self.elements == 1:
+            return self.elements > 1
+        _, counts = np.unique(self.knots, return_counts=True)
+        return bool(counts[1:-1].max() >= self.order)
+
+    @property
     def first_points(self) -> NDArray[np.intp]:
         """Number of the first control point of each element, which has `order + 1` of them, shape (elements,)."""
         if self.family == "L":

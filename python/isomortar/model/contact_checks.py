@@ -68,7 +68,7 @@ def _check_projection(problem: Problem, contact: Contact) -> None:
     path = f"contacts.{contact.name}.projection"
     if isinstance(contact.master, RigidPlane):
         raise InputError('is "averaged", but a rigid plane has one normal everywhere; remove it', path)
-    if _has_pole(problem.body(contact.master.body), contact.master.face):
+    if has_pole(problem.body(contact.master.body), contact.master.face):
         raise InputError(
             f'is "averaged", but the master {contact.master.body}.{contact.master.face} has a pole, an edge that is one point, where '
             'elements have no normal; take "closest", or a mesh without a pole',
@@ -78,7 +78,7 @@ def _check_projection(problem: Problem, contact: Contact) -> None:
         raise InputError('is "averaged", and solver.slip_sum is "paper", which counts slips on the master; take slip_sum = "local"', path)
 
 
-def _has_pole(body: Body, face: str) -> bool:
+def has_pole(body: Body, face: str) -> bool:
     """Whether an edge of a face is one point."""
     first, second = body.patch.face_directions(face)
     grid = body.patch.control_points[body.patch.face_points(face)].reshape(second.count, first.count, 3)

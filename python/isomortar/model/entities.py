@@ -94,7 +94,8 @@ class Contact:
     `reference_area` divides the penalties (theory 7.1); None: the area of the slave face in the reference configuration.
     Where there is pressure p, tractions are up to min(`cohesion` + `friction` p, `traction_max`), force per area (theory 4.6);
     None: no largest one.
-    `projection`: how a slave point finds its point on a master that is a face: the closest one, or along the averaged normal.
+    `projection`: how a slave point finds its point on a master that is a face: the closest one, or along the averaged normal;
+    `by_default`: nobody asked for it, the master's C0 lines do.
     """
 
     name: str
@@ -106,6 +107,7 @@ class Contact:
     cohesion: float = 0.0
     traction_max: float | None = None
     projection: Projection = "closest"
+    by_default: bool = False
 
     @property
     def averaged(self) -> bool:

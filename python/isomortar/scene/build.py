@@ -10,6 +10,7 @@ from isomortar.geometry.patch import FACES, Direction, Patch
 from isomortar.geometry.quadrature import contact_points, volume_points
 from isomortar.geometry.refinement import mesh
 from isomortar.model import constants
+from isomortar.model.contact_checks import has_pole
 from isomortar.model.entities import Body, Contact, Face, Material, Motion, Problem, RigidPlane, Stage, Support
 from isomortar.model.messages import located
 from isomortar.scene.geometry_file import read_geometry
@@ -42,10 +43,11 @@ def build(scene: SceneTable, name: str, folder: Path) -> Problem:
     _check_curves(scene)
     bodies = tuple(_body(body, table, coarse[body], meshes[body], _material(scene, body)) for body, table in scene.bodies.items())
     by_name = {body.name: body for body in bodies}
+    summed = scene.solver.slip_sum == "paper"
     return Problem(
         name=scene.name or name,
         bodies=bodies,
-        contacts=tuple(_contact(contact, table, by_name) for contact, table in scene.contacts.items()),
+        contacts=tuple(_contact(contact, table, by_name, summed) for contact, table in scene.contacts.items()),
         supports=tuple(_support(support, table, by_name, _motions(scene, support)) for support, table in scene.supports.items()),
         stages=_stages(scene),
         settings=scene.solver,
@@ -126,7 +128,8 @@ def _face(text: str, bodies: dict[str, Body], field: str) -> Face:
     return Face(body, face)
 
 
-def _contact(name: str, table: ContactTable, bodies: dict[str, Body]) -> Contact:
+def _contact(name: str, table: ContactTable, bodies: dict[str, Body], summed: bool) -> Contact:
+    """A contact; `summed`: with the paper's slip sum, which needs closest points."""
     path = f"contacts.{name}"
     slave = _face(table.slave, bodies, f"{path}.slave")
     master: Face | RigidPlane
@@ -136,7 +139,14 @@ def _contact(name: str, table: ContactTable, bodies: dict[str, Body]) -> Contact
     first, second = bodies[slave.body].patch.face_directions(slave.face)
     quadrature = table.quadrature or (contact_points(first), contact_points(second))
     law = (table.friction, quadrature, table.reference_area, table.cohesion, table.traction_max)
+    if table.projection is None and isinstance(master, Face) and _has_lines(bodies[master.body], master.face) and not summed:
+        return Contact(name, slave, master, *law, "averaged", by_default=True)
     return Contact(name, slave, master, *law, table.projection or "closest")
+
+
+def _has_lines(body: Body, face: str) -> bool:
+    """Whether a face has C0 lines between its edges, and averaged normals everywhere."""
+    return any(direction.kinks for direction in body.patch.face_directions(face)) and not has_pole(body, face)
 
 
 def _plane(table: PlaneTable, path: str) -> RigidPlane:

@@ -36,6 +36,17 @@ def advice_on_problem(problem: Problem, pairs: Sequence[PairMechanics]) -> Itera
             )
     for contact in problem.contacts:
         yield from few_points(problem, contact)
+        yield from by_default(contact)
+
+
+def by_default(contact: Contact) -> Iterator[str]:
+    """Averaged normals that nobody asked for."""
+    if contact.by_default and isinstance(contact.master, Face):
+        yield (
+            f"contact {contact.name!r}: the master {contact.master.body}.{contact.master.face} has C0 lines, which are kinks once it "
+            f'deforms: feet are found along averaged normals. contacts.{contact.name}.projection = "averaged" says that this is meant, '
+            '"closest" takes closest points'
+        )
 
 
 def few_points(problem: Problem, contact: Contact) -> Iterator[str]:
