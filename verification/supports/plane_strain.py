@@ -24,7 +24,7 @@ solver = {{ newton_tolerance = 1e-11, complementarity_tolerance = 1e-11 }}
 """
 _PLANE = 'contacts.base = { slave = "slave.w0", plane = { point = [0, 0, 0] }, friction = 0.2 }'
 _BLOCK = """
-contacts.base = {{ slave = "slave.w0", master = "master.w1", friction = 0.2 }}
+contacts.base = {{ slave = "slave.w0", master = "master.w1", friction = 0.2, projection = "closest" }}
 bodies.master.geometry = {{ kind = "box", lower = [-0.5, 0, -0.5], upper = [1.5, {width}, 0] }}
 bodies.master.mesh = {{ order = [2, {order}, 2], elements = [5, {across}, 2] }}
 supports.base.face = "master.w0"
