@@ -84,7 +84,7 @@ def _look(results: Results) -> None:
             _finite(f"{contact.name}.{name}", value)
         if isinstance(contact.master, RigidPlane):
             forces.append(-values["force_slave"])
-        elif not _close(values["force_slave"], -values["force_master"], ROUND_OFF):
+        elif not _close(values["force_slave"], -values["force_master"], ROUND_OFF, _nothing(results)):
             raise Wrong(f"forces on both sides of {contact.name} differ: {values['force_slave'][-1]}, {values['force_master'][-1]}")
         _look_at_contact(results, contact)
     for force in forces:
