@@ -7,6 +7,7 @@ subroutine keep_patch(families, orders, counts, knots, nknots, point, weight, np
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: descriptor_t, keep
   use isomortar_base_kinds, only: wp
+  use isomortar_base_status, only: status_out_of_memory
   use isomortar_nurbs_direction, only: family_nurbs, new_direction
   implicit none
   integer(c_int), intent(in) :: nknots, npoints, families(3), orders(3), counts(3), point(npoints)
@@ -14,17 +15,21 @@ subroutine keep_patch(families, orders, counts, knots, nknots, point, weight, np
   integer(c_int64_t), intent(out) :: handle
   integer(c_int), intent(out) :: status
   type(descriptor_t) :: descriptor
-  integer :: d, first, length
+  integer :: d, failed, first, length
 
+  handle = -1
+  status = status_out_of_memory
   allocate (descriptor%patch)
+  allocate (descriptor%patch%point(npoints), descriptor%patch%weight(npoints), stat=failed)
+  if (failed /= 0) return
   first = 1
   do d = 1, 3
     length = merge(counts(d) + orders(d) + 1, (counts(d) - 1) / orders(d) + 1, families(d) == family_nurbs)
     descriptor%patch%direction(d) = new_direction(int(families(d)), int(orders(d)), real(knots(first:first + length - 1), wp))
     first = first + length
   end do
-  descriptor%patch%point = point + 1
-  descriptor%patch%weight = real(weight, wp)
+  descriptor%patch%point(:) = point + 1
+  descriptor%patch%weight(:) = real(weight, wp)
   call keep(descriptor, handle, status)
 end subroutine keep_patch
 
@@ -72,7 +77,7 @@ subroutine keep_slave(shape_nodes, shape_values, shape_slopes, nshape, test_node
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: descriptor_t, keep
   use isomortar_base_kinds, only: wp
-  use isomortar_contact_slave, only: functions_t
+  use isomortar_base_status, only: status_out_of_memory
   implicit none
   integer(c_int), intent(in) :: nshape, ntest, tests, nelements, nquad, npoints
   integer(c_int), intent(in) :: shape_nodes(nshape, nelements), test_nodes(ntest, nelements)
@@ -82,15 +87,27 @@ subroutine keep_slave(shape_nodes, shape_values, shape_slopes, nshape, test_node
   integer(c_int64_t), intent(out) :: handle
   integer(c_int), intent(out) :: status
   type(descriptor_t) :: descriptor
+  integer :: failed
 
+  handle = -1
+  status = status_out_of_memory
   allocate (descriptor%slave)
-  descriptor%slave%shape = functions_t(npoints, shape_nodes + 1, real(shape_values, wp))
-  descriptor%slave%test = functions_t(tests, test_nodes + 1, real(test_values, wp))
-  descriptor%slave%slopes = real(shape_slopes, wp)
-  descriptor%slave%outward = real(outward, wp)
-  descriptor%slave%per_element = nquad / nelements
-  descriptor%slave%area = real(area, wp)
-  descriptor%slave%point = point + 1
+  associate (slave => descriptor%slave)
+    allocate (slave%shape%nodes(nshape, nelements), slave%shape%values(nshape, nquad), slave%slopes(nshape, 2, nquad), &
+      slave%test%nodes(ntest, nelements), slave%test%values(ntest, nquad), slave%area(nquad), slave%point(npoints), stat=failed)
+    if (failed /= 0) return
+    slave%shape%count = npoints
+    slave%shape%nodes(:, :) = shape_nodes + 1
+    slave%shape%values(:, :) = real(shape_values, wp)
+    slave%slopes(:, :, :) = real(shape_slopes, wp)
+    slave%test%count = tests
+    slave%test%nodes(:, :) = test_nodes + 1
+    slave%test%values(:, :) = real(test_values, wp)
+    slave%outward = real(outward, wp)
+    slave%per_element = nquad / nelements
+    slave%area(:) = real(area, wp)
+    slave%point(:) = point + 1
+  end associate
   call keep(descriptor, handle, status)
 end subroutine keep_slave
 
@@ -161,16 +178,22 @@ end subroutine keep_averaged
 subroutine keep_pattern(start, nrows, column, nblocks, handle, status)
   use iso_c_binding, only: c_int, c_int64_t
   use isomortar_api_descriptors, only: descriptor_t, keep
+  use isomortar_base_status, only: status_out_of_memory
   implicit none
   integer(c_int), intent(in) :: nrows, nblocks
   integer(c_int), intent(in) :: start(nrows + 1), column(nblocks)
   integer(c_int64_t), intent(out) :: handle
   integer(c_int), intent(out) :: status
   type(descriptor_t) :: descriptor
+  integer :: failed
 
+  handle = -1
+  status = status_out_of_memory
   allocate (descriptor%pattern)
-  allocate (descriptor%pattern%start(0:nrows), source=int(start))
-  descriptor%pattern%column = column + 1
+  allocate (descriptor%pattern%start(0:nrows), descriptor%pattern%column(nblocks), stat=failed)
+  if (failed /= 0) return
+  descriptor%pattern%start(:) = start
+  descriptor%pattern%column(:) = column + 1
   call keep(descriptor, handle, status)
 end subroutine keep_pattern
 

@@ -6,6 +6,8 @@ import copy
 import gc
 import pickle
 import resource
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -80,6 +82,31 @@ def test_arrays_of_another_kind_are_refused_by_name() -> None:
 def test_a_law_with_other_parameters_is_refused() -> None:
     with pytest.raises(KernelError, match="no law of material or friction has that number and so many parameters"):
         _bindings.friction_radius(FrictionArrays(1, np.ones(2)), np.ones(2))
+
+
+OUT_OF_MEMORY = """
+import resource
+import numpy as np
+from isomortar._arrays import FunctionArrays, Pattern, SlaveArrays
+from isomortar._compiled import kernel
+from isomortar._descriptors import Descriptors
+from isomortar.errors import KernelError
+
+n = 2 * 10**7
+pattern = Pattern(np.array([0, n], dtype=np.int32), np.zeros(n, dtype=np.int32))
+in_use = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize()
+resource.setrlimit(resource.RLIMIT_AS, (in_use + (40 << 20),) * 2)
+try:
+    Descriptors(kernel).handle("pattern", pattern, Pattern)
+except KernelError as error:
+    print(error)
+"""
+
+
+def test_want_of_memory_is_an_error_and_no_end() -> None:
+    done = subprocess.run([sys.executable, "-c", OUT_OF_MEMORY], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert "memory ran out" in done.stdout
 
 
 def test_memory_of_arrays_that_are_gone_is_used_again() -> None:
