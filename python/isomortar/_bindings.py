@@ -50,11 +50,12 @@ _DESCRIPTORS = Descriptors(_kernel)
 _NO_BLOCKS, _NO_PATTERN = np.zeros((1, 3, 3)), -1
 
 
-def _raise(status: int, place: int) -> NoReturn:
-    """Raise the exception of a status; `place` counts from 0."""
+def _raise(status: int, place: int, jacobian: float = math.nan) -> NoReturn:
+    """Raise the exception of a status; `place` counts from 0, `jacobian` is the J of a folded element."""
+    folded = "J <= 0" if math.isnan(jacobian) else f"J = {jacobian:.3g}"
     sentences: dict[int, tuple[type[KernelError], str]] = {
-        Status.FOLDED: (FoldedElementError, f"element {place} is folded (J <= 0)"),
-        Status.FOLDED_INITIALLY: (FoldedElementError, f"element {place} is folded (J <= 0) in the reference configuration"),
+        Status.FOLDED: (FoldedElementError, f"element {place} is folded ({folded})"),
+        Status.FOLDED_INITIALLY: (FoldedElementError, f"element {place} is folded ({folded}) in the reference configuration"),
         Status.DEGENERATE_SURFACE: (
             LostProjectionError,
             f"the master has no normal at the closest point of slave quadrature point {place}",
@@ -201,7 +202,7 @@ def add_body(
         int(of_tangent != _NO_PATTERN), of_tangent, values.T,
     )  # fmt: skip
     if status:
-        _raise(status, place - 1)
+        _raise(status, place - 1, jacobian)
     return float(jacobian)
 
 

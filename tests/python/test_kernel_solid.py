@@ -7,6 +7,7 @@ import pytest
 
 from isomortar import _bindings, _twin
 from isomortar._bindings import Pattern
+from isomortar.errors import FoldedElementError
 from isomortar.geometry.primitives import box
 from isomortar.geometry.refinement import mesh
 from isomortar.model.entities import Material
@@ -68,3 +69,10 @@ def test_twin_is_in_extended_precision() -> None:
     exact = (tangent(positions) @ SHAPE.ravel()).reshape(-1, 3)
     assert np.linalg.norm(fine - exact) < 1e-13 * np.linalg.norm(exact)
     assert np.linalg.norm(rough - exact) > 1e-7 * np.linalg.norm(exact)
+
+
+def test_a_folded_element_is_named_with_its_jacobian() -> None:
+    with pytest.raises(FoldedElementError, match=r"^element 0 is folded \(J = -0\.75\)$"):
+        forces(np.ascontiguousarray(REFERENCE * [1.0, -0.75, 1.0]))
+    with pytest.raises(FoldedElementError, match=r"^element 0 is folded \(J = -2\) in the reference configuration$"):
+        _bindings.add_body(ARRAYS, GAUSS, MATERIAL.arrays, REFERENCE, np.ascontiguousarray(-REFERENCE), np.zeros_like(REFERENCE))
