@@ -20,7 +20,8 @@ subroutine keep_patch(families, orders, counts, knots, nknots, point, weight, np
   handle = -1
   status = status_out_of_memory
   allocate (descriptor%patch)
-  allocate (descriptor%patch%point(npoints), descriptor%patch%weight(npoints), stat=failed)
+  allocate (descriptor%patch%point(npoints), stat=failed)
+  if (failed == 0) allocate (descriptor%patch%weight(npoints), stat=failed)
   if (failed /= 0) return
   first = 1
   do d = 1, 3
@@ -93,8 +94,13 @@ subroutine keep_slave(shape_nodes, shape_values, shape_slopes, nshape, test_node
   status = status_out_of_memory
   allocate (descriptor%slave)
   associate (slave => descriptor%slave)
-    allocate (slave%shape%nodes(nshape, nelements), slave%shape%values(nshape, nquad), slave%slopes(nshape, 2, nquad), &
-      slave%test%nodes(ntest, nelements), slave%test%values(ntest, nquad), slave%area(nquad), slave%point(npoints), stat=failed)
+    allocate (slave%shape%nodes(nshape, nelements), stat=failed)
+    if (failed == 0) allocate (slave%shape%values(nshape, nquad), stat=failed)
+    if (failed == 0) allocate (slave%slopes(nshape, 2, nquad), stat=failed)
+    if (failed == 0) allocate (slave%test%nodes(ntest, nelements), stat=failed)
+    if (failed == 0) allocate (slave%test%values(ntest, nquad), stat=failed)
+    if (failed == 0) allocate (slave%area(nquad), stat=failed)
+    if (failed == 0) allocate (slave%point(npoints), stat=failed)
     if (failed /= 0) return
     slave%shape%count = npoints
     slave%shape%nodes(:, :) = shape_nodes + 1
@@ -190,7 +196,8 @@ subroutine keep_pattern(start, nrows, column, nblocks, handle, status)
   handle = -1
   status = status_out_of_memory
   allocate (descriptor%pattern)
-  allocate (descriptor%pattern%start(0:nrows), descriptor%pattern%column(nblocks), stat=failed)
+  allocate (descriptor%pattern%start(0:nrows), stat=failed)
+  if (failed == 0) allocate (descriptor%pattern%column(nblocks), stat=failed)
   if (failed /= 0) return
   descriptor%pattern%start(:) = start
   descriptor%pattern%column(:) = column + 1
