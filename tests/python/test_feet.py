@@ -21,7 +21,7 @@ format = 1
 bodies.ring.geometry = {{ kind = "ring", centre = [{x}, 0, 0], inner = 0.3, outer = 0.5, width = 0.4 }}
 bodies.ring.mesh.elements = [8, 1, 1]
 bodies.block.geometry = {{ kind = "box", lower = [{low}, -0.1, 0.0], upper = [{high}, 0.1, 0.15] }}
-contacts.inside = {{ slave = "block.w0", master = "ring.v0", quadrature = 3, friction = {friction} }}
+contacts.inside = {{ slave = "block.w0", master = "ring.v0", projection = "closest", quadrature = 3, friction = {friction} }}
 supports.outside.face = "ring.v1"
 supports.top.face = "block.w1"
 stages = [{{ name = "down", steps = 2, motions.top.translate = [0, 0, -0.02] }}]
@@ -121,7 +121,7 @@ format = 1
 bodies.hills.geometry = { kind = "box", lower = [-1, -1, -1], upper = [1, 1, 0] }
 bodies.hills.mesh = { family = "L", order = 2, elements = [2, 2, 1] }
 bodies.block.geometry = { kind = "box", lower = [-0.1, -0.9, 0.0], upper = [0.1, -0.1, 0.4] }
-contacts.top = { slave = "block.w0", master = "hills.w1", quadrature = 3, friction = FRICTION }
+contacts.top = { slave = "block.w0", master = "hills.w1", projection = "closest", quadrature = 3, friction = FRICTION }
 supports.under.face = "hills.w0"
 supports.top.face = "block.w1"
 stages = [{ name = "down", steps = 1, motions.top.translate = [0, 0, -0.02] }]
