@@ -305,6 +305,16 @@ def test_bundled_scenes_are_let_through(name: str) -> None:
         (("bodies.lower.mesh.family=L", "solver.method=uzawa", "solver.slip_sum=paper"), "closest", False),
         (("bodies.lower.mesh.family=L", "contacts.pair.projection=closest"), "closest", False),
         (("contacts.pair.projection=averaged",), "averaged", False),
+        (
+            (
+                "bodies.lower.geometry={kind='ring',centre=[0,0,-1],inner=0.5,outer=1,width=2}",
+                "bodies.lower.mesh.elements=[8,1,2]",
+                "contacts.pair.master=lower.v1",
+                "supports.base.face=lower.v0",
+            ),
+            "closest",
+            False,
+        ),
         (("bodies.upper.mesh.family=L",), "closest", False),
     ],
 )

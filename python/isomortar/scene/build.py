@@ -145,8 +145,12 @@ def _contact(name: str, table: ContactTable, bodies: dict[str, Body], summed: bo
 
 
 def _has_lines(body: Body, face: str) -> bool:
-    """Whether a face has C0 lines between its edges, and averaged normals everywhere."""
-    return any(direction.kinks for direction in body.patch.face_directions(face)) and not has_pole(body, face)
+    """Whether a face has kinks between its edges once it deforms, and averaged normals everywhere.
+
+    Where knots of higher order are repeated, a body was made of arcs that meet smoothly: there the closest point does better.
+    """
+    directions = [d for d in body.patch.face_directions(face) if d.family == "L" or d.order == 1]
+    return any(direction.kinks for direction in directions) and not has_pole(body, face)
 
 
 def _plane(table: PlaneTable, path: str) -> RigidPlane:
