@@ -29,6 +29,7 @@ mesh = { order = [1, 2, 1], elements = [3, 2, 1] }
 [contacts.pair]
 slave = "upper.w0"
 master = "lower.w1"
+projection = "closest"
 friction = 0.5
 [supports.floor]
 face = "lower.w0"
