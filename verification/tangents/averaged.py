@@ -62,7 +62,7 @@ class Posed:
 def posed(master: str, place: str, friction: float) -> Posed:
     """The bowl in an uneven master, slid from where it was."""
     family, order = MASTERS[master]
-    scene = _SCENE.format(order=order).replace('"L"', f'"{family}"').replace("friction = 0.3", f"friction = {friction}")
+    scene = _SCENE.format(order=order, elements=3).replace('"L"', f'"{family}"').replace("friction = 0.3", f"friction = {friction}")
     problem = Scene.from_toml(scene).problem()
     problem = replace(
         problem,
