@@ -110,6 +110,31 @@ subroutine control_quantities(slave, map, x, n, xi, element, fixed, found, slip,
   point_metric = control%point_metric
 end subroutine control_quantities
 
+!> How far the foot of every slave quadrature point has climbed since the last converged load step (isomortar_contact_control).
+subroutine find_climbs(map, x, n, xi, origin, slips, nquad, climbs, status)
+  use iso_c_binding, only: c_double, c_int, c_int64_t
+  use isomortar_api_descriptors, only: find
+  use isomortar_contact_control, only: climb => find_climbs
+  use isomortar_contact_gap_map_map, only: gap_map_t, projections_t
+  implicit none
+  integer(c_int64_t), intent(in) :: map
+  integer(c_int), intent(in) :: n, nquad, slips(nquad)
+  real(c_double), intent(in) :: x(3, n), xi(2, nquad), origin(2, nquad)
+  real(c_double), intent(out) :: climbs(nquad)
+  integer(c_int), intent(out) :: status
+  class(gap_map_t), pointer :: onto
+  type(projections_t) :: projections
+
+  climbs = 0.0_c_double
+  status = 0
+  call find(map, onto, status)
+  if (status /= 0) return
+  projections%xi = xi
+  projections%origin = origin
+  projections%slips = slips /= 0
+  call climb(onto, x, projections, climbs)
+end subroutine find_climbs
+
 !> Control pressures, tractions, states and their slopes of the augmented law (isomortar_contact_augmentation). `field_slip` is the
 !> field of control slips at the quadrature points, with `summed` only.
 subroutine augmented_multipliers(slave, friction, weight, square, gap, control_slip, metric, point_metric, nquad, ntest, summed, &

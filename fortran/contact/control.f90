@@ -9,7 +9,7 @@ module isomortar_contact_control
   implicit none
   private
 
-  public :: control_quantities, integrate_slip_sum, project_points
+  public :: control_quantities, find_climbs, integrate_slip_sum, project_points
 
   !> Control quantities of every test function, and what they were integrated from.
   type, public :: control_t
@@ -55,6 +55,24 @@ contains
       if (projections%slips(q)) projections%slip(:, q) = map%slip(slave, all, projections, q)
     end do
   end subroutine project_points
+
+  !> How far the foot of every slave quadrature point has climbed since the last converged load step; zero at points without a slip
+  !> (theory 3.31).
+  pure subroutine find_climbs(map, positions, projections, climbs)
+    class(gap_map_t), intent(in) :: map
+    real(wp), intent(in) :: positions(:, :)
+    type(projections_t), intent(in) :: projections
+    real(wp), intent(out) :: climbs(:)
+    type(normals_t) :: normals
+    real(wp), allocatable :: all(:, :)
+    integer :: q
+
+    call map%extend(positions, normals, all)
+    climbs = 0.0_wp
+    do q = 1, size(climbs)
+      if (projections%slips(q)) climbs(q) = map%climb(all, projections, q)
+    end do
+  end subroutine find_climbs
 
   !> Integrate the control quantities. Points without a projection take no part in any of them (theory 4.1), but in those that need
   !> none where the map is of that kind (theory 3.30).

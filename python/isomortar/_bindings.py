@@ -41,8 +41,8 @@ __all__ = [
     "AveragedFaceArrays", "Control", "FaceArrays", "FloatArray", "FrictionArrays", "FunctionArrays", "IntArray", "Law", "LongArray",
     "MasterArrays", "MaterialArrays", "PatchArrays", "Pattern", "PlaneArrays", "Projections", "Response", "SlaveArrays", "add_body",
     "add_values", "augmented_multipliers",
-    "condense_multipliers", "contact_blocks", "contact_forces", "control_quantities", "find_places", "friction_radius", "material_stress",
-    "multiplier_rows", "project_points", "slave_tables", "surface_functions",
+    "condense_multipliers", "contact_blocks", "contact_forces", "control_quantities", "find_climbs", "find_places", "friction_radius",
+    "material_stress", "multiplier_rows", "project_points", "slave_tables", "surface_functions",
 ]  # fmt: skip
 
 _DESCRIPTORS = Descriptors(_kernel)
@@ -305,6 +305,16 @@ def control_quantities(slave: SlaveArrays, master: MasterArrays, positions: Floa
     if status:
         _raise(status, -1)
     return Control(weight, square, gap, slip.T, metric.T, point_metric.T)
+
+
+def find_climbs(slave: SlaveArrays, master: MasterArrays, positions: FloatArray, projections: Projections) -> FloatArray:
+    """How far the foot of every slave quadrature point has climbed along its normal since `origin` (theory 3.31), shape (points,)."""
+    _check_bodies(positions, slave, master)
+    _check_projections(projections, slave, master)
+    climbs, status = _kernel.find_climbs(_master(master), positions.T, projections.xi.T, projections.origin.T, projections.slips)
+    if status:
+        _raise(status, -1)
+    return np.asarray(climbs)
 
 
 def augmented_multipliers(slave: SlaveArrays, control: Control, law: Law) -> Response:

@@ -106,6 +106,8 @@ def _contact_result(random: np.random.Generator) -> ContactResult:
         gap=random.normal(size=16),
         pressure_field=np.sort(random.normal(size=2)),
         excluded=0,
+        friction_work=random.random(),
+        spurious_work=random.normal(),
     )
 
 

@@ -136,6 +136,26 @@ def test_every_row_of_every_curve_is_that_of_its_step(tmp_path: Path, states: st
             assert np.array_equal(counts, [s.counters.get(name, -1) for s in steps])
 
 
+def test_work_that_an_older_file_does_not_hold_is_not_a_number(tmp_path: Path) -> None:
+    """Such a file is read, and resumed: from there on it holds the work."""
+    path = tmp_path / "run.h5"
+    write(path, range(1, 4))
+    with h5py.File(path, "a") as file:
+        for contact in file["curves/contacts"].values():
+            del contact["friction_work"], contact["spurious_work"]
+    path.write_bytes(sealed(path.read_bytes()))
+    with Results(path) as results:
+        assert np.isnan(results.curve("spurious_work", contact="tread")).tolist() == [True] * 3
+        last = results.last_step()
+        assert last is not None
+        assert np.isnan(last.contacts[0].friction_work)
+        assert last.contacts[0].active == step_result(3).contacts[0].active
+    write(path, range(4, 6), resume=True)
+    with Results(path) as results:
+        expected = [step_result(k).contacts[1].spurious_work for k in (4, 5)]
+        assert np.array_equal(results.curve("spurious_work", contact="ground"), [np.nan] * 3 + expected, equal_nan=True)
+
+
 def test_every_dataset_has_unit_and_description(tmp_path: Path) -> None:
     path = tmp_path / "run.h5"
     write(path, range(1, 3))

@@ -95,7 +95,7 @@ def along_the_way(_: pytest.MonkeyPatch) -> Told:
     calm = [replace(state, pressure=np.full(16, 0.5)) for state in nothing]
     wild = [calm[0], replace(calm[1], pressure=np.full(16, 0.8))]
     advice = StepAdvice(problem(), 0, calm)
-    measured = tuple(replace(c, active=9, pressure_field=np.array([0.0, 0.5]), excluded=0) for c in result.contacts)
+    measured = tuple(replace(c, active=9, pressure_field=np.array([0.0, 0.5]), excluded=0, spurious_work=0.0) for c in result.contacts)
     assert list(advice.after_step(1, measured, calm)) == []
     left = (replace(measured[0], excluded=7), measured[1])
     yield from zip(("left the master", "oscillates"), advice.after_step(2, left, wild), strict=True)
@@ -104,6 +104,14 @@ def along_the_way(_: pytest.MonkeyPatch) -> Told:
     (yield "beside", *advice.after_step(4, gone, calm))
     assert list(advice.after_step(5, gone, calm)) == []
     (yield "opened", *advice.at_the_end())
+    advice = StepAdvice(problem(), 0, calm)
+    works = [(1.0, 0.1), (1.0, -0.07), (1.0, -0.2)]
+    for step, (friction, spurious) in enumerate(works, 1):
+        working = (measured[0], replace(measured[1], friction_work=friction, spurious_work=spurious))
+        assert list(advice.after_step(step, working, calm)) == []
+        if step == 2:
+            assert list(advice.at_the_end()) == []
+    (yield "spurious work", *advice.at_the_end())
     (yield "pushed in", *warnings(CORNER))
     heard, motion = Heard(), "[0.0, 0.0, -0.05]"
     list(

@@ -12,6 +12,7 @@ import numpy as np
 from friction.virtual_work import PATTERNS, Surface, areas, relative, response_of
 from tangents.kinks import _SCENE
 
+from isomortar._bindings import find_climbs
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, case
 from isomortar.scene import Scene
@@ -92,27 +93,33 @@ class Master:
             best.normal[here], best.found[here] = normal[here], True
         return best
 
-    def values(self, field: FloatArray, feet: Feet) -> FloatArray:
-        """A field of the nodes at the feet, shape (points, 3); zero without one."""
+    def values(self, field: FloatArray, feet: Feet, kind: int = 0) -> FloatArray:
+        """A field of the nodes at the feet, or its derivative along the first or second direction, shape (points, 3); zero without one."""
         found = np.zeros((len(feet.found), 3))
         for e in np.ndindex(self.elements):
             here = feet.found & np.all(feet.element == e, axis=1)
-            found[here] = self.at(field, e, feet.t[here])[0]
+            found[here] = self.at(field, e, feet.t[here])[kind]
         return found
+
+
+def uneven(order: int, place: str, elements: int) -> tuple[Equilibrium, FloatArray]:
+    """A bowl of so many elements by direction in an uneven master."""
+    problem = Scene.from_toml(_SCENE.format(order=order, elements=elements)).problem()
+    contact = replace(problem.contacts[0], projection="averaged")
+    equilibrium = Equilibrium(replace(problem, contacts=(contact,), settings=replace(problem.settings, method="uzawa")), Ledger())
+    numbering = equilibrium.numbering
+    positions = numbering.reference + UNEVEN[order] * np.random.default_rng(1).standard_normal(numbering.reference.shape)
+    positions[numbering.points["slave"]] += MOVED[place]
+    return equilibrium, positions
 
 
 class Placed:
     """A bowl in an uneven master; slips count from somewhere near the feet, at some points from nowhere."""
 
     def __init__(self, order: int, place: str) -> None:
-        problem = Scene.from_toml(_SCENE.format(order=order)).problem()
-        contact = replace(problem.contacts[0], projection="averaged")
-        problem = replace(problem, contacts=(contact,), settings=replace(problem.settings, method="uzawa"))
-        equilibrium = Equilibrium(problem, Ledger())
-        numbering = equilibrium.numbering
-        random = np.random.default_rng(1)
-        self.positions = numbering.reference + UNEVEN[order] * random.standard_normal(numbering.reference.shape)
-        self.positions[numbering.points["slave"]] += MOVED[place]
+        equilibrium, self.positions = uneven(order, place, 4)
+        problem, numbering, random = equilibrium.problem, equilibrium.numbering, np.random.default_rng(2)
+        (contact,) = problem.contacts
         self.pair, self.order = equilibrium.pairs[0], order
         slave, master = problem.body("slave").patch, problem.body("master").patch
         self._lines = [direction.boundaries for direction in master.face_directions("w1")]
@@ -152,6 +159,10 @@ class Placed:
 
 
 _ROUND_OFF = Bound(at_most=1e-11, reason="round-off: sums of some hundred products; the search here stops where nothing moves")
+_QUADRATURE = Bound(
+    at_most=1e-4,
+    reason="quadrature: one Gauss point more than the orders together, on the way from foot to foot; unit normals are no polynomials",
+)
 _DIFFERENCES = Bound(
     at_most=1e-8, reason="discretisation: central differences of the unit normals, whose third derivatives are some hundred"
 )
@@ -161,7 +172,7 @@ def bounds(order: int, place: str) -> dict[str, Bound]:  # noqa: ARG001
     """Round-off for what is integrated, differences for what is varied; that points are, or are not, beyond the edge."""
     beyond = "definition: points beyond the edge are tested, or there are none"
     there = Bound(at_least=50.0, reason=beyond) if place == "over the rim" else Bound(0.0, 0.0, beyond)
-    integrated = dict.fromkeys(("xi", "weight", "square", "gap", "slip", "metric"), _ROUND_OFF)
+    integrated = dict.fromkeys(("xi", "weight", "square", "gap", "slip", "metric"), _ROUND_OFF) | {"climb": _QUADRATURE}
     return integrated | {"excluded": Bound(0.0, 0.0, "definition: the same points have a foot"), "beyond": there, "work": _DIFFERENCES}
 
 
@@ -189,10 +200,24 @@ def averaged(order: int, place: str) -> dict[str, float]:
         "gap": relative(control.gap, it.integral(np.where(now.found, now.gap, 0.0))),
         "slip": relative(control.slip, it.integral(np.einsum("qak,qk->qa", dual, way))),
         "metric": relative(control.metric, it.integral(metric[:, [0, 0, 1], [0, 1, 1]], squared=True)),
+        "climb": relative(find_climbs(it.pair.pair.slave, it.pair.pair.master, it.positions, projections), climbs(it, master)),
         "excluded": float(np.count_nonzero((projections.found > 0) != now.found)),
         "beyond": float(np.count_nonzero(~now.found)),
         "work": work(it, dual),
     }
+
+
+def climbs(it: Placed, master: Master) -> FloatArray:
+    """Integrals of the unit normal over the straight way, in coordinates, between two feet in the same element; 0 without a slip."""
+    (points, weights), way = np.polynomial.legendre.leggauss(16), it.now.t - it.before.t
+    total = np.zeros(len(way))
+    for point, weight in zip(0.5 * (points + 1.0), 0.5 * weights, strict=True):
+        there = replace(it.now, t=it.before.t + point * way)
+        normal = master.values(master.normals, there)
+        for axis in (0, 1):
+            slope = master.values(master.nodes, there, 1 + axis)
+            total += weight * way[:, axis] * (normal * slope).sum(axis=1) / np.where(it.now.found, np.linalg.norm(normal, axis=1), 1.0)
+    return total * (it.now.found & it.before.found)
 
 
 def work(it: Placed, dual: FloatArray) -> float:

@@ -135,7 +135,7 @@ def averaged(master: str, place: str, state: str) -> dict[str, float]:
     pressure, length = (np.resize(np.array(pattern), n) for pattern in STATES[state])
     visit = placed(pair, pose.positions, PairVisit(pose.start, law), pressure, length)
     kinematics = pair.kinematics(pose.positions, pose.start)
-    result = pair.result(pose.positions, kinematics, pair.respond(kinematics, visit.law))
+    result = pair.result(pose.positions, kinematics, pair.respond(kinematics, visit.law), np.zeros(2))
     report = measure(pose.problem, 1, [Visit(pose.positions, (visit,))], directions=1, length=SHORT if ":" in place else 1e-3)
     sums = (result.force_slave, result.force_master), (result.moment_slave, result.moment_master)
     forces, moments = (float(np.abs(slave + main).max() / np.abs(slave).max()) for slave, main in sums)

@@ -94,7 +94,7 @@ def on_lines(order: int, side: str) -> dict[str, float]:
     pressure, length = (np.resize(np.array(pattern), n) for pattern in ((-1.0, 1.0, 0.7), (0.0, 0.5, 2.0)))
     visit = placed(pair, positions, PairVisit(start, law), pressure, length)
     kinematics = pair.kinematics(positions, start)
-    result = pair.result(positions, kinematics, pair.respond(kinematics, visit.law))
+    result = pair.result(positions, kinematics, pair.respond(kinematics, visit.law), np.zeros(2))
     fixed = kinematics.projections.fixed.sum(axis=1)
     report = measure(problem, 1, [Visit(positions, (visit,))], directions=2, length=SHORT)
     return {row.part: row.error for row in report.rows if row.part in ON_LINES} | {

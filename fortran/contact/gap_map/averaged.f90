@@ -7,6 +7,7 @@ module isomortar_contact_gap_map_averaged
   use isomortar_base_algebra, only: add_product, cross, determinant, first_not_finite, identity, inverse, inverse2
   use isomortar_base_kinds, only: wp
   use isomortar_base_status, only: status_not_finite, status_ok, status_passed_through
+  use isomortar_contact_gap_map_averaged_climb, only: climb_between
   use isomortar_contact_gap_map_averaged_foot, only: accept, find_foot, foot_equation, foot_t, follow, scope_of, scope_t
   use isomortar_contact_gap_map_map, only: all_components, contact_point_t, gap_map_t, projections_t, variations_t
   use isomortar_contact_gap_map_nodal_normals, only: average, normals_t
@@ -25,6 +26,7 @@ module isomortar_contact_gap_map_averaged
     procedure :: vectors
     procedure :: locate
     procedure :: slip
+    procedure :: climb
     procedure :: at
     procedure, nopass :: first
     procedure, nopass :: metric
@@ -151,6 +153,16 @@ contains
     slip = matmul(point%way, point%tangent)
     slip = matmul(point%inverse_metric, slip)
   end function slip
+
+  !> How far the foot has climbed since the last load step (theory 3.31).
+  pure real(wp) function climb(self, positions, projections, q)
+    class(averaged_t), intent(in) :: self
+    real(wp), intent(in) :: positions(:, :)
+    type(projections_t), intent(in) :: projections
+    integer, intent(in) :: q
+
+    climb = climb_between(self%surface, positions, projections%origin(:, q), projections%xi(:, q))
+  end function climb
 
   !> Kinematics at a foot (theory 3.24). `tangent` and `metric` are the slave's.
   pure subroutine at(self, slave, positions, projections, q, of_slip, point, points, coefficients)

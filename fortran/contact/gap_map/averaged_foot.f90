@@ -10,7 +10,7 @@ module isomortar_contact_gap_map_averaged_foot
   implicit none
   private
 
-  public :: accept, find_foot, follow, foot_equation, scope_of
+  public :: accept, bounds_of, find_foot, first_bound, follow, foot_equation, scope_of
 
   !> Relative size of the last Newton step: its error is the square of that.
   real(wp), parameter :: last_step = epsilon(1.0_wp)**0.6_wp

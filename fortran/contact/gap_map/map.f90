@@ -86,6 +86,7 @@ module isomortar_contact_gap_map_map
     procedure(count_vectors), deferred :: vectors
     procedure(locate_points), deferred :: locate
     procedure(slip_between), deferred :: slip
+    procedure :: climb => stay_level
     procedure(point_at), deferred :: at
     procedure(first_of), deferred, nopass :: first
     procedure(metric_of), deferred, nopass :: metric
@@ -200,5 +201,16 @@ contains
 
     stencils = projections%place
   end function elements
+
+  !> Integral of n dS along the way of quadrature point q's foot since the last converged load step: none where normals are at right
+  !> angles to the face (theory 3.31).
+  pure real(wp) function stay_level(self, positions, projections, q)
+    class(gap_map_t), intent(in) :: self
+    real(wp), intent(in) :: positions(:, :)
+    type(projections_t), intent(in) :: projections
+    integer, intent(in) :: q
+
+    stay_level = 0.0_wp
+  end function stay_level
 
 end module isomortar_contact_gap_map_map

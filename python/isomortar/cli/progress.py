@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from time import monotonic
 
+import numpy as np
 from rich.console import Console
 from rich.live import Live
 from rich.progress_bar import ProgressBar
@@ -34,6 +35,7 @@ class Progress(Observer):
         self._total, self._first, self._done = problem.total_steps, 1, 0
         self._begin: float | None = None
         self._warnings = set[str]()
+        self._work = np.zeros((len(problem.contacts), 2))
         self._reason = ""
 
     def started(self, total_steps: int, first_step: int) -> None:
@@ -48,7 +50,7 @@ class Progress(Observer):
 
     def recorded(self, result: StepResult) -> None:
         """One line a load step."""
-        self._done = result.step
+        self._count(result)
         self._say(self._step_line(result))
 
     def cut(self, step: int, time: float, increment: float, reason: str) -> None:
@@ -63,8 +65,15 @@ class Progress(Observer):
             self._warnings.add(message)
             self._print(f"warning: {message}")
 
+    def _count(self, result: StepResult) -> None:
+        self._done = result.step
+        self._work += [contact.work for contact in result.contacts]
+
     def finished(self) -> None:
-        """Say that all is done, and how many warnings there were to read."""
+        """Say that all is done, what averaged normals cost, and how many warnings there were to read."""
+        for contact, (friction, spurious) in zip(self._problem.contacts, self._work, strict=True):
+            if contact.averaged and friction > 0.0:
+                self._say(f"contact {contact.name!r}: spurious work is {spurious / friction:.2%} of the friction work")
         count = len(self._warnings)
         line = f"{self._total} load steps done, {count} warning{'' if count == 1 else 's'}"
         if count:
@@ -123,7 +132,7 @@ class LiveProgress(Progress):
 
     def recorded(self, result: StepResult) -> None:
         """Move the bar."""
-        self._done = result.step
+        self._count(result)
 
     def __rich__(self) -> Table:
         table = Table.grid(padding=(0, 1))

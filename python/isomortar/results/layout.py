@@ -43,6 +43,11 @@ def _real(unit: str, description: str, row: tuple[int, ...] = ()) -> Quantity:
     return Quantity(np.dtype(np.float64), unit, description, row)
 
 
+def _later(unit: str, description: str) -> Quantity:
+    """A number that files did not always hold; not a number where they do not."""
+    return Quantity(np.dtype(np.float64), unit, description, missing=np.nan)
+
+
 def _count(description: str) -> Quantity:
     return Quantity(np.dtype(np.int64), "1", description)
 
@@ -81,6 +86,8 @@ CONTACT = {
     "slip": _count("slipping slave control points"),
     "pressure_field": _real("force/area", "smallest and largest contact pressure p = sum R^I p^I at the contact quadrature points", (2,)),
     "excluded": _count("contact quadrature points without a projection"),
+    "friction_work": _later("force*length", "work that friction took up within the load step"),
+    "spurious_work": _later("force*length", "work that pressures along averaged normals took up within the load step; else zero"),
 }
 
 #: Restart state of a contact pair, named as in `ContactState`.

@@ -127,7 +127,7 @@ class Results:
         ----------
         quantity : str
             Of a support: force, moment, centre. Of a contact: force_slave, force_master, moment_slave, moment_master, active, slip,
-            pressure_field, excluded. Of neither: step, time, newton_order, substeps, cuts, next_increment.
+            pressure_field, excluded, friction_work, spurious_work. Of neither: step, time, newton_order, substeps, cuts, next_increment.
         support, contact : str, optional
             Name of a support or of a contact pair.
         component : {"x", "y", "z"}, optional
@@ -145,7 +145,7 @@ class Results:
             known, place = {name: kind for name, kind in layout.STEP.items() if name != "stage"}, ""
         if quantity not in known:
             raise ResultsError(f"there is no curve {quantity!r} here; there are: {', '.join(known)}")
-        values = self._rows(f"curves/{place}{quantity}")
+        values = self._read(lambda file: _column(file, f"curves/{place}{quantity}", known[quantity])[()])
         if component is None:
             return values
         if values.ndim != 2 or values.shape[1] != 3:
@@ -250,8 +250,15 @@ def _step_result(file: h5py.File, problem: Problem, number: int, row: int, kept:
 
 def _get(file: h5py.File, group: str, quantities: Mapping[str, layout.Quantity], row: int) -> dict[str, Any]:
     """Row `row` of every quantity; single numbers as Python's own."""
-    rows = {name: file[f"{group}/{name}"][row] for name in quantities}
+    rows = {name: _column(file, f"{group}/{name}", quantity)[row] for name, quantity in quantities.items()}
     return {name: value.item() if isinstance(value, np.generic) else value for name, value in rows.items()}
+
+
+def _column(file: h5py.File, path: str, quantity: layout.Quantity) -> Any:
+    """A dataset; of a quantity that the file is too old for, what stands for it at every recorded load step."""
+    if quantity.missing is not None and path not in file:
+        return np.full(len(file["curves/step"]), quantity.missing)
+    return file[path]
 
 
 def _augmentations(file: h5py.File, step: int) -> tuple[AugmentationRecord, ...]:

@@ -17,6 +17,8 @@ STIFFER = 10.0
 OSCILLATION = 1.5
 #: Quadrature points are to be no farther apart than elements of the master are long; by this factor, for round-off.
 ENOUGH = 0.99
+#: Spurious work over friction work above which the master is too coarse.
+SPURIOUS = 0.02
 
 
 def advice_on_problem(problem: Problem, pairs: Sequence[PairMechanics]) -> Iterator[str]:
@@ -94,6 +96,7 @@ class StepAdvice:
         self._closed = {name: step for name, state in zip(self._slaves, states, strict=True) if np.any(state.pressure)}
         self._given: set[tuple[str, str]] = set()
         self._excluded = [int(np.count_nonzero(state.projected == 0)) for state in states]
+        self._work = {name: np.zeros(2) for name in self._slaves}
 
     def after_step(self, step: int, results: Sequence[ContactResult], states: Sequence[ContactState]) -> Iterator[str]:
         """Warnings that the end of a load step gives rise to."""
@@ -101,6 +104,7 @@ class StepAdvice:
         for name, result, state, excluded in zip(self._slaves, results, states, before, strict=True):
             if result.active:
                 self._closed[name] = step
+            self._work[name] += result.work
             yield from self._leaving(name, step, result, excluded, len(state.projected))
             largest, field = float(state.pressure.max()), float(result.pressure_field[1])
             if result.active > 3 and largest > OSCILLATION * field > 0.0 and self._first(name, "oscillation"):
@@ -132,6 +136,12 @@ class StepAdvice:
                 yield (
                     f"contact {name!r} opened in load step {closed + 1} and stayed open: all load steps after it computed bodies apart. "
                     "If that is not meant, look at the directions of the motions"
+                )
+            friction, spurious = self._work[name]
+            if abs(spurious) > SPURIOUS * friction > 0.0:
+                yield (
+                    f"contact {name!r}: spurious work of pressures along averaged normals is {spurious / friction:.1%} of the friction "
+                    "work; forces along the sliding may be off by as much. Refine the master, or take elements of a higher order there"
                 )
 
     def _first(self, name: str, kind: str) -> bool:

@@ -309,8 +309,19 @@ class PairMechanics:
             self.round_off(positions, again, response, unbalanced),
         )
 
-    def result(self, positions: FloatArray, kinematics: Kinematics, response: Response) -> ContactResult:
-        """Measured quantities at the end of a load step (theory 8.2)."""
+    def work(self, positions: FloatArray, kinematics: Kinematics, response: Response) -> FloatArray:
+        """What friction, and pressures along averaged normals, took up within a load increment, shape (2,) (theory 3.31)."""
+        acts = response.state > 0
+        friction = float(np.sum(response.traction[acts] * kinematics.control.slip[acts]))
+        if not self.pair.contact.averaged:
+            return np.array([friction, 0.0])
+        pressure = self.pair.field(np.where(acts, response.pressure, 0.0))
+        with self._ledger.phase("contact"):
+            climbs = _bindings.find_climbs(self.pair.slave, self.pair.master, positions, kinematics.projections)
+        return np.array([friction, -float(np.sum(self.pair.slave.area * pressure * climbs))])
+
+    def result(self, positions: FloatArray, kinematics: Kinematics, response: Response, work: FloatArray) -> ContactResult:
+        """Measured quantities at the end of a load step (theory 8.2), and the work of its increments."""
         control, projections = kinematics.control, kinematics.projections
         slave_forces, forces = np.zeros_like(positions), np.zeros_like(positions)
         self.add_forces(positions, kinematics, response, forces)
@@ -330,6 +341,8 @@ class PairMechanics:
             gap=control.gap / weight,
             pressure_field=np.array([field.min(), field.max()]) if field.size else np.zeros(2),
             excluded=int(np.count_nonzero(projections.found == 0)),
+            friction_work=float(work[0]),
+            spurious_work=float(work[1]),
         )
 
     def state(self, kinematics: Kinematics, response: Response) -> ContactState:

@@ -103,6 +103,7 @@ class Simulation:
         log: list[AugmentationRecord] = []
         orders: list[float] = []
         cuts = substeps = 0
+        work = np.zeros((len(self.equilibrium.pairs), 2))
         longest = self.equilibrium.supports.longest_increment(step)
         while time < step:
             increment = min(self._increment * longest, step - time)
@@ -118,8 +119,9 @@ class Simulation:
             for part in parts:
                 log += part.augmentations
                 orders += [order for order in part.orders if np.isfinite(order)]
+                work += self._work(part.balance)
             self._grow(increment / longest, parts)
-        result = self._result(step, state, parts[-1].balance, tuple(log), orders, substeps, cuts)
+        result = self._result(step, state, parts[-1].balance, work, tuple(log), orders, substeps, cuts)
         self._warn(self._lost.after_step(parts[-1].balance, result))
         self._warn(self._pulling.after_step(parts[-1].balance, step))
         self._warn(self._sharing.after_step(result))
@@ -187,10 +189,23 @@ class Simulation:
             reactions.append(Reaction(forces.sum(axis=0), moment(positions[points] - centre, forces), centre + self.equilibrium.origin))
         return tuple(reactions)
 
-    def _result(
-        self, step: int, state: State, balance: Balance, log: tuple[AugmentationRecord, ...], orders: list[float], substeps: int, cuts: int
-    ) -> StepResult:
+    def _work(self, balance: Balance) -> FloatArray:
+        """Friction work and spurious work of each contact pair in the increment that ends here, shape (pairs, 2) (theory 3.31)."""
         pairs = zip(self.equilibrium.pairs, balance.kinematics, balance.responses, strict=True)
+        return np.array([pair.work(balance.positions, k, r) for pair, k, r in pairs]).reshape(-1, 2)
+
+    def _result(
+        self,
+        step: int,
+        state: State,
+        balance: Balance,
+        work: FloatArray,
+        log: tuple[AugmentationRecord, ...],
+        orders: list[float],
+        substeps: int,
+        cuts: int,
+    ) -> StepResult:
+        pairs = zip(self.equilibrium.pairs, balance.kinematics, balance.responses, work, strict=True)
         timings, counters = self.ledger.take()
         origin = self.equilibrium.origin
         return StepResult(
@@ -199,7 +214,7 @@ class Simulation:
             time=float(step),
             state=replace(state, positions=state.positions + origin),
             reactions=self._reactions(float(step), balance.positions, balance.total),
-            contacts=tuple(_about_origin(pair.result(balance.positions, k, r), origin) for pair, k, r in pairs),
+            contacts=tuple(_about_origin(pair.result(balance.positions, k, r, w), origin) for pair, k, r, w in pairs),
             augmentations=log,
             newton_order=float(np.median(orders)) if orders else float("nan"),
             substeps=substeps,
