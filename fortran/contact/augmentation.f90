@@ -1,6 +1,8 @@
 !> Control pressures and tractions of an augmented penalty law, and their derivatives as rows (theory 4).
 module isomortar_contact_augmentation
+  use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
+  use isomortar_base_predicate, only: is_compressed
   use isomortar_contact_blocks, only: gap_row, has_friction, multipliers_t, row_metric, row_slip, row_slip_sum
   use isomortar_contact_control, only: control_t, integrate_slip_sum
   use isomortar_contact_friction_law, only: friction_t
@@ -60,6 +62,8 @@ contains
       allocate (response%multipliers%pressure(n), response%multipliers%traction(2, n), response%multipliers%active(n), &
         response%state(n), response%pressure_slope(n), response%traction_slope(2, 6, n))
     end associate
+    if (contracts) call require(size(control%weight) == slave%test%count, "respond: control quantities are the slave's")
+    if (contracts) call require(size(law%bears) == slave%test%count, "respond: the law is one of its control points")
     field_slip = 0.0_wp
     present = 1.0_wp
     call integrate_functions(slave, present, whole)
@@ -72,6 +76,11 @@ contains
     else
       call augmented_multipliers(control, law, whole(1, :), response)
     end if
+    associate (values => response%multipliers)
+      if (contracts) call require(.not. any(values%pressure < 0.0_wp), "respond: pressures press")
+      if (contracts) call require(all(values%active .eqv. response%state /= state_open), "respond: what is active is closed")
+      if (contracts) call require(all(values%active .or. .not. any(abs(values%traction) > 0.0_wp, 1)), "respond: so are tractions")
+    end associate
   end subroutine respond
 
   !> Active control points (theory 4.3). The pressure of the current augmentation is zero for inactive ones. `whole` is
@@ -167,6 +176,9 @@ contains
     real(wp) :: metric(2, 2), slip(2), factor
     integer :: a, b, i, k
 
+    if (contracts) call require(size(rows, 2) >= row_metric + 2, "trial_rows: there are rows of friction")
+    if (contracts) call require(is_compressed(pattern%start, size(rows, 3)), "trial_rows: rows are those of a pattern")
+    if (contracts) call require(size(trial, 3) == size(rows, 3), "trial_rows: and so are results")
     trial = 0.0_wp
     do i = 1, size(active)
       if (.not. active(i)) cycle
@@ -201,6 +213,9 @@ contains
     integer, allocatable :: columns(:)
     integer :: a, b, i, j, k, n
 
+    if (contracts) call require(size(rows, 2) > row_slip_sum, "trial_rows_summed: there are rows of the slip sum")
+    if (contracts) call require(size(rows, 3) == size(pattern%column), "trial_rows_summed: rows are those of a pattern")
+    if (contracts) call require(size(trial, 3) == size(wide%column), "trial_rows_summed: results are those of a pattern")
     allocate (metric(3, size(neighbours%column)), columns(max(maxval(pattern%column), maxval(wide%column))))
     columns = 0
     trial = 0.0_wp
@@ -277,6 +292,8 @@ contains
     integer :: i, k
 
     allocate (columns(max(maxval(pattern%column), maxval(wide%column))))
+    if (contracts) call require(size(rows, 3) == size(pattern%column), "multiplier_rows: rows are those of a pattern")
+    if (contracts) call require(size(result, 3) == size(wide%column), "multiplier_rows: results are those of a pattern")
     columns = 0
     result = 0.0_wp
     do i = 1, size(response%state)
@@ -312,6 +329,8 @@ contains
     integer, allocatable :: columns(:)
     integer :: a, b, i, multipliers
 
+    if (contracts) call require(is_compressed(target_pattern%start, size(target, 3)), "condense: blocks are those of a pattern")
+    if (contracts) call require(is_compressed(wide%start, size(changes, 3)), "condense: changes are those of a pattern")
     allocate (columns(size(target_pattern%start) - 1), source=0)
     multipliers = merge(3, 1, has_friction(size(rows, 2)))
     do i = 1, size(active)

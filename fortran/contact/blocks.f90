@@ -2,7 +2,9 @@
 !>
 !> The rows are returned apart from what they are multiplied with, so that one pass serves every way of enforcing contact.
 module isomortar_contact_blocks
+  use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
+  use isomortar_base_predicate, only: is_compressed, is_symmetric
   use isomortar_base_status, only: status_ok, status_pattern
   use isomortar_contact_gap_map_map, only: all_components, contact_point_t, gap_map_t, projections_t, variations_t
   use isomortar_contact_gap_map_nodal_normals, only: add_turning, carry, carry_form, carry_rows, normals_t, reach, reached_t
@@ -81,11 +83,12 @@ contains
     type(multipliers_t), intent(in) :: multipliers
     real(wp), intent(inout) :: forces(:, :)
     type(normals_t) :: normals
-    real(wp), allocatable :: all(:, :), on_normals(:, :)
+    real(wp), allocatable :: extended(:, :), on_normals(:, :)
 
-    call map%extend(positions, normals, all)
+    if (contracts) call require(all(shape(forces) == shape(positions)), "integrate_forces: forces are those of the positions")
+    call map%extend(positions, normals, extended)
     allocate (on_normals(3, normals%count), source=0.0_wp)
-    call integrate_each(slave, map, all, projections, multipliers, forces, on_normals)
+    call integrate_each(slave, map, extended, projections, multipliers, forces, on_normals)
     call carry(normals, on_normals, forces)
   end subroutine integrate_forces
 
@@ -146,15 +149,19 @@ contains
     type(batch_t) :: batch
     logical :: pending(slave%per_element), together(slave%per_element)
     type(normals_t) :: normals
-    real(wp), allocatable :: all(:, :), forces(:, :), on_normals(:, :)
+    real(wp), allocatable :: extended(:, :), forces(:, :), on_normals(:, :)
     integer, allocatable :: stencils(:, :)
     integer :: columns(size(positions, 2))
     integer :: before, e, k
 
+    if (contracts) call require(is_compressed(row_pattern%start, size(rows, 3)), "integrate_blocks: rows are those of a pattern")
+    if (contracts) call require(size(row_pattern%start) == slave%test%count + 1, "integrate_blocks: each test function has a row")
+    if (contracts) call require(is_compressed(pattern%start, size(tangent, 3)), "integrate_blocks: blocks are those of a pattern")
+    if (contracts) call require(size(pattern%start) == size(positions, 2) + 1, "integrate_blocks: each control point has a row")
     status = status_pattern
     place = 0
     columns = 0
-    call map%extend(positions, normals, all)
+    call map%extend(positions, normals, extended)
     stencils = map%stencils(projections)
     call reserve(slave, map, size(pending), map%vectors(with_friction), size(rows, 2), batch)
     do e = 1, size(slave%test%nodes, 2)
@@ -168,7 +175,7 @@ contains
         batch%count = 0
         do k = 1, size(together)
           if (.not. together(k)) cycle
-          call take_sample(slave, map, all, projections, e, before + k, with_friction, sample)
+          call take_sample(slave, map, extended, projections, e, before + k, with_friction, sample)
           call add_sample(slave, map, before + k, projections%slips(before + k), sample, field_slip(:, before + k), &
             fields_at(slave, multipliers, e, before + k), batch)
         end do
@@ -183,7 +190,7 @@ contains
     end if
     if (normals%count > 0) then
       allocate (forces(3, size(positions, 2)), on_normals(3, normals%count), source=0.0_wp)
-      call integrate_each(slave, map, all, projections, multipliers, forces, on_normals)
+      call integrate_each(slave, map, extended, projections, multipliers, forces, on_normals)
       call add_turning(normals, positions, on_normals, pattern, columns, tangent, place)
       if (place > 0) return
     end if
@@ -344,6 +351,7 @@ contains
     vectors = size(second, 4)
     form = 0.0_wp
     call map%second(sample%point, sample%variations, area * field(1), area * field(2:3), form)
+    if (contracts .and. norm2(field(2:3)) <= 0.0_wp) call require(map%leans .or. is_symmetric(form), "spread_geometric: so is Ddg")
     do k = 1, vectors
       do l = 1, vectors
         by_vector(l, :, :, k) = form(3 * k - 2:3 * k, 3 * l - 2:3 * l)

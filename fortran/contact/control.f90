@@ -1,6 +1,7 @@
 !> First pass over the slave quadrature points: projection and control quantities (theory 4.1).
 module isomortar_contact_control
   use isomortar_base_algebra, only: first_not_finite
+  use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
   use isomortar_base_status, only: status_not_finite, status_ok
   use isomortar_contact_gap_map_map, only: contact_point_t, gap_map_t, projections_t
@@ -39,20 +40,22 @@ contains
     type(projections_t), intent(inout) :: projections
     integer, intent(out) :: status, place
     type(normals_t) :: normals
-    real(wp), allocatable :: all(:, :)
+    real(wp), allocatable :: extended(:, :)
     integer :: q
 
+    if (contracts) call require(size(had) == size(slave%area) .and. size(started) == size(had), "project_points: points")
     place = first_not_finite(positions, slave%point)
     status = merge(status_not_finite, status_ok, place > 0)
     if (status /= status_ok) return
-    call map%extend(positions, normals, all)
-    call map%locate(slave, all, started, had, projections, status, place)
+    call map%extend(positions, normals, extended)
+    call map%locate(slave, extended, started, had, projections, status, place)
     if (status /= status_ok) return
+    if (contracts) call require(all(projections%found .or. projections%doubt == status_ok), "project_points: doubt is of a foot")
     projections%origin = origin
     projections%slips = projections%found .and. had
     do q = 1, size(slave%area)
       projections%slip(:, q) = 0.0_wp
-      if (projections%slips(q)) projections%slip(:, q) = map%slip(slave, all, projections, q)
+      if (projections%slips(q)) projections%slip(:, q) = map%slip(slave, extended, projections, q)
     end do
   end subroutine project_points
 
@@ -84,11 +87,13 @@ contains
     type(control_t), intent(inout) :: control
     type(contact_point_t) :: point
     type(normals_t) :: normals
-    real(wp), allocatable :: all(:, :), coefficients(:, :), fields(:, :), totals(:, :)
+    real(wp), allocatable :: extended(:, :), coefficients(:, :), fields(:, :), totals(:, :)
     real(wp) :: tangents(3, 2)
     integer :: points(map%bearing()), q
 
-    call map%extend(positions, normals, all)
+    if (contracts) call require(size(projections%found) == size(slave%area), "control_quantities: points are the slave's")
+    if (contracts) call require(size(control%weight) == slave%test%count, "control_quantities: functions are the slave's")
+    call map%extend(positions, normals, extended)
     allocate (fields(4, size(slave%area)), totals(4, slave%test%count))
     allocate (coefficients(map%bearing(), map%vectors(of_slip=.false.)))
     fields = 0.0_wp
@@ -100,7 +105,7 @@ contains
         control%point_metric(:, q) = [sum(tangents(:, 1)**2), dot_product(tangents(:, 1), tangents(:, 2)), sum(tangents(:, 2)**2)]
       end if
       if (.not. projections%found(q)) cycle
-      call map%at(slave, all, projections, q, .false., point, points, coefficients)
+      call map%at(slave, extended, projections, q, .false., point, points, coefficients)
       fields(:, q) = [1.0_wp, point%gap, projections%slip(:, q)]
       control%point_metric(:, q) = [point%metric(1, 1), point%metric(1, 2), point%metric(2, 2)]
     end do
@@ -154,6 +159,7 @@ contains
     real(wp), allocatable :: fields(:, :)
     integer :: e, q
 
+    if (contracts) call require(size(control_slip, 2) == slave%test%count, "integrate_slip_sum: functions are the slave's")
     allocate (fields(2, size(slave%area)))
     do q = 1, size(slave%area)
       e = (q - 1) / slave%per_element + 1

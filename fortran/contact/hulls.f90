@@ -3,7 +3,9 @@
 !> A point that is farther from a sphere, box or hull than from some point of the surface has no nearer point in that element.
 module isomortar_contact_hulls
   use isomortar_base_algebra, only: cross, identity
+  use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
+  use isomortar_base_predicate, only: is_index
   use isomortar_nurbs_direction, only: basis, direction_t
   use isomortar_nurbs_surface, only: homogeneous_net, surface_element_count, surface_element_of, surface_t
   implicit none
@@ -41,6 +43,7 @@ contains
 
     elements = surface_element_count(surface)
     points = surface%direction%order + 1
+    if (contracts) call require(all(is_index(surface%point, size(positions, 2))), "enclose: the surface is among the positions")
     allocate (hulls%centre(elements, 3), hulls%radius(elements), hulls%frame(3, 3, elements), hulls%half(3, elements))
     allocate (hulls%corner(3, product(points), elements), hulls%sample(3, product(points), elements), hulls%curvature(elements))
     functions1 = functions_on_grid(surface%direction(1))
@@ -234,6 +237,7 @@ contains
       count = count + 1
       list(count) = e
     end do
+    if (contracts) call require(all(is_index(list(:count), size(hulls%radius))), "within_reach: elements are those with hulls")
   end subroutine within_reach
 
   !> Whether no point of element e is nearer to x than `distance`: by its sphere, by its box, then by planes across the way to

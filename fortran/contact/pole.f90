@@ -4,7 +4,9 @@
 !> the pole the foot is the control point, as on a corner of C0 lines: the pole of a body that deforms is a cone's vertex.
 module isomortar_contact_pole
   use isomortar_base_algebra, only: cross
+  use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
+  use isomortar_base_predicate, only: is_unit
   use isomortar_contact_gap_map_map, only: contact_point_t
   use isomortar_nurbs_surface, only: homogeneous_net, surface_point, surface_t
   implicit none
@@ -171,6 +173,7 @@ contains
     type(view_t) :: view
     real(wp) :: d(3)
 
+    if (contracts) call require(pole /= 0, "hold_at_pole: there is a pole")
     call look_from_pole(surface, positions, x, pole, view)
     d = x - view%centre
     point%surface = 0.0_wp
@@ -179,6 +182,7 @@ contains
     point%turns = view%vertex
     point%normal = surface%outward * view%across
     if (point%turns) point%normal = sign(1.0_wp, dot_product(d, point%normal)) * d / norm2(d)
+    if (contracts) call require(is_unit(point%normal), "hold_at_pole: the normal is a unit vector")
     point%gap = -dot_product(d, point%normal)
     point%tangent = 0.0_wp
     point%metric = 0.0_wp

@@ -2,7 +2,9 @@
 !>
 !> A search from a start ends at the nearest place near that. Then every other element whose hull comes nearer is searched too.
 module isomortar_contact_projection
+  use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
+  use isomortar_base_predicate, only: is_index
   use isomortar_contact_hulls, only: hulls_t, is_farther, nearest_sample
   use isomortar_contact_search, only: descend, search_element, search_t
   use isomortar_nurbs_surface, only: homogeneous_net, surface_element_count, surface_element_of, surface_point, &
@@ -20,7 +22,7 @@ module isomortar_contact_projection
 
 contains
 
-  !> A search that starts at the nearest sample of all elements.
+  !> A search that starts at the nearest sample of all elements; at the first element's where no squared distance is a number.
   pure function start_nearest(surface, hulls, x) result(here)
     type(surface_t), intent(in) :: surface
     type(hulls_t), intent(in) :: hulls
@@ -32,11 +34,12 @@ contains
     least = huge(1.0_wp)
     do e = 1, surface_element_count(surface)
       call nearest_sample(surface, hulls, e, x, xi, square)
-      if (square >= least) cycle
+      if (e > 1 .and. .not. square < least) cycle
       least = square
       here%place = surface_element_of(surface, e)
       here%xi = xi
     end do
+    if (contracts) call require(all(is_index(here%place, surface%direction%elements)), "start_nearest: there is such an element")
   end function start_nearest
 
   !> Search the elements of a list that may hold a nearer point than the one found, and go on from there: first from what samples
@@ -51,6 +54,7 @@ contains
     real(wp) :: square
     integer :: count, k, near(size(list))
 
+    if (contracts) call require(all(is_index(list, surface_element_count(surface))), "look_round: there are such elements")
     count = 0
     do k = 1, size(list)
       if (is_settled(surface, hulls, list(k), x, here)) cycle

@@ -6,7 +6,9 @@
 !> fixed, and the foot belongs to the lower element, wherever the search came from.
 module isomortar_contact_search
   use isomortar_base_algebra, only: cross
+  use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
+  use isomortar_base_predicate, only: is_index, slack, within
   use isomortar_contact_pole, only: look_from_pole, net_about_pole, pole_bound, pole_of, view_t
   use isomortar_nurbs_direction, only: element_at, is_kink
   use isomortar_nurbs_surface, only: homogeneous_net, step_across, surface_element_count, surface_point, surface_t
@@ -240,6 +242,7 @@ contains
     real(wp) :: low(2), high(2), slope(2), hessian(2, 2), metric(2, 2), step(2), target(3), centre(3), lengths(2), flat
     integer :: a, iteration, pole
 
+    if (contracts) call require(all(is_index(here%place, surface%direction%elements)), "search_element: there is such an element")
     call homogeneous_net(surface, positions, here%place, net)
     target = x
     flat = flat_metric
@@ -264,6 +267,7 @@ contains
       end if
       step = min(max(here%xi + step, low), high) - here%xi
       here%xi = here%xi + step
+      if (contracts) call require(all(within(here%xi, low, high, slack)), "search_element: xi is in the element")
       here%settled = all(abs(step) <= last_step * (high - low))
       if (pole /= 0 .and. .not. here%settled) then ! a coordinate is known to round-off of the distance over its length
         lengths = abs(step) * sqrt([metric(1, 1), metric(2, 2)])

@@ -1,7 +1,9 @@
 !> The slave side of a contact pair: its functions and quadrature, fixed for a whole computation.
 module isomortar_contact_slave
   use isomortar_base_algebra, only: add_product, cross
+  use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
+  use isomortar_base_predicate, only: is_index, is_unit
   use isomortar_nurbs_direction, only: direction_t
   use isomortar_nurbs_quadrature, only: gauss_legendre
   use isomortar_nurbs_surface, only: surface_basis, surface_element_count, surface_element_of, surface_nodes, surface_t
@@ -53,6 +55,8 @@ contains
     real(wp) :: low(2), length(2), tangents(3, 2), values(size(basis, 1), 3)
     integer :: e, i, j, k, place(2)
 
+    if (contracts) call require(size(nodes, 2) == surface_element_count(surface), "slave_tables: a column for each element")
+    if (contracts) call require(size(area) == product(points) * size(nodes, 2), "slave_tables: all elements have as many points")
     call gauss_legendre(at1, weight1)
     call gauss_legendre(at2, weight2)
     k = 0
@@ -72,6 +76,7 @@ contains
         end do
       end do
     end do
+    if (contracts) call require(.not. any(area < 0.0_wp), "slave_tables: areas are not below zero")
   end subroutine slave_tables
 
   !> Position of a slave quadrature point.
@@ -82,6 +87,7 @@ contains
     real(wp) :: x(3)
     integer :: a, e
 
+    if (contracts) call require(is_index(q, size(slave%area)), "slave_position: there is such a point")
     e = (q - 1) / slave%per_element + 1
     x = 0.0_wp
     do a = 1, size(slave%shape%nodes, 1)
@@ -97,6 +103,7 @@ contains
     real(wp) :: tangents(3, 2)
     integer :: a, e
 
+    if (contracts) call require(is_index(q, size(slave%area)), "slave_tangents: there is such a point")
     e = (q - 1) / slave%per_element + 1
     tangents = 0.0_wp
     do a = 1, size(slave%shape%nodes, 1)
@@ -114,6 +121,7 @@ contains
     tangents = slave_tangents(slave, positions, q)
     normal = slave%outward * cross(tangents(:, 1), tangents(:, 2))
     normal = normal / norm2(normal)
+    if (contracts) call require(is_unit(normal), "slave_normal: it is a unit vector")
   end function slave_normal
 
   !> <R^I f> (theory 2.8) for every test function, of fields given at the quadrature points: totals(field, I).
@@ -123,6 +131,9 @@ contains
     real(wp), intent(out) :: totals(:, :)
     integer :: a, e, q
 
+    if (contracts) call require(size(slave%area) == slave%per_element * size(slave%test%nodes, 2), "integrate_functions: all")
+    if (contracts) call require(size(fields, 2) == size(slave%area), "integrate_functions: fields are given at all points")
+    if (contracts) call require(all(shape(totals) == [size(fields, 1), slave%test%count]), "integrate_functions: there is room")
     totals = 0.0_wp
     do q = 1, size(slave%area)
       e = (q - 1) / slave%per_element + 1

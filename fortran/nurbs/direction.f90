@@ -1,6 +1,8 @@
 !> One parametric direction of a patch: elements, and the functions that do not vanish on each of them.
 module isomortar_nurbs_direction
+  use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
+  use isomortar_base_predicate, only: is_index, sums_to
   implicit none
   private
 
@@ -36,6 +38,8 @@ contains
     type(direction_t) :: self
     integer :: i, last
 
+    if (contracts) call require(order >= 1 .and. order <= max_order, "new_direction: the order is one that there is")
+    if (contracts) call require(all(knots(2:) >= knots(:size(knots) - 1)), "new_direction: knots do not fall")
     self%family = family
     self%order = order
     last = size(knots) - 1
@@ -50,6 +54,8 @@ contains
       end if
     end do
     self%count = merge(last - order, order * last + 1, family == family_nurbs)
+    if (contracts) call require(self%elements >= 1, "new_direction: there is an element")
+    if (contracts) call require(self%first(self%elements) + order == self%count - 1, "new_direction: elements end at the end")
   end function new_direction
 
   !> The element that holds coordinate u; the one above where u is a boundary, the last one at the end.
@@ -70,6 +76,9 @@ contains
       end if
     end do
     element = low
+    if (contracts) call require(is_index(element, self%elements), "element_at: there is such an element")
+    if (contracts) call require(element == 1 .or. .not. u < self%boundary(element - 1), "element_at: u is not below it")
+    if (contracts) call require(element == self%elements .or. .not. u > self%boundary(element), "element_at: u is not above it")
   end function element_at
 
   !> Whether functions are only continuous from element to element + 1 (theory 2.9). From the last one on, at a seam, they are:
@@ -78,6 +87,7 @@ contains
     type(direction_t), intent(in) :: self
     integer, intent(in) :: element
 
+    if (contracts) call require(is_index(element, self%elements), "is_kink: there is such an element")
     is_kink = element == self%elements
     if (.not. is_kink) is_kink = self%first(element + 1) - self%first(element) >= self%order
   end function is_kink
@@ -90,11 +100,15 @@ contains
     integer, intent(in) :: derivatives
     real(wp), intent(out) :: values(0:self%order, 0:derivatives)
 
+    if (contracts) call require(is_index(element, self%elements), "basis: there is such an element")
+    if (contracts) call require(derivatives >= 0, "basis: derivatives have an order")
     if (self%family == family_nurbs) then
       call bspline_basis(self, self%first(element) + self%order, u, derivatives, values)
     else
       call lagrange_basis(self, element, u, derivatives, values)
     end if
+    if (contracts) call require(sums_to(values(:, 0), 1.0_wp), "basis: functions sum to one")
+    if (contracts) call require(derivatives == 0 .or. sums_to(values(:, derivatives), 0.0_wp), "basis: derivatives sum to zero")
   end subroutine basis
 
   !> Cox and de Boor: raise the order by the recurrence order - k times, then k times by its derivative.

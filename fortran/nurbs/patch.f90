@@ -1,6 +1,8 @@
 !> Volume patches: the tensor product of three directions, with weights and global control point numbers.
 module isomortar_nurbs_patch
+  use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
+  use isomortar_base_predicate, only: is_index, sums_to
   use isomortar_nurbs_direction, only: basis, direction_t
   use isomortar_nurbs_quadrature, only: gauss_legendre
   implicit none
@@ -40,6 +42,7 @@ contains
     integer, intent(in) :: e
     integer :: place(3)
 
+    if (contracts) call require(is_index(e, element_count(self)), "element_of: there is such an element")
     place(1) = mod(e - 1, self%direction(1)%elements) + 1
     place(2) = mod((e - 1) / self%direction(1)%elements, self%direction(2)%elements) + 1
     place(3) = (e - 1) / (self%direction(1)%elements * self%direction(2)%elements) + 1
@@ -52,6 +55,8 @@ contains
     integer, intent(out) :: nodes(:)
     integer :: a, first(3), i, j, k, d
 
+    if (contracts) call require(all(is_index(place, self%direction%elements)), "element_nodes: there is such an element")
+    if (contracts) call require(size(nodes) == product(self%direction%order + 1), "element_nodes: there is room for an element")
     do d = 1, 3
       first(d) = self%direction(d)%first(place(d))
     end do
@@ -64,6 +69,7 @@ contains
         end do
       end do
     end do
+    if (contracts) call require(all(is_index(nodes, size(self%point))), "element_nodes: they are points of the patch")
   end subroutine element_nodes
 
   !> Functions and quadrature of every element of one direction.
@@ -84,6 +90,7 @@ contains
       do q = 1, points
         call basis(direction, e, low + position(q) * length, derivatives, rule(e)%values(:, :, q))
       end do
+      if (contracts) call require(sums_to(rule(e)%weight, length), "line_rule: weights sum to the element's length")
     end do
   end subroutine line_rule
 

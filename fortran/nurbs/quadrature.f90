@@ -1,6 +1,8 @@
 !> Gauss-Legendre quadrature of any number of points.
 module isomortar_nurbs_quadrature
+  use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
+  use isomortar_base_predicate, only: sums_to
   implicit none
   private
 
@@ -16,6 +18,7 @@ contains
     real(wp) :: z, value, slope, step
 
     n = size(points)
+    if (contracts) call require(n >= 1 .and. size(weights) == n, "gauss_legendre: as many weights as points")
     do i = 1, n
       z = -cos(pi * (real(i, wp) - 0.25_wp) / (real(n, wp) + 0.5_wp))
       do iteration = 1, 100
@@ -28,6 +31,8 @@ contains
       points(i) = 0.5_wp * (1.0_wp + z)
       weights(i) = 1.0_wp / ((1.0_wp - z) * (1.0_wp + z) * slope**2)
     end do
+    if (contracts) call require(all([points, 1.0_wp] > [0.0_wp, points]), "gauss_legendre: points rise from 0 to 1")
+    if (contracts) call require(all(weights > 0.0_wp) .and. sums_to(weights, 1.0_wp), "gauss_legendre: weights sum to 1")
   end subroutine gauss_legendre
 
   !> Legendre polynomial of degree n and its derivative at z, by the three-term recurrence.

@@ -1,6 +1,8 @@
 !> Contact patches: a face of a volume patch, with derivatives to order three.
 module isomortar_nurbs_surface
+  use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
+  use isomortar_base_predicate, only: is_index, sums_to
   use isomortar_nurbs_direction, only: basis, direction_t, max_order
   use isomortar_nurbs_patch, only: patch_t
   implicit none
@@ -38,6 +40,7 @@ contains
     type(surface_t) :: self
     integer :: first, second, i, j, index(3), a
 
+    if (contracts) call require(is_index(axis, 3) .and. is_index(end + 1, 2), "face_of: the face is one of the six")
     first = mod(axis, 3) + 1
     second = mod(axis + 1, 3) + 1
     self%direction(1) = patch%direction(first)
@@ -66,6 +69,7 @@ contains
       self%pole(1, 2) = self%closed(1) .and. all(self%point(:count(1)) == self%point(1))
       self%pole(2, 2) = self%closed(1) .and. all(self%point(size(self%point) - count(1) + 1:) == self%point(size(self%point)))
     end associate
+    if (contracts) call require(all(is_index(self%point, maxval(patch%point))), "face_of: control points are the patch's")
   end function face_of
 
   !> Go to the element `step` (-1, 0 or 1 by direction) further on, past a seam too; `xi` is put on the line that is crossed.
@@ -78,6 +82,8 @@ contains
     logical, intent(out) :: within
     integer :: a
 
+    if (contracts) call require(all(is_index(place, self%direction%elements)), "step_across: there is such an element")
+    if (contracts) call require(all(abs(step) <= 1), "step_across: steps lead to neighbours")
     within = .true.
     do a = 1, 2
       associate (last => self%direction(a)%elements)
@@ -89,6 +95,7 @@ contains
         if (step(a) /= 0) xi(a) = self%direction(a)%boundary(place(a) - merge(1, 0, step(a) > 0))
       end associate
     end do
+    if (contracts) call require(all(is_index(place, self%direction%elements)), "step_across: there is such a neighbour")
   end subroutine step_across
 
   !> A difference of coordinates, the shortest way round in closed directions (theory 3.20).
@@ -130,6 +137,8 @@ contains
     integer, intent(out) :: nodes(:)
     integer :: a, i, j
 
+    if (contracts) call require(all(is_index(place, self%direction%elements)), "surface_nodes: there is such an element")
+    if (contracts) call require(size(nodes) == product(self%direction%order + 1), "surface_nodes: there is room for an element")
     a = 0
     do j = self%direction(2)%first(place(2)), self%direction(2)%first(place(2)) + self%direction(2)%order
       do i = self%direction(1)%first(place(1)), self%direction(1)%first(place(1)) + self%direction(1)%order
@@ -137,6 +146,7 @@ contains
         nodes(a) = 1 + i + self%direction(1)%count * j
       end do
     end do
+    if (contracts) call require(all(is_index(nodes, size(self%point))), "surface_nodes: they are points of the surface")
   end subroutine surface_nodes
 
   !> Control points of an element in homogeneous form: times their weights, and these.
@@ -154,6 +164,7 @@ contains
         net(4, i, j) = self%weight(a)
       end do
     end do
+    if (contracts) call require(all(net(4, :, :) > 0.0_wp), "homogeneous_net: weights are positive")
   end subroutine homogeneous_net
 
   !> Point of an element and its derivatives to order 2 (columns: derivative_column), from its net (theory 2.5).
@@ -204,6 +215,8 @@ contains
     real(wp) :: u(0:max_order, 0:3), v(0:max_order, 0:3), total(10)
     integer :: a, column, i, j, k, l, pu, pv
 
+    if (contracts) call require(order >= 0 .and. order <= 3, "surface_basis: derivatives are those in the table")
+    if (contracts) call require(all(shape(values) >= [size(nodes), derivative_columns(order)]), "surface_basis: there is room")
     pu = self%direction(1)%order
     pv = self%direction(2)%order
     call basis(self%direction(1), place(1), xi(1), order, u(0:pu, 0:order))
@@ -222,6 +235,8 @@ contains
       end do
     end do
     call divide(order, total, values)
+    if (contracts) call require(sums_to(values(:, 1), 1.0_wp), "surface_basis: functions sum to one")
+    if (contracts) call require(order == 0 .or. sums_to(values(:, min(2, order + 1)), 0.0_wp), "surface_basis: slopes sum to zero")
   end subroutine surface_basis
 
   !> From the derivatives of numerators and denominator to those of the quotients (theory 2.5).

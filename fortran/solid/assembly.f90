@@ -3,7 +3,9 @@
 !> Elements are computed in batches by all threads. Sums into the system are then formed by row: a thread has rows of its own and
 !> goes through the elements in their order, so that the bits of the result do not depend on the number of threads.
 module isomortar_solid_assembly
+  use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
+  use isomortar_base_predicate, only: is_compressed, is_index
   use isomortar_base_status, only: status_ok, status_pattern
   use isomortar_nurbs_patch, only: element_count, element_nodes, element_of, line_rule, line_rule_t, patch_t
   use isomortar_nurbs_tensor_product, only: line_pairs, line_pairs_t
@@ -54,10 +56,15 @@ contains
     type(element_t), allocatable :: batch(:)
     integer :: at(3), first, k, many
 
+    if (contracts) call require(all(shape(positions) == shape(references)), "add_body: the body is the reference's")
+    if (contracts) call require(all(shape(positions) == shape(residual)), "add_body: forces are those of the positions")
+    if (contracts) call require(all(is_index(patch%point, size(positions, 2))), "add_body: the patch is among the positions")
+    if (contracts) call require(present(pattern) .eqv. present(tangent), "add_body: a tangent has a pattern")
     call line_rule(patch%direction(1), points(1), 1, u)
     call line_rule(patch%direction(2), points(2), 1, v)
     call line_rule(patch%direction(3), points(3), 1, w)
     if (present(tangent)) then
+      if (contracts) call require(is_compressed(pattern%start, size(tangent, 3)), "add_body: blocks are those of a pattern")
       call line_pairs(u, uu)
       call line_pairs(v, vv)
       call line_pairs(w, ww)

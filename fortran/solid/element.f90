@@ -1,7 +1,9 @@
 !> Residual and tangent of one solid element, by sum factorisation.
 module isomortar_solid_element
   use isomortar_base_algebra, only: determinant, inverse
+  use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
+  use isomortar_base_predicate, only: is_balanced, is_symmetric
   use isomortar_base_status, only: status_folded, status_folded_initially, status_ok
   use isomortar_nurbs_patch, only: line_rule_t
   use isomortar_nurbs_tensor_product, only: integrate, integrate_pairs, interpolate, line_pairs_t
@@ -37,6 +39,8 @@ contains
     integer :: d, i, j, k, q
 
     status = status_ok
+    if (contracts) call require(all(shape(references) == shape(positions)), "sample_element: references are those of the positions")
+    if (contracts) call require(all(shape(positions) == [3, size(weight)]), "sample_element: positions are those of the element")
     call reserve(samples, size(values, 2))
     coefficients(:, 1) = weight
     do d = 1, 3 ! from the first control point, so that a rigid translation costs no digits
@@ -116,6 +120,7 @@ contains
     do a = 1, size(weight)
       residual(:, a) = weight(a) * sums(:, a)
     end do
+    if (contracts) call require(is_balanced(residual), "element_residual: forces are in balance")
   end subroutine element_residual
 
   !> The tangents K_ik of `component_pairs` without the weights of the control points: (pair, u, v, w), where each of u, v, w
@@ -133,6 +138,9 @@ contains
     allocate (along(m, 3), densities(m, 6, 4, 4), moduli(m, 3, 3, 6))
     do q = 1, m
       call material%tangent(samples%state(q), point)
+      if (contracts) call require(is_symmetric(point(:, :, 1)), "element_tangent: a_1j1l is symmetric, the law has an energy")
+      if (contracts) call require(is_symmetric(point(:, :, 2)), "element_tangent: so is a_2j2l")
+      if (contracts) call require(is_symmetric(point(:, :, 3)), "element_tangent: so is a_3j3l")
       moduli(q, :, :, :) = samples%volume(q) * point
     end do
     associate (g => samples%gradient)

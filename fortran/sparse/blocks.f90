@@ -1,7 +1,9 @@
 !> Compressed rows of 3x3 blocks: places are found by marking a row once, never by searching, and `lacks` tells of those
 !> that there are not.
 module isomortar_sparse_blocks
+  use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
+  use isomortar_base_predicate, only: is_index
   implicit none
   private
 
@@ -24,6 +26,7 @@ contains
     integer, intent(inout) :: place(:)
     integer :: k
 
+    if (contracts) call require(is_index(row, size(pattern%start) - 1), "mark_row: there is such a row")
     do k = pattern%start(row - 1) + 1, pattern%start(row)
       place(pattern%column(k)) = k
     end do

@@ -5,6 +5,8 @@
 !> and solves with the transpose of what it factorised: A x = b.
 module isomortar_sparse_lu
   use, intrinsic :: iso_c_binding, only: c_double, c_int, c_int64_t, c_null_ptr, c_ptr
+  use isomortar_base_contract, only: contracts, require
+  use isomortar_base_predicate, only: is_compressed, is_permutation
   use isomortar_sparse_umfpack, only: umfpack_defaults, umfpack_symbolic, umfpack_numeric, umfpack_solve, &
     umfpack_get_numeric, umfpack_di_free_symbolic, umfpack_dl_free_symbolic, umfpack_di_free_numeric, &
     umfpack_dl_free_numeric, umfpack_ok, umfpack_out_of_memory, umfpack_at, strategy_symmetric, ordering_metis, &
@@ -48,6 +50,8 @@ contains
     integer(c_int64_t), intent(out) :: code
     real(c_double) :: info(0:info_last)
 
+    if (contracts) call require(is_compressed(indptr, size(indices)), "order: rows follow one another")
+    if (contracts) call require(all(indices >= 0 .and. indices < size(indptr) - 1), "order: columns are unknowns")
     self%ordering = ordering
     self%unknowns = size(indptr) - 1
     if (size(indices, kind=c_int64_t) <= huge(1_c_int)) then
@@ -108,8 +112,10 @@ contains
 
     call forget_factors(self)
     if (allocated(self%start)) then
+      if (contracts) call require(size(values) == size(self%column), "eliminate: entries are those of the pattern")
       code = umfpack_numeric(self%start, self%column, values, self%symbolic, self%numeric, settings(self, 0), info)
     else
+      if (contracts) call require(size(values) == size(self%wide_column), "eliminate: entries are those of the pattern")
       code = umfpack_numeric(self%wide_start, self%wide_column, values, self%symbolic, self%numeric, settings(self, 0), info)
     end if
   end subroutine eliminate
@@ -123,6 +129,7 @@ contains
     integer(c_int64_t), intent(out) :: code
     real(c_double) :: info(0:info_last)
 
+    if (contracts) call require(size(b) == self%unknowns .and. size(x) == size(b), "substitute: vectors are those of the matrix")
     if (allocated(self%start)) then
       code = umfpack_solve(int(umfpack_at, c_int), self%start, self%column, values, x, b, self%numeric, &
         settings(self, refine), info)
@@ -149,10 +156,12 @@ contains
         allocate (rows(self%unknowns))
         if (umfpack_get_numeric(none, none, none, none, none, none, rows, none, pivots, do_recip, none, self%numeric) &
           == umfpack_ok) unknown = rows(minloc(abs(pivots), dim=1))
+        if (contracts) call require(unknown < 0 .or. is_permutation(int(rows, c_int64_t)), "smallest_pivot: rows are in some order")
       else
         allocate (wide_rows(self%unknowns))
         if (umfpack_get_numeric(none, none, none, none, none, none, wide_rows, none, pivots, wide_do_recip, none, &
           self%numeric) == umfpack_ok) unknown = wide_rows(minloc(abs(pivots), dim=1))
+        if (contracts) call require(unknown < 0 .or. is_permutation(wide_rows), "smallest_pivot: rows are in some order")
       end if
     end associate
   end function smallest_pivot

@@ -1,7 +1,9 @@
 !> Assembly of a linear system from blocked sources through places that are found once per pattern.
 module isomortar_sparse_scatter
   use, intrinsic :: iso_c_binding, only: c_int, c_int64_t
+  use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
+  use isomortar_base_predicate, only: is_compressed, is_index
   use isomortar_sparse_blocks, only: pattern_t
   implicit none
   private
@@ -25,6 +27,9 @@ contains
     integer(c_int64_t) :: k
     integer :: block, i, j, r, row
 
+    if (contracts) call require(is_compressed(system_start, size(system_column)), "find_places: rows follow one another")
+    if (contracts) call require(size(row_of) == 3 * (size(pattern%start) - 1), "find_places: all rows have their unknowns")
+    if (contracts) call require(all(is_index(pattern%column, size(column_of) / 3)), "find_places: and all columns")
     missing = .false.
     places = 0
     if (transposed) then
@@ -100,6 +105,8 @@ contains
     real(wp), intent(inout) :: values(:)
     integer(c_int64_t) :: k
 
+    if (contracts) call require(size(places) == size(source), "add_values: each entry has its place")
+    if (contracts) call require(all(places >= 0 .and. places <= size(values)), "add_values: places are those of the values")
     do k = 1, size(places, kind=c_int64_t)
       if (places(k) > 0) values(places(k)) = values(places(k)) + source(k)
     end do

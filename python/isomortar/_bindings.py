@@ -432,6 +432,8 @@ def multiplier_rows(
     points, columns = slave.test.count, max(row_pattern.highest, wide.highest) + 1
     _check_response(response, slave)
     _check_rows(row_pattern, rows, points, columns)
+    if law.summed and rows.shape[1] != ROW_KINDS["paper"]:
+        raise InputError(f"has {rows.shape[1]} kinds; allowed: {ROW_KINDS['paper']:d}, those of the slip sum that the law asks for", "rows")
     _check_pattern("neighbours", neighbours, points, points)
     _check_pattern("wide", wide, points, columns)
     changes, trial, status, place = _kernel.multiplier_rows(

@@ -89,6 +89,7 @@ contains
     projections%xi = reshape(moved%xi, [2, 1])
     projections%place = reshape(moved%place, [2, 1])
     projections%fixed = reshape(moved%fixed, [2, 1])
+    projections%found = [.true.]
     slave = lone_point(7)
     call map%at(slave, reshape([positions, x], [3, 7]), projections, 1, .true., point, points, coefficients)
     variations = map%first(point, 6)

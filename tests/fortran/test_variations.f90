@@ -75,6 +75,7 @@ contains
     projections%xi = reshape(here%xi, [2, 1])
     projections%place = reshape(here%place, [2, 1])
     projections%fixed = reshape(here%fixed, [2, 1])
+    projections%found = [.true.]
     slave = lone_point(26)
     call map%at(slave, positions, projections, 1, .true., state%point, state%points, state%coefficients)
     state%rows = map%first(state%point, vectors)

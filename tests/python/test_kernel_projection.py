@@ -90,3 +90,12 @@ def test_foot_on_a_ridge_is_fixed_across_it_and_in_the_lower_element(start: floa
 
 def test_beyond_the_edge_above_a_ridge_there_is_no_projection() -> None:
     assert project_on_roof(np.array([[0.0, 1.1, 0.1], [0.01, -0.1, 0.1]])).found.tolist() == [0, 0]
+
+
+@pytest.mark.parametrize("far", [1e160, 1e300])
+def test_points_whose_squared_distance_is_no_number_harm_no_others(far: float) -> None:
+    """Any start will do where no sample is the nearest, but it has to be one."""
+    points = np.array([[far, 0.0, 0.0], [0.0, far, -far], [0.0, 0.1, 0.6]])
+    projections, gap = project(2, 4, points, None)
+    assert projections.found[2] == 1
+    assert gap[2] == pytest.approx(-0.1)

@@ -143,6 +143,15 @@ def test_a_missing_block_is_an_error_wherever_it_is(assemblies, call, added):
             function(assembly, **whole | {added: without(whole[added], entry)})
 
 
+@pytest.mark.parametrize("kinds", [1, 2, 8, 9])
+def test_rows_without_the_slip_sum_are_refused_where_it_is_asked_for(assemblies, kinds):
+    assembly = assemblies[True]
+    rows = np.ones((len(assembly.patterns["rows"].column), kinds, 3))
+    args = assembly.kinematics.control, assembly.law, assembly.response, assembly.patterns["rows"], rows
+    with pytest.raises(InputError, match=rf"rows: has {kinds} kinds; allowed: 10"):
+        _bindings.multiplier_rows(assembly.pair.pair.slave, *args, assembly.patterns["neighbours"], assembly.patterns["wide"])
+
+
 def test_scatter_of_a_sound_pattern_is_that_of_a_dense_matrix(assemblies):
     """The rows on a full pattern hold the same numbers as on the sparse one, and zeros besides."""
     assembly = assemblies[False]

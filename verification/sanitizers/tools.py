@@ -41,7 +41,7 @@ def _library(name: str) -> str:
 
 
 TOOLS = {
-    "bounds": Tool(("--buildtype=debug",), report=r"Fortran runtime error: .*"),
+    "bounds": Tool(("--buildtype=debug",), report=r"Fortran runtime error: .*|contract broken: .*"),
     "address": Tool(
         ("--buildtype=debugoptimized", "-Db_sanitize=address,undefined", "-Db_lundef=false"),
         variables=(

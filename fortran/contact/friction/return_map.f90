@@ -1,6 +1,8 @@
 !> Friction at a control point: the return map of a trial traction, by any law, and its exact derivative (theory 4.6).
 module isomortar_contact_friction_return_map
+  use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
+  use isomortar_base_predicate, only: slack
   use isomortar_contact_friction_law, only: friction_t
   implicit none
   private
@@ -57,7 +59,9 @@ contains
     real(wp) :: radius, slope, length, along(2), contravariant(2), ratio, by_metric(3), shortened(2)
     integer :: a
 
+    if (contracts) call require(margin >= 0.0_wp .and. margin <= 1.0_wp, "return_map: the margin is a share")
     call friction%limit(pressure, radius, slope)
+    if (contracts) call require(.not. radius < 0.0_wp, "return_map: friction has no negative limit")
     length = metric_norm(trial, metric)
     derivative = 0.0_wp
     if (length <= radius * (1.0_wp - margin)) then
@@ -72,6 +76,7 @@ contains
     contravariant = raise_index(along, metric)
     ratio = radius / length
     traction = radius * along
+    if (contracts) call require(.not. abs(metric_norm(traction, metric) - radius) > slack * radius, "return_map: to the edge")
     shortened = traction / length
     if (present(radial)) shortened = onto_disk(radial, radius, metric) / length
     by_metric = -0.5_wp * length * [contravariant(1)**2, 2.0_wp * contravariant(1) * contravariant(2), contravariant(2)**2]

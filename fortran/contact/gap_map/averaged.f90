@@ -5,7 +5,9 @@
 !> tangents as well, and that of the way from the foot to the place of the last one.
 module isomortar_contact_gap_map_averaged
   use isomortar_base_algebra, only: add_product, cross, determinant, first_not_finite, identity, inverse, inverse2
+  use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
+  use isomortar_base_predicate, only: is_unit, sums_to
   use isomortar_base_status, only: status_not_finite, status_ok, status_passed_through
   use isomortar_contact_gap_map_averaged_climb, only: climb_between
   use isomortar_contact_gap_map_averaged_foot, only: accept, find_foot, foot_equation, foot_t, follow, scope_of, scope_t
@@ -178,6 +180,8 @@ contains
     integer :: n, nodes(size(points) / 3), origin(2)
     real(wp) :: before(size(nodes), 1), equation(3, 3), functions(size(nodes), 3), x(3)
 
+    if (contracts) call require(projections%found(q), "at: the point has a foot")
+    if (contracts) call require(all(shape(coefficients) == [self%bearing(), self%vectors(of_slip)]), "at: there is room")
     n = size(nodes)
     x = slave_position(slave, positions, q)
     call surface_nodes(self%surface, projections%place(:, q), nodes)
@@ -193,6 +197,8 @@ contains
     point%surface(:, 1:3) = matmul(positions(:, points(:n)), functions)
     point%field = matmul(positions(:, points(n + 1:2 * n)), functions)
     point%normal = point%field(:, 1) / norm2(point%field(:, 1))
+    if (contracts) call require(is_unit(point%normal), "at: the normal is a unit vector")
+    if (contracts) call require(sums_to(coefficients(:n, apart), -1.0_wp), "at: the foot moves with the master")
     point%gap = -dot_product(x - point%surface(:, 1), point%normal)
     equation = foot_equation(point%surface(:, 2:3), point%field, point%gap)
     point%inverse_foot = inverse(equation, determinant(equation))

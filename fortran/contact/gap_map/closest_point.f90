@@ -1,7 +1,9 @@
 !> The gap map of the closest point on a face of a deformable body (theory 3): inside the face, on its C0 lines, at its poles.
 module isomortar_contact_gap_map_closest_point
   use isomortar_base_algebra, only: first_not_finite
+  use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
+  use isomortar_base_predicate, only: sums_to
   use isomortar_base_status, only: status_degenerate_surface, status_lost_projection, status_no_slip, status_not_finite, &
     status_ok, status_passed_through
   use isomortar_contact_gap_map_kinematics, only: contact_point, first_variations, metric_variation, second_variations
@@ -106,6 +108,7 @@ contains
       doubt = status_ok
       if (here(q)%outcome == projection_inside .and. .not. is_isolated(here(q))) doubt = status_degenerate_surface
       if (here(q)%outcome == projection_lost) doubt = status_lost_projection
+      if (contracts) call require(here(q)%outcome /= projection_inside .or. here(q)%settled, "project_element: a foot has settled")
       if (doubt /= status_ok) here(q)%outcome = projection_inside
       if (here(q)%outcome == projection_degenerate) then
         status = status_degenerate_surface
@@ -170,6 +173,8 @@ contains
     integer :: nodes(size(points)), order, pole
     real(wp) :: functions(size(points), derivative_columns(merge(3, 2, of_slip))), x(3)
 
+    if (contracts) call require(projections%found(q), "at: the point has a foot")
+    if (contracts) call require(all(shape(coefficients) == [self%bearing(), self%vectors(of_slip)]), "at: there is room")
     order = merge(3, 2, of_slip)
     x = slave_position(slave, positions, q)
     associate (surface => self%surface, place => projections%place(:, q), xi => projections%xi(:, q))
@@ -180,6 +185,7 @@ contains
       points = surface%point(nodes)
       coefficients(:, 1) = -functions(:, 1)
       coefficients(:, 2:) = functions(:, 2:size(coefficients, 2))
+      if (contracts) call require(sums_to(coefficients(:, 1), -1.0_wp), "at: the foot moves with the master")
       if (is_at_pole(surface, place, xi)) then
         call hold_at_pole(surface, positions, x, pole, point)
         return

@@ -4,7 +4,9 @@
 !> three, friction on a surface all six.
 module isomortar_contact_gap_map_kinematics
   use isomortar_base_algebra, only: add_product, cross, inverse2
+  use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
+  use isomortar_base_predicate, only: is_unit
   use isomortar_contact_gap_map_kink_line, only: add_turn
   use isomortar_contact_gap_map_map, only: all_of_any => all_components, contact_point_t, variations_t
   implicit none
@@ -29,11 +31,13 @@ contains
     type(contact_point_t) :: self
     integer :: a, b
 
+    if (contracts) call require(size(derivatives, 2) >= 6, "contact_point: derivatives are those to order two")
     self%surface = 0.0_wp
     self%surface(:, 1:size(derivatives, 2)) = derivatives
     self%tangent = self%surface(:, 2:3)
     self%normal = outward * cross(self%tangent(:, 1), self%tangent(:, 2))
     self%normal = self%normal / norm2(self%normal)
+    if (contracts) call require(is_unit(self%normal), "contact_point: the normal is a unit vector")
     self%gap = -dot_product(x - self%surface(:, 1), self%normal)
     self%metric = matmul(transpose(self%tangent), self%tangent)
     self%inverse_metric = inverse2(self%metric)

@@ -3,7 +3,9 @@
 !> Gap and normal are continuous from a face onto the line, along it, and onto the next face.
 module isomortar_contact_gap_map_kink_line
   use isomortar_base_algebra, only: add_product, cross, determinant2, inverse2
+  use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
+  use isomortar_base_predicate, only: is_unit
   use isomortar_contact_gap_map_map, only: contact_point_t
   use isomortar_nurbs_surface, only: derivative_columns, step_across, surface_basis, surface_nodes, surface_t
   implicit none
@@ -29,12 +31,14 @@ contains
     real(wp) :: d(3), facing(3), h(2, 2)
     integer :: a, b
 
+    if (contracts) call require(any(fixed), "hold_on_lines: the foot is on a line")
     d = x - point%surface(:, 1)
     facing = mean_normal(surface, positions, xi, place, fixed)
     point%fixed = fixed
     point%turns = norm2(d) > least_distance * element_size(surface, place, point)
     point%normal = facing
     if (point%turns) point%normal = sign(1.0_wp, dot_product(d, facing)) * d / norm2(d)
+    if (contracts) call require(is_unit(point%normal), "hold_on_lines: the normal is a unit vector")
     point%gap = -dot_product(d, point%normal)
     point%inverse_metric = 0.0_wp
     do a = 1, 2

@@ -5,7 +5,9 @@
 !> is carried on to the control points here.
 module isomortar_contact_gap_map_nodal_normals
   use isomortar_base_algebra, only: add_product, cross, identity, inverse2
+  use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
+  use isomortar_base_predicate, only: is_compressed, is_index, is_unit
   use isomortar_nurbs_direction, only: direction_t, element_at, family_nurbs
   use isomortar_nurbs_surface, only: surface_basis, surface_nodes, surface_t
   use isomortar_sparse_blocks, only: lacks, mark_row, pattern_t
@@ -75,6 +77,7 @@ contains
       end do
       self%length(a) = norm2(total)
       self%normal(:, a) = total / self%length(a)
+      if (contracts) call require(is_unit(self%normal(:, a)), "average: normals are unit vectors")
       call sum_slopes(facets, point, slope)
       across = identity
       call add_product(-1.0_wp, self%normal(:, a), self%normal(:, a), across)
@@ -264,6 +267,8 @@ contains
       reached%start(a) = entries
     end do
     reached%point = reached%point(:count)
+    if (contracts) call require(is_compressed(reached%start, size(reached%at)), "reach: entries follow one another by points")
+    if (contracts) call require(all(is_index(reached%at, count)) .and. all(is_index(reached%point, n)), "reach: to control points")
   end subroutine reach
 
   !> Add an entry to the last point of a list: a control point, and the derivative by it.

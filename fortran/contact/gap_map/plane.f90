@@ -1,7 +1,9 @@
 !> The gap map of a rigid plane (theory 3.4): coordinates are lengths along two unit vectors in it.
 module isomortar_contact_gap_map_plane
   use isomortar_base_algebra, only: cross
+  use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
+  use isomortar_base_predicate, only: is_unit
   use isomortar_base_status, only: status_ok
   use isomortar_contact_gap_map_map, only: all_components, contact_point_t, gap_map_t, projections_t, variations_t
   use isomortar_contact_slave, only: slave_position, slave_t
@@ -38,6 +40,7 @@ contains
     self%tangent(:, 1) = tangent - dot_product(tangent, self%normal) * self%normal
     self%tangent(:, 1) = self%tangent(:, 1) / norm2(self%tangent(:, 1))
     self%tangent(:, 2) = cross(self%normal, self%tangent(:, 1))
+    if (contracts) call require(is_unit(self%normal) .and. is_unit(self%tangent(:, 2)), "plane_through: unit vectors across")
   end function plane_through
 
   !> None: the plane is rigid.

@@ -3,7 +3,9 @@
 !> A law is one file beside this one, with one entry in `isomortar_solid_material_table`. The element does not know which it serves.
 module isomortar_solid_material_law
   use isomortar_base_algebra, only: determinant, identity, log1p, trace
+  use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
+  use isomortar_base_predicate, only: is_symmetric
   implicit none
   private
 
@@ -72,6 +74,7 @@ contains
     self%left_cauchy_green = identity + increment
     self%deviator = increment - trace(increment) / 3.0_wp * identity
     self%trace = 3.0_wp + trace(increment)
+    if (contracts) call require(is_symmetric(self%left_cauchy_green), "stretch: b is symmetric")
   end subroutine stretch
 
 end module isomortar_solid_material_law

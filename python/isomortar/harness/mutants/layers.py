@@ -65,6 +65,9 @@ LAYERS = {
             suffix=".f90",
             parts=("api", "base", "contact", "nurbs", "solid", "sparse"),
             left_out={
+                "base/contract.f90": "for debug builds alone",
+                "base/contract_checked.f90": "for debug builds alone",
+                "base/predicate.f90": "for debug builds alone: what contracts say",
                 "base/kinds.f90": "names of kinds",
                 "base/kinds_extended.f90": "names of kinds",
                 "base/status.f90": "names of status codes: any numbers do",
@@ -74,9 +77,9 @@ LAYERS = {
                 "api/precision_api.f90": "what a kernel says about itself",
             },
             rules="fortran.rules",
-            # Comments, ends of blocks, headings, declarations that give no value.
+            # Comments, contracts (for debug builds), ends of blocks, headings, declarations that give no value.
             ignored=(
-                r"^\s*(!|&?\s*$)",
+                r"^\s*(!|&?\s*$|if \(contracts\b)",
                 r"^\s*(use|implicit|private|public|module|end|contains|type|else|return|cycle|exit)\b",
                 r"::(?!.*=)",
             ),
