@@ -209,6 +209,28 @@ def uniform_pressure(slave_order: int, master_order: int, tilt: float) -> dict[s
     return {"pressure": found.field, "errors": [found.field, found.control, found.position]}
 
 
+def averaged_bounds(slave_order: int, master_order: int, tilt: float, elements: str) -> dict[str, Bound]:
+    """Round-off where knots are nested; elsewhere as far from closest points as the interface is from flat."""
+    if elements == "nested":
+        return nested_bounds(slave_order, master_order, tilt)
+    bent = "discretisation: facets turn by the error of positions, 3e-3, over an element, 0.01; pressures by its square, times ten"
+    return {"apart": Bound(at_most=1e-3, reason=bent)}
+
+
+@case(
+    claim="A uniform pressure passes an interface along averaged normals of Lagrange elements as well as by closest points.",
+    grid={"slave_order": (1, 2), "master_order": (1, 2), "tilt": TILTS, "elements": ("nested", "other")},
+    bounds=averaged_bounds,
+)
+def along_averaged_normals(slave_order: int, master_order: int, tilt: float, elements: str) -> dict[str, float]:
+    """Error of the pressure field, nested; else its difference from that by closest points, with the default quadrature."""
+    points, count = (slave_order + master_order + 1, SLAVE_ELEMENTS) if elements == "nested" else default_rule(slave_order)
+    closest = problem(slave_order, master_order, tilt, points, count, "L")
+    closest = replace(closest, settings=replace(closest.settings, measures=()))  # as above
+    averaged = errors(replace(closest, contacts=(replace(closest.contacts[0], projection="averaged"),))).field
+    return {"pressure": averaged} if elements == "nested" else {"apart": abs(averaged - errors(closest).field)}
+
+
 def fall_bounds(slave_order: int, master_order: int, tilt: float) -> dict[str, Bound | Shown]:  # noqa: ARG001
     """By Euler and Maclaurin a jump of derivative p costs (1 / points)^(p + 1), and between nothing and all of that by its place."""
     return {
