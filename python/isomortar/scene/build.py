@@ -12,6 +12,7 @@ from isomortar.geometry.refinement import mesh
 from isomortar.model import constants
 from isomortar.model.contact_checks import has_pole
 from isomortar.model.entities import Body, Contact, Face, Material, Motion, Problem, RigidPlane, Stage, Support
+from isomortar.model.kinks import has_kinks
 from isomortar.model.messages import located
 from isomortar.scene.geometry_file import read_geometry
 from isomortar.scene.schema import BodyTable, ContactTable, MeshTable, PlaneTable, SceneTable, SupportTable
@@ -139,18 +140,14 @@ def _contact(name: str, table: ContactTable, bodies: dict[str, Body], summed: bo
     first, second = bodies[slave.body].patch.face_directions(slave.face)
     quadrature = table.quadrature or (contact_points(first), contact_points(second))
     law = (table.friction, quadrature, table.reference_area, table.cohesion, table.traction_max)
-    if table.projection is None and isinstance(master, Face) and _has_lines(bodies[master.body], master.face) and not summed:
+    if table.projection is None and isinstance(master, Face) and _wants_averaged(bodies[master.body], master.face) and not summed:
         return Contact(name, slave, master, *law, "averaged", by_default=True)
     return Contact(name, slave, master, *law, table.projection or "closest")
 
 
-def _has_lines(body: Body, face: str) -> bool:
-    """Whether a face has kinks between its edges once it deforms, and averaged normals everywhere.
-
-    Where knots of higher order are repeated, a body was made of arcs that meet smoothly: there the closest point does better.
-    """
-    directions = [d for d in body.patch.face_directions(face) if d.family == "L" or d.order == 1]
-    return any(direction.kinks for direction in directions) and not has_pole(body, face)
+def _wants_averaged(body: Body, face: str) -> bool:
+    """Whether a master's face has kinks, and averaged normals everywhere."""
+    return has_kinks(body, face) and not has_pole(body, face)
 
 
 def _plane(table: PlaneTable, path: str) -> RigidPlane:

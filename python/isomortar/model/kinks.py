@@ -1,0 +1,63 @@
+"""Kinks of a master's face: lines inside it across which its tangent plane jumps, or will jump once it deforms."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from isomortar import _bindings
+from isomortar.geometry.patch import Direction, FloatArray, Patch
+from isomortar.model.entities import Body
+from isomortar.model.numbering import patch_arrays
+
+#: Angle between the normals of both sides, in radians, above which a C0 line is a kink: joints of arcs are as smooth as their digits.
+KINK = 1e-3
+#: Share of an element beside a line where its sides are asked: they turn by about as much.
+BESIDE = 1e-6
+
+
+def has_kinks(body: Body, face: str) -> bool:
+    """Whether a face has kinks between its edges, or at the seam of a closed body.
+
+    Elements of Lagrange's or of order 1 are the mesh of something else, and every line between them becomes a kink as they deform. A
+    C0 line of a higher order is one where the tangent planes of its sides differ as they are given: arcs that meet smoothly have none.
+    """
+    directions = body.patch.face_directions(face)
+    if any(d.kinks and (d.family == "L" or d.order == 1) for d in directions):
+        return True
+    first = "uvw".index(face[0]) + 1
+    return any(_turn(body.patch, face, axis, name == body.closed) > KINK for axis, name in enumerate("uvwuv"[first : first + 2]))
+
+
+def _turn(patch: Patch, face: str, axis: int, closed: bool) -> float:
+    """Largest angle, for small ones, between the normals of both sides of C0 lines across a direction of a face."""
+    directions = patch.face_directions(face)
+    sides = _sides(directions[axis], closed)
+    places = directions[1 - axis].greville
+    turns = [np.linalg.norm(np.subtract(*(_normals(patch, face, axis, at, places) for at in side)), axis=1).max() for side in sides]
+    return float(max(turns, default=0.0))
+
+
+def _sides(direction: Direction, closed: bool) -> list[tuple[float, float]]:
+    """Places on either side of each C0 line across a direction, the seam of a closed one among them (theory 2.9)."""
+    lines, first = direction.boundaries, direction.first_points
+    beside = BESIDE * np.diff(lines)
+    sides = [
+        (float(lines[e + 1] - beside[e]), float(lines[e + 1] + beside[e + 1]))
+        for e, (one, next_one) in enumerate(pairwise(first))
+        if next_one - one >= direction.order
+    ]
+    return [*sides, (float(lines[-1] - beside[-1]), float(lines[0] + beside[0]))] if closed else sides
+
+
+def _normals(patch: Patch, face: str, axis: int, at: float, places: FloatArray) -> FloatArray:
+    """Unit normals of a face where the coordinate `axis` is `at`, shape (places, 3)."""
+    xi = np.empty((len(places), 2))
+    xi[:, axis], xi[:, 1 - axis] = at, places
+    arrays = patch_arrays(patch, np.arange(len(patch.weights), dtype=np.int32))
+    nodes, functions = _bindings.surface_functions(arrays, "uvw".index(face[0]) + 1, int(face[1]), xi)
+    points = patch.control_points[patch.face_points(face)][nodes]
+    across = np.cross(*(np.einsum("qa,qak->qk", functions[:, derivative], points) for derivative in (1, 2)))
+    length = np.linalg.norm(across, axis=1, keepdims=True)
+    return np.divide(across, length, out=np.zeros_like(across), where=length > 0.0)
