@@ -28,7 +28,7 @@ def unhashed():
     from isomortar.harness import store  # within: as above
 
     def clear():
-        for hashed in (store.kernel_hash, store.package_hash, store.program_hash, store.identity, store._case_hash):
+        for hashed in (store.kernel_hash, store.package_hash, store.program_hash, store.identity, store._case_hash, store._sources):
             hashed.cache_clear()
 
     clear()

@@ -4,12 +4,14 @@ import importlib.metadata
 import json
 import sys
 from concurrent.futures import Future
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from harness_cases import GOOD, measured
 from isomortar.harness import history, store
+from isomortar.harness.cases import Cell
 from isomortar.harness.collection import collect
 from isomortar.harness.measurement import Measurement
 from isomortar.harness.references import finder
@@ -104,6 +106,19 @@ def test_all_ways_to_import_count(root, how):
     assert cell_key(cell) != key
     for name in [n for n in sys.modules if n == "package" or n.startswith("package.")]:
         del sys.modules[name]
+
+
+@pytest.mark.usefixtures("unhashed")
+def test_imports_are_looked_for_once_for_all_runs_of_a_case(root, monkeypatch):
+    """A study has a cell a scene file: looking anew for each took seconds a run."""
+    walked, real = [], store._with_imports
+    monkeypatch.setattr(store, "_with_imports", lambda path, cases, seen: walked.append(path) or real(path, cases, seen))
+    made = collect(root)[0]
+    scenes = [root / f"{name}.toml" for name in "abc"]
+    for scene in scenes:
+        scene.write_text(scene.stem)
+    assert len({cell_key(Cell(replace(made, files=(scene,)), {})) for scene in scenes}) == 3
+    assert walked.count(made.path) == 1
 
 
 def test_packages_beside_an_installed_program_are_not_read(root, monkeypatch):

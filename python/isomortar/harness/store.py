@@ -138,7 +138,13 @@ def _kernel_files() -> Iterator[Path]:
 
 @functools.cache
 def _case_hash(path: Path, files: tuple[Path, ...]) -> str:
-    return _hash(file.read_bytes() for file in [*sorted(_with_imports(path, path.parent.parent, set())), *files])
+    return _hash(file.read_bytes() for file in [*_sources(path), *files])
+
+
+@functools.cache
+def _sources(path: Path) -> list[Path]:
+    """A case's file and all that it imports: looked for once, as a study has many runs of one case, each with a scene file of its own."""
+    return sorted(_with_imports(path, path.parent.parent, set()))
 
 
 def _with_imports(path: Path, cases: Path, seen: set[Path]) -> set[Path]:
