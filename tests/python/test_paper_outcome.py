@@ -3,6 +3,7 @@
 from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
+from typing import get_args
 
 import pytest
 from paper.outcome import Outcome, Outcomes, outcome, planned, run_of
@@ -17,6 +18,7 @@ from isomortar.harness.measurement import Measurement, measure
 from isomortar.harness.runner import Result
 from isomortar.harness.store import Store
 from isomortar.harness.study import Study
+from isomortar.program.process import Ending
 
 #: The block is 0.8 high.
 IMPOSSIBLE = ("stages.press.motions.top.translate=[0,0,-0.9]", "stages.press.steps=8", "solver.max_cuts=0", "contacts.floor.friction=0.0")
@@ -61,6 +63,19 @@ def test_a_failed_run_keeps_what_had_converged_and_is_shown(tmp_path):
 def test_a_run_of_which_nothing_converged_has_no_numbers(tmp_path):
     found = ended(cell_of(tmp_path), Measurement("timed out", message="no result after 1 s"))
     assert (found.failure, found.steps, found.numbers, found.lost) == ("no result after 1 s", 0, {}, True)
+
+
+@pytest.mark.parametrize("ending", get_args(Ending)[1:])
+def test_of_lagrange_elements_only_that_they_do_not_converge_is_a_finding(tmp_path, ending):
+    """A crash is a failure, as whatever else says nothing of the elements: the command ends with exit code 1."""
+    lagrange = replace(PRESS, variants=tuple(v for v in PRESS.variants if v.name == "L1"))
+    plans = planned([lagrange])
+    cells = Study(tuple(run_of(*each) for each in plans), page).cells(tmp_path)
+    measurement = Measurement(ending, message="as it is")
+    found = tuple(outcome(*each, Result(cell, measurement, (), True)) for each, cell in zip(plans, cells, strict=True))
+    report = Report(Outcomes((lagrange,), found), (), 0, True, datetime.now().astimezone(), {})
+    assert len(report.failed) == 2
+    assert report.complete is (ending == "not converged")
 
 
 def test_what_is_computed_is_read_not_computed_again(tmp_path):
