@@ -8,11 +8,11 @@ import sys
 from pathlib import Path
 
 import pytest
-from paper.page import shown
 from typer.testing import CliRunner
 
 from isomortar.cli.commands import app
 from isomortar.errors import InputError
+from isomortar.harness.report import stated
 
 CASES = Path(__file__).parents[2] / "verification"
 
@@ -62,4 +62,4 @@ def test_bad_input_runs_nothing(tmp_path, monkeypatch):
     [(0.0, True, "0"), (0.01, True, "1 %"), (-0.0213, True, "-2.13 %"), (1e-8, True, "1e-08"), (1.0523, False, "1.05")],
 )
 def test_numbers_as_people_read_them(value, in_percent, text):
-    assert shown(value, in_percent) == text
+    assert stated(value, in_percent) == text

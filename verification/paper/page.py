@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -77,7 +76,7 @@ def as_data(report: Report) -> dict[str, Any]:
         "quick": report.quick,
         **identity(),
         "verdicts": report.counts,
-        "statements": [_statement(judgement) for judgement in report.judgements],
+        "statements": [judgement.as_data() for judgement in report.judgements],
         "runs": [_run(report, outcome) for outcome in report.outcomes.entries],
     }
 
@@ -99,15 +98,7 @@ def page(report: Report, drawn: Mapping[str, Sequence[Mapping[str, str]]]) -> st
         names=NAMES,
         total=_seconds(report.outcomes.entries),
         percent=percent,
-        shown=shown,
     )
-
-
-def shown(value: float, in_percent: bool) -> str:
-    """A number of a statement as people read it."""
-    if not value or not math.isfinite(value):
-        return f"{value:g}"
-    return f"{100 * value:.3g} %" if in_percent and abs(value) >= 1e-6 else f"{value:.3g}"
 
 
 def _rows(report: Report, section: Section) -> list[list[tuple[Outcome, float | None, float | None]]]:
@@ -119,16 +110,6 @@ def _rows(report: Report, section: Section) -> list[list[tuple[Outcome, float | 
 
 def _seconds(outcomes: Sequence[Outcome]) -> float:
     return float(sum(o.numbers["seconds"] for o in outcomes if o.numbers))
-
-
-def _statement(judgement: Judgement) -> dict[str, Any]:
-    statement = judgement.statement
-    fields = ("section", "text", "unit", "at_most", "at_least", "reason")
-    return {
-        **{name: getattr(statement, name) for name in fields},
-        "verdict": judgement.state,
-        "by_method": {v.method: {"verdict": v.state, "values": dict(v.values), "why": v.why} for v in judgement.verdicts},
-    }
 
 
 def _run(report: Report, outcome: Outcome) -> dict[str, Any]:

@@ -2,18 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
+from programs.run import FILES, PROGRAMS
 from programs.solids import reactions, run
 
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, case
-from isomortar.program import getfem
-from isomortar.program.calculix import CalculiX
-from isomortar.program.declaration import Program
-from isomortar.program.getfem import GetFEM
-from isomortar.program.own import Isomortar
 from isomortar.scene import Scene
 
 #: The scene `block` without its slide, with the law that all of these programs have.
@@ -21,13 +15,13 @@ PRESS = (
     'stages=[{name="press", steps=5, motions.top.translate=[0,0,-0.2]}]',
     "materials.rubber.law=neo-hookean-j",
 )
-OTHERS: dict[str, Program] = {"GetFEM": GetFEM(), "CalculiX": CalculiX()}
+OWN, *OTHERS = PROGRAMS
 
 
 @case(
     claim="A block is pressed onto another one with the same force, by whatever means contact is enforced on the same elements.",
     tier="nightly",
-    grid={"program": list(OTHERS)},
+    grid={"program": OTHERS},
     bounds={
         "force": Bound(
             at_most=3e-3,
@@ -35,11 +29,10 @@ OTHERS: dict[str, Program] = {"GetFEM": GetFEM(), "CalculiX": CalculiX()}
             "GetFEM's multipliers hold at other points of the edge elements",
         )
     },
-    files=[Path(getfem.__file__).with_name("getfem_job.py")],
+    files=FILES,
 )
 def pressed(program: str) -> dict[str, FloatArray]:
     """Force on the top after each of five load steps; differences over the largest."""
     problem = Scene.load("block", PRESS).problem()
-    programs: tuple[Program, ...] = (Isomortar(), OTHERS[program])
-    own, other = (reactions(run(which, problem))[0][:, 0] for which in programs)
+    own, other = (reactions(run(PROGRAMS[name], problem))[0][:, 0] for name in (OWN, program))
     return {"force": np.abs(own - other).max(axis=1) / np.abs(own).max()}

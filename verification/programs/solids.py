@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import get_args
 
 import numpy as np
+from programs.run import FILES, outcome
 
 from isomortar._arrays import MaterialLaw
 from isomortar.geometry.patch import FloatArray
-from isomortar.harness import Bound, Shown, case, skip
+from isomortar.harness import Bound, Shown, case
 from isomortar.model.entities import Problem
-from isomortar.program import getfem
 from isomortar.program.calculix import LAWS, CalculiX
-from isomortar.program.declaration import NotInstalledError, Outcome, Program
+from isomortar.program.declaration import Outcome, Program
 from isomortar.program.getfem import GetFEM
 from isomortar.program.own import Isomortar
 from isomortar.scene import Scene
@@ -59,10 +58,7 @@ def block(law: str, orders: str, elements: tuple[int, int, int]) -> Problem:
 
 def run(program: Program, problem: Problem) -> Outcome:
     """All load steps; skipped where the program is not installed."""
-    try:
-        found = program.run(problem)
-    except NotInstalledError as error:
-        skip(str(error))
+    found = outcome(program, problem)
     if found.ending != "measured":
         raise RuntimeError(f"{program.name}: {found.ending}: {found.words}")
     return found
@@ -90,7 +86,7 @@ def apart(one: Outcome, other: Outcome) -> dict[str, float]:
         NUMBERS,
         Bound(at_most=1e-9, reason="round-off: the same elements and Gauss points, Newton's method to 1e-11 in either"),
     ),
-    files=[Path(getfem.__file__).with_name("getfem_job.py")],
+    files=FILES,
 )
 def as_in_getfem(law: str, orders: str) -> dict[str, float]:
     """Lagrange elements of one order, of another by direction."""

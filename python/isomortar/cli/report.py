@@ -72,3 +72,21 @@ def extremes(
     from isomortar.harness.study import study_module
 
     conduct(study_module(cases, "extremes").study(cases / "extremes", tier_of(tier)), out, jobs)
+
+
+@report.command()
+def programs(
+    jobs: Annotated[int, typer.Option("-j", "--jobs", min=1, help="Runs at the same time; several disturb each other's cost.")] = 1,
+    out: Annotated[Path, typer.Option(file_okay=False, help="Folder of the report and its runs.")] = Path("results/programs"),
+    cases: CasesOption = CASES,
+) -> None:
+    """The same contact problems by isomortar, GetFEM and CalculiX: curves side by side, endings, cost, and what is stated of them.
+
+    A program that is not installed is not measured, and the exit code is 1; the others are in the report all the same. What was run
+    already is not run again. Run it in a checkout, from its folder: the study stands in verification/programs.
+
+    For example: `isomortar report programs`
+    """
+    from isomortar.harness.study import study_module
+
+    conduct(study_module(cases, "programs").study(), out, jobs)

@@ -261,11 +261,11 @@ def case(
     return decorate
 
 
-def measured(*, claim: str, bounds: Mapping[str, Claim]) -> Callable[[Callable[..., Mapping[str, Any]]], Case]:
+def measured(*, claim: str, bounds: Mapping[str, Claim], files: Sequence[Path] = ()) -> Callable[[Callable[..., Mapping[str, Any]]], Case]:
     """Make a case of a function that measures a run of a study: it has no cells of its own, its settings are the study's to give."""
 
     def decorate(function: Callable[..., Mapping[str, Any]]) -> Case:
-        return Case(function, claim, bounds, "weekly", dict.fromkeys(inspect.signature(function).parameters, ()), None, ())
+        return Case(function, claim, bounds, "weekly", dict.fromkeys(inspect.signature(function).parameters, ()), None, tuple(files))
 
     return decorate
 

@@ -115,6 +115,13 @@ def percent(value: float) -> str:
     return f"{100 * value:.3g} %" if value >= 1e-6 else f"{value:.1e}"
 
 
+def stated(value: float, in_percent: bool) -> str:
+    """A number of a statement as people read it."""
+    if not value or not math.isfinite(value):
+        return f"{value:g}"
+    return f"{100 * value:.3g} %" if in_percent and abs(value) >= 1e-6 else f"{value:.3g}"
+
+
 def template(name: str, beside: Path = Path(__file__)) -> jinja2.Template:
     """A page by its name in the folder of a source file, or of this package, with what all pages say numbers and times by."""
     loader = jinja2.FileSystemLoader([beside.parent, Path(__file__).parent])
@@ -122,6 +129,7 @@ def template(name: str, beside: Path = Path(__file__)) -> jinja2.Template:
     made = identity()
     environment.globals |= {"program": made["program"][:12], "kernel": made["kernel"][:12], "compiler": made["compiler"]}
     environment.filters["number"] = number
+    environment.filters["stated"] = stated
     environment.filters["duration"] = duration
     environment.filters["size"] = size
     environment.filters["brief"] = lambda value: f"{value:.2g}" if math.isfinite(value) and abs(value) < 100 else number(value)

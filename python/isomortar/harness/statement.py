@@ -116,3 +116,12 @@ class Judgement:
         if "does not hold" in found:
             return "does not hold"
         return found.pop() if len(found) == 1 else "partly measured"
+
+    def as_data(self) -> dict[str, Any]:
+        """All of it as plain data."""
+        fields = ("section", "text", "unit", "at_most", "at_least", "reason")
+        return {
+            **{name: getattr(self.statement, name) for name in fields},
+            "verdict": self.state,
+            "by_method": {v.method: {"verdict": v.state, "values": dict(v.values), "why": v.why} for v in self.verdicts},
+        }

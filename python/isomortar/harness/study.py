@@ -58,7 +58,7 @@ class Run:
         """Its cell; the scene file goes to the folder, to be run by anyone."""
         path = folder / f"{self.name}.toml"
         write_whole(path, self.scene.to_toml())
-        return Cell(replace(self.case, files=(path.absolute(),)), {"scene": str(path), **self.settings})
+        return Cell(replace(self.case, files=(*self.case.files, path.absolute())), {"scene": str(path), **self.settings})
 
 
 @dataclass(frozen=True)
