@@ -1,4 +1,9 @@
-"""Something tried in a process of its own: a signal, a hang, a traceback end the child and are told, not met."""
+"""Something tried in a process of its own: a signal, a hang, a traceback end the child and are told, not met.
+
+By a fork, and not by the harness's runner of processes: a child that begins with all modules loaded costs 0.014 s of the processor, a
+new interpreter that loads them 1.6 s. The scenes, 11 a second on two cores, would take ten times as long. A measuring process that lives on
+from try to try would be as quick, but a limit of time or memory is of a process, and what one try leaves behind must not meet the next.
+"""
 
 from __future__ import annotations
 

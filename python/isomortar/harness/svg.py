@@ -1,4 +1,10 @@
-"""Small line plots as SVG text, for pages that must not need anything else."""
+"""Small line plots as SVG text, for pages that must not need anything else.
+
+Not by Matplotlib, which draws the figures of studies (`isomortar.harness.figures`): its plot of five lines takes 0.19 s of the processor
+(0.6 s with a layout that finds room for labels) and 23 kB, one from here 0.3 ms and 4 kB; its line over the runs 9 ms, one from here
+0.02 ms. The gate's page has some twenty plots and, of 717 cells, up to 2800 such lines: half a minute a page, where `isomortar verify` of
+one cell takes seconds, and 0.7 s more to load.
+"""
 
 from __future__ import annotations
 
