@@ -233,7 +233,8 @@ WRONG = {
         "contacts.floor.projection",
         "'closest' or 'averaged'",
     ),
-    "friction overflows": (PRESS, "[supports.top]", "[contacts.floor.nothing]\n[supports.top]", "contacts.floor", ""),
+    "friction overflows": (PRESS, "[supports.top]", "friction = 1e156\n[supports.top]", "contacts.floor.friction", "to 1e+100"),
+    "no key of a contact": (PRESS, "[supports.top]", "[contacts.floor.nothing]\n[supports.top]", "contacts.floor.nothing", "unknown key"),
     "steps": (PRESS, "steps = 1", "steps = 1000000000000", "stages.press.steps", "less than or equal to 1000000"),
 }
 

@@ -155,3 +155,31 @@ def beside_lines(kind: str) -> dict[str, float]:
     apart = np.abs(np.linalg.norm(near, axis=1) - np.linalg.norm(cold, axis=1)).max()
     excess = exhaustive(face, targets, face.project(targets).xi).max()
     return {"nearer": float(np.maximum(apart, excess)), "points": float(len(targets))}
+
+
+#: Elements between a foot and its start, from one end of a strip to the other.
+LONG = 40
+
+
+@case(
+    claim="A foot any number of elements from its start is found, whichever direction the knot lines on the way belong to.",
+    tier="gate",
+    grid={"kind": ["N2", "L1", "L2"], "along": ["u", "v", "both"]},
+    bounds={
+        "foot": Bound(at_most=1e-14, reason="round-off: of coordinates of size one; the plate is flat, its parameters are lengths"),
+        "found": Bound(at_least=1.0, at_most=1.0, reason="definition: targets are above the plate"),
+    },
+)
+def far_from_the_start(kind: str, along: str) -> dict[str, float]:
+    """Largest distance of feet at one end of a flat plate, from starts at the other end, and the share found."""
+    count = {"u": (LONG, 1), "v": (1, LONG), "both": (LONG, LONG)}[along]
+    face = _bent(kind, count, 0.5)
+    random = np.random.default_rng(7)
+    feet = random.uniform(0.0, 1.0, (20, 2))
+    starts = feet.copy()
+    for a in range(2):
+        if count[a] == LONG:
+            feet[:, a], starts[:, a] = random.uniform(0.0, 1.0 / LONG, 20), random.uniform(1.0 - 1.0 / LONG, 1.0, 20)
+    feet[::2], starts[::2] = starts[::2], feet[::2].copy()
+    projections = face.project(np.column_stack([feet, random.uniform(-0.3, 0.3, 20)]), starts)
+    return {"foot": float(np.abs(projections.xi - feet).max()), "found": float(np.mean(projections.found))}
