@@ -176,7 +176,7 @@ subroutine keep_averaged(patch, axis, side, handle, status)
   status = 0
   call find(patch, body, status)
   if (status /= 0) return
-  allocate (descriptor%map, source=averaged_on(face_of(body, axis, side)))
+  allocate (descriptor%map, source=averaged_on(face_of(body, axis, side), face_of(body, axis, 1 - side)))
   call keep(descriptor, handle, status)
 end subroutine keep_averaged
 

@@ -12,12 +12,14 @@ module isomortar_contact_projection
   implicit none
   private
 
-  public :: is_too_deep, look_round, start_nearest
+  public :: is_too_deep, look_round, shallow_depth, square_depth, start_nearest
 
   !> Two feet that are at the same distance but for this share are equally near: the one in the lower element is taken.
   real(wp), parameter :: tie = epsilon(1.0_wp)**0.75_wp
   !> Distance times largest curvature up to which an element holds one near point alone.
   real(wp), parameter :: safe_bend = 0.5_wp
+  !> Share of the least depth between control points within which a point is not asked how deep the master's body is.
+  real(wp), parameter :: shallow_share = 0.25_wp
   real(wp), parameter :: pi = acos(-1.0_wp)
 
 contains
@@ -194,15 +196,37 @@ contains
     type(surface_t), intent(in) :: surface, opposite
     real(wp), intent(in) :: positions(:, :)
     type(search_t), intent(in) :: here
-    real(wp) :: net(4, surface%direction(1)%order + 1, surface%direction(2)%order + 1), near(3, 6), far(3, 6)
 
     deep = surface%outward * dot_product(here%way, here%across) > 0.0_wp
-    if (.not. deep) return
-    call homogeneous_net(surface, positions, here%place, net)
-    call surface_point(surface, here%place, net, here%xi, near)
-    call homogeneous_net(opposite, positions, here%place, net)
-    call surface_point(opposite, here%place, net, here%xi, far)
-    deep = 2.0_wp * here%distance > sum((far(:, 1) - near(:, 1))**2)
+    if (deep) deep = 2.0_wp * here%distance > square_depth(surface, opposite, positions, here%place, here%xi)
   end function is_too_deep
+
+  !> Square of the depth of the body below a place of its surface (theory 3.19).
+  pure real(wp) function square_depth(surface, opposite, positions, place, xi)
+    type(surface_t), intent(in) :: surface, opposite
+    real(wp), intent(in) :: positions(:, :), xi(2)
+    integer, intent(in) :: place(2)
+    real(wp) :: net(4, surface%direction(1)%order + 1, surface%direction(2)%order + 1), near(3, 6), far(3, 6)
+
+    call homogeneous_net(surface, positions, place, net)
+    call surface_point(surface, place, net, xi, near)
+    call homogeneous_net(opposite, positions, place, net)
+    call surface_point(opposite, place, net, xi, far)
+    square_depth = sum((far(:, 1) - near(:, 1))**2)
+  end function square_depth
+
+  !> Distance from a surface up to which its body is deep enough anywhere: a share of the least distance of its control points from
+  !> those across the body (theory 3.19).
+  pure real(wp) function shallow_depth(surface, opposite, positions)
+    type(surface_t), intent(in) :: surface, opposite
+    real(wp), intent(in) :: positions(:, :)
+    integer :: a
+
+    shallow_depth = huge(1.0_wp)
+    do a = 1, size(surface%point)
+      shallow_depth = min(shallow_depth, norm2(positions(:, surface%point(a)) - positions(:, opposite%point(a))))
+    end do
+    shallow_depth = shallow_share * shallow_depth
+  end function shallow_depth
 
 end module isomortar_contact_projection

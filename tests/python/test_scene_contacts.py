@@ -114,7 +114,7 @@ WRONG = {
         "contacts.road.plane.normal",
         "its body is 2 thick",
     ),
-    "wrong face on a plane": (PRESS, '"block.w0"', '"block.w1"', "contacts.floor", ""),
+    "wrong face on a plane": (PRESS, '"block.w0"', '"block.w1"', "contacts.floor.slave", "looks away from its master"),
     "wrong slave face": (PAIR, '"upper.w0"', '"upper.w1"', "contacts.pair.slave", "upper.w1 looks away from its master"),
     "wrong master face": (PAIR, '"lower.w1"', '"lower.w0"', "contacts.pair.slave", "looks away from its master"),
     "far too deep": (

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from projection.closest_points import Surface
 
@@ -10,8 +12,13 @@ from isomortar.geometry.primitives import ring
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
 from isomortar.model.entities import Problem
+from isomortar.model.supports import rotation
 from isomortar.scene import Scene
+from isomortar.solve.contact import Kinematics
+from isomortar.solve.equilibrium import Equilibrium
+from isomortar.solve.record import ContactState
 from isomortar.solve.simulation import Simulation
+from isomortar.solve.timing import Ledger
 
 INNER, OUTER, WIDTH = 0.3, 0.5, 0.4
 #: Parameter length of the ring: one unit a quarter.
@@ -59,6 +66,60 @@ def over_the_seam(kind: str, side: str) -> dict[str, float]:
         "distance": float(np.abs(distances[0] - distances[1]).max()),
         "slip": float(np.abs(slips[0] - slips[1]).max()),
         "moved": float(np.abs(slips[0][:, 1]).min()),
+    }
+
+
+#: A block above a closed ring of Lagrange elements, across the ring's seam.
+_ACROSS = """
+format = 1
+bodies.block = {{ geometry = {{ kind = "box", lower = [-0.15, -0.12, 0.49], upper = [0.15, 0.12, 0.7] }}, mesh = {{ order = [2, 2, 1], \
+elements = [4, 2, 1] }} }}
+bodies.ring = {{ geometry = {{ kind = "ring", inner = 0.3, outer = 0.5, width = 0.4 }}, \
+mesh = {{ family = "L", order = [{order}, 1, {order}], elements = [16, 1, 2] }} }}
+contacts.tread = {{ slave = "block.w0", master = "ring.v1", friction = 0.3, projection = "{projection}" }}
+supports = {{ top.face = "block.w1", hub.face = "ring.v0" }}
+stages = [{{ name = "rest", steps = 1 }}]
+"""
+
+
+def across(projection: str, order: int, angle: float) -> Kinematics:
+    """The block at an angle from where its middle is above the seam, slid there by a tenth from before it."""
+    equilibrium = Equilibrium(Scene.from_toml(_ACROSS.format(projection=projection, order=order)).problem(), Ledger())
+    pair, start = equilibrium.pairs[0], equilibrium.initial_state().contacts[0]
+    block = np.unique(equilibrium.numbering.points["block"])
+    nothing = np.zeros_like(start.projected)
+
+    def at(place: float, start: ContactState) -> Kinematics:
+        positions = equilibrium.numbering.reference.copy()
+        positions[block] = positions[block] @ rotation(np.array([0.0, 1.0, 0.0]), place).T
+        return pair.kinematics(positions, start)
+
+    before = at(angle - 0.1, replace(start, projected=nothing)).projections
+    return at(angle, replace(start, projection=before.xi, projected=before.found))
+
+
+@case(
+    claim="Whichever way feet are found, a slave over the seam of a closed ring has the gaps, slips and weights that it has anywhere else.",
+    tier="gate",
+    grid={"projection": ["closest", "averaged"], "order": [1, 2]},
+    bounds={
+        "found": Bound(at_least=1.0, at_most=1.0, reason="definition: round the ring there is no edge"),
+        "gap": Bound(at_most=1e-14, reason="round-off: the quarters of the ring are the same, turned"),
+        "slip": Bound(at_most=1e-13, reason="round-off: of coordinates up to 4"),
+        "weight": Bound(at_most=1e-14, reason="round-off: the same areas"),
+        "seam": Bound(at_least=0.2, at_most=0.8, reason="definition: points are on both sides of the seam"),
+        "over": Bound(at_least=1.0, reason="definition: points have gone over the seam"),
+    },
+)
+def slave_over_the_seam(projection: str, order: int) -> dict[str, float]:
+    """Share found, largest differences from the same a quarter on, share of points behind the seam, and how many have gone over it."""
+    over, elsewhere = (across(projection, order, place) for place in (0.05, 0.05 + 0.5 * np.pi))
+    first = {name: np.abs(getattr(over.control, name) - getattr(elsewhere.control, name)).max() for name in ("gap", "slip", "weight")}
+    xi, origin = over.projections.xi[:, 1], over.projections.origin[:, 1]
+    return {name: float(value) for name, value in first.items()} | {
+        "found": float(np.mean([over.projections.found, elsewhere.projections.found])),
+        "seam": float(np.mean(xi < 0.5 * PERIOD)),
+        "over": float(np.sum(np.abs(xi - origin) > 0.5 * PERIOD)),
     }
 
 

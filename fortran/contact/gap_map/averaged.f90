@@ -13,6 +13,7 @@ module isomortar_contact_gap_map_averaged
   use isomortar_contact_gap_map_averaged_foot, only: accept, find_foot, foot_equation, foot_t, follow, scope_of, scope_t
   use isomortar_contact_gap_map_map, only: all_components, contact_point_t, gap_map_t, projections_t, variations_t
   use isomortar_contact_gap_map_nodal_normals, only: average, normals_t
+  use isomortar_contact_projection, only: shallow_depth, square_depth
   use isomortar_contact_slave, only: slave_normal, slave_position, slave_t, slave_tangents
   use isomortar_nurbs_direction, only: element_at
   use isomortar_nurbs_surface, only: surface_basis, surface_nodes, surface_t
@@ -21,6 +22,8 @@ module isomortar_contact_gap_map_averaged
 
   type, extends(gap_map_t), public :: averaged_t
     type(surface_t) :: surface
+    !> The face of the same body across from it: how deep the body is.
+    type(surface_t) :: opposite
   contains
     procedure :: extend
     procedure :: stencils
@@ -42,12 +45,13 @@ module isomortar_contact_gap_map_averaged
 
 contains
 
-  !> The map onto a face.
-  pure function averaged_on(surface) result(self)
-    type(surface_t), intent(in) :: surface
+  !> The map onto a face of a body, and the face across from it.
+  pure function averaged_on(surface, opposite) result(self)
+    type(surface_t), intent(in) :: surface, opposite
     type(averaged_t) :: self
 
     self%surface = surface
+    self%opposite = opposite
     self%whole = .true.
     self%leans = .true.
     self%of_tangents = slave_along + 1
@@ -99,7 +103,7 @@ contains
     vectors = merge(way_back, slave_along, of_slip)
   end function vectors
 
-  !> Find the feet of all points: from where they were, else anywhere (theory 3.30).
+  !> Find the feet of all points: from where they were, else anywhere (theory 3.30); none behind the body (theory 3.19).
   subroutine locate(self, slave, positions, started, had, projections, status, place)
     class(averaged_t), intent(in) :: self
     type(slave_t), intent(in) :: slave
@@ -109,14 +113,15 @@ contains
     integer, intent(out) :: status, place
     type(scope_t) :: scope
     type(foot_t) :: foot
-    real(wp) :: across(3), x(3)
-    logical :: deep
+    real(wp) :: across(3), shallow, x(3)
+    logical :: behind, deep
     integer :: q
 
     place = first_not_finite(positions, self%surface%point)
     status = merge(status_not_finite, status_ok, place > 0)
     if (status /= status_ok) return
     scope = scope_of(self%surface, positions)
+    shallow = shallow_depth(self%surface, self%opposite, positions)
     do q = 1, size(slave%area)
       x = slave_position(slave, positions, q)
       across = slave_normal(slave, positions, q)
@@ -125,13 +130,15 @@ contains
       deep = foot%found .and. had(q)
       if (deep) deep = foot%gap > scope%deepest
       if (.not. accept(scope, foot, across)) call find_foot(self%surface, scope, positions, x, across, foot)
-      if (deep .and. .not. foot%found) then
+      behind = foot%found .and. foot%gap > shallow
+      if (behind) behind = foot%gap**2 > square_depth(self%surface, self%opposite, positions, foot%place, foot%xi)
+      if ((deep .and. .not. foot%found) .or. (behind .and. had(q))) then
         status = status_passed_through
         place = q
         return
       end if
-      projections%found(q) = foot%found
-      if (.not. foot%found) cycle
+      projections%found(q) = foot%found .and. .not. behind
+      if (.not. projections%found(q)) cycle
       projections%xi(:, q) = foot%xi
       projections%place(:, q) = foot%place
     end do

@@ -11,16 +11,13 @@ module isomortar_contact_gap_map_closest_point
   use isomortar_contact_gap_map_map, only: contact_point_t, gap_map_t, projections_t
   use isomortar_contact_hulls, only: enclose, hulls_t, within_reach
   use isomortar_contact_pole, only: gather_at_pole, hold_at_pole, is_at_pole, pole_of
-  use isomortar_contact_projection, only: is_too_deep, look_round, start_nearest
+  use isomortar_contact_projection, only: is_too_deep, look_round, shallow_depth, start_nearest
   use isomortar_contact_search, only: descend, is_isolated, projection_degenerate, projection_inside, projection_lost, &
     projection_outside, search_t, start_at
   use isomortar_contact_slave, only: slave_position, slave_t
   use isomortar_nurbs_surface, only: derivative_columns, shortest_way, surface_basis, surface_nodes, surface_t
   implicit none
   private
-
-  !> Share of the least depth between control points within which a point is not asked how deep the master's body is.
-  real(wp), parameter :: shallow_share = 0.25_wp
 
   type, extends(gap_map_t), public :: closest_point_t
     type(surface_t) :: surface
@@ -70,7 +67,7 @@ contains
     status = merge(status_not_finite, status_ok, place > 0)
     if (status /= status_ok) return
     call enclose(self%surface, positions, hulls)
-    shallow = shallow_share * least_depth(self, positions)
+    shallow = shallow_depth(self%surface, self%opposite, positions)
     do e = 1, size(slave%area) / slave%per_element
       call project_element(self, slave, hulls, positions, started, had, shallow, slave%per_element * (e - 1), projections, status, &
         place)
@@ -134,18 +131,6 @@ contains
       end if
     end do
   end subroutine project_element
-
-  !> Least distance of a control point of the master from that across the body.
-  pure real(wp) function least_depth(self, positions)
-    class(closest_point_t), intent(in) :: self
-    real(wp), intent(in) :: positions(:, :)
-    integer :: a
-
-    least_depth = huge(1.0_wp)
-    do a = 1, size(self%surface%point)
-      least_depth = min(least_depth, norm2(positions(:, self%surface%point(a)) - positions(:, self%opposite%point(a))))
-    end do
-  end function least_depth
 
   !> The difference of the coordinates, the shortest way round a closed face (theory 3.20).
   pure function slip(self, slave, positions, projections, q)

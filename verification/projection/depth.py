@@ -1,0 +1,62 @@
+"""How deep a slave may be in its master: as deep as the master's body is, whichever way feet are found."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from isomortar.errors import LostProjectionError
+from isomortar.harness import Bound, case
+from isomortar.scene import Scene
+from isomortar.solve.equilibrium import Equilibrium
+from isomortar.solve.timing import Ledger
+
+THICKNESS = 0.05
+#: A block whose lower face is above a thin plate of elements with lines between them.
+_PLATE = """
+format = 1
+bodies.block = {{ geometry = {{ kind = "box", lower = [0.3, 0.3, 0.0], upper = [0.6, 0.6, 0.3] }}, mesh.elements = [2, 2, 1] }}
+bodies.plate = {{ geometry = {{ kind = "box", lower = [0, 0, -{thickness}], upper = [1, 1, 0] }}, \
+mesh = {{ family = "L", order = [{order}, {order}, 1], elements = [4, 4, 1] }} }}
+contacts.pair = {{ slave = "block.w0", master = "plate.w1", projection = "{projection}" }}
+supports = {{ top.face = "block.w1", base.face = "plate.w0" }}
+stages = [{{ name = "rest", steps = 1 }}]
+"""
+#: Depths below the plate's upper face, as shares of its thickness.
+WITHIN, BEHIND = (-4.0, 0.0, 0.5, 0.99), (1.01, 2.0, 4.0, 10.0)
+
+
+def found(equilibrium: Equilibrium, depth: float, had: int) -> float:
+    """Share of points in reach, as deep; 'had': in reach at the last converged state, right there. Nothing of it if they passed through."""
+    pair, state = equilibrium.pairs[0], equilibrium.initial_state()
+    positions = state.positions.copy()
+    positions[np.unique(equilibrium.numbering.points["block"]), 2] -= depth
+    start = replace(state.contacts[0], projected=np.full_like(state.contacts[0].projected, had))
+    try:
+        return float(np.mean(pair.kinematics(positions, start).projections.found))
+    except LostProjectionError as error:
+        return -float("passed through" in str(error))
+
+
+@case(
+    claim="A slave within a thin body is in contact's reach; behind the body it takes no part, or has passed through.",
+    tier="gate",
+    grid={"projection": ["closest", "averaged"], "order": [1, 2]},
+    bounds={
+        "within": Bound(at_least=1.0, at_most=1.0, reason="definition: no deeper than the body"),
+        "behind": Bound(at_most=0.0, at_least=0.0, reason="definition: deeper than the body, from the start: no contact"),
+        "through": Bound(
+            at_least=-1.0, at_most=-1.0, reason="definition: deeper than the body, in reach before: the increment is too long"
+        ),
+    },
+)
+def thin_body(projection: str, order: int) -> dict[str, float]:
+    """Least share of points in reach within the body; the largest of those behind it from the start, and of those in reach before."""
+    text = _PLATE.format(thickness=THICKNESS, order=order, projection=projection)
+    equilibrium = Equilibrium(Scene.from_toml(text).problem(), Ledger())
+    return {
+        "within": float(np.min([found(equilibrium, THICKNESS * share, had) for share in WITHIN for had in (0, 1)])),
+        "behind": float(np.max([found(equilibrium, THICKNESS * share, 0) for share in BEHIND])),
+        "through": float(np.max([found(equilibrium, THICKNESS * share, 1) for share in BEHIND])),
+    }
