@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import json
 import math
+import re
+import signal
+import subprocess
 import sys
 from collections.abc import Iterator
 from datetime import datetime
@@ -211,3 +214,28 @@ def test_history_survives_a_line_that_was_cut_short(tmp_path: Path) -> None:
     history.append(path, ran, datetime.now().astimezone())
     assert len(path.read_text().splitlines()) == whole + 1
     assert history.read(path, ran.benchmark.name).values("N2", "time") == [2.0]
+
+
+SLEEPING = """
+import os, time
+from isomortar.harness.bench import benchmark
+
+@benchmark(question="Does it sleep?", columns={"process": ""})
+def sleeping(quick):
+    yield {"process": os.getpid()}
+    time.sleep(600.0)
+"""
+
+
+def test_ctrl_c_ends_a_benchmark_with_the_process_that_it_runs_in(cases: Path) -> None:
+    (cases / "performance" / "slow.py").write_text(SLEEPING)
+    heard = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); from isomortar.cli import main; main()"
+    words = ["bench", "sleeping", "--quick", "--cases", str(cases), "--out", str(cases / "out")]
+    with subprocess.Popen([sys.executable, "-c", heard, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stderr is not None
+        (measuring,) = next(found for line in process.stderr if (found := re.findall(r"process (\d+)", line)))
+        process.send_signal(signal.SIGINT)
+        _, said = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "Traceback" not in said
+    assert not Path("/proc", measuring).exists()
