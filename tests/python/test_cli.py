@@ -61,6 +61,16 @@ def assert_same(one: StepResult, other: StepResult) -> None:
     np.testing.assert_allclose(one.state.contacts[0].pressure, other.state.contacts[0].pressure, rtol=0.0, atol=1e-11 * scale)
 
 
+#: A block pressed down, and contacts of its faces.
+SQUEEZED = """
+format = 1
+bodies.block = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }, mesh = { order = [2, 2, 2], elements = [1, 1, 1] } }
+supports = { top.face = "block.w1", base = { face = "block.v0", components = ["y"] } }
+"""
+PLANES = [("w0", "point = [0, 0, 0]"), ("u0", "point = [0, 0, 0], normal = [1, 0, 0]")]
+SQUEEZING = 'stages = [{ name = "press", steps = 2, motions.top.translate = [0, 0, -0.1] }]\n'
+
+
 def test_scene_to_curves_and_pictures(invoke: Invoke) -> None:
     code, out, err = invoke("run", "press", *settings(SMALL))
     assert (code, out) == (0, "results/press.h5\n")
@@ -75,6 +85,22 @@ def test_scene_to_curves_and_pictures(invoke: Invoke) -> None:
     code, out, _ = invoke("export", "results/press.h5")
     assert (code, out) == (0, "results/press-paraview/press.pvd\n")
     assert Path(out.strip()).is_file()
+
+
+@pytest.mark.parametrize("contacts", [0, 1, 2])
+def test_runs_end_well_with_any_number_of_contacts(invoke: Invoke, contacts: int) -> None:
+    lines = [
+        f'contacts.c{k} = {{ slave = "block.{face}", plane = {{ {plane} }}, friction = 0 }}\n' for k, (face, plane) in enumerate(PLANES)
+    ]
+    Path("scene.toml").write_text(SQUEEZED + "".join(lines[:contacts]) + SQUEEZING)
+    code, _, err = invoke("run", "scene.toml")
+    assert code == 0, err
+    assert "2 load steps done, 0 warnings" in err
+    for command in ("plot", "export"):
+        code, _, err = invoke(command, "results/scene.h5")
+        assert code == 0, err
+    code, _, err = invoke("run", "scene.toml", "--resume")
+    assert (code, "all 2 load steps are there already" in err) == (0, True), err
 
 
 def test_set_changes_the_scene(invoke: Invoke) -> None:

@@ -67,7 +67,7 @@ class Progress(Observer):
 
     def _count(self, result: StepResult) -> None:
         self._done = result.step
-        self._work += [contact.work for contact in result.contacts]
+        self._work += np.reshape([contact.work for contact in result.contacts], (-1, 2))
 
     def finished(self) -> None:
         """Say that all is done, what averaged normals cost, and how many warnings there were to read."""
