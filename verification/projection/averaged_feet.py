@@ -1,0 +1,140 @@
+"""Which foot along averaged normals, where there are several: the near side that faces the slave, and the one that was there before."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from isomortar.geometry.patch import Direction, FloatArray, Patch
+from isomortar.geometry.refinement import mesh
+from isomortar.harness import Bound, case
+from isomortar.model.entities import Body, Contact, Face, Material, Problem
+from isomortar.scene import Scene
+from isomortar.solve.contact import PairMechanics
+from isomortar.solve.equilibrium import Equilibrium
+from isomortar.solve.record import ContactState
+from isomortar.solve.timing import Ledger
+
+#: A block in a ring, its lower face nearer to the ring above than to that below.
+_IN_A_RING = """
+format = 1
+bodies.ring.geometry = { kind = "ring", inner = 0.3, outer = 0.5, width = 0.4 }
+bodies.ring.mesh.elements = [12, 1, 1]
+bodies.block.geometry = { kind = "box", lower = [-0.05, -0.1, 0.05], upper = [0.05, 0.1, 0.15] }
+contacts.inside = { slave = "block.w0", master = "ring.v0", projection = "averaged", quadrature = 3 }
+supports.outside.face = "ring.v1"
+supports.top.face = "block.w1"
+stages = [{ name = "down", steps = 1, motions.top.translate = [0, 0, -0.02] }]
+"""
+#: A block on top of a ring of flat elements, over its seam.
+_OVER_THE_SEAM = """
+format = 1
+bodies.ring.geometry = { kind = "ring", inner = 0.3, outer = 0.5, width = 0.4 }
+bodies.ring.mesh = { family = "L", order = 1, elements = [12, 1, 1] }
+bodies.block.geometry = { kind = "box", lower = [-0.1, -0.1, 0.45], upper = [0.1, 0.1, 0.6] }
+bodies.block.mesh.elements = [2, 1, 1]
+contacts.top = { slave = "block.w0", master = "ring.v1", projection = "averaged", quadrature = 4 }
+supports.inside.face = "ring.v0"
+supports.top.face = "block.w1"
+stages = [{ name = "down", steps = 1, motions.top.translate = [0, 0, -0.02] }]
+"""
+#: Half the width of a trough z = x^2, its elements along x, and how high above it the slave is: from there one foot is on either side.
+HALF, ELEMENTS, HEIGHT = 1.0, 24, 0.9
+
+
+def trough() -> Problem:
+    """A small block over a trough of quadratic elements."""
+    curve, line = Direction("N", 2, np.repeat([0.0, 1.0], 3)), Direction("N", 1, np.repeat([0.0, 1.0], 2))
+    x, y, z = (a.ravel(order="F") for a in np.meshgrid([-HALF, 0.0, HALF], [-0.3, 0.3], [-1.0, 0.0], indexing="ij"))
+    points = np.column_stack([x, y, z + np.where(x == 0.0, -(HALF**2), HALF**2)])
+    master = mesh(Patch((curve, line, line), points, np.ones(12)), ("L", "L", "L"), (2, 1, 1), (ELEMENTS, 2, 1))
+    x, y, z = (a.ravel(order="F") for a in np.meshgrid([-0.02, 0.02], [-0.1, 0.1], [HEIGHT, HEIGHT + 0.2], indexing="ij"))
+    slave = Patch((line, line, line), np.column_stack([x, y, z]), np.ones(8))
+    bodies = tuple(Body(name, patch, Material(), (3, 2, 2)) for name, patch in (("slave", slave), ("master", master)))
+    contact = Contact("interface", Face("slave", "w0"), Face("master", "w1"), 0.0, (3, 3), projection="averaged")
+    return Problem("trough", bodies, (contact,), (), ())
+
+
+def places(pair: PairMechanics, positions: FloatArray) -> FloatArray:
+    """Slave points, shape (points, 3)."""
+    slave = pair.pair.slave
+    nodes = np.repeat(slave.shape.nodes, slave.per_element, axis=0)
+    return np.einsum("qa,qak->qk", slave.shape.values, positions[slave.point][nodes])
+
+
+@case(
+    claim="Where the master is on both sides of the slave, its feet along averaged normals are where the faces look at each other, though "
+    "the other side is nearer.",
+    bounds={
+        "missing": Bound(0.0, 0.0, "definition: the ring is all round"),
+        "gap": Bound(at_most=1e-4, reason="discretisation: of a ring's normals by three elements an arc; the other side is nearer by 0.1"),
+    },
+)
+def facing() -> dict[str, float]:
+    """Slave points without a foot; largest difference of gaps from the distance to the ring below, along its radius."""
+    equilibrium = Equilibrium(Scene.from_toml(_IN_A_RING).problem(), Ledger())
+    pair, state = equilibrium.pairs[0], equilibrium.initial_state()
+    kinematics = pair.kinematics(state.positions, state.contacts[0])
+    control = kinematics.control
+    radius = np.hypot(*places(pair, state.positions)[:, [0, 2]].T)
+    area = pair.pair.slave.area
+    gap = -(0.3 + float(area @ radius) / area.sum())
+    return {
+        "missing": float(np.count_nonzero(kinematics.projections.found == 0)),
+        "gap": abs(float(control.gap.sum() / control.weight.sum()) - gap),
+    }
+
+
+@case(
+    claim="Along averaged normals the seam of a closed master is a line as any other: gaps on both sides of it are the same.",
+    bounds={
+        "missing": Bound(0.0, 0.0, "definition: the ring is all round"),
+        "apart": Bound(at_most=1e-12, reason="round-off: the scene is its own mirror image"),
+        "slant": Bound(at_least=1e-3, reason="definition: gaps differ along the slave, or their symmetry tells nothing"),
+    },
+)
+def at_the_seam() -> dict[str, float]:
+    """Slave points without a foot; largest difference of control gaps from those mirrored at the seam, and of them all."""
+    equilibrium = Equilibrium(Scene.from_toml(_OVER_THE_SEAM).problem(), Ledger())
+    pair, state = equilibrium.pairs[0], equilibrium.initial_state()
+    kinematics = pair.kinematics(state.positions, state.contacts[0])
+    gap = kinematics.control.gap / kinematics.control.weight
+    places = equilibrium.numbering.reference[pair.pair.slave.point]
+    mirrored = np.linalg.norm(places[:, None] * [-1.0, 1.0, 1.0] - places, axis=2).argmin(axis=1)
+    return {
+        "missing": float(np.count_nonzero(kinematics.projections.found == 0)),
+        "apart": float(np.abs(gap - gap[mirrored]).max()),
+        "slant": float(np.ptp(gap)),
+    }
+
+
+@case(
+    claim="A foot along averaged normals is followed from element to element, either way, though another one comes nearer; without one "
+    "before, it is the nearest.",
+    grid={"side": (-1, 1)},
+    bounds={
+        "left": Bound(0.0, 0.0, "definition: no foot changes to the other side"),
+        "nearest": Bound(0.0, 0.0, "definition: the smallest gap counts, on the slave's own side of the middle"),
+        "crossed": Bound(at_least=2.0, reason="definition: feet cross lines, or nothing is followed"),
+    },
+)
+def followed(side: int) -> dict[str, float]:
+    """Feet that have left their side, or are not on the nearer one when nothing is known; lines that the first point's foot has crossed."""
+    equilibrium = Equilibrium(trough(), Ledger())
+    pair, start = equilibrium.pairs[0], equilibrium.initial_state()
+    moved, nothing = equilibrium.numbering.points["slave"], start.contacts[0]
+    nothing = replace(nothing, projected=np.zeros_like(nothing.projected))
+    state: ContactState | None = None
+    left = nearest = 0
+    elements = set()
+    for shift in 0.15 * side * np.concatenate([np.linspace(1.0, -1.0, 14), np.linspace(-1.0, 1.0, 14)]):
+        positions = start.positions.copy()
+        positions[moved, 0] += shift
+        alone = pair.kinematics(positions, nothing).projections
+        nearest += int(np.count_nonzero((alone.xi[:, 0] - 0.5) * places(pair, positions)[:, 0] <= 0.0) + np.count_nonzero(alone.found == 0))
+        kinematics = pair.kinematics(positions, state or nothing)
+        left += int(np.count_nonzero((kinematics.projections.xi[:, 0] - 0.5) * side <= 0.0))
+        elements.add(int(kinematics.projections.element[0, 0]))
+        state = replace(nothing, projection=kinematics.projections.xi, projected=kinematics.projections.followed)
+    return {"left": float(left), "nearest": float(nearest), "crossed": len(elements) - 1.0}
