@@ -79,7 +79,14 @@ def test_a_command_runs_the_same_scene_alone():
 
 def test_lagrange_runs_are_told():
     section = FULL["iron"]
-    assert [variant.name for variant in section.variants if variant.lagrange] == ["L1", "L2", "slave-L1", "slave-L2"]
+    assert [variant.name for variant in section.variants if variant.lagrange] == [
+        "L1",
+        "L2",
+        "L1-averaged",
+        "L2-averaged",
+        "slave-L1",
+        "slave-L2",
+    ]
 
 
 def test_studies_are_chosen_by_name():

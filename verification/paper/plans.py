@@ -15,6 +15,8 @@ FORCE, MOMENT, DRAG, TORQUE = (
 TOLERANCE, TIGHT = "solver.augmentation_tolerance=0.001", "solver.augmentation_tolerance=0.0001"
 #: What the paper says of masters of Lagrange elements, it says of closest points.
 CLOSEST = ('contacts.interface.projection="closest"',)
+#: What such masters do along averaged normals, beside that; these know the paper's slip sum not.
+AVERAGED = ('contacts.interface.projection="averaged"',)
 SOFT = ("solver.penalty_normal=10.0", "solver.penalty_tangential=1.0")
 
 
@@ -27,6 +29,11 @@ def lagrange_slave(order: int, elements: Elements) -> tuple[str, ...]:
     """The slave in Lagrange elements along its contact face, linear in the other direction."""
     mesh = "bodies.slave.mesh"
     return (f'{mesh}.family=["L","L","L"]', f"{mesh}.order=[{order},{order},1]", f"{mesh}.elements={list(elements)}")
+
+
+def averaged(order: int, elements: Elements) -> Variant:
+    """A master of Lagrange elements along averaged normals."""
+    return Variant(f"L{order}-averaged", f"L{order}", elements, f"L{order} along averaged normals", AVERAGED, ("monolithic",))
 
 
 def own_method(name: str, kind: str, elements: Elements, title: str, *changes: str) -> Variant:
@@ -59,7 +66,7 @@ TWIST = Section(
     quantity=MOMENT,
     window=(0.25, 1.0),
     reference="N4-fine",
-    series={"N": ("N2", "N3", "N4", "N5"), "Lagrange": ("L1", "L2", "slave-L1", "slave-L2")},
+    series={"N": ("N2", "N3", "N4", "N5"), "Lagrange": ("L1", "L2", "slave-L1", "slave-L2"), "averaged": ("L1-averaged", "L2-averaged")},
     instances=(10, 20, 30, 40, 50),
     variants=(
         *nurbs((5, 5, 3), 2, 3, 4, 5),
@@ -81,6 +88,8 @@ TWIST = Section(
         own_method("soft-tolerance", "N2", (5, 5, 3), "N2 with penalties 10 and 1, tolerance 0.001", *SOFT, TOLERANCE),
         Variant("L1", "L1", (5, 5, 3), "master of Lagrange elements of order 1", CLOSEST),
         Variant("L2", "L2", (3, 3, 3), "master of Lagrange elements of order 2, 7 x 7 nodes as N2", CLOSEST),
+        averaged(1, (5, 5, 3)),
+        averaged(2, (3, 3, 3)),
         Variant("slave-L1", "N2", (5, 5, 3), "slave of Lagrange elements of order 1, 5 x 5 nodes as N2", lagrange_slave(1, (4, 4, 3))),
         Variant("slave-L2", "N2", (5, 5, 3), "slave of Lagrange elements of order 2, 5 x 5 nodes as N2", lagrange_slave(2, (2, 2, 3))),
     ),
@@ -93,7 +102,12 @@ IRON = Section(
     quantity=DRAG,
     window=(0.25, 1.0),
     reference="N5",
-    series={"N": ("N2", "N3", "N4", "N5"), "refined": ("N2", "A", "B"), "Lagrange": ("L1", "L2", "slave-L1", "slave-L2")},
+    series={
+        "N": ("N2", "N3", "N4", "N5"),
+        "refined": ("N2", "A", "B"),
+        "Lagrange": ("L1", "L2", "slave-L1", "slave-L2"),
+        "averaged": ("L1-averaged", "L2-averaged"),
+    },
     instances=(10, 20, 30, 40, 50),
     variants=(
         *nurbs((10, 5, 3), 2, 3, 4, 5),
@@ -104,6 +118,8 @@ IRON = Section(
         own_method("fewer-steps", "N2", (10, 5, 3), "N2 in 5 and 20 load steps", "stages.press.steps=5", "stages.drag.steps=20"),
         Variant("L1", "L1", (10, 5, 3), "master of Lagrange elements of order 1", CLOSEST),
         Variant("L2", "L2", (5, 5, 3), "master of Lagrange elements of order 2 along the drag, as many nodes as L1", CLOSEST),
+        averaged(1, (10, 5, 3)),
+        averaged(2, (5, 5, 3)),
         Variant("slave-L1", "N2", (10, 5, 3), "slave of Lagrange elements of order 1, 7 x 7 nodes as N2", lagrange_slave(1, (6, 6, 3))),
         Variant("slave-L2", "N2", (10, 5, 3), "slave of Lagrange elements of order 2, 7 x 7 nodes as N2", lagrange_slave(2, (3, 3, 3))),
     ),

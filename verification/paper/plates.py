@@ -142,8 +142,14 @@ def _twist(studio: _Studio) -> Iterator[Plate]:
     variants = ("N2", "ten-points", "more-steps", "tolerance")
     yield from studio.curves("Fig. 6: numerical parameters of N2", "fig-6-parameters", variants, ("paper",))
     yield from studio.curves("Penalties and tolerances of N2", "twist-penalties", ("N2", "tight", "soft", "soft-tolerance"), ("paper",))
-    lagrange = (*studio.section.series["Lagrange"], "reference")
-    yield from studio.curves("Lagrange elements as master and as slave", "twist-lagrange", lagrange)
+    yield from _lagrange(studio)
+
+
+def _lagrange(studio: _Studio) -> Iterator[Plate]:
+    scene, series = studio.section.scene, studio.section.series
+    yield from studio.curves("Lagrange elements as master and as slave", f"{scene}-lagrange", (*series["Lagrange"], "reference"))
+    masters = ("L1", "L2", *series["averaged"], "reference")
+    yield from studio.curves("Lagrange masters by closest points and along averaged normals", f"{scene}-averaged", masters, ("monolithic",))
 
 
 def _iron(studio: _Studio) -> Iterator[Plate]:
@@ -156,8 +162,7 @@ def _iron(studio: _Studio) -> Iterator[Plate]:
     yield from studio.curves(
         "Fig. 9: N5 against finer N2 (A, B) and lower pressures (C, D)", "fig-9-smoothness", ("A", "B", "C", "D", "reference")
     )
-    lagrange = (*studio.section.series["Lagrange"], "reference")
-    yield from studio.curves("Lagrange elements as master and as slave", "iron-lagrange", lagrange)
+    yield from _lagrange(studio)
 
 
 def _tire(studio: _Studio) -> Iterator[Plate]:

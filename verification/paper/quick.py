@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from paper.plans import CLOSEST, DRAG, FORCE, MOMENT, TOLERANCE, TORQUE, nurbs, own_method
+from paper.plans import CLOSEST, DRAG, FORCE, MOMENT, TOLERANCE, TORQUE, averaged, nurbs, own_method
 from paper.sections import Section, Variant
 
 PRESS = Section(
@@ -32,13 +32,14 @@ TWIST = Section(
     quantity=MOMENT,
     window=(0.25, 1.0),
     reference="fine-N3",
-    series={"N": ("N2", "N3"), "Lagrange": ("L1", "L2")},
+    series={"N": ("N2", "N3"), "Lagrange": ("L1", "L2"), "averaged": ("L1-averaged",)},
     instances=(7,),
     variants=(
         *nurbs((3, 3, 1), 2, 3),
         Variant("fine-N3", "N3", (4, 4, 1), "reference: four elements laterally", (), ("monolithic",)),
         Variant("L1", "L1", (3, 3, 1), "master of Lagrange elements of order 1", CLOSEST, ("monolithic",)),
         Variant("L2", "L2", (2, 2, 1), "master of Lagrange elements of order 2", CLOSEST, ("monolithic",)),
+        averaged(1, (3, 3, 1)),
     ),
     changes=(
         "bodies.slave.mesh.elements=[2,2,1]",
@@ -55,7 +56,7 @@ IRON = Section(
     quantity=DRAG,
     window=(0.2, 1.0),
     reference="N3",
-    series={"N": ("N2", "N3"), "Lagrange": ("L1", "L2")},
+    series={"N": ("N2", "N3"), "Lagrange": ("L1", "L2"), "averaged": ("L1-averaged",)},
     instances=(8,),
     variants=(
         *nurbs((5, 2, 2), 2, 3),
@@ -63,6 +64,7 @@ IRON = Section(
         Variant("C", "N2", (5, 2, 2), "N2 pressed down by 0.4", ("stages.press.motions.top.translate=[0,0,-0.4]",), ("monolithic",)),
         Variant("L1", "L1", (5, 2, 2), "master of Lagrange elements of order 1", CLOSEST, ("monolithic",)),
         Variant("L2", "L2", (3, 2, 2), "master of Lagrange elements of order 2", CLOSEST, ("monolithic",)),
+        averaged(1, (5, 2, 2)),
     ),
     changes=(
         "bodies.slave.mesh.elements=[2,2,2]",
