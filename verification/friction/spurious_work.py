@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from projection.averaged import uneven
 
@@ -40,7 +42,7 @@ def around_a_loop(order: int) -> dict[str, float]:
     pressure, none = np.random.default_rng(1).uniform(0.5, 1.5, n), np.zeros((n, 2))
     response = Response(pressure, none, np.ones(n, dtype=np.int32), np.zeros(n), np.zeros((n, 6, 2)), np.zeros((points, 2)))
     places = around(np.linspace(0.0, 1.0, STEPS * PLACES + 1))
-    state, forces, works = pair.initial(start), [], []
+    state, begun, forces, works = replace(pair.initial(start), pressure=pressure), start, [], []
     for k, place in enumerate(places):
         positions = start.copy()
         positions[slave] += place
@@ -48,8 +50,8 @@ def around_a_loop(order: int) -> dict[str, float]:
         pair.add_forces(positions, kinematics, response, total)
         forces.append(total[slave].sum(axis=0))
         if k % PLACES == 0:
-            works.append(pair.work(positions, kinematics, response))
-            state = pair.state(kinematics, response)
+            works.append(pair.work(begun, state, positions, kinematics, response))
+            state, begun = pair.state(kinematics, response), positions
     done = float(np.sum(0.5 * (np.array(forces)[1:] + np.array(forces)[:-1]) * np.diff(places, axis=0)))
     friction, spurious = np.array(works).T
     size = float(np.abs(spurious).sum())

@@ -309,16 +309,21 @@ class PairMechanics:
             self.round_off(positions, again, response, unbalanced),
         )
 
-    def work(self, positions: FloatArray, kinematics: Kinematics, response: Response) -> FloatArray:
-        """What friction, and pressures along averaged normals, took up within a load increment, shape (2,) (theory 3.31)."""
+    def work(self, start: FloatArray, begun: ContactState, positions: FloatArray, kinematics: Kinematics, response: Response) -> FloatArray:
+        """What friction, and pressures along averaged normals, took up within a load increment, shape (2,) (theory 3.31).
+
+        From positions `start` with state `begun` to `positions`. A slave climbs out of its own dent in the surface at the end alone, and
+        into it in that at the start: of both together no work is left.
+        """
         acts = response.state > 0
         friction = float(np.sum(response.traction[acts] * kinematics.control.slip[acts]))
         if not self.pair.contact.averaged:
             return np.array([friction, 0.0])
-        pressure = self.pair.field(np.where(acts, response.pressure, 0.0))
+        slave, master = self.pair.slave, self.pair.master
+        pressure = 0.5 * self.pair.field(begun.pressure + np.where(acts, response.pressure, 0.0))
         with self._ledger.phase("contact"):
-            climbs = _bindings.find_climbs(self.pair.slave, self.pair.master, positions, kinematics.projections)
-        return np.array([friction, -float(np.sum(self.pair.slave.area * pressure * climbs))])
+            ends = [_bindings.find_climbs(slave, master, place, kinematics.projections) for place in (start, positions)]
+        return np.array([friction, -float(np.sum(slave.area * pressure * 0.5 * (ends[0] + ends[1])))])
 
     def result(self, positions: FloatArray, kinematics: Kinematics, response: Response, work: FloatArray) -> ContactResult:
         """Measured quantities at the end of a load step (theory 8.2), and the work of its increments."""

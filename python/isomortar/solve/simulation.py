@@ -115,11 +115,11 @@ class Simulation:
                 cuts += 1
                 continue
             time, substeps = target, substeps + len(parts)
-            state = self.equilibrium.state(parts[-1].balance)
             for part in parts:
                 log += part.augmentations
                 orders += [order for order in part.orders if np.isfinite(order)]
-                work += self._work(part.balance)
+                work += self._work(state, part.balance)
+                state = self.equilibrium.state(part.balance)
             self._grow(increment / longest, parts)
         result = self._result(step, state, parts[-1].balance, work, tuple(log), orders, substeps, cuts)
         self._warn(self._lost.after_step(parts[-1].balance, result))
@@ -189,10 +189,10 @@ class Simulation:
             reactions.append(Reaction(forces.sum(axis=0), moment(positions[points] - centre, forces), centre + self.equilibrium.origin))
         return tuple(reactions)
 
-    def _work(self, balance: Balance) -> FloatArray:
-        """Friction work and spurious work of each contact pair in the increment that ends here, shape (pairs, 2) (theory 3.31)."""
-        pairs = zip(self.equilibrium.pairs, balance.kinematics, balance.responses, strict=True)
-        return np.array([pair.work(balance.positions, k, r) for pair, k, r in pairs]).reshape(-1, 2)
+    def _work(self, start: State, balance: Balance) -> FloatArray:
+        """Friction work and spurious work of each contact pair in an increment, shape (pairs, 2) (theory 3.31)."""
+        pairs = zip(self.equilibrium.pairs, start.contacts, balance.kinematics, balance.responses, strict=True)
+        return np.array([pair.work(start.positions, begun, balance.positions, k, r) for pair, begun, k, r in pairs]).reshape(-1, 2)
 
     def _result(
         self,
