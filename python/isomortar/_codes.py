@@ -35,7 +35,7 @@ class PointState(IntEnum):
     SLIP = 2
 
 
-class Row(IntEnum):
+class FirstRow(IntEnum):
     """First constraint row of each kind, from 1 (isomortar_contact_blocks): <R dg>, <R slip>, <R dxi>, <R R da_ab>, <R da_ab zeta^b>."""
 
     PUSH = 1
@@ -48,9 +48,9 @@ class Row(IntEnum):
 #: How many rows there are without friction, with it, and with the paper's slip sum; along averaged normals one more: <R dg> as it is,
 #: not as pressures work on it.
 ROW_KINDS = {
-    "frictionless": Row.WORK - 1,
-    "frictionless, averaged": Row.WORK,
-    "local": Row.SLIP_SUM - 1,
-    "local, averaged": Row.SLIP_SUM + 0,
-    "paper": Row.SLIP_SUM + 1,
+    "frictionless": FirstRow.WORK - 1,
+    "frictionless, averaged": FirstRow.WORK,
+    "local": FirstRow.SLIP_SUM - 1,
+    "local, averaged": FirstRow.SLIP_SUM + 0,
+    "paper": FirstRow.SLIP_SUM + 1,
 }

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from isomortar._arrays import FRICTION_LAWS, LAWS
-from isomortar._codes import ROW_KINDS, PointState, Row, Status
+from isomortar._codes import ROW_KINDS, FirstRow, PointState, Status
 
 FORTRAN = Path(__file__).parents[2] / "fortran"
 
@@ -23,7 +23,7 @@ def parameters(file: str, prefix: str) -> dict[str, int]:
     [
         ("base/status.f90", "status", {status.name.lower(): status.value for status in Status}),
         ("contact/friction/return_map.f90", "state", {state.name.lower(): state.value for state in PointState}),
-        ("contact/blocks.f90", "row", {row.name.lower(): row.value for row in Row}),
+        ("contact/blocks.f90", "row", {row.name.lower(): row.value for row in FirstRow}),
         ("solid/material/table.f90", "law", {name.replace("-", "_"): number for name, number in LAWS.items()}),
         ("contact/friction/table.f90", "law", FRICTION_LAWS),
     ],

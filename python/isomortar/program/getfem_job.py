@@ -31,7 +31,7 @@ def gauss(points: list[int]) -> Any:
     return gf.Integ(product("IM", [f"IM_GAUSS1D({2 * count - 1})" for count in points]))
 
 
-class Body:
+class MeshedBody:
     """A body of the model: its mesh, its displacement, and where GetFEM's degrees of freedom stand among all nodes."""
 
     def __init__(self, model: Any, number: int, told: dict[str, Any], nodes: Any) -> None:
@@ -65,10 +65,10 @@ class Body:
         return number
 
 
-class Held:
+class HeldUnknowns:
     """The prescribed unknowns of a body, by a multiplier each: minus the force that the support exerts."""
 
-    def __init__(self, model: Any, body: Body, prescribed: Any) -> None:
+    def __init__(self, model: Any, body: MeshedBody, prescribed: Any) -> None:
         self.model, self.multiplier = model, f"held_{body.variable}"
         unknowns = body.unknowns
         own = np.flatnonzero(np.isin(unknowns, prescribed))
@@ -91,7 +91,7 @@ class Held:
             forces[self.places] = -self.model.variable(self.multiplier)
 
 
-def add_contact(model: Any, number: int, told: dict[str, Any], contact: dict[str, Any], bodies: list[Body]) -> list[Any]:
+def add_contact(model: Any, number: int, told: dict[str, Any], contact: dict[str, Any], bodies: list[MeshedBody]) -> list[Any]:
     """Add contact with friction, its multipliers on the slave face; the model needs what is returned to stay alive."""
     slave, master = (bodies[side["body"]] for side in contact["sides"])
     # Regions of one mesh must differ: each side of each contact has a number of its own.
@@ -116,8 +116,8 @@ def main(path: str) -> None:
     nodes, prescribed = np.array(told["nodes"]), np.array(told["prescribed"])
     gf.util_trace_level(0)
     model = gf.Model("real")
-    bodies = [Body(model, number, body, nodes) for number, body in enumerate(told["bodies"])]
-    held = [Held(model, body, prescribed) for body in bodies]
+    bodies = [MeshedBody(model, number, body, nodes) for number, body in enumerate(told["bodies"])]
+    held = [HeldUnknowns(model, body, prescribed) for body in bodies]
     kept = [add_contact(model, number, told, contact, bodies) for number, contact in enumerate(told["contacts"])]
     solver = "dense_lu" if model.nbdof() < SMALL else "mumps"
     for wanted in np.array(told["displacements"]):
@@ -131,7 +131,7 @@ def main(path: str) -> None:
     del kept
 
 
-def _found(model: Any, bodies: list[Body], held: list[Held], nodes: Any) -> dict[str, Any]:
+def _found(model: Any, bodies: list[MeshedBody], held: list[HeldUnknowns], nodes: Any) -> dict[str, Any]:
     """Displacements of all nodes and the forces of what is prescribed."""
     displacements = np.zeros(nodes.size)
     for body in bodies:

@@ -18,7 +18,7 @@ from isomortar.results.reader import Results
 _COMPONENTS = {"x": (style.BLUE, "-"), "y": (style.GREEN, "--"), "z": (style.VERMILION, "-.")}
 
 
-class Curve(Protocol):
+class WantedCurve(Protocol):
     """A curve that a scene asks for: a component of a support's force or moment."""
 
     @property
@@ -57,7 +57,7 @@ def draw_reactions(results: Results, support: str) -> Figure:
     return figure
 
 
-def draw_curve(results: Results, curve: Curve) -> Figure:
+def draw_curve(results: Results, curve: WantedCurve) -> Figure:
     """A curve that the scene asks for."""
     figure = Figure(figsize=(6.4, 3.2), layout="constrained")
     axes = figure.subplots()

@@ -10,14 +10,14 @@ from matplotlib.figure import Figure
 
 from isomortar.errors import ResultsError
 from isomortar.results.bodies import draw_bodies
-from isomortar.results.curves import Curve, draw_curve, draw_reactions, moving_supports
+from isomortar.results.curves import WantedCurve, draw_curve, draw_reactions, moving_supports
 from isomortar.results.files import make_folder, writing
 from isomortar.results.maps import draw_map
 from isomortar.results.reader import Results
 from isomortar.results.style import style
 
 
-def plot(results_path: str | os.PathLike[str], outdir: str | os.PathLike[str], curves: Sequence[Curve] = ()) -> list[Path]:
+def plot(results_path: str | os.PathLike[str], outdir: str | os.PathLike[str], curves: Sequence[WantedCurve] = ()) -> list[Path]:
     """Draw curves over all load steps, and bodies and contact pressure of the last one.
 
     Curves and maps are written as PNG and as PDF (vectors), bodies as PNG.
@@ -27,7 +27,7 @@ def plot(results_path: str | os.PathLike[str], outdir: str | os.PathLike[str], c
     results_path : path-like
     outdir : path-like
         Folder of the figures; made if it does not exist.
-    curves : sequence of Curve
+    curves : sequence of WantedCurve
         Single curves to draw besides force and moment of every support that moves.
 
     Returns

@@ -35,7 +35,7 @@ class Machine:
 
 
 @dataclass(frozen=True)
-class Limits:
+class MachineLimits:
     """What one core did at most, in CPU time: GF/s of dgemm, GB/s of y + a x; and how many processes wanted to run meanwhile."""
 
     dgemm: float
@@ -65,13 +65,13 @@ def triad_rate(entries: int = ENTRIES) -> float:
     return float(24e-9 * entries / cpu_seconds(lambda: blas.daxpy(x, y, a=0.5), _RUNS)[1])
 
 
-def limits() -> Limits:
+def limits() -> MachineLimits:
     """Measure in a process of its own, with one thread."""
     from isomortar.harness.bench.processes import fresh
 
     with fresh("-m", __name__) as process:
-        return Limits(**json.loads(process.line() or b""))
+        return MachineLimits(**json.loads(process.line() or b""))
 
 
 if __name__ == "__main__":
-    print(json.dumps(asdict(Limits(dgemm_rate(), triad_rate(), os.getloadavg()[0]))))
+    print(json.dumps(asdict(MachineLimits(dgemm_rate(), triad_rate(), os.getloadavg()[0]))))

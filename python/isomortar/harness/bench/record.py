@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from isomortar.harness.bench import history
-from isomortar.harness.bench.machine import Limits, Machine
+from isomortar.harness.bench.machine import Machine, MachineLimits
 from isomortar.harness.bench.processes import Answer
 from isomortar.harness.bench.standings import standings
 from isomortar.harness.store import identity
@@ -23,7 +23,7 @@ class Record:
     started: datetime
     quick: bool
     machine: Machine
-    limits: tuple[Limits, ...]
+    limits: tuple[MachineLimits, ...]
     answers: tuple[Answer, ...] = ()
 
 

@@ -24,7 +24,7 @@ from isomortar.harness.report import sentence
 from isomortar.harness.store import cell_key
 
 #: Tells what is being done, how much of it is done, and how much there is (0: not known).
-Progress = Callable[[str, int, int], None]
+Tell = Callable[[str, int, int], None]
 #: What a faulty program is that does not count.
 _REJECTED, _SOUND, _TWICE = "rejected by the compiler", "same as the sound program", "same as another fault"
 
@@ -79,11 +79,11 @@ class Campaign:
         Where to work and to keep what is known.
     jobs : int
         Faults at the same time.
-    progress : Progress
+    progress : Tell
     """
 
     def __init__(
-        self, layer: Layer, project: Path, cases: Path, cells: Sequence[Cell], lookup: Lookup, folder: Path, jobs: int, progress: Progress
+        self, layer: Layer, project: Path, cases: Path, cells: Sequence[Cell], lookup: Lookup, folder: Path, jobs: int, progress: Tell
     ) -> None:
         self._cells, self._lookup, self._progress = cells, lookup, progress
         self._builds, self._findings, self._sound = (Journal(folder / f"{name}.jsonl") for name in ("builds", "verdicts", "sound"))
