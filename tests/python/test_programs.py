@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import sys
 import time
@@ -14,6 +15,7 @@ from typer.testing import CliRunner
 from isomortar import _compiled
 from isomortar.cli.commands import app
 from isomortar.errors import InputError, IsomortarError
+from isomortar.harness.worker import COMMAND
 from isomortar.model.entities import Problem
 from isomortar.model.numbering import Numbering
 from isomortar.program import calculix, getfem
@@ -323,13 +325,47 @@ def test_a_program_that_must_end_well_says_why_it_did_not() -> None:
         output_of([sys.executable, "-c", "import time; time.sleep(60)"], seconds=0.2)
 
 
-def test_what_a_process_has_started_ends_with_it() -> None:
-    code = "import subprocess, time; print(subprocess.Popen(['sleep', '60']).pid, flush=True); time.sleep(60)"
-    with Process([sys.executable, "-c", code]) as process:
-        child = int(process.line(30) or 0)
+def gone(child: int) -> bool:
+    """Whether a process ends within some seconds."""
     for _ in range(100):
         state = Path(f"/proc/{child}/stat")
         if not state.exists() or state.read_text().rpartition(")")[2].split()[0] == "Z":
-            return
+            return True
         time.sleep(0.05)
-    raise AssertionError("it goes on")
+    return False
+
+
+@pytest.mark.parametrize("session", [False, True])
+def test_what_a_process_has_started_ends_with_it(session: bool) -> None:
+    """In its session or, as programs that a case runs are, in one of their own."""
+    started = f"subprocess.Popen(['sleep', '60'], start_new_session={session})"
+    code = f"import subprocess, time; print({started}.pid, flush=True); time.sleep(60)"
+    with Process([sys.executable, "-c", code]) as process:
+        child = int(process.line(30) or 0)
+    assert gone(child)
+
+
+ENDLESS = """
+import sys
+from isomortar.harness import Bound, case
+from isomortar.program.process import run
+
+@case(claim="So.", bounds={"error": Bound(at_most=1.0, reason="theory: so")})
+def endless():
+    run([sys.executable, "-c", "import os, time; open('pid', 'w').write(f'{os.getpid()} '); time.sleep(60)"])
+"""
+
+
+def test_a_program_that_is_measured_ends_with_the_run_that_asked(tmp_path: Path) -> None:
+    """The run is killed: the measuring process hears no more of it."""
+    (tmp_path / "cases/family").mkdir(parents=True)
+    path = tmp_path / "cases/family/endless.py"
+    path.write_text(ENDLESS)
+    with Process(COMMAND, folder=tmp_path) as worker:
+        worker.send(json.dumps({"path": str(path), "case": "family/endless", "settings": {}, "seconds": 60}).encode())
+        for _ in range(600):
+            if (tmp_path / "pid").exists() and (tmp_path / "pid").read_text().endswith(" "):
+                break
+            time.sleep(0.1)
+        worker.given_all()
+        assert gone(int((tmp_path / "pid").read_text()))

@@ -23,7 +23,7 @@ from isomortar._process import own_process
 from isomortar.errors import IsomortarError
 from isomortar.harness.cases import TIMEOUTS, Cell
 from isomortar.harness.measurement import Measurement
-from isomortar.program.process import GRACE, Limits, Process
+from isomortar.program.process import GRACE, Limits, Process, descendants, end_now
 
 #: What starts a measuring process.
 COMMAND = (sys.executable, "-m", "isomortar.harness.worker")
@@ -114,7 +114,8 @@ def _serve() -> None:
     def read() -> None:
         for line in sys.stdin:
             tasks.put(line)
-        os._exit(0)  # the run that asked is gone: drop what is being measured
+        end_now(descendants(os.getpid()))  # the run that asked is gone: drop what is being measured, other programs too
+        os._exit(0)
 
     threading.Thread(target=read, daemon=True).start()
     while True:

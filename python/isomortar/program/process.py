@@ -12,7 +12,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
@@ -107,10 +107,12 @@ class Process:
                 file.close()
 
     def kill(self) -> None:
-        """End it now, with what it has started and is still its own. Who waits for a line of it gets none."""
+        """End it now, with what it has started. Who waits for a line of it gets none."""
         if self._process.poll() is None:
+            started = descendants(self._process.pid)
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(self._process.pid, signal.SIGKILL)
+            end_now(started)
         self._process.wait()
 
     def send(self, line: bytes) -> None:
@@ -192,6 +194,23 @@ class Process:
         """All of its standard error so far."""
         self._errors.seek(0)
         return self._errors.read().decode(errors="replace")
+
+
+def descendants(pid: int) -> list[int]:
+    """Processes that a process has started, those that they have, and so on, in any session; where the system tells (Linux)."""
+    found: list[int] = []
+    for children in Path(f"/proc/{pid}/task").glob("*/children"):
+        with contextlib.suppress(OSError):
+            for child in map(int, children.read_text().split()):
+                found += [child, *descendants(child)]
+    return found
+
+
+def end_now(processes: Iterable[int]) -> None:
+    """End processes of ours by their numbers, those that are there."""
+    for pid in processes:
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(pid, signal.SIGKILL)
 
 
 @dataclass(frozen=True)
