@@ -214,16 +214,17 @@ subroutine friction_radius(friction, pressure, n, radius, status)
 end subroutine friction_radius
 
 !> Add contact forces on slave and master control points (isomortar_contact_blocks).
-subroutine contact_forces(slave, map, x, n, xi, element, fixed, found, nquad, with_friction, pressure, traction, state, ntest, &
-    forces, status)
+subroutine contact_forces(slave, map, x, n, xi, element, fixed, found, nquad, pressure, traction, state, ntest, forces, &
+    status)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: find
-  use isomortar_contact_blocks, only: integrate_forces, multipliers_t
+  use isomortar_contact_blocks, only: integrate_forces
   use isomortar_contact_gap_map_map, only: gap_map_t, projections_t
+  use isomortar_contact_sample, only: multipliers_t
   use isomortar_contact_slave, only: slave_t
   implicit none
   integer(c_int64_t), intent(in) :: slave, map
-  integer(c_int), intent(in) :: n, nquad, ntest, element(2, nquad), fixed(2, nquad), found(nquad), with_friction, state(ntest)
+  integer(c_int), intent(in) :: n, nquad, ntest, element(2, nquad), fixed(2, nquad), found(nquad), state(ntest)
   real(c_double), intent(in) :: x(3, n), xi(2, nquad), pressure(ntest), traction(2, ntest)
   real(c_double), intent(inout) :: forces(3, n)
   integer(c_int), intent(out) :: status
@@ -239,7 +240,7 @@ subroutine contact_forces(slave, map, x, n, xi, element, fixed, found, nquad, wi
   projections%place = element + 1
   projections%fixed = fixed /= 0
   projections%found = found /= 0
-  call integrate_forces(side, onto, x, projections, with_friction /= 0, multipliers_t(pressure, traction, state /= 0), forces)
+  call integrate_forces(side, onto, x, projections, multipliers_t(pressure, traction, state /= 0), forces)
 end subroutine contact_forces
 
 !> Add constraint rows and the geometric tangent (isomortar_contact_blocks).
@@ -247,8 +248,9 @@ subroutine contact_blocks(slave, map, x, n, xi, element, fixed, found, origin, s
     state, ntest, field_slip, row_pattern, nrows, nkinds, rows, pattern, nblocks, tangent, status, place)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: find
-  use isomortar_contact_blocks, only: integrate_blocks, multipliers_t
+  use isomortar_contact_blocks, only: integrate_blocks
   use isomortar_contact_gap_map_map, only: gap_map_t, projections_t
+  use isomortar_contact_sample, only: multipliers_t
   use isomortar_contact_slave, only: slave_t
   use isomortar_sparse_blocks, only: pattern_t
   implicit none
@@ -283,20 +285,20 @@ end subroutine contact_blocks
 
 !> Rows of the multipliers' derivatives of the augmented law (isomortar_contact_augmentation): changes(component, multiplier, block)
 !> and of their trial tractions, trial(component, a, block), on the pattern `wide`; it and `neighbours` differ from the rows'
-!> pattern with `summed` only. `place` is the row of a pattern that lacks a block, 0 where `wide` has other rows.
-subroutine multiplier_rows(slave, weight, square, control_slip, metric, point_metric, nquad, ntest, summed, penalties, state, &
+!> pattern with the paper's slip sum only. `place` is the row of a pattern that lacks a block, 0 where `wide` has other rows.
+subroutine multiplier_rows(slave, weight, square, control_slip, metric, point_metric, nquad, ntest, penalties, state, &
     pressure_slope, traction_slope, row_pattern, nrows, nkinds, rows, neighbours, wide, nwide, changes, trial, status, place)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: find
   use isomortar_base_status, only: status_ok, status_pattern
   use isomortar_contact_augmentation, only: combine => multiplier_rows, law_t, response_t, trial_rows, trial_rows_summed
-  use isomortar_contact_blocks, only: has_friction
   use isomortar_contact_control, only: control_t
+  use isomortar_contact_rows, only: rows_of, rows_t
   use isomortar_contact_slave, only: slave_t
   use isomortar_sparse_blocks, only: pattern_t
   implicit none
   integer(c_int64_t), intent(in) :: slave, row_pattern, neighbours, wide
-  integer(c_int), intent(in) :: nquad, ntest, nrows, nkinds, nwide, summed, state(ntest)
+  integer(c_int), intent(in) :: nquad, ntest, nrows, nkinds, nwide, state(ntest)
   real(c_double), intent(in) :: weight(ntest), square(ntest), control_slip(2, ntest), metric(3, ntest), point_metric(3, nquad)
   real(c_double), intent(in) :: penalties(2), pressure_slope(ntest), traction_slope(2, 6, ntest), rows(3, nkinds, nrows)
   real(c_double), intent(out) :: changes(3, 3, nwide), trial(3, 2, nwide)
@@ -306,6 +308,7 @@ subroutine multiplier_rows(slave, weight, square, control_slip, metric, point_me
   type(control_t) :: control
   type(law_t) :: law
   type(response_t) :: response
+  type(rows_t) :: there
 
   status = status_ok
   place = 0
@@ -325,11 +328,12 @@ subroutine multiplier_rows(slave, weight, square, control_slip, metric, point_me
   response%state = state
   response%pressure_slope = pressure_slope
   response%traction_slope = traction_slope
+  there = rows_of(nkinds)
   status = status_pattern
-  if (summed == 0 .and. any(of_rows%start /= of_trial%start)) return
-  if (has_friction(nkinds) .and. summed /= 0) then
+  if (.not. there%slip_sum .and. any(of_rows%start /= of_trial%start)) return
+  if (there%slip_sum) then
     call trial_rows_summed(side, control, law, state /= 0, of_rows, rows, of_neighbours, of_trial, trial, place)
-  else if (has_friction(nkinds)) then
+  else if (there%friction) then
     call trial_rows(control, law, state /= 0, of_rows, rows, trial)
   end if
   if (place == 0) call combine(control, response, of_rows, rows, of_trial, trial, changes, place)

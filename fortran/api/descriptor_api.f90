@@ -133,17 +133,18 @@ subroutine keep_plane(origin, normal, tangent, handle, status)
   call keep(descriptor, handle, status)
 end subroutine keep_plane
 
-!> Keep the gap map of the closest point on a face of a patch, by the axis across it (1..3) and its end there (0, 1)
-!> (isomortar_contact_gap_map_closest_point).
-subroutine keep_closest_point(patch, axis, side, handle, status)
+!> Keep the gap map of a face of a patch, by the axis across it (1..3) and its end there (0, 1): of the averaged normal where
+!> `averaged` is 1 (isomortar_contact_gap_map_averaged), else of the closest point (isomortar_contact_gap_map_closest_point).
+subroutine keep_face(patch, axis, side, averaged, handle, status)
   use iso_c_binding, only: c_int, c_int64_t
   use isomortar_api_descriptors, only: descriptor_t, find, keep
+  use isomortar_contact_gap_map_averaged, only: averaged_on
   use isomortar_contact_gap_map_closest_point, only: closest_point_t
   use isomortar_nurbs_patch, only: patch_t
   use isomortar_nurbs_surface, only: face_of
   implicit none
   integer(c_int64_t), intent(in) :: patch
-  integer(c_int), intent(in) :: axis, side
+  integer(c_int), intent(in) :: axis, side, averaged
   integer(c_int64_t), intent(out) :: handle
   integer(c_int), intent(out) :: status
   type(descriptor_t) :: descriptor
@@ -153,32 +154,13 @@ subroutine keep_closest_point(patch, axis, side, handle, status)
   status = 0
   call find(patch, body, status)
   if (status /= 0) return
-  allocate (descriptor%map, source=closest_point_t(surface=face_of(body, axis, side), opposite=face_of(body, axis, 1 - side)))
+  if (averaged /= 0) then
+    allocate (descriptor%map, source=averaged_on(face_of(body, axis, side), face_of(body, axis, 1 - side)))
+  else
+    allocate (descriptor%map, source=closest_point_t(surface=face_of(body, axis, side), opposite=face_of(body, axis, 1 - side)))
+  end if
   call keep(descriptor, handle, status)
-end subroutine keep_closest_point
-
-!> Keep the gap map of the averaged normal on a face of a patch (isomortar_contact_gap_map_averaged), named as above.
-subroutine keep_averaged(patch, axis, side, handle, status)
-  use iso_c_binding, only: c_int, c_int64_t
-  use isomortar_api_descriptors, only: descriptor_t, find, keep
-  use isomortar_contact_gap_map_averaged, only: averaged_on
-  use isomortar_nurbs_patch, only: patch_t
-  use isomortar_nurbs_surface, only: face_of
-  implicit none
-  integer(c_int64_t), intent(in) :: patch
-  integer(c_int), intent(in) :: axis, side
-  integer(c_int64_t), intent(out) :: handle
-  integer(c_int), intent(out) :: status
-  type(descriptor_t) :: descriptor
-  type(patch_t), pointer :: body
-
-  handle = -1
-  status = 0
-  call find(patch, body, status)
-  if (status /= 0) return
-  allocate (descriptor%map, source=averaged_on(face_of(body, axis, side), face_of(body, axis, 1 - side)))
-  call keep(descriptor, handle, status)
-end subroutine keep_averaged
+end subroutine keep_face
 
 !> Keep a pattern of blocks in compressed rows.
 subroutine keep_pattern(start, nrows, column, nblocks, handle, status)

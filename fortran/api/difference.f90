@@ -4,9 +4,10 @@ module isomortar_api_difference
   use isomortar_base_kinds, only: wp
   use isomortar_base_status, only: status_ok
   use isomortar_contact_augmentation, only: law_t, respond, response_t
-  use isomortar_contact_blocks, only: integrate_forces, multipliers_t
+  use isomortar_contact_blocks, only: integrate_forces
   use isomortar_contact_control, only: control_quantities, control_t, project_points
   use isomortar_contact_gap_map_map, only: gap_map_t, projections_t
+  use isomortar_contact_sample, only: multipliers_t
   use isomortar_contact_slave, only: slave_t
   implicit none
   private
@@ -102,7 +103,7 @@ contains
 
     allocate (forces(3, size(positions, 2)))
     forces = 0.0_wp
-    call integrate_forces(fixed%slave, fixed%map, positions, projections, allocated(law%friction), multipliers, forces)
+    call integrate_forces(fixed%slave, fixed%map, positions, projections, multipliers, forces)
   end subroutine contact_forces
 
   !> Make room for n control points and m quadrature points.

@@ -48,9 +48,9 @@ subroutine contact_difference(slave, map, friction, x, along, step, n, xi, eleme
   use isomortar_api_difference, only: difference, evaluate_contact, fixed_t, quantities_t
   use isomortar_base_kinds, only: wp
   use isomortar_contact_augmentation, only: law_t
-  use isomortar_contact_blocks, only: multipliers_t
   use isomortar_contact_friction_law, only: friction_t
   use isomortar_contact_gap_map_map, only: gap_map_t
+  use isomortar_contact_sample, only: multipliers_t
   use isomortar_contact_slave, only: slave_t
   implicit none
   integer(c_int64_t), intent(in) :: slave, map, friction

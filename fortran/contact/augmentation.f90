@@ -3,10 +3,11 @@ module isomortar_contact_augmentation
   use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
   use isomortar_base_predicate, only: is_compressed
-  use isomortar_contact_blocks, only: gap_row, has_friction, multipliers_t, row_metric, row_slip, row_slip_sum
   use isomortar_contact_control, only: control_t, integrate_slip_sum
   use isomortar_contact_friction_law, only: friction_t
   use isomortar_contact_friction_return_map, only: metric_matrix, return_map, state_open, state_stick
+  use isomortar_contact_rows, only: row_metric, row_slip, row_slip_sum, rows_of, rows_t
+  use isomortar_contact_sample, only: multipliers_t
   use isomortar_contact_slave, only: integrate_functions, slave_t
   use isomortar_sparse_blocks, only: lacks, mark_row, pattern_t
   implicit none
@@ -289,8 +290,10 @@ contains
     real(wp), intent(out) :: result(:, :, :)
     integer, intent(out) :: lacking
     integer, allocatable :: columns(:)
+    type(rows_t) :: there
     integer :: i, k
 
+    there = rows_of(size(rows, 2))
     allocate (columns(max(maxval(pattern%column), maxval(wide%column))))
     if (contracts) call require(size(rows, 3) == size(pattern%column), "multiplier_rows: rows are those of a pattern")
     if (contracts) call require(size(result, 3) == size(wide%column), "multiplier_rows: results are those of a pattern")
@@ -303,14 +306,14 @@ contains
       if (lacks(wide, i, columns, pattern%column(pattern%start(i - 1) + 1:pattern%start(i)))) return
       do k = pattern%start(i - 1) + 1, pattern%start(i)
         associate (target => result(:, :, columns(pattern%column(k))), by => response%traction_slope(:, :, i))
-          target(:, 1) = response%pressure_slope(i) * rows(:, gap_row(size(rows, 2)), k)
-          if (.not. has_friction(size(rows, 2))) cycle
+          target(:, 1) = response%pressure_slope(i) * rows(:, there%gap, k)
+          if (.not. there%friction) cycle
           target(:, 2:3) = matmul(rows(:, row_metric:row_metric + 2, k) / control%square(i), transpose(by(:, 4:6)))
           target(:, 2) = target(:, 2) + by(1, 1) * target(:, 1)
           target(:, 3) = target(:, 3) + by(2, 1) * target(:, 1)
         end associate
       end do
-      if (.not. has_friction(size(rows, 2))) cycle
+      if (.not. there%friction) cycle
       do k = wide%start(i - 1) + 1, wide%start(i)
         result(:, 2:3, k) = result(:, 2:3, k) + matmul(trial(:, :, k), transpose(response%traction_slope(:, 2:3, i)))
       end do
@@ -327,12 +330,14 @@ contains
     real(wp), intent(inout) :: target(:, :, :)
     integer, intent(out) :: lacking
     integer, allocatable :: columns(:)
+    type(rows_t) :: there
     integer :: a, b, i, multipliers
 
+    there = rows_of(size(rows, 2))
     if (contracts) call require(is_compressed(target_pattern%start, size(target, 3)), "condense: blocks are those of a pattern")
     if (contracts) call require(is_compressed(wide%start, size(changes, 3)), "condense: changes are those of a pattern")
     allocate (columns(size(target_pattern%start) - 1), source=0)
-    multipliers = merge(3, 1, has_friction(size(rows, 2)))
+    multipliers = merge(3, 1, there%friction)
     do i = 1, size(active)
       if (.not. active(i)) cycle
       do a = pattern%start(i - 1) + 1, pattern%start(i)

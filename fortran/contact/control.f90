@@ -99,7 +99,7 @@ contains
     fields = 0.0_wp
     control%point_metric = 0.0_wp
     do q = 1, size(slave%area)
-      if (map%whole .and. .not. projections%found(q)) then
+      if (map%counts_all_points .and. .not. projections%found(q)) then
         tangents = slave_tangents(slave, positions, q)
         fields(1, q) = 1.0_wp
         control%point_metric(:, q) = [sum(tangents(:, 1)**2), dot_product(tangents(:, 1), tangents(:, 2)), sum(tangents(:, 2)**2)]
@@ -111,7 +111,7 @@ contains
     end do
     call integrate_functions(slave, fields, totals)
     control%weight(:) = totals(1, :)
-    if (map%whole) where (.not. has_foot(slave, projections)) control%weight = 0.0_wp
+    if (map%counts_all_points) where (.not. has_foot(slave, projections)) control%weight = 0.0_wp
     control%gap(:) = totals(2, :)
     control%slip(:, :) = totals(3:4, :)
     call integrate_squares(slave, fields(1, :), control)

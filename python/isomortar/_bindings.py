@@ -357,7 +357,6 @@ def contact_forces(
     master: MasterArrays,
     positions: FloatArray,
     projections: Projections,
-    with_friction: bool,
     response: Response,
     forces: FloatArray,
 ) -> None:
@@ -368,7 +367,7 @@ def contact_forces(
     check.array("forces", forces, np.float64, len(positions), 3)
     status = _kernel.contact_forces(
         _slave(slave), _master(master), positions.T, projections.xi.T, projections.element.T, projections.fixed.T, projections.found,
-        check.flag("with_friction", with_friction), response.pressure, response.traction.T, response.state, forces.T,
+        response.pressure, response.traction.T, response.state, forces.T,
     )  # fmt: skip
     if status:
         _raise(status, -1)
@@ -432,12 +431,12 @@ def multiplier_rows(
     points, columns = slave.test.count, max(row_pattern.highest, wide.highest) + 1
     _check_response(response, slave)
     _check_rows(row_pattern, rows, points, columns)
-    if law.summed and rows.shape[1] != ROW_KINDS["paper"]:
-        raise InputError(f"has {rows.shape[1]} kinds; allowed: {ROW_KINDS['paper']:d}, those of the slip sum that the law asks for", "rows")
+    if bool(law.summed) != (rows.shape[1] == ROW_KINDS["paper"]):
+        raise InputError(f"has {rows.shape[1]} kinds; allowed: {ROW_KINDS['paper']} with the law's slip sum, others without it", "rows")
     _check_pattern("neighbours", neighbours, points, points)
     _check_pattern("wide", wide, points, columns)
     changes, trial, status, place = _kernel.multiplier_rows(
-        _slave(slave), control.weight, control.square, control.slip.T, control.metric.T, control.point_metric.T, int(law.summed),
+        _slave(slave), control.weight, control.square, control.slip.T, control.metric.T, control.point_metric.T,
         law.penalties, response.state, response.pressure_slope, response.traction_slope.T, _pattern("row_pattern", row_pattern), rows.T,
         _pattern("neighbours", neighbours), _pattern("wide", wide), len(wide.column),
     )  # fmt: skip

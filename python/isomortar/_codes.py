@@ -36,21 +36,15 @@ class PointState(IntEnum):
 
 
 class FirstRow(IntEnum):
-    """First constraint row of each kind, from 1 (isomortar_contact_blocks): <R dg>, <R slip>, <R dxi>, <R R da_ab>, <R da_ab zeta^b>."""
+    """First constraint row of each kind, from 1 (isomortar_contact_rows): <R dg>, <R slip>, <R dxi>, <R R da_ab>, <R da_ab zeta^b>."""
 
-    PUSH = 1
-    WORK = 2
+    PRESSURE_WORK = 1
+    TRACTION_WORK = 2
     SLIP = 4
     METRIC = 6
     SLIP_SUM = 9
 
 
-#: How many rows there are without friction, with it, and with the paper's slip sum; along averaged normals one more: <R dg> as it is,
-#: not as pressures work on it.
-ROW_KINDS = {
-    "frictionless": FirstRow.WORK - 1,
-    "frictionless, averaged": FirstRow.WORK,
-    "local": FirstRow.SLIP_SUM - 1,
-    "local, averaged": FirstRow.SLIP_SUM + 0,
-    "paper": FirstRow.SLIP_SUM + 1,
-}
+#: How many kinds of rows there are without friction, with it, and with the paper's slip sum; along averaged normals one more: <R dg> as it
+#: is, not as pressures work on it (isomortar_contact_rows).
+ROW_KINDS = {"frictionless": 1, "frictionless, averaged": 2, "local": 8, "local, averaged": 9, "paper": 10}

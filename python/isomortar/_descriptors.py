@@ -41,8 +41,8 @@ class Descriptors:
             MaterialArrays: self._law_by(library.keep_material),
             FrictionArrays: self._law_by(library.keep_friction),
             PlaneArrays: lambda plane: library.keep_plane(plane.origin, plane.normal, plane.tangent),
-            FaceArrays: self._face_by(library.keep_closest_point),
-            AveragedFaceArrays: self._face_by(library.keep_averaged),
+            FaceArrays: self._face,
+            AveragedFaceArrays: self._face,
             SlaveArrays: self._slave,
             Pattern: lambda pattern: library.keep_pattern(pattern.start, pattern.column),
         }
@@ -80,8 +80,10 @@ class Descriptors:
         )
         return found
 
-    def _face_by(self, keeper: Callable[..., tuple[int, int]]) -> Callable[[Any], tuple[int, int]]:
-        return lambda face: keeper(self.handle("patch", face.patch, PatchArrays), face.axis, face.side)
+    def _face(self, face: FaceArrays) -> tuple[int, int]:
+        averaged = isinstance(face, AveragedFaceArrays)
+        found: tuple[int, int] = self._library.keep_face(self.handle("patch", face.patch, PatchArrays), face.axis, face.side, averaged)
+        return found
 
     @staticmethod
     def _law_by(keeper: Callable[..., tuple[int, int]]) -> Callable[[Any], tuple[int, int]]:

@@ -23,7 +23,7 @@ def parameters(file: str, prefix: str) -> dict[str, int]:
     [
         ("base/status.f90", "status", {status.name.lower(): status.value for status in Status}),
         ("contact/friction/return_map.f90", "state", {state.name.lower(): state.value for state in PointState}),
-        ("contact/blocks.f90", "row", {row.name.lower(): row.value for row in FirstRow}),
+        ("contact/rows.f90", "row", {row.name.lower(): row.value for row in FirstRow}),
         ("solid/material/table.f90", "law", {name.replace("-", "_"): number for name, number in LAWS.items()}),
         ("contact/friction/table.f90", "law", FRICTION_LAWS),
     ],
@@ -32,5 +32,9 @@ def test_names_and_numbers_of_fortran_are_those_of_python(file: str, prefix: str
     assert parameters(file, prefix) == ours
 
 
-def test_the_paper_s_slip_sum_has_all_rows() -> None:
-    assert ROW_KINDS["paper"] == int(re.findall(r"\ball_rows = (\d+)", (FORTRAN / "contact/blocks.f90").read_text())[0])
+def test_kinds_of_rows_are_those_of_python() -> None:
+    cases = re.findall(r"case (?:\((\d+)\) ! (.+)|default ! (\w+), (\d+))", (FORTRAN / "contact/rows.f90").read_text())
+    assert {name or last: int(kinds or number) for kinds, name, last, number in cases} == ROW_KINDS
+    assert ROW_KINDS["paper"] == FirstRow.SLIP_SUM + 1
+    assert ROW_KINDS["local"] == FirstRow.SLIP_SUM - 1
+    assert ROW_KINDS["frictionless"] == FirstRow.TRACTION_WORK - 1

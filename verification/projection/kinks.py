@@ -35,7 +35,7 @@ def feet(
     gap = _bindings.control_quantities(slave, master, positions, projections).gap
     ones, zeros, forces = np.ones(n), np.zeros((n, 2)), np.zeros_like(positions)
     response = Response(ones, zeros, np.ones(n, np.int32), ones, np.zeros((n, 6, 2)), zeros)
-    _bindings.contact_forces(slave, master, positions, projections, False, response, forces)
+    _bindings.contact_forces(slave, master, positions, projections, response, forces)
     return projections, gap, -forces[own:]
 
 

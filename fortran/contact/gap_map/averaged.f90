@@ -52,8 +52,8 @@ contains
 
     self%surface = surface
     self%opposite = opposite
-    self%whole = .true.
-    self%leans = .true.
+    self%counts_all_points = .true.
+    self%has_gap_row = .true.
     self%of_tangents = slave_along + 1
   end function averaged_on
 
@@ -272,8 +272,8 @@ contains
     on_field = matmul(turn, contravariant)
     rows = foot_rows(point)
     variations%gap = rows(:, 3)
-    variations%push = 0.0_wp
-    variations%push(components(apart)) = -point%normal
+    variations%pressure_work = 0.0_wp
+    variations%pressure_work(components(apart)) = -point%normal
     variations%slip = 0.0_wp
     variations%slip(components(apart), :) = contravariant
     variations%slip(components(field), :) = point%gap * on_field

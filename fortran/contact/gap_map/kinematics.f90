@@ -67,7 +67,7 @@ contains
 
     self%gap = 0.0_wp
     self%gap(1:3) = -point%normal
-    self%push = self%gap
+    self%pressure_work = self%gap
     right = 0.0_wp
     do a = 1, 2
       right(1:3, a) = point%tangent(:, a)

@@ -61,8 +61,8 @@ module isomortar_contact_gap_map_map
   !> First variations as rows over the components of the short vectors.
   type, public :: variations_t
     real(wp) :: gap(all_components)
-    !> What pressures do their work on: dg, but without its spurious part where the map `leans`.
-    real(wp) :: push(all_components)
+    !> What pressures do their work on: dg, but without its spurious part where that has a row of its own.
+    real(wp) :: pressure_work(all_components)
     !> dxi.
     real(wp) :: projection(all_components, 2)
     !> The slip that tractions do their work on: dxi; on a C0 line, where that is zero, as if the element's face went on.
@@ -74,9 +74,9 @@ module isomortar_contact_gap_map_map
     !> Variations change with the positions.
     logical :: bends = .true.
     !> Slave points without a foot count in weights and metric, which are the slave's.
-    logical :: whole = .false.
-    !> Pressures do not work on the gap's own variation.
-    logical :: leans = .false.
+    logical :: counts_all_points = .false.
+    !> The gap's own variation has a row apart from that which pressures do their work on.
+    logical :: has_gap_row = .false.
     !> Number of the first of two short vectors that are variations of the slave's tangents; 0: none are.
     integer :: of_tangents = 0
   contains

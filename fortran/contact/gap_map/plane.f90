@@ -123,7 +123,7 @@ contains
     variations%gap = 0.0_wp
     variations%slip = 0.0_wp
     variations%gap(1:3 * vectors) = -point%normal
-    variations%push = variations%gap
+    variations%pressure_work = variations%gap
     variations%slip(1:3 * vectors, :) = point%tangent
     variations%projection = variations%slip
   end function first

@@ -193,9 +193,7 @@ class PairMechanics:
         """
         self._feet.check(positions, kinematics.projections, response)
         with self._ledger.phase("contact"):
-            _bindings.contact_forces(
-                self.pair.slave, self.pair.master, positions, kinematics.projections, self.friction.acts, response, forces
-            )
+            _bindings.contact_forces(self.pair.slave, self.pair.master, positions, kinematics.projections, response, forces)
 
     def blocks(self, positions: FloatArray, kinematics: Kinematics, law: Law, response: Response) -> Blocks:
         """Constraint rows, derivatives of the multipliers and the geometric tangent."""

@@ -35,7 +35,7 @@ class Pulling:
         pair, outward = self._equilibrium.pairs[number].pair, self._outward[number]
         forces = np.zeros_like(balance.positions)  # without friction, whose part along the slave's own normal has any sign
         projections, response = balance.kinematics[number].projections, balance.responses[number]
-        _bindings.contact_forces(pair.slave, pair.master, balance.positions, projections, False, response, forces)
+        _bindings.contact_forces(pair.slave, pair.master, balance.positions, projections, response, forces)
         on_slave = -forces[outward.points]
         out = np.einsum("ij,ij->i", on_slave, outward.normals(balance.positions))
         return bool(np.maximum(out, 0.0).sum() > PULLING * np.linalg.norm(on_slave, axis=1).sum())
