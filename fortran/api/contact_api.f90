@@ -1,9 +1,36 @@
-! What Python sees of contact. `slave`, `map`, `friction` and patterns are handles (see isomortar_api_descriptors); numbers of
-! control points, elements and blocks count from 0 outside and from 1 inside. Fields at quadrature points have `nquad` entries,
-! those of test functions `ntest`.
+! What Python sees of contact. Numbers of control points, elements and blocks count from 0 outside and from 1 inside. Shapes stand
+! in the declarations; units are made of length L, force F and the parameter of a surface (of a plane: length) P. What means the
+! same in all routines:
+!
+! - `slave`, `map`, `friction`: handles (isomortar_api_descriptors) of a slave side, of its master's gap map, of a law of friction.
+! - `patch`, `axis`, `side`: handle of a patch, axis across a face of it (1..3), end of the axis where the face is (0, 1).
+! - `n`, `nquad`, `ntest`: numbers of control points, of quadrature points of the slave, of its test functions.
+! - `x`, `reference`: positions of all control points, now and in the reference configuration, L.
+! - `xi`, `element`: coordinates of the feet on the master, P, and their elements by direction.
+! - `fixed`, `found`: 1 for coordinates that stay while the point moves (on C0 lines); for points that have a foot.
+! - `origin`, `slip`: feet at the last converged load step, from where slips count; slips since then, both P.
+! - `slips`: 1 for points whose slip counts: they have a foot, and had one.
+! - `weight`, `square`: <R> and <R R>, L^2. `gap`: <R g>, L^3. `control_slip`: <R slip>, P L^2.
+! - `metric`, `point_metric`: <R R a_ab>, and a_ab at the points, as 11, 12, 22: L^4/P^2, L^2/P^2.
+! - `penalties`: normal and tangential, F/L^3.
+! - `pressure`, `traction`: control pressures, F/L^2, and covariant tractions, F/(L P).
+! - `state`: of control points: 0 open, 1 stick, 2 slip.
+! - `pressure_slope`, `traction_slope`: derivatives of these by <R g>; by pressure, trial traction (2) and metric (3).
+! - `field_slip`: field of control slips at the points, P; zero but with the paper's slip sum.
+! - `row_pattern`, `pattern`, `wide`: handles of the patterns of constraint rows, of the tangent, of the multipliers' derivatives.
+! - `nrows`, `nblocks`, `nwide`: blocks of these patterns. `nkinds`: kinds of rows (isomortar_contact_rows).
+! - `rows`, `tangent`: constraint rows (component, kind, block), and the tangent, F/L, (column component, row component, block).
+! - `changes`: derivatives of p, t_1, t_2 by positions: (component, multiplier, block).
+! - `status`, `place`: how it ended (isomortar_base_status), and where on failure, from 1; 0: nowhere.
 
 !> Functions, their derivatives and reference areas at the quadrature points of a face of a patch, by the axis across it (1..3) and
-!> its end there (0, 1) (isomortar_contact_slave). `nodes` are numbered within the face.
+!> its end there (0, 1) (isomortar_contact_slave).
+!>
+!> - `gauss`: quadrature points of an element by direction.
+!> - `nlocal`, `nelements`: functions of an element, elements of the face.
+!> - `nodes`: control points of each element, numbered within the face.
+!> - `values`, `slopes`: functions, and their derivatives by the coordinates, 1/P.
+!> - `area`: quadrature weight times reference area, L^2.
 subroutine slave_tables(patch, axis, side, gauss, reference, n, nlocal, nelements, nquad, nodes, values, slopes, area, status)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: find
@@ -25,8 +52,10 @@ subroutine slave_tables(patch, axis, side, gauss, reference, n, nlocal, nelement
   nodes = nodes - 1
 end subroutine slave_tables
 
-!> Project every slave quadrature point (isomortar_contact_control). `xi` holds starts where `started` is 1; `origin` and `had` are
-!> the projections at the last converged load step.
+!> Project every slave quadrature point (isomortar_contact_control). `xi` holds starts at first.
+!>
+!> - `started`, `had`: 1 where `xi` is a start; where there was a foot at the last converged load step.
+!> - `doubt`: of points with a foot that does not follow them: the status that says why; else 0.
 subroutine project_points(slave, map, x, n, started, origin, had, nquad, xi, element, fixed, found, doubt, slip, slips, status, &
     place)
   use iso_c_binding, only: c_double, c_int, c_int64_t
@@ -111,6 +140,8 @@ subroutine control_quantities(slave, map, x, n, xi, element, fixed, found, slip,
 end subroutine control_quantities
 
 !> How far the foot of every slave quadrature point has climbed since the last converged load step (isomortar_contact_control).
+!>
+!> - `climbs`: these distances, L; 0 where the slip does not count.
 subroutine find_climbs(map, x, n, xi, origin, slips, nquad, climbs, status)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: find
@@ -135,8 +166,14 @@ subroutine find_climbs(map, x, n, xi, origin, slips, nquad, climbs, status)
   call climb(onto, x, projections, climbs)
 end subroutine find_climbs
 
-!> Control pressures, tractions, states and their slopes of the augmented law (isomortar_contact_augmentation). `field_slip` is the
-!> field of control slips at the quadrature points, with `summed` only.
+!> Control pressures, tractions, states and their slopes of the augmented law (isomortar_contact_augmentation).
+!>
+!> - `summed`: 1 for the paper's slip sum, 0 for the local one.
+!> - `pressure_k`, `traction_k`: multipliers of the current augmentation.
+!> - `slip_margin`: trials above 1 less this share of what friction bears slip.
+!> - `forgiving`: 1 to take the current traction for the radial part of the slip derivative (theory 4.14).
+!> - `held`, `bears`: 1 for control points that stick whatever their trial; that supports do not hold along the normal.
+!> - `free`: projection of covariant tractions that leaves nothing along what supports hold.
 subroutine augmented_multipliers(slave, friction, weight, square, gap, control_slip, metric, point_metric, nquad, ntest, summed, &
     penalties, pressure_k, traction_k, slip_margin, forgiving, held, bears, free, pressure, traction, state, pressure_slope, &
     traction_slope, field_slip, status)
@@ -189,7 +226,9 @@ subroutine augmented_multipliers(slave, friction, weight, square, gap, control_s
   traction_slope = response%traction_slope
 end subroutine augmented_multipliers
 
-!> Largest norms of control tractions that a law of friction bears under control pressures: 0 where open, and without friction.
+!> Largest norms of control tractions that a law of friction bears under control pressures.
+!>
+!> - `radius`: these norms, F/L^2: 0 where open, and without friction. `n` is their number.
 subroutine friction_radius(friction, pressure, n, radius, status)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: find
@@ -214,6 +253,8 @@ subroutine friction_radius(friction, pressure, n, radius, status)
 end subroutine friction_radius
 
 !> Add contact forces on slave and master control points (isomortar_contact_blocks).
+!>
+!> - `forces`: on all control points, F.
 subroutine contact_forces(slave, map, x, n, xi, element, fixed, found, nquad, pressure, traction, state, ntest, forces, &
     status)
   use iso_c_binding, only: c_double, c_int, c_int64_t
@@ -244,6 +285,8 @@ subroutine contact_forces(slave, map, x, n, xi, element, fixed, found, nquad, pr
 end subroutine contact_forces
 
 !> Add constraint rows and the geometric tangent (isomortar_contact_blocks).
+!>
+!> - `with_friction`: 1 where tractions may act.
 subroutine contact_blocks(slave, map, x, n, xi, element, fixed, found, origin, slips, nquad, with_friction, pressure, traction, &
     state, ntest, field_slip, row_pattern, nrows, nkinds, rows, pattern, nblocks, tangent, status, place)
   use iso_c_binding, only: c_double, c_int, c_int64_t
@@ -283,9 +326,12 @@ subroutine contact_blocks(slave, map, x, n, xi, element, fixed, found, origin, s
     of_rows, rows, of_tangent, tangent, status, place)
 end subroutine contact_blocks
 
-!> Rows of the multipliers' derivatives of the augmented law (isomortar_contact_augmentation): changes(component, multiplier, block)
-!> and of their trial tractions, trial(component, a, block), on the pattern `wide`; it and `neighbours` differ from the rows'
-!> pattern with the paper's slip sum only. `place` is the row of a pattern that lacks a block, 0 where `wide` has other rows.
+!> Rows of the multipliers' derivatives of the augmented law (isomortar_contact_augmentation), on the pattern `wide`, which differs
+!> from that of `rows` with the paper's slip sum only. `place` is the row of a pattern that lacks a block, 0 where `wide` has other
+!> rows.
+!>
+!> - `neighbours`: handle of the pattern of test functions that overlap.
+!> - `trial`: derivatives of the trial tractions by positions: (component, a, block).
 subroutine multiplier_rows(slave, weight, square, control_slip, metric, point_metric, nquad, ntest, penalties, state, &
     pressure_slope, traction_slope, row_pattern, nrows, nkinds, rows, neighbours, wide, nwide, changes, trial, status, place)
   use iso_c_binding, only: c_double, c_int, c_int64_t

@@ -1,8 +1,13 @@
-! What Python hands over once (see isomortar_api_descriptors). Numbers count from 0 outside and from 1 inside. Status code last; a
-! handle is -1 without success.
+! What Python hands over once (isomortar_api_descriptors). Numbers count from 0 outside and from 1 inside. Shapes stand in the
+! declarations; units are made of length L and force F.
+!
+! - `handle`: what stands for it from then on; -1 without success. `status`: how it ended (isomortar_base_status).
 
-!> Keep a patch: families (1 NURBS, 2 Lagrange), orders and numbers of control points of the three directions, whose knots (of
-!> Lagrange elements: boundaries) follow one another; global numbers and weights of the control points.
+!> Keep a patch.
+!>
+!> - `families`, `orders`, `counts`: by direction: 1 NURBS, 2 Lagrange; order; number of control points.
+!> - `knots`: those (of Lagrange elements: boundaries) of the directions, one after the other, `nknots` in all.
+!> - `point`, `weight`: global number and weight of each of `npoints` control points, the first direction fastest.
 subroutine keep_patch(families, orders, counts, knots, nknots, point, weight, npoints, handle, status)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: descriptor_t, keep
@@ -34,7 +39,9 @@ subroutine keep_patch(families, orders, counts, knots, nknots, point, weight, np
   call keep(descriptor, handle, status)
 end subroutine keep_patch
 
-!> Keep a material by the number of its law and its parameters (isomortar_solid_material_table).
+!> Keep a material.
+!>
+!> - `law`, `parameters`: number of the law, and its `nparameters` (isomortar_solid_material_table), F/L^2.
 subroutine keep_material(law, parameters, nparameters, handle, status)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: descriptor_t, keep
@@ -52,7 +59,9 @@ subroutine keep_material(law, parameters, nparameters, handle, status)
   if (status == 0) call keep(descriptor, handle, status)
 end subroutine keep_material
 
-!> Keep a law of friction by its number and its parameters (isomortar_contact_friction_table).
+!> Keep a law of friction.
+!>
+!> - `law`, `parameters`: number of the law, and its `nparameters` (isomortar_contact_friction_table).
 subroutine keep_friction(law, parameters, nparameters, handle, status)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: descriptor_t, keep
@@ -70,9 +79,14 @@ subroutine keep_friction(law, parameters, nparameters, handle, status)
   if (status == 0) call keep(descriptor, handle, status)
 end subroutine keep_friction
 
-!> Keep a slave side: by element and quadrature point the functions that interpolate its positions, with derivatives, and those that
-!> constraints are weighted with; reference areas of the points; global numbers of its control points; sign of t_1 x t_2 that points
-!> out of it.
+!> Keep a slave side of `nelements` with `nquad` quadrature points in all, as many in each.
+!>
+!> - `shape_nodes`, `shape_values`, `shape_slopes`: the `nshape` functions of an element that interpolate its positions: their
+!>   control points on the slave, values, derivatives by the coordinates of the face.
+!> - `test_nodes`, `test_values`: the `ntest` functions of an element, of `tests` in all, that constraints are weighted with.
+!> - `area`: quadrature weight times reference area, L^2.
+!> - `point`: global numbers of its `npoints` control points.
+!> - `outward`: sign of t_1 x t_2 that points out of it.
 subroutine keep_slave(shape_nodes, shape_values, shape_slopes, nshape, test_nodes, test_values, ntest, tests, area, nelements, &
     nquad, point, npoints, outward, handle, status)
   use iso_c_binding, only: c_double, c_int, c_int64_t
@@ -118,6 +132,8 @@ subroutine keep_slave(shape_nodes, shape_values, shape_slopes, nshape, test_node
 end subroutine keep_slave
 
 !> Keep the gap map of a rigid plane (isomortar_contact_gap_map_plane).
+!>
+!> - `origin`, `normal`, `tangent`: a point of it, L; its normal; a direction in it, the first coordinate's.
 subroutine keep_plane(origin, normal, tangent, handle, status)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: descriptor_t, keep
@@ -133,8 +149,11 @@ subroutine keep_plane(origin, normal, tangent, handle, status)
   call keep(descriptor, handle, status)
 end subroutine keep_plane
 
-!> Keep the gap map of a face of a patch, by the axis across it (1..3) and its end there (0, 1): of the averaged normal where
-!> `averaged` is 1 (isomortar_contact_gap_map_averaged), else of the closest point (isomortar_contact_gap_map_closest_point).
+!> Keep the gap map of a face of a patch.
+!>
+!> - `patch`, `axis`, `side`: handle of the patch, axis across the face (1..3), its end there (0, 1).
+!> - `averaged`: 1: of the averaged normal (isomortar_contact_gap_map_averaged), 0: of the closest point
+!>   (isomortar_contact_gap_map_closest_point).
 subroutine keep_face(patch, axis, side, averaged, handle, status)
   use iso_c_binding, only: c_int, c_int64_t
   use isomortar_api_descriptors, only: descriptor_t, find, keep
@@ -163,6 +182,8 @@ subroutine keep_face(patch, axis, side, averaged, handle, status)
 end subroutine keep_face
 
 !> Keep a pattern of blocks in compressed rows.
+!>
+!> - `start`, `column`: where the `nrows` begin, and the columns of `nblocks`.
 subroutine keep_pattern(start, nrows, column, nblocks, handle, status)
   use iso_c_binding, only: c_int, c_int64_t
   use isomortar_api_descriptors, only: descriptor_t, keep

@@ -1,4 +1,11 @@
-!> Directional derivative of one body's internal forces, by a central difference (isomortar_solid_assembly).
+! What Python sees of the twin: differences that tangents are compared with. Shapes, units and names are those of solid_api.f90 and
+! contact_api.f90; `along` is the direction of a derivative, `step` the half length of the central difference.
+
+!> Directional derivative of one body's internal forces (isomortar_solid_assembly).
+!>
+!> - `patch`, `gauss`, `material`, `x`, `reference`, `n`: as in `add_body`.
+!> - `forces`: the derivative, F/L times the unit of `along`.
+!> - `status`, `place`: as in `add_body`.
 subroutine solid_difference(patch, gauss, material, x, along, step, reference, n, forces, status, place)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: find
@@ -35,10 +42,17 @@ subroutine solid_difference(patch, gauss, material, x, along, step, reference, n
   forces = real(difference(sides(:, :, 2), sides(:, :, 1), real(step, wp)), c_double)
 end subroutine solid_difference
 
-!> Directional derivatives of all that a contact pair's tangent is made of (isomortar_api_difference), by central differences along
-!> `along` of the positions and `pressure_along`, `traction_along` of the law's multipliers. `xi`, `element`, `fixed`, `found` and
-!> `state` are those of the double-precision kernel; `switched` counts points and control points for which they are not the same on
-!> both sides.
+!> Directional derivatives of all that a contact pair's tangent is made of (isomortar_api_difference).
+!>
+!> - `slave`, `map`, `friction`, `n`, `nquad`, `ntest`, `x`, `origin`, `had`, `status`, `place`: as in `project_points`.
+!> - `xi`, `element`, `fixed`, `found`, `state`: those of the double-precision kernel.
+!> - `summed`, `penalties`, `pressure_k`, `traction_k`, `bears`, `free`: the law, as in `augmented_multipliers`.
+!> - `pressure_along`, `traction_along`: directions of its multipliers.
+!> - `pressure`, `traction`: multipliers that are held where forces are differentiated alone.
+!> - `gap`, `coordinates`, `slip`, `metric`: derivatives of <R g>, <R xi>, <R slip>, <R R a_ab>.
+!> - `pressure_change`, `traction_change`: those of the law's multipliers.
+!> - `normal_forces`, `tangential_forces`, `forces`: those of forces with held pressures, held tractions, the law's multipliers.
+!> - `switched`: points and control points for which element, foot or state are not the same on both sides.
 subroutine contact_difference(slave, map, friction, x, along, step, n, xi, element, fixed, found, origin, had, nquad, summed, &
     penalties, pressure_k, traction_k, bears, free, pressure_along, traction_along, pressure, traction, state, ntest, gap, &
     coordinates, slip, metric, pressure_change, traction_change, normal_forces, tangential_forces, forces, switched, status, &
@@ -112,8 +126,13 @@ subroutine contact_difference(slave, map, friction, x, along, step, n, xi, eleme
   forces = real(difference(sides(2)%forces, sides(1)%forces, h), c_double)
 end subroutine contact_difference
 
-!> Hulls of the elements of a face of a patch, by the axis across it and its end there (isomortar_contact_hulls): spheres, boxes,
-!> Bezier points, samples, curvatures.
+!> Hulls of the elements of a face of a patch (isomortar_contact_hulls).
+!>
+!> - `patch`, `axis`, `side`, `x`, `n`, `status`: as in `slave_tables`. `nelements`, `nlocal`: elements, points of each.
+!> - `centre`, `radius`: spheres, L.
+!> - `frame`, `half`: boxes about the same centres: unit vectors (rows), half lengths along them, L.
+!> - `corner`, `sample`: Bezier points, and points of the surface on a regular grid, L.
+!> - `curvature`: largest of each element, 1/L.
 subroutine surface_hulls(patch, axis, side, x, n, nelements, nlocal, centre, radius, frame, half, corner, sample, curvature, &
     status)
   use iso_c_binding, only: c_double, c_int, c_int64_t

@@ -1,6 +1,10 @@
-!> Functions of a face of a patch (a handle, see isomortar_api_descriptors) at given coordinates and their derivatives to order
-!> three (isomortar_nurbs_surface): nodes within the face, from 0, and functions(node, derivative, point) in the order 1, u, v, uu,
-!> uv, vv, uuu, uuv, uvv, vvv.
+!> Functions of a face of a patch at given coordinates and their derivatives to order three (isomortar_nurbs_surface).
+!>
+!> - `patch`, `axis`, `side`: handle of the patch (isomortar_api_descriptors), axis across the face (1..3), its end there (0, 1).
+!> - `xi`: `m` pairs of coordinates.
+!> - `nodes`: the `nlocal` control points of the element of each, numbered within the face, from 0.
+!> - `functions`: (node, derivative, pair) in the order 1, u, v, uu, uv, vv, uuu, uuv, uvv, vvv.
+!> - `status`: how it ended (isomortar_base_status).
 subroutine surface_functions(patch, axis, side, xi, m, nlocal, nodes, functions, status)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: find

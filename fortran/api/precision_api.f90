@@ -1,6 +1,6 @@
 !> What a compiled kernel says about itself. In both extension modules.
 
-!> Working precision: decimal digits and the spacing of numbers at one.
+!> Working precision: decimal digits, `digits10`, and the spacing of numbers at one, `spacing1`.
 subroutine working_precision(digits10, spacing1)
   use iso_c_binding, only: c_double, c_int
   use isomortar_base_kinds, only: wp

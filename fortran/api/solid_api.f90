@@ -1,7 +1,14 @@
-! What Python sees of solids. `patch`, `material` and `pattern` are handles (see isomortar_api_descriptors).
+! What Python sees of solids. Shapes stand in the declarations; units are made of length L and force F. `patch`, `material` and
+! `pattern` are handles (isomortar_api_descriptors); `status` says how it ended (isomortar_base_status).
 
-!> Add internal forces and, if `with_tangent`, the tangent of one body on a pattern (isomortar_solid_assembly). On failure `place`
-!> is the element.
+!> Add internal forces and the tangent of one body (isomortar_solid_assembly).
+!>
+!> - `gauss`: quadrature points of an element by direction.
+!> - `x`, `reference`: positions of all `n` control points, now and in the reference configuration, L.
+!> - `forces`: on all control points, F.
+!> - `with_tangent`: 1 to add to `tangent`, F/L, (column component, row component, block) on `pattern` of `nblocks`.
+!> - `smallest_jacobian`: least J met; of an element folded initially the determinant of its map.
+!> - `place`: on failure the element, from 1.
 subroutine add_body(patch, gauss, material, x, reference, n, forces, with_tangent, pattern, nblocks, tangent, smallest_jacobian, &
     status, place)
   use iso_c_binding, only: c_double, c_int, c_int64_t
@@ -35,8 +42,11 @@ subroutine add_body(patch, gauss, material, x, reference, n, forces, with_tangen
   end if
 end subroutine add_body
 
-!> First Piola stresses P of a material at displacement gradients F - 1, force per reference area. On failure `place` is the first
-!> gradient (from 1) with det F <= 0.
+!> First Piola stresses of a material.
+!>
+!> - `gradient`: `n` displacement gradients F - 1.
+!> - `stress`: at each of them, force per reference area.
+!> - `place`: on failure the first gradient (from 1) with det F <= 0.
 subroutine material_stress(material, gradient, n, stress, status, place)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: find

@@ -1,5 +1,13 @@
-!> Where each entry of a source on a pattern (a handle, see isomortar_api_descriptors) goes in a compressed system; 0 where it is
-!> dropped (isomortar_sparse_scatter). The status is that of a pattern where the system lacks an entry.
+! What Python sees of the assembly of linear systems from sources of 3x3 blocks (isomortar_sparse_scatter).
+
+!> Where each entry of a source goes in a compressed system.
+!>
+!> - `pattern`: handle (isomortar_api_descriptors) of the source's pattern, which has `nblocks`.
+!> - `row_of`, `column_of`: unknowns of the `nrows` and `ncolumns` of the source, from 0; negative: dropped.
+!> - `transposed`: 1 where rows of the source are columns of the system.
+!> - `system_start`, `system_column`: rows of the system, `nsystem` - 1, begin here; columns of its `nentries`, from 0.
+!> - `places`: (column component, row component, block), from 1; 0 where it is dropped.
+!> - `status`: that of a pattern where the system lacks an entry.
 subroutine find_places(pattern, nblocks, row_of, nrows, column_of, ncolumns, transposed, system_start, nsystem, system_column, &
     nentries, places, status)
   use iso_c_binding, only: c_int, c_int64_t
@@ -24,7 +32,10 @@ subroutine find_places(pattern, nblocks, row_of, nrows, column_of, ncolumns, tra
   status = merge(status_pattern, status_ok, lacks)
 end subroutine find_places
 
-!> values(places(k)) += source(k) where places(k) > 0 (isomortar_sparse_scatter).
+!> values(places(k)) += source(k) where places(k) > 0.
+!>
+!> - `places`, `source`: the `n` entries of the source, and where they go, from 1; 0: nowhere.
+!> - `values`: the `m` entries of the system.
 subroutine add_values(places, source, n, values, m)
   use iso_c_binding, only: c_double, c_int64_t
   use isomortar_sparse_scatter, only: add => add_values
