@@ -154,29 +154,34 @@ end subroutine keep_plane
 !> - `patch`, `axis`, `side`: handle of the patch, axis across the face (1..3), its end there (0, 1).
 !> - `averaged`: 1: of the averaged normal (isomortar_contact_gap_map_averaged), 0: of the closest point
 !>   (isomortar_contact_gap_map_closest_point).
-subroutine keep_face(patch, axis, side, averaged, handle, status)
-  use iso_c_binding, only: c_int, c_int64_t
+!> - `brim`: how far it goes on beyond its edges, as a share of the outer elements.
+subroutine keep_face(patch, axis, side, averaged, brim, handle, status)
+  use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: descriptor_t, find, keep
   use isomortar_contact_gap_map_averaged, only: averaged_on
   use isomortar_contact_gap_map_closest_point, only: closest_point_t
   use isomortar_nurbs_patch, only: patch_t
-  use isomortar_nurbs_surface, only: face_of
+  use isomortar_nurbs_surface, only: face_of, surface_t
   implicit none
   integer(c_int64_t), intent(in) :: patch
   integer(c_int), intent(in) :: axis, side, averaged
+  real(c_double), intent(in) :: brim
   integer(c_int64_t), intent(out) :: handle
   integer(c_int), intent(out) :: status
   type(descriptor_t) :: descriptor
   type(patch_t), pointer :: body
+  type(surface_t) :: surface
 
   handle = -1
   status = 0
   call find(patch, body, status)
   if (status /= 0) return
+  surface = face_of(body, axis, side)
+  surface%brim = brim
   if (averaged /= 0) then
-    allocate (descriptor%map, source=averaged_on(face_of(body, axis, side), face_of(body, axis, 1 - side)))
+    allocate (descriptor%map, source=averaged_on(surface, face_of(body, axis, 1 - side)))
   else
-    allocate (descriptor%map, source=closest_point_t(surface=face_of(body, axis, side), opposite=face_of(body, axis, 1 - side)))
+    allocate (descriptor%map, source=closest_point_t(surface=surface, opposite=face_of(body, axis, 1 - side)))
   end if
   call keep(descriptor, handle, status)
 end subroutine keep_face

@@ -11,7 +11,8 @@ module isomortar_contact_search
   use isomortar_base_predicate, only: is_index, slack, within
   use isomortar_contact_pole, only: look_from_pole, net_about_pole, pole_bound, pole_of, view_t
   use isomortar_nurbs_direction, only: element_at, is_kink
-  use isomortar_nurbs_surface, only: homogeneous_net, step_across, surface_element_count, surface_point, surface_t
+  use isomortar_nurbs_surface, only: element_bounds, homogeneous_net, step_across, surface_element_count, surface_point, &
+    surface_t
   implicit none
   private
 
@@ -240,7 +241,7 @@ contains
     type(search_t), intent(inout) :: here
     real(wp) :: net(4, surface%direction(1)%order + 1, surface%direction(2)%order + 1)
     real(wp) :: low(2), high(2), slope(2), hessian(2, 2), metric(2, 2), step(2), target(3), centre(3), lengths(2), flat
-    integer :: a, iteration, pole
+    integer :: iteration, pole
 
     if (contracts) call require(all(is_index(here%place, surface%direction%elements)), "search_element: there is such an element")
     call homogeneous_net(surface, positions, here%place, net)
@@ -252,10 +253,7 @@ contains
       target = x - centre
       flat = at_pole
     end if
-    do a = 1, 2
-      low(a) = surface%direction(a)%boundary(here%place(a) - 1)
-      high(a) = surface%direction(a)%boundary(here%place(a))
-    end do
+    call element_bounds(surface, here%place, low, high)
     here%xi = min(max(here%xi, low), high)
     here%settled = .false.
     do iteration = 1, 100

@@ -8,8 +8,8 @@ module isomortar_nurbs_surface
   implicit none
   private
 
-  public :: face_of, homogeneous_net, shortest_way, step_across, surface_basis, surface_element_count, surface_element_of, &
-    surface_nodes, surface_point
+  public :: element_bounds, face_of, homogeneous_net, shortest_way, step_across, surface_basis, surface_element_count, &
+    surface_element_of, surface_nodes, surface_point
 
   !> Column of each partial derivative (k, l) in a table of derivatives to order three.
   integer, parameter, public :: derivative_column(0:3, 0:3) = reshape( &
@@ -29,6 +29,8 @@ module isomortar_nurbs_surface
     logical :: closed(2) = .false.
     !> Poles at the start and the end of each direction, shape (2, directions): edges that are one control point, closed round it.
     logical :: pole(2, 2) = .false.
+    !> How far the functions of the outer elements go on beyond the edges, as a share of the element (theory 10.7).
+    real(wp) :: brim = 0.0_wp
   end type surface_t
 
 contains
@@ -97,6 +99,24 @@ contains
     end do
     if (contracts) call require(all(is_index(place, self%direction%elements)), "step_across: there is such a neighbour")
   end subroutine step_across
+
+  !> Bounds of an element's coordinates, a brim beyond edges of the patch included (theory 10.7).
+  pure subroutine element_bounds(self, place, low, high)
+    type(surface_t), intent(in) :: self
+    integer, intent(in) :: place(2)
+    real(wp), intent(out) :: low(2), high(2)
+    real(wp) :: beyond
+    integer :: a
+
+    do a = 1, 2
+      low(a) = self%direction(a)%boundary(place(a) - 1)
+      high(a) = self%direction(a)%boundary(place(a))
+      if (self%brim <= 0.0_wp .or. self%closed(a)) cycle
+      beyond = self%brim * (high(a) - low(a))
+      if (place(a) == 1 .and. .not. self%pole(1, a)) low(a) = low(a) - beyond
+      if (place(a) == self%direction(a)%elements .and. .not. self%pole(2, a)) high(a) = high(a) + beyond
+    end do
+  end subroutine element_bounds
 
   !> A difference of coordinates, the shortest way round in closed directions (theory 3.20).
   pure function shortest_way(self, difference) result(way)

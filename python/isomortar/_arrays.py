@@ -116,15 +116,20 @@ class PlaneArrays:
 
 @dataclass(frozen=True, eq=False)
 class FaceArrays:
-    """A face of a deformable body as a master: its patch, the axis across the face (1 to 3) and its end there (0, 1)."""
+    """A face of a deformable body as a master: its patch, the axis across the face (1 to 3) and its end there (0, 1).
+
+    `brim`: how far it goes on beyond its edges, as a share of the outer elements.
+    """
 
     patch: PatchArrays
     axis: int
     side: int
+    brim: float = 0.0
 
     def __post_init__(self) -> None:
         check.kind("patch", self.patch, PatchArrays)
         check.face(self.axis, self.side)
+        check.real("brim", self.brim, lambda value: 0 <= value <= 1, "numbers from 0 to 1")
 
     @property
     def highest(self) -> int:

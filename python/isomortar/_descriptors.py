@@ -82,7 +82,8 @@ class Descriptors:
 
     def _face(self, face: FaceArrays) -> tuple[int, int]:
         averaged = isinstance(face, AveragedFaceArrays)
-        found: tuple[int, int] = self._library.keep_face(self.handle("patch", face.patch, PatchArrays), face.axis, face.side, averaged)
+        patch = self.handle("patch", face.patch, PatchArrays)
+        found: tuple[int, int] = self._library.keep_face(patch, face.axis, face.side, averaged, face.brim)
         return found
 
     @staticmethod

@@ -322,3 +322,24 @@ def test_bundled_scenes_are_let_through(name: str) -> None:
 def test_masters_with_lines_inside_have_averaged_normals(change: tuple[str, ...], projection: str, by_default: bool) -> None:
     (contact,) = Scene.from_toml(PAIR, overrides=change).problem().contacts
     assert (contact.projection, contact.by_default) == (projection, by_default)
+
+
+LAGRANGE = PAIR.replace("mesh = { elements", 'mesh = { family = "L", elements')
+
+
+@pytest.mark.parametrize(
+    ("text", "overrides", "sentence"),
+    [
+        (PAIR, ["contacts.pair.enforcement=kts"], "with 144 conditions for the 16 control points"),
+        (LAGRANGE, ["contacts.pair.enforcement=demko"], "Lagrange elements, which have no such abscissae"),
+    ],
+)
+def test_points_that_cannot_bear_are_refused(text, overrides, sentence):
+    with pytest.raises(InputError, match=sentence) as refused:
+        Scene.from_toml(text, overrides=overrides).problem()
+    assert refused.value.field == "contacts.pair.enforcement"
+
+
+def test_quadrature_points_are_enforced_by_augmentations_or_where_they_are_few():
+    Scene.from_toml(PAIR, overrides=["contacts.pair.enforcement=kts", "solver.method=uzawa"]).problem()
+    Scene.from_toml(PAIR, overrides=["contacts.pair.enforcement=kts", "contacts.pair.quadrature=2"]).problem()

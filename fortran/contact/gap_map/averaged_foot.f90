@@ -6,7 +6,8 @@ module isomortar_contact_gap_map_averaged_foot
   use isomortar_base_algebra, only: determinant, inverse
   use isomortar_base_kinds, only: wp
   use isomortar_nurbs_direction, only: element_at
-  use isomortar_nurbs_surface, only: step_across, surface_basis, surface_element_count, surface_element_of, surface_nodes, surface_t
+  use isomortar_nurbs_surface, only: element_bounds, step_across, surface_basis, surface_element_count, surface_element_of, &
+    surface_nodes, surface_t
   implicit none
   private
 
@@ -161,12 +162,9 @@ contains
     type(surface_t), intent(in) :: surface
     integer, intent(in) :: place(2)
     real(wp), intent(out) :: low(2), length(2)
-    integer :: a
 
-    do a = 1, 2
-      low(a) = surface%direction(a)%boundary(place(a) - 1)
-      length(a) = surface%direction(a)%boundary(place(a)) - low(a)
-    end do
+    call element_bounds(surface, place, low, length)
+    length = length - low
   end subroutine bounds_of
 
   !> Share of a step up to the first bound that it comes to, at most one, and the coordinate across that.

@@ -16,6 +16,10 @@ NEAR_ORIGIN = 16.0
 #: turn or more not which way; a tenth of a turn is far from that, and near enough for Newton's method.
 LARGEST_TURN = 36.0
 
+#: How far masters go on beyond their edges for constraints at points, as a share of the outer elements (theory 10.7): points on an edge of
+#: the slave often lie on the master's, and the least tilt of a face would have them come and go from one iteration to the next.
+BRIM = 0.05
+
 # ---- Load increments (theory 5)
 
 #: Newton loops of at most so many linear solves let a cut load increment grow back: they were no harder than usual.

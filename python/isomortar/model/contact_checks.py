@@ -26,11 +26,12 @@ def check_contacts(problem: Problem) -> None:
     ------
     InputError
         Faces without an area, that look away from each other, or have passed through each other; the same contact twice; a friction
-        whose numbers contradict each other; averaged normals where there are none.
+        whose numbers contradict each other; averaged normals where there are none; constraints at points that cannot be.
     """
     for contact in problem.contacts:
         _check_friction(contact)
         _check_projection(problem, contact)
+        _check_enforcement(problem, contact)
         found = stance(problem, contact)
         _check_area(problem, contact, found)
         _check_stance(problem, contact, found)
@@ -76,6 +77,31 @@ def _check_projection(problem: Problem, contact: Contact) -> None:
         )
     if problem.settings.slip_sum == "paper" and contact.friction_law.acts:
         raise InputError('is "averaged", and solver.slip_sum is "paper", which counts slips on the master; take slip_sum = "local"', path)
+
+
+def _check_enforcement(problem: Problem, contact: Contact) -> None:
+    """Refuse constraints at points that there are not, that fall together, or are too many for multipliers of their own."""
+    path, body, face = f"contacts.{contact.name}.enforcement", problem.body(contact.slave.body), contact.slave.face
+    directions = body.patch.face_directions(face)
+    if contact.enforcement == "demko" and any(direction.family == "L" for direction in directions):
+        raise InputError(
+            f'is "demko", but {body.name}.{face} is of Lagrange elements, which have no such abscissae; take "greville": their nodes', path
+        )
+    if contact.enforcement in ("knots", "greville", "demko") and has_pole(body, face):
+        raise InputError(
+            f'is "{contact.enforcement}", but the slave {body.name}.{face} has a pole, an edge that is one point: constraints would fall '
+            'together there; take "mortar" or "kts"',
+            path,
+        )
+    if contact.enforcement == "kts" and problem.settings.method == "monolithic":
+        points = np.prod([direction.elements * count for direction, count in zip(directions, contact.quadrature, strict=True)])
+        control_points = np.prod([direction.count for direction in directions])
+        if points > control_points:
+            raise InputError(
+                f'is "kts", with {points} conditions for the {control_points} control points of {body.name}.{face}: as unknowns their '
+                f'multipliers would repeat each other; take solver.method = "uzawa", or fewer points (contacts.{contact.name}.quadrature)',
+                path,
+            )
 
 
 def has_pole(body: Body, face: str) -> bool:

@@ -14,6 +14,9 @@ from isomortar.model.values import TABLE, Count, Point, Positive, Real
 
 #: How a slave point finds its point on a face of its master: the closest one, or along the averaged normal.
 Projection = Literal["closest", "averaged"]
+#: Which functionals of gap and slip are constrained: averages with the slave's functions, or values at quadrature points, at unique
+#: knots, at Greville's or at Demko's abscissae.
+Enforcement = Literal["mortar", "kts", "knots", "greville", "demko"]
 
 
 @dataclass(frozen=True)
@@ -96,6 +99,7 @@ class Contact:
     None: no largest one.
     `projection`: how a slave point finds its point on a master that is a face: the closest one, or along the averaged normal;
     `by_default`: nobody asked for it, the master's C0 lines do.
+    `enforcement`: which functionals of gap and slip are constrained (theory 10).
     """
 
     name: str
@@ -108,6 +112,7 @@ class Contact:
     traction_max: float | None = None
     projection: Projection = "closest"
     by_default: bool = False
+    enforcement: Enforcement = "mortar"
 
     @property
     def averaged(self) -> bool:

@@ -27,19 +27,19 @@ class Held:
 
     Attributes
     ----------
-    bears : ndarray of int32, shape (slave control points,)
+    bears : ndarray of int32, shape (test functions,)
         0 where supports hold the normal, which leaves nothing to the pressure as long as the neighbours keep the control point out of
         the master; else 1.
-    free : ndarray, shape (slave control points, 2, 2)
+    free : ndarray, shape (test functions, 2, 2)
         Symmetric projections of covariant tractions that leave nothing along what is held.
-    pushed : ndarray, shape (slave control points, 2)
+    pushed : ndarray, shape (test functions, 2)
         Directions in which supports push along the plane in this increment: unit vectors, or zero.
-    rests : ndarray of bool, shape (slave control points,)
+    rests : ndarray of bool, shape (test functions,)
         Where supports that hold the normal have them just touch a rigid plane: if they bear, their conditions follow from the others'.
-    still : ndarray of int32, shape (slave control points,)
+    still : ndarray of int32, shape (test functions,)
         1 where supports that have moved prescribe every direction along a rigid plane, here and round about, and move none of it in this
         increment: slips and balance tell nothing of the traction, which stays as it is, as far as friction bears it.
-    moved : ndarray of bool, shape (slave control points,)
+    moved : ndarray of bool, shape (test functions,)
         Where a component along the plane is prescribed, and by now has moved: slips there are given, so that they tell nothing of the
         traction along it while that sticks, nor of the one across while it slips.
     """
@@ -54,7 +54,7 @@ class Held:
 
 def nothing_held(pair: Pair) -> Held:
     """All multipliers are free."""
-    n = len(pair.slave.point)
+    n = pair.slave.test.count
     here, there = np.zeros((2, n), dtype=np.bool_)
     return Held(np.ones(n, dtype=np.int32), np.tile(np.eye(2), (n, 1, 1)), np.zeros((n, 2)), here, np.zeros(n, dtype=np.int32), there)
 
@@ -73,19 +73,20 @@ def _beside_plane(held: Held, supports: Supports, pair: Pair, start: FloatArray,
     """A rigid plane: what is held is the direction of its coordinates, or the normal."""
     assert isinstance(pair.contact.master, RigidPlane)
     tangents, normal = _axes(pair.contact.master)
-    point, increment, moved = pair.slave.point, supports.increment(start, time), supports.moved(time)
-    heights = (start[point] + increment[point] - pair.contact.master.point) @ normal
-    given = np.zeros(len(point), dtype=np.bool_)
-    for i in np.flatnonzero(supports.held[point].any(axis=1)):
-        prescribed = supports.held[point[i]]
+    increment = pair.at_tests(supports.increment(start, time))
+    all_held, all_moved = pair.all_carriers(supports.held), pair.all_carriers(supports.moved(time))
+    heights = (pair.at_tests(start) + increment - pair.contact.master.point) @ normal
+    given = np.zeros(len(heights), dtype=np.bool_)
+    for i in np.flatnonzero(all_held.any(axis=1)):
+        prescribed, moved = all_held[i], all_moved[i]
         held.bears[i] = int(np.linalg.norm(normal[~prescribed]) >= constants.NO_PART)
         held.rests[i] = not held.bears[i] and abs(heights[i]) <= constants.NO_PART * np.ptp(start, axis=0).max()
-        directions, sizes, _ = np.linalg.svd(tangents[prescribed & ~moved[point[i]]].T, full_matrices=False)
+        directions, sizes, _ = np.linalg.svd(tangents[prescribed & ~moved].T, full_matrices=False)
         taken = directions[:, sizes > constants.NO_PART]
         held.free[i] -= taken @ taken.T
-        along = held.free[i] @ (increment[point[i]] @ tangents)
+        along = held.free[i] @ (increment[i] @ tangents)
         held.pushed[i] = along / (np.linalg.norm(along) or 1.0)
-        held.moved[i] = bool(np.any(np.linalg.norm(tangents[prescribed & moved[point[i]]], axis=1) > constants.NO_PART))
+        held.moved[i] = bool(np.any(np.linalg.norm(tangents[prescribed & moved], axis=1) > constants.NO_PART))
         given[i] = np.all(np.linalg.norm(tangents[~prescribed], axis=1) <= constants.NO_PART)
     alone = pair.neighbour_matrix @ (~given).astype(np.int32) == 0
     held.still[:] = given & alone & held.moved & ~np.any(held.pushed, axis=1)
@@ -93,8 +94,8 @@ def _beside_plane(held: Held, supports: Supports, pair: Pair, start: FloatArray,
 
 def _beside_surface(held: Held, pair: Pair, start: FloatArray, still: BoolArray) -> None:
     """A master that deforms: what is held is the coordinate across an edge in whose plane, or slice, supports hold both sides."""
-    point = pair.slave.point
     size = np.ptp(start, axis=0).max()
+    own, places = pair.all_carriers(still), pair.at_tests(start)
     slice_ = np.all(still[pair.master_face], axis=0)
     for across, edge in pair.master_edges:
         for component in np.flatnonzero(np.all(still[edge], axis=0)):
@@ -102,9 +103,9 @@ def _beside_surface(held: Held, pair: Pair, start: FloatArray, still: BoolArray)
             if np.ptp(place) > constants.NO_PART * size:
                 continue
             coordinate = _slave_coordinate(pair, start, int(component)) if pair.contact.averaged else across
-            same = slice_[component] | (np.abs(start[point, component] - place[0]) <= constants.NO_PART * size)
-            held.free[still[point, component] & same, :, coordinate] = 0.0
-            held.free[still[point, component] & same, coordinate, :] = 0.0
+            same = slice_[component] | (np.abs(places[:, component] - place[0]) <= constants.NO_PART * size)
+            held.free[own[:, component] & same, :, coordinate] = 0.0
+            held.free[own[:, component] & same, coordinate, :] = 0.0
 
 
 def _slave_coordinate(pair: Pair, start: FloatArray, component: int) -> int:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import sparse
 
-from isomortar import _bindings
-from isomortar._bindings import AveragedFaceArrays, FaceArrays, FunctionArrays, MasterArrays, Pattern, PlaneArrays, SlaveArrays
+from isomortar._bindings import AveragedFaceArrays, FaceArrays, MasterArrays, Pattern, PlaneArrays
 from isomortar.geometry.patch import FloatArray, IntArray
+from isomortar.model import constants
+from isomortar.model.enforcement import slave_side
 from isomortar.model.entities import Contact, Face, Problem, RigidPlane
 from isomortar.model.numbering import Numbering
 from isomortar.model.pattern import elements_about, incidence, pattern_of, surface_element_points
@@ -20,7 +22,9 @@ class Pair:
     ----------
     contact : Contact
     slave : SlaveArrays
-        Tables of the slave side, from the reference configuration.
+        Tables of the slave side, from the reference configuration, by the contact's method of enforcement.
+    carriers : csr_array, shape (test functions, slave control points)
+        The slave's functions at what each constraint stands for.
     master : MasterArrays
     area : float
         Area of the slave face in the reference configuration.
@@ -45,22 +49,9 @@ class Pair:
 
     def __init__(self, contact: Contact, problem: Problem, numbering: Numbering) -> None:
         self.contact = contact
-        body = problem.body(contact.slave.body)
-        face, points = contact.slave.face, numbering.points[body.name]
-        nodes, values, slopes, area = _bindings.slave_tables(
-            numbering.patch_arrays(body), _axis(face), int(face[1]), contact.quadrature, numbering.reference
-        )
-        face_points = points[body.patch.face_points(face)]
-        slave_points, first = np.unique(face_points, return_index=True)
-        order = np.argsort(first)
-        number = np.empty(len(order), dtype=np.int32)
-        number[order] = np.arange(len(order), dtype=np.int32)
-        within = number[np.searchsorted(slave_points, face_points)]
-        functions = FunctionArrays(np.ascontiguousarray(within[nodes]), values, len(order))
-        # The mortar method weights constraints with the functions of the face.
-        outward = 1 if face[1] == "1" else -1
-        self.slave = SlaveArrays(functions, functions, area, np.ascontiguousarray(slave_points[order]), slopes, outward)
-        self.area = float(area.sum())
+        side = slave_side(contact, problem, numbering)
+        self.slave, self.carriers = side.arrays, side.carriers
+        self.area = float(self.slave.area.sum())
         self.master = _master_arrays(contact, problem, numbering)
         members = incidence(self.slave.test.nodes, self.slave.test.count)
         self.elements_of_point = sparse.csr_array(members.T)
@@ -96,6 +87,20 @@ class Pair:
         element = np.repeat(np.arange(self.slave.elements), self.slave.per_element)
         return np.einsum("qa,qa...->q...", test.values, control_values[test.nodes[element]])
 
+    def at_tests(self, positions: FloatArray) -> FloatArray:
+        """Where the constraints belong, given positions (or increments) of all control points, shape (test functions, 3)."""
+        return np.asarray(self.carriers @ positions[self.slave.point])
+
+    def some_carriers(self, marks: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Which constraints stand for a marked control point, shape (test functions,); `marks` is of all control points."""
+        some: NDArray[np.bool_] = abs(self.carriers) @ marks[self.slave.point].astype(np.float64) != 0.0
+        return some
+
+    def all_carriers(self, marks: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Which components of what a constraint stands for are all marked, shape (test functions, 3); `marks` is of all control points."""
+        missing: NDArray[np.bool_] = abs(self.carriers) @ (~marks[self.slave.point]).astype(np.float64) == 0.0
+        return missing
+
 
 def _axis(face: str) -> int:
     return "uvw".index(face[0]) + 1
@@ -107,4 +112,5 @@ def _master_arrays(contact: Contact, problem: Problem, numbering: Numbering) -> 
         return PlaneArrays(*(np.array(vector, dtype=np.float64) for vector in (plane.point, plane.normal, plane.tangent)))
     patch = numbering.patch_arrays(problem.body(contact.master.body))
     kind = AveragedFaceArrays if contact.averaged else FaceArrays
-    return kind(patch, _axis(contact.master.face), int(contact.master.face[1]))
+    brim = 0.0 if contact.enforcement == "mortar" else constants.BRIM
+    return kind(patch, _axis(contact.master.face), int(contact.master.face[1]), brim)

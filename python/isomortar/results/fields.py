@@ -7,10 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from isomortar.geometry.patch import Direction, FloatArray, IntArray
+from isomortar.model.enforcement import METHODS, SlaveFace
 from isomortar.model.entities import Contact, Problem
 from isomortar.model.numbering import Numbering
 from isomortar.results.bezier import rational
-from isomortar.solve.record import StepResult
+from isomortar.solve.record import ContactResult, ContactState, StepResult
 
 
 @dataclass(frozen=True)
@@ -70,7 +71,9 @@ def contact_surfaces(problem: Problem, result: StepResult) -> list[ContactSurfac
         patch = problem.body(contact.slave.body).patch
         face = patch.face_points(contact.slave.face)
         points = numbering.points[contact.slave.body][face]
-        slave = _slave_numbers(points)
+        slave = SlaveFace(contact, problem, numbering)
+        side = METHODS[contact.enforcement](slave)
+        by_control = {name: side.on_control_points(values)[slave.within] for name, values in _quantities(state, measured).items()}
         surfaces.append(
             ContactSurface(
                 contact=contact,
@@ -78,17 +81,13 @@ def contact_surfaces(problem: Problem, result: StepResult) -> list[ContactSurfac
                 weights=patch.weights[face],
                 reference_points=patch.control_points[face],
                 points=result.state.positions[points],
-                pressure=state.pressure[slave],
-                traction=measured.traction_norm[slave],
-                covariant=state.traction[slave],
-                gap=measured.gap[slave],
-                status=measured.status[slave],
+                status=measured.status[side.nearest][slave.within],
+                **by_control,
             )
         )
     return surfaces
 
 
-def _slave_numbers(points: IntArray) -> IntArray:
-    """Slave control points count in the order of the face; a point that the face meets twice (a closed ring) counts once."""
-    _, first, number = np.unique(points, return_index=True, return_inverse=True)
-    return np.argsort(np.argsort(first))[number].astype(np.int32)
+def _quantities(state: ContactState, measured: ContactResult) -> dict[str, FloatArray]:
+    """Fields of a surface, by constraint."""
+    return {"pressure": state.pressure, "traction": measured.traction_norm, "covariant": state.traction, "gap": measured.gap}

@@ -141,8 +141,8 @@ def _contact(name: str, table: ContactTable, bodies: dict[str, Body], summed: bo
     quadrature = table.quadrature or (contact_points(first), contact_points(second))
     law = (table.friction, quadrature, table.reference_area, table.cohesion, table.traction_max)
     if table.projection is None and isinstance(master, Face) and _wants_averaged(bodies[master.body], master.face) and not summed:
-        return Contact(name, slave, master, *law, "averaged", by_default=True)
-    return Contact(name, slave, master, *law, table.projection or "closest")
+        return Contact(name, slave, master, *law, "averaged", True, table.enforcement)
+    return Contact(name, slave, master, *law, table.projection or "closest", False, table.enforcement)
 
 
 def _wants_averaged(body: Body, face: str) -> bool:

@@ -15,7 +15,7 @@ from pydantic_core import PydanticCustomError, core_schema
 
 from isomortar.geometry.patch import Direction, Family, Patch
 from isomortar.geometry.primitives import bowl, box, ring
-from isomortar.model.entities import Material, Motion, Projection, SolverSettings
+from isomortar.model.entities import Enforcement, Material, Motion, Projection, SolverSettings
 from isomortar.model.values import Count, Point, Positive, Real
 from isomortar.scene.types import (
     Axis,
@@ -178,6 +178,8 @@ class ContactTable(Table):
     """Largest traction, force per area: friction bears min(cohesion + friction * pressure, traction_max); default: no largest one."""
     projection: Projection | None = None
     """How slave points find theirs on a master face: the "closest" one, or along "averaged" normals, which have no kinks on C0 lines."""
+    enforcement: Enforcement = "mortar"
+    """What is constrained: averages of gap and slip ("mortar"), or values at Gauss points ("kts"), "knots", "greville" or "demko"."""
     quadrature: PerSurfaceDirection[GaussPoints] | None = None
     """Gauss points per slave contact element; default by family and order (Table 1 of the paper; above order 5: order + 2)."""
     reference_area: Positive | None = None

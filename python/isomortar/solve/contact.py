@@ -78,8 +78,8 @@ class PairMechanics:
 
     Attributes
     ----------
-    shared : ndarray of bool, shape (slave control points,)
-        Those that are slave control points of another pair as well.
+    shared : ndarray of bool, shape (test functions,)
+        Those that constrain slave control points of another pair as well.
     """
 
     def __init__(self, pair: Pair, settings: SolverSettings, ledger: Ledger, origin: FloatArray, others: Sequence[Pair]) -> None:
@@ -91,7 +91,8 @@ class PairMechanics:
         n = pair.slave.test.count
         self.diagonal = Pattern(np.arange(n + 1, dtype=np.int32), np.arange(n, dtype=np.int32))
         self.held = nothing_held(pair)
-        self.shared = np.isin(pair.slave.point, [point for other in others for point in other.slave.point])
+        theirs = [point for other in others for point in other.slave.point]
+        self.shared = pair.some_carriers(np.isin(np.arange(pair.slave.highest + 1), theirs))
         self._ledger = ledger
         kinds = "frictionless" if not self.friction.acts else ("paper" if self.summed else "local")
         self._kinds = ROW_KINDS[kinds + ", averaged" * pair.contact.averaged]

@@ -88,7 +88,9 @@ def _repeated(
     said: str, contact: PairConditions, among: NDArray[np.intp], contacts: Sequence[PairConditions], held: NDArray[np.bool_]
 ) -> SingularSystemError:
     """Contact conditions without effect: too few points on the master, or too few unknowns that they bear on."""
-    prescribed = int(np.count_nonzero(held.reshape(-1, 3)[contact.pair.pair.slave.point[among]].any(axis=1)))
+    pair = contact.pair.pair
+    touched = np.asarray(held.reshape(-1, 3).any(axis=1))
+    prescribed = int(np.count_nonzero(pair.some_carriers(touched)[among]))
     there, total = _points_around(contact, among)
     where = f"contact {contact.pair.pair.contact.name!r}: the conditions of {len(among)} slave control points, the first of them {among[0]}"
     others = {other.pair.pair.contact.name: _shared(contact, among, other) for other in contacts if other is not contact}
@@ -120,7 +122,9 @@ def _repeated(
 
 def _shared(contact: PairConditions, among: NDArray[np.intp], other: PairConditions) -> int:
     """How many of some slave control points of a contact are active slave control points of another one."""
-    return int(np.isin(contact.pair.pair.slave.point[among], other.pair.pair.slave.point[_active(other)]).sum())
+    one, two = contact.pair.pair, other.pair.pair
+    theirs = np.isin(one.slave.point, two.slave.point[two.carriers[_active(other)].nonzero()[1]])
+    return int(np.count_nonzero(one.carriers[among] @ theirs.astype(np.float64)))
 
 
 def _rigid(moved: FloatArray, positions: FloatArray, numbering: Numbering) -> tuple[int, str]:

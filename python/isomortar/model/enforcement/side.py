@@ -1,0 +1,96 @@
+"""What a method of enforcement gives: the slave side's tables, and what its constraints stand for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy import sparse
+from scipy.spatial import cKDTree
+
+from isomortar._bindings import FunctionArrays, SlaveArrays
+from isomortar.errors import InputError
+from isomortar.geometry.patch import FloatArray, IntArray
+from isomortar.model.enforcement.face import SlaveFace
+
+#: Share of the largest area below which a function has none.
+_NOTHING = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class SlaveSide:
+    """The slave side of a contact.
+
+    Attributes
+    ----------
+    arrays : SlaveArrays
+    places : ndarray, shape (constraints, 2)
+        Where on the face, by its coordinates, each constraint belongs.
+    carriers : csr_array, shape (constraints, slave control points)
+        Whose motion it constrains there: its own control point's (mortar), or that of the functions at its point.
+    control_places : ndarray, shape (slave control points, 2)
+        Where control points belong.
+    """
+
+    arrays: SlaveArrays
+    places: FloatArray
+    carriers: sparse.csr_array
+    control_places: FloatArray
+
+    def on_control_points(self, values: FloatArray) -> FloatArray:
+        """Control values of a field that is drawn: means of the constraints' values (theory 10.8), shape (n, ...).
+
+        A constant stays what it is, and so does the resultant. A function that is zero at all constraints takes the nearest one's value.
+        """
+        if self.carriers.shape[0] == self.carriers.shape[1] == self.carriers.nnz:
+            return values
+        shares = sparse.csr_array(self.carriers.T.multiply(self.arrays.area))
+        total = shares.sum(axis=1)
+        known = total > _NOTHING * total.max()
+        means = (shares @ values.reshape(len(values), -1)) / np.where(known, total, 1.0)[:, None]
+        means[~known] = values.reshape(len(values), -1)[self.nearest[~known]]
+        return np.asarray(means.reshape(-1, *values.shape[1:]))
+
+    @cached_property
+    def nearest(self) -> IntArray:
+        """The constraint that is nearest to where each control point belongs, by the face's coordinates, shape (n,)."""
+        return np.asarray(cKDTree(self.places).query(self.control_places)[1], dtype=np.int32)
+
+
+def pointwise(face: SlaveFace, coordinates: FloatArray, area: FloatArray) -> SlaveSide:
+    """Constraints at points of a face, each with an area (theory 10.2): a quadrature point, an element and a test function of its own.
+
+    Raises
+    ------
+    InputError
+        An area is not positive.
+    """
+    if not np.all(area > 0.0):
+        worst = int(np.argmin(area))
+        contact, where = face.contact, ", ".join(f"{c:.4g}" for c in coordinates[worst])
+        raise InputError(
+            f"is {contact.enforcement!r}, but its point at ({where}) of {contact.slave.body}.{contact.slave.face} has an area of "
+            f'{area[worst]:.3g}: pressure there would pull; take "mortar", or a mesh that is less graded',
+            f"contacts.{contact.name}.enforcement",
+        )
+    nodes, values, slopes = face.at(coordinates)
+    count = len(area)
+    shape = FunctionArrays(nodes, values, len(face.point))
+    test = FunctionArrays(np.arange(count, dtype=np.int32)[:, None].copy(), np.ones((count, 1)), count)
+    arrays = SlaveArrays(shape, test, np.ascontiguousarray(area), face.point, slopes, face.outward)
+    return SlaveSide(arrays, coordinates, functions_at(face, coordinates), face.control_places)
+
+
+def functions_at(face: SlaveFace, coordinates: FloatArray) -> sparse.csr_array:
+    """Values of the slave's functions at points of its face, shape (points, slave control points); zeros are left out."""
+    nodes, values, _ = face.at(coordinates)
+    rows = np.repeat(np.arange(len(nodes)), nodes.shape[1])
+    matrix = sparse.csr_array((values.ravel(), (rows, nodes.ravel())), shape=(len(nodes), len(face.point)))
+    matrix.eliminate_zeros()
+    return matrix
+
+
+def open_ends(abscissae: FloatArray, closed: bool) -> FloatArray:
+    """The abscissae, without the last where it is the same place as the first."""
+    return abscissae[:-1] if closed else abscissae

@@ -1,0 +1,166 @@
+"""Contact enforced by every method: tangents, balance, patch tests, and too many or too few constraints."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from enforcement.tables import POINTWISE
+from extremes.discretisation import compliance, equilibrium_of, masses
+from patch_tests.contact import errors, problem
+from scipy import linalg
+from tangents.placed import placed
+
+from isomortar.harness import Bound, Shown, case
+from isomortar.harness.tangents import BOUND, PARTS, SYMMETRY_BOUND
+from isomortar.harness.tangents import measure as tangent_errors
+from isomortar.harness.visits import PairVisit, Visit
+from isomortar.model.enforcement import slave_side
+from isomortar.model.entities import Enforcement, Problem
+from isomortar.scene import Scene
+from isomortar.solve.equilibrium import Equilibrium
+from isomortar.solve.timing import Ledger
+
+METHODS: tuple[Enforcement, ...] = ("mortar", *POINTWISE)
+#: Of the face of which constraints are counted, by direction.
+ELEMENTS = 4
+
+#: A bowl over a block; its face is inside the master's, or over the rim of it.
+_SCENE = """
+format = 1
+
+[bodies.slave]
+geometry = {{ kind = "bowl", centre = [{x}, 0.02], half_width = 0.35, bottom = 0, rise = 0.06, top = 0.4 }}
+mesh = {{ order = [2, 2, 1], elements = [2, 3, 1] }}
+
+[bodies.master]
+geometry = {{ kind = "box", lower = [-0.6, -0.6, -0.5], upper = [0.7, 0.65, 0] }}
+mesh = {{ order = [{order}, {order}, 1], elements = [4, 3, 1] }}
+
+[contacts.interface]
+slave = "slave.w0"
+master = "master.w1"
+projection = "{projection}"
+friction = 0.3
+quadrature = 2
+enforcement = "{method}"
+
+[supports.top]
+face = "slave.w1"
+
+[supports.floor]
+face = "master.w0"
+
+[solver]
+method = "uzawa"
+
+[[stages]]
+name = "press"
+steps = 1
+motions.top = {{ translate = [0, 0, -0.05] }}
+"""
+#: Trial pressures and lengths of trial tractions: open, sticking and slipping in turn.
+_PRESSURE, _LENGTH = (-1.0, 1.0, 0.7), (0.0, 0.5, 2.0)
+
+
+def tangent_bounds(method: Enforcement, master: str) -> dict[str, Bound]:  # noqa: ARG001
+    """A bound for every part that there is, and for the balances."""
+    absent = ("symmetry", "tangential, projection") if master == "averaged" else ()
+    parts = {
+        part: Bound(
+            at_most=SYMMETRY_BOUND if part == "symmetry" else BOUND,
+            reason="round-off: products of double precision against differences of a twin in extended precision",
+        )
+        for part in PARTS
+        if part not in absent
+    }
+    balance = Bound(at_most=1e-12, reason="round-off: both sides' forces are opposite, and act along the way from point to foot")
+    return parts | {"forces": balance, "moments": balance}
+
+
+@case(
+    claim="Whatever is constrained, the tangent is exact in every part, and forces and moments are in balance.",
+    tier="gate",
+    grid={"method": METHODS, "master": ("closest", "averaged", "over the rim")},
+    bounds=tangent_bounds,
+)
+def tangents(method: Enforcement, master: str) -> dict[str, float]:
+    """Largest relative error of each part, and of the balances."""
+    projection = "averaged" if master == "averaged" else "closest"
+    scene = _SCENE.format(method=method, projection=projection, x=0.33 if master == "over the rim" else 0.03, order=2)
+    given = Scene.from_toml(scene).problem()
+    equilibrium = Equilibrium(given, Ledger())
+    pair, state = equilibrium.pairs[0], equilibrium.initial_state()
+    positions = state.positions + 0.007 * np.random.default_rng(1).standard_normal(state.positions.shape)
+    positions[equilibrium.numbering.points["slave"]] += np.array([0.03, 0.02, -0.02])
+    n = pair.pair.slave.test.count
+    law = pair.law(np.array([20.0, 10.0]), np.zeros(n), np.zeros((n, 2)))
+    pressure, length = (np.resize(np.array(pattern), n) for pattern in (_PRESSURE, _LENGTH))
+    visit = placed(pair, positions, PairVisit(state.contacts[0], law), pressure, length)
+    kinematics = pair.kinematics(positions, state.contacts[0])
+    result = pair.result(positions, kinematics, pair.respond(kinematics, visit.law), np.zeros(2))
+    report = tangent_errors(given, 1, [Visit(positions, (visit,))], directions=1, length=1e-3)
+    sums = (result.force_slave, result.force_master), (result.moment_slave, result.moment_master)
+    forces, moments = (float(np.abs(slave + main).max() / np.abs(slave).max()) for slave, main in sums)
+    return {row.part: row.error for row in report.rows if row.part in PARTS} | {"forces": forces, "moments": moments}
+
+
+def by_method(given: Problem, method: Enforcement) -> Problem:
+    """A problem with its contacts enforced by a method; quadrature points have multipliers by augmentations alone."""
+    solver = "uzawa" if method == "kts" else "monolithic"
+    settings = replace(given.settings, method=solver, augmentation_tolerance=1e-9, newton_tolerance=1e-12)  # type: ignore[arg-type]
+    return replace(given, contacts=tuple(replace(c, enforcement=method) for c in given.contacts), settings=settings)
+
+
+_MATCHING = Bound(
+    at_most=1e-9, reason="theory: the state is uniform and every constraint holds in it; tolerances of 1e-12 times the basis's condition"
+)
+
+
+@case(
+    claim="Every method that has enough constraints passes the patch test of meshes that match.",
+    tier=lambda method, order: "gate" if order == 2 else "nightly",  # noqa: ARG005
+    grid={"method": ("mortar", "kts", "greville", "demko"), "order": (1, 2, 3)},
+    bounds={"pressure": _MATCHING, "position": _MATCHING},
+)
+def matching(method: Enforcement, order: int) -> dict[str, float]:
+    """Errors of pressures and positions; master and slave of one mesh."""
+    found = errors(by_method(problem(order, order, 0.0, order + 1, 3), method))
+    return {"pressure": found.control, "position": found.position}
+
+
+def count_bounds(method: Enforcement, order: int) -> dict[str, Bound | Shown]:
+    """Numbers by theory: as many constraints as control points, more, or fewer."""
+    control_points = (ELEMENTS + order) ** 2
+    constraints = {"kts": (ELEMENTS * (order + 1)) ** 2, "knots": (ELEMENTS + 1) ** 2}.get(method, control_points)
+    exact = "definition: constraints less their rank, and control points less their rank"
+    return {
+        "too many": Bound(at_most=max(0, constraints - control_points), at_least=max(0, constraints - control_points), reason=exact),
+        "too few": Bound(at_most=max(0, control_points - constraints), at_least=max(0, control_points - constraints), reason=exact),
+        "inf-sup": Shown("theory: positive; of the constraints that are not too many"),
+    }
+
+
+@case(
+    claim="Mortar, Greville's and Demko's abscissae give as many constraints as there are control points, quadrature points too many, "
+    "knots above order 1 too few.",
+    tier=lambda method, order: "gate" if order == 2 else "nightly",  # noqa: ARG005
+    grid={"method": METHODS, "order": (1, 2, 3, 4)},
+    bounds=count_bounds,
+)
+def constraints(method: Enforcement, order: int) -> dict[str, float]:
+    """Constraints beyond their rank, control points beyond it, and the inf-sup constant of the rest (see `extremes/stability`)."""
+    equilibrium = equilibrium_of(order, (ELEMENTS, ELEMENTS, 2), 1.0)
+    contact = replace(equilibrium.problem.contacts[0], enforcement=method, quadrature=(order + 1, order + 1))
+    side = slave_side(contact, equilibrium.problem, equilibrium.numbering)
+    mass = masses(order, ELEMENTS, ELEMENTS)
+    matrix = mass if method == "mortar" else side.carriers.toarray() * side.arrays.area[:, None]
+    norm = (mass if method == "mortar" else np.diag(side.arrays.area)) / ELEMENTS
+    values = linalg.eigh(matrix @ compliance(order, ELEMENTS, 1.0) @ matrix.T, norm, eigvals_only=True)
+    there = values > 1e-10 * values.max()
+    rank = int(np.count_nonzero(there))
+    return {
+        "too many": float(len(matrix) - rank),
+        "too few": float(matrix.shape[1] - rank),
+        "inf-sup": float(np.sqrt(values[there].min())),
+    }

@@ -1,0 +1,143 @@
+"""Where methods of enforcement constrain, and with which weights: against SciPy's splines, and Chebyshev's theory."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.interpolate import BSpline, make_interp_spline
+
+from isomortar.geometry.patch import Direction, Family, FloatArray
+from isomortar.geometry.primitives import box, ring
+from isomortar.geometry.refinement import mesh
+from isomortar.harness import Bound, case
+from isomortar.model.enforcement import SlaveSide, slave_side
+from isomortar.model.enforcement.demko import abscissae
+from isomortar.model.entities import Body, Contact, Enforcement, Face, Material, Problem, RigidPlane, Stage
+from isomortar.model.numbering import Numbering
+
+#: Methods at points.
+POINTWISE: tuple[Enforcement, ...] = ("kts", "knots", "greville", "demko")
+PLANE = RigidPlane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0))
+SIZE = (2.0, 0.7)
+ELEMENTS = (4, 3)
+
+
+def side_of(body: Body, face: str, method: Enforcement, quadrature: int) -> SlaveSide:
+    """The slave side of a body's face."""
+    contact = Contact("c", Face(body.name, face), PLANE, 0.0, (quadrature, quadrature), enforcement=method)
+    problem = Problem("tables", (body,), (contact,), (), (Stage("none", 1),))
+    return slave_side(contact, problem, Numbering(problem))
+
+
+def plate(family: Family, order: int) -> Body:
+    """A box; its lower face has functions of a family and order in both directions."""
+    patch = mesh(box((0.0, 0.0, 0.0), (*SIZE, 1.0)), (family, family, "N"), (order, order, 1), (*ELEMENTS, 1))
+    return Body("plate", patch, Material(), (2, 2, 2))
+
+
+def integrals(family: Family, order: int, elements: int) -> FloatArray:
+    """Of the functions along a unit interval: by SciPy's antiderivatives, or by Gauss points of Lagrange polynomials."""
+    if family == "N":
+        knots = np.concatenate([np.zeros(order), np.linspace(0.0, 1.0, elements + 1), np.ones(order)])
+        return np.array([BSpline(knots, row, order).integrate(0.0, 1.0) for row in np.eye(len(knots) - order - 1)], dtype=float)
+    nodes = np.linspace(0.0, 1.0 / elements, order + 1)
+    found = np.zeros(order * elements + 1)
+    for a in range(order + 1):
+        values = np.polynomial.Polynomial.fromroots(np.delete(nodes, a))
+        share = (values.integ()(nodes[-1]) - values.integ()(0.0)) / values(nodes[a])
+        found[a : a + order * elements : order] += share
+    return found
+
+
+_ROUND_OFF = Bound(at_most=1e-13, reason="round-off: of sums over some tens of points")
+
+
+def weight_bounds(method: Enforcement, kind: str) -> dict[str, Bound]:  # noqa: ARG001
+    """Knots are too few for the forces of every function."""
+    return {"area": _ROUND_OFF} | ({} if method == "knots" else {"forces": _ROUND_OFF})
+
+
+_WEIGHTS = "The areas of constraints at points add up to that of the face, and a uniform pressure's forces are exact, but for unique knots"
+
+
+@case(
+    claim=f"{_WEIGHTS}.",
+    tier="gate",
+    grid={"method": POINTWISE, "kind": ("N1", "N2", "N3", "N5")},
+    bounds=weight_bounds,
+)
+def weights(method: Enforcement, kind: str) -> dict[str, float]:
+    """Errors of the face's area, and of the largest force of a uniform pressure on a control point."""
+    return missed(method, kind)
+
+
+def missed(method: Enforcement, kind: str) -> dict[str, float]:
+    """What areas miss of the whole one, and forces of the exact ones."""
+    family: Family = "L" if kind[0] == "L" else "N"
+    order = int(kind[1:])
+    side = side_of(plate(family, order), "w0", method, order + 1)
+    first, second = (integrals(family, order, n) * size for n, size in zip(ELEMENTS, SIZE, strict=True))
+    exact = np.outer(second, first).ravel()
+    forces = side.carriers.T @ side.arrays.area
+    found = {"area": float(abs(side.arrays.area.sum() - SIZE[0] * SIZE[1]))}
+    return found if method == "knots" else found | {"forces": float(np.abs(forces - exact).max() / exact.max())}
+
+
+@case(
+    claim=f"{_WEIGHTS}; of Lagrange elements too, which have no abscissae of Demko's.",
+    tier="gate",
+    grid={"method": ("kts", "knots", "greville"), "kind": ("L1", "L2", "L4")},
+    bounds=weight_bounds,
+)
+def weights_of_nodes(method: Enforcement, kind: str) -> dict[str, float]:
+    """Errors as those of `weights`."""
+    return missed(method, kind)
+
+
+@case(
+    claim="On a ring, whose face meets itself, no constraint at a point stands twice at the seam, and areas are those of the face.",
+    tier="gate",
+    grid={"method": POINTWISE},
+    bounds={
+        "twice": Bound(at_least=1e-3, reason="definition: places that are apart"),
+        "area": Bound(at_most=1e-9, reason="quadrature: of the length of arcs that are rational, with eight points"),
+    },
+)
+def closed(method: Enforcement) -> dict[str, float]:
+    """Least distance of two constraints, and the error of the area."""
+    patch = mesh(ring((0.0, 0.0, 0.0), 0.5, 1.0, 0.4), ("N", "N", "N"), (2, 1, 2), (8, 1, 2))
+    side = side_of(Body("ring", patch, Material(), (2, 2, 2), closed="u"), "v1", method, 8)
+    points = side.carriers @ patch.control_points[patch.face_points("v1")][_kept(patch.face_points("v1"), side)]
+    apart = np.linalg.norm(points[:, None] - points, axis=2) + 10.0 * np.eye(len(points))
+    return {"twice": float(apart.min()), "area": abs(float(side.arrays.area.sum()) / (0.8 * np.pi) - 1.0)}
+
+
+def _kept(face: np.ndarray, side: SlaveSide) -> np.ndarray:
+    """Entries of a face that count: the last one along a closed direction does not."""
+    rows = len(face) - side.carriers.shape[1]
+    width = len(face) // rows
+    return np.arange(len(face))[np.arange(len(face)) % width < width - 1]
+
+
+_LEVEL = Bound(
+    at_most=1e-10, reason="theory: the Chebyshev spline is 1 at its extrema, and no larger anywhere; its exchange is stopped at 1e-12"
+)
+
+
+@case(
+    claim="Demko's abscissae are the extrema of a spline that alternates between 1 and -1; of one element they are those of Chebyshev's.",
+    tier="gate",
+    grid={"order": (1, 2, 3, 4, 6, 10), "knots": ("one element", "even", "graded", "repeated")},
+    bounds=lambda order, knots: dict.fromkeys(("above", "spread", *["chebyshev"] * (knots == "one element")), _LEVEL),  # noqa: ARG005
+)
+def demko(order: int, knots: str) -> dict[str, float]:
+    """How far the spline is above 1 on 2000 places, how far from it at the abscissae, and distance from Chebyshev's points."""
+    inner = {"one element": [], "even": [0.25, 0.5, 0.75], "graded": [0.02, 0.1, 0.4], "repeated": [0.3, *[0.5] * order, 0.8]}[knots]
+    direction = Direction("N", order, np.array([*[0.0] * (order + 1), *inner, *[1.0] * (order + 1)]))
+    places = abscissae(direction)
+    spline = make_interp_spline(places, (-1.0) ** np.arange(len(places)), k=order, t=direction.knots)
+    chebyshev = 0.5 - 0.5 * np.cos(np.pi * np.arange(order + 1) / order)
+    found = {
+        "above": max(0.0, float(np.abs(spline(np.linspace(0.0, 1.0, 2001))).max() - 1.0)),
+        "spread": float(np.abs(np.abs(spline(places)) - 1.0).max()),
+    }
+    return found | ({"chebyshev": float(np.abs(places - chebyshev).max())} if knots == "one element" else {})
