@@ -90,3 +90,22 @@ def programs(
     from isomortar.harness.study import study_module
 
     conduct(study_module(cases, "programs").study(), out, jobs)
+
+
+@report.command()
+def enforcement(
+    scenes: Annotated[str, typer.Option(metavar="press,twist,iron", help="Scenes of the study.", show_default="all")] = "",
+    jobs: Annotated[int, typer.Option("-j", "--jobs", min=1, help="Runs at the same time; several disturb each other's cost.")] = 1,
+    out: Annotated[Path, typer.Option(file_okay=False, help="Folder of the report and its runs.")] = Path("results/enforcement"),
+    cases: CasesOption = CASES,
+) -> None:
+    """The four ways of enforcing contact that the paper names, beside each other: error, roughness and cost.
+
+    What was run already is not run again. Exit code 1 if a run failed; the others are in the report all the same. Run it in a checkout,
+    from its folder: the study stands in verification/enforcement.
+
+    For example: `isomortar report enforcement --scenes twist`
+    """
+    from isomortar.harness.study import study_module
+
+    conduct(study_module(cases, "enforcement").study([name.strip() for name in scenes.split(",") if name.strip()]), out, jobs)

@@ -1,0 +1,98 @@
+"""The study of enforcement: its scenes by every way, what is stated of runs that are made up, and the page."""
+
+from __future__ import annotations
+
+import json
+from datetime import datetime
+from pathlib import Path
+
+import numpy as np
+import pytest
+from enforcement import page
+from enforcement.found import Evidence, Found
+from enforcement.plan import MORTAR, REFERENCE, SETUPS, WAYS, Planned, planned
+from enforcement.statements import STATEMENTS
+from enforcement.study import study
+
+from isomortar.errors import InputError
+from isomortar.harness.cases import Words
+from isomortar.harness.measurement import Measurement, stored
+from isomortar.harness.runner import Result
+
+PRESS, TWIST = SETUPS[:2]
+#: How far the curve of each way is off the reference, as a share of it.
+OFF = dict.fromkeys(WAYS, 0.02) | {REFERENCE: 0.0, MORTAR: 0.02, "mortar, swapped": 0.05, "knots": 0.03}
+
+
+def made_up(steps: int = 20, peak: float = 1.0) -> list[Found]:
+    """Runs of the twist; `steps` and the largest pressure of kts as given."""
+    runs = []
+    for entry in planned((TWIST,)):
+        kts = entry.way == "kts"
+        count = steps if kts else 20
+        moment = np.zeros((count, 2, 3))
+        moment[:, 0, 2] = (1.0 + OFF[entry.way]) * np.arange(count)
+        pressure = np.tile([0.0, peak if kts else 1.0], (count, 1))
+        numbers = {
+            "missing": 20 - count, "force": moment, "moment": moment, "pressure": pressure, "words": Words(""), "solves": 1, "cuts": 0,
+            "cpu_seconds": 1.0, "constraints": 4, "control_points": 4,
+        }  # fmt: skip
+        measurement = Measurement("measured", {name: stored(value) for name, value in numbers.items()})
+        runs.append(Found(entry, Result(entry.run.case, measurement, (), True)))  # type: ignore[arg-type]
+    return runs
+
+
+def verdicts(runs: list[Found]) -> dict[str, dict[str, str]]:
+    """By statement and way."""
+    judged = [statement.judged([Evidence(runs, method) for method in statement.methods]) for statement in STATEMENTS]
+    return {j.statement.section: {verdict.method: verdict.state for verdict in j.verdicts} for j in judged}
+
+
+def test_every_way_of_every_scene_can_be_built() -> None:
+    for setup in SETUPS:
+        for way in (REFERENCE, *setup.ways):
+            (contact,) = setup.load(way).problem().contacts
+            assert contact.enforcement == ("mortar" if way == REFERENCE else way.partition(",")[0])
+            assert contact.averaged == way.endswith("averaged")
+
+
+def test_a_plane_is_no_slave_and_slaves_are_swapped() -> None:
+    assert PRESS.ways == (MORTAR, "greville", "demko", "knots", "kts")
+    (contact,), (swapped,) = (TWIST.load(way).problem().contacts for way in (MORTAR, "mortar, swapped"))
+    assert (contact.slave, contact.master) == (swapped.master, swapped.slave)
+
+
+def test_curves_are_judged_beside_the_mortar_method() -> None:
+    found = verdicts(made_up(peak=3.0))
+    assert found["ending"] == dict.fromkeys(WAYS, "holds")
+    assert found["as good"]["greville"] == "holds"
+    assert found["as good"]["mortar, swapped"] == "does not hold"
+    assert found["too few"] == {"knots": "holds"}
+    assert found["too many"] == {"kts": "holds"}
+
+
+def test_a_run_that_stops_is_a_failure_and_its_pressure_counts() -> None:
+    found = verdicts(made_up(steps=7, peak=1.5))
+    assert found["ending"]["kts"] == "does not hold"
+    assert found["too many"] == {"kts": "does not hold"}
+
+
+def test_the_page_has_every_run(tmp_path: Path) -> None:
+    runs = made_up(steps=7)
+    judgements = [statement.judged([Evidence(runs, method) for method in statement.methods]) for statement in STATEMENTS]
+    path = page.write(tmp_path, runs, judgements, datetime(2026, 1, 1))
+    text, data = path.read_text(encoding="utf-8"), json.loads(path.with_suffix(".json").read_text(encoding="utf-8"))
+    assert all(way in text for way in WAYS)
+    assert [row["way"] for row in data["scenes"][0]] == [REFERENCE, *WAYS]
+    assert "twist by kts (not converged)" in text
+
+
+def test_scenes_that_there_are_not_are_refused() -> None:
+    assert len(study(["twist"]).runs) == 1 + len(WAYS)
+    with pytest.raises(InputError, match="press, twist, iron"):
+        study(["iorn"])
+
+
+def test_plans_have_names_of_their_own() -> None:
+    names = [Planned(setup, way).run.name for setup in SETUPS for way in (REFERENCE, *setup.ways)]
+    assert len(set(names)) == len(names)

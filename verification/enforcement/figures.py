@@ -1,0 +1,59 @@
+"""Curves of the ways of enforcement, and their distance from the reference against cost, as SVG text."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from enforcement.found import Found
+from enforcement.plan import REFERENCE
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator, NullFormatter
+
+from isomortar.harness.figures import page_style, svg_text
+from isomortar.results import style
+
+#: Colour by method, line by what is changed of it, mark of each.
+LOOKS = {
+    "mortar": (style.BLUE, "-", "o"),
+    "mortar, averaged": (style.BLUE, "--", "s"),
+    "mortar, swapped": (style.BLUE, ":", "D"),
+    "greville": (style.GREEN, "-", "^"),
+    "greville, averaged": (style.GREEN, "--", "v"),
+    "demko": ("#8C6BB1", "-", "P"),
+    "knots": (style.VERMILION, "-", "X"),
+    "kts": ("#B8860B", "-", "*"),
+}
+
+
+def curves(runs: Sequence[Found], reference: Found, name: str) -> str:
+    """The curve of a scene by every way over the load steps, and their distances from the reference against CPU seconds."""
+    with page_style():
+        figure = Figure(figsize=(10.6, 4.2), layout="constrained")
+        left, right = figure.subplots(1, 2)
+        setup = reference.planned.setup
+        left.plot(1 + np.arange(len(reference.curve)), reference.curve, color="#B9BEC5", linewidth=4.0, label=REFERENCE)
+        for run in runs:
+            colour, line, mark = LOOKS[run.planned.way]
+            left.plot(
+                1 + np.arange(len(run.curve)),
+                run.curve,
+                color=colour,
+                linestyle=line,
+                marker=mark,
+                markersize=3.4,
+                linewidth=1.1,
+                label=run.planned.way,
+            )
+            off = run.off(reference)
+            if np.isfinite(off):
+                right.loglog(run.number("cpu_seconds"), 100.0 * off, mark, color=colour, label=run.planned.way)
+        left.xaxis.set_major_locator(MaxNLocator(integer=True))
+        left.set(xlabel="load step", ylabel=f"{setup.quantity} {'xyz'[setup.component]}")
+        for axis in (right.xaxis, right.yaxis):
+            axis.set_major_formatter(lambda value, _: f"{value:g}")
+            axis.set_minor_formatter(NullFormatter())
+        right.set(xlabel="CPU seconds", ylabel="distance from the reference, %")
+        handles, labels = left.get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside upper left", ncols=5, handlelength=2.6, columnspacing=1.4)
+        return svg_text(figure, name)

@@ -1,0 +1,112 @@
+"""What became of the runs, and how far they are from their reference."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from enforcement.plan import MORTAR, REFERENCE, Planned
+from measures import roughness
+
+from isomortar.geometry.patch import FloatArray
+from isomortar.harness.measurement import words_of
+from isomortar.harness.runner import Result
+from isomortar.harness.statement import NotMeasuredError
+
+
+@dataclass(frozen=True)
+class Found:
+    """A run, the reference of its scene, and how it ended."""
+
+    planned: Planned
+    result: Result
+
+    @property
+    def ending(self) -> str:
+        """In the words of a process's ending."""
+        ending = self.result.measurement.ending
+        return "not converged" if ending == "measured" and self.number("missing") else ending
+
+    @property
+    def words(self) -> str:
+        """Why it ended so; empty where all load steps are there."""
+        said = words_of(self.result.measurement.numbers.get("words"))
+        return said.text if said else self.result.measurement.reason
+
+    def number(self, name: str) -> float:
+        """One of its numbers; NaN: not known."""
+        return float(np.asarray(self.result.measurement.numbers.get(name, np.nan), float))
+
+    @cached_property
+    def curve(self) -> FloatArray:
+        """The curve that is compared, shape (load steps that converged,)."""
+        setup = self.planned.setup
+        supports = [support.name for support in setup.load(self.planned.way).problem().supports]
+        values = np.array(self.result.measurement.numbers.get(setup.quantity, []), float).reshape(-1, len(supports), 3)
+        return values[:, supports.index(setup.support), setup.component]
+
+    @property
+    def peaks(self) -> FloatArray:
+        """Largest pressure, shape (load steps that converged,)."""
+        return np.array(self.result.measurement.numbers.get("pressure", []), float).reshape(-1, 2)[:, 1]
+
+    @property
+    def roughness(self) -> float:
+        """Second-difference energy of the curve, without its stages' kinks, over its square."""
+        stages = self.planned.setup.load(self.planned.way).problem().stages
+        number = np.repeat(np.arange(len(stages)), [stage.steps for stage in stages])[: len(self.curve)]
+        return float(roughness(np.arange(len(self.curve)), self.curve, number) / (self.curve @ self.curve)) if len(self.curve) else np.nan
+
+    def off(self, reference: Found) -> float:
+        """Distance of the curve from the reference's, over the norm of that; NaN where one is not whole."""
+        if self.ending != "measured" or reference.ending != "measured":
+            return np.nan
+        return float(np.linalg.norm(self.curve - reference.curve) / np.linalg.norm(reference.curve))
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """The runs by one way of enforcement, beside those by the others."""
+
+    runs: Sequence[Found]
+    method: str
+    left_out: list[str] = field(default_factory=list)
+
+    @property
+    def without(self) -> str:
+        """Runs that did not come to their end."""
+        return "; ".join(self.left_out)
+
+    def missing(self) -> dict[str, float]:
+        """Load steps that are missing, by scene."""
+        return {run.planned.setup.scene: run.number("missing") for run in self._of(self.method)}
+
+    def beside_mortar(self) -> dict[str, float]:
+        """Distance from the reference over that of the mortar method on the same meshes, by scene."""
+        found = {}
+        for run, mortar, reference in self._compared():
+            ratio = run.off(reference) / mortar.off(reference)
+            if np.isnan(ratio):
+                self.left_out.append(f"{run.planned.setup.scene}: {run.words or mortar.words or reference.words}")
+            else:
+                found[run.planned.setup.scene] = ratio
+        return found
+
+    def peak_beside_mortar(self) -> dict[str, float]:
+        """Largest pressure of the last load step that both have, over that of the mortar method, by scene."""
+        both = {run.planned.setup.scene: (run.peaks, mortar.peaks) for run, mortar, _ in self._compared()}
+        last = {scene: min(len(mine), len(theirs)) - 1 for scene, (mine, theirs) in both.items()}
+        return {scene: float(mine[last[scene]] / theirs[last[scene]]) for scene, (mine, theirs) in both.items() if last[scene] >= 0}
+
+    def _compared(self) -> list[tuple[Found, Found, Found]]:
+        scenes = {way: {run.planned.setup.scene: run for run in self._of(way)} for way in (MORTAR, REFERENCE)}
+        of = [run.planned.setup.scene for run in self._of(self.method)]
+        return [(run, scenes[MORTAR][scene], scenes[REFERENCE][scene]) for run, scene in zip(self._of(self.method), of, strict=True)]
+
+    def _of(self, way: str) -> list[Found]:
+        found = [run for run in self.runs if run.planned.way == way]
+        if lost := [run for run in found if run.ending not in ("measured", "not converged")]:
+            raise NotMeasuredError("; ".join(run.words or run.ending for run in lost))
+        return found

@@ -1,0 +1,110 @@
+"""What is compared: scenes computed with every way of enforcing contact, and once with the mortar method on finer meshes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from enforcement.run import computed
+
+from isomortar.harness.study import Run
+from isomortar.scene.scene import Scene
+
+#: Overrides of a contact by the way it is enforced; `swapped` exchanges slave and master.
+WAYS: dict[str, tuple[str, ...]] = {
+    "mortar": ("enforcement=mortar", "projection=closest"),
+    "mortar, averaged": ("enforcement=mortar", "projection=averaged"),
+    "mortar, swapped": ("enforcement=mortar", "projection=closest"),
+    "greville": ("enforcement=greville", "projection=closest"),
+    "greville, averaged": ("enforcement=greville", "projection=averaged"),
+    "demko": ("enforcement=demko", "projection=closest"),
+    "knots": ("enforcement=knots", "projection=closest"),
+    "kts": ("enforcement=kts", "projection=closest"),
+}
+MORTAR = next(iter(WAYS))
+#: Multipliers of quadrature points are augmented, to the paper's tolerance: they go on growing where they are too many.
+_AUGMENTED = ("solver.method=uzawa", "solver.augmentation_tolerance=0.01", "solver.max_augmentations=200")
+REFERENCE = "reference"
+
+
+@dataclass(frozen=True)
+class Setup:
+    """A bundled scene, coarser than it is.
+
+    Parameters
+    ----------
+    scene, title : str
+    changes, finer : tuple of str
+        Overrides of its runs, and further ones of the reference.
+    support : str
+        The one whose curve is compared.
+    quantity : {"force", "moment"}
+    component : int
+    """
+
+    scene: str
+    title: str
+    changes: tuple[str, ...]
+    finer: tuple[str, ...]
+    support: str
+    quantity: str
+    component: int
+
+    @property
+    def ways(self) -> tuple[str, ...]:
+        """Those that there are: a plane is no slave, and has one normal."""
+        contact = self._contact(Scene.load(self.scene))[1]
+        return tuple(way for way in WAYS if contact.master or "," not in way)
+
+    def load(self, way: str) -> Scene:
+        """The scene as it is enforced that way, or as the reference."""
+        scene = Scene.load(self.scene)
+        name, contact = self._contact(scene)
+        plain = WAYS[MORTAR if way == REFERENCE else way]
+        overrides = [f"contacts.{name}.{entry}" for entry in plain if contact.master or not entry.startswith("projection")]
+        if way.endswith("swapped"):
+            overrides += [f"contacts.{name}.slave={contact.master}", f"contacts.{name}.master={contact.slave}"]
+        overrides += _AUGMENTED if way == "kts" else ()
+        overrides += self.finer if way == REFERENCE else ()
+        return Scene.load(self.scene, [*self.changes, *overrides])
+
+    def _contact(self, scene: Scene):  # type: ignore[no-untyped-def]
+        return next(iter(scene.tables.contacts.items()))
+
+
+SETUPS = (
+    Setup(
+        "press", "A bowl, pressed on a plane",
+        ("bodies.block.mesh.elements=[6,6,3]",), ("bodies.block.mesh.elements=[12,12,6]",), "top", "force", 2,
+    ),
+    Setup(
+        "twist", "A bowl, pressed on a block and turned",
+        ("stages.press.steps=5", "stages.twist.steps=15", "stages.twist.motions.top.rotate=67.5"),
+        ("bodies.slave.mesh.elements=[6,6,3]", "bodies.master.mesh.elements=[10,10,3]"), "top", "moment", 2,
+    ),
+    Setup(
+        "iron", "A bowl, pressed on a base and dragged",
+        ("stages.press.steps=5", "stages.drag.steps=12", "stages.drag.motions.top.translate=[0.54,0,0]"),
+        ("bodies.slave.mesh.elements=[10,10,3]", "bodies.master.mesh.elements=[20,10,3]"), "top", "force", 0,
+    ),
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Planned:
+    """A run of the study."""
+
+    setup: Setup
+    way: str
+
+    @property
+    def run(self) -> Run:
+        """The scene under a name of its own, and what measures it."""
+        return Run(f"{self.setup.scene}-{self.way.replace(', ', '-')}", self.setup.load(self.way), computed)
+
+
+def planned(setups: tuple[Setup, ...]) -> Iterator[Planned]:
+    """All that is run, in this order; the reference of a scene first."""
+    for setup in setups:
+        for way in (REFERENCE, *setup.ways):
+            yield Planned(setup, way)

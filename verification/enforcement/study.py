@@ -1,0 +1,45 @@
+"""The study of enforcement: the paper's four ways of Section 3.2, by both projections, on its scenes."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from datetime import datetime
+from functools import partial
+from pathlib import Path
+
+from enforcement import page
+from enforcement.found import Evidence, Found
+from enforcement.plan import SETUPS, Planned, planned
+from enforcement.statements import STATEMENTS
+
+from isomortar.errors import InputError
+from isomortar.harness.runner import Result
+from isomortar.harness.statement import STATEMENT_STATES
+from isomortar.harness.study import Conclusion, Study
+
+
+def study(scenes: Sequence[str] = ()) -> Study:
+    """All ways on some of the scenes; none: all of them.
+
+    Raises
+    ------
+    InputError
+        There is no such scene in it.
+    """
+    names = [setup.scene for setup in SETUPS]
+    if unknown := set(scenes) - set(names):
+        raise InputError(f"names {', '.join(sorted(unknown))}; allowed: {', '.join(names)}", "scenes")
+    plan = tuple(planned(tuple(setup for setup in SETUPS if not scenes or setup.scene in scenes)))
+    return Study(tuple(entry.run for entry in plan), partial(_written, plan))
+
+
+def _written(plan: Sequence[Planned], folder: Path, results: Sequence[Result], started: datetime) -> Conclusion:
+    """Judge the statements and write ``report.html``."""
+    runs = [Found(entry, result) for entry, result in zip(plan, results, strict=True)]
+    judgements = [statement.judged([Evidence(runs, method) for method in statement.methods]) for statement in STATEMENTS]
+    states = Counter(judgement.state for judgement in judgements)
+    failed = sum(run.ending != "measured" for run in runs)
+    counted = ", ".join(f"{states[state]} {state}" for state in reversed(STATEMENT_STATES))
+    measured = all(verdict.state != "not measured" for judgement in judgements for verdict in judgement.verdicts)
+    return Conclusion(page.write(folder, runs, judgements, started), failed, measured, counted)
