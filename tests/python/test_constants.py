@@ -36,7 +36,7 @@ def numbers_of(path: Path) -> list[str]:
 
 
 def test_numbers_that_decide_have_one_place() -> None:
-    modules = [path for folder in ("model", "solve") for path in (PACKAGE / folder).glob("*.py") if path.stem not in JUDGES]
+    modules = [path for folder in ("model", "solve") for path in (PACKAGE / folder).rglob("*.py") if path.stem not in JUDGES]
     elsewhere = {path.name: names for path in modules if path != PLACE and (names := [n for n in numbers_of(path) if n not in CODES])}
     assert elsewhere == {}
     assert sorted(numbers_of(PLACE)) == sorted(NAMES)

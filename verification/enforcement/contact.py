@@ -133,10 +133,11 @@ def count_bounds(method: Enforcement, order: int) -> dict[str, Bound | Shown]:
     """Numbers by theory: as many constraints as control points, more, or fewer."""
     control_points = (ELEMENTS + order) ** 2
     constraints = {"kts": (ELEMENTS * (order + 1)) ** 2, "knots": (ELEMENTS + 1) ** 2}.get(method, control_points)
+    many, few = (float(np.maximum(0, more)) for more in (constraints - control_points, control_points - constraints))
     exact = "definition: constraints less their rank, and control points less their rank"
     return {
-        "too many": Bound(at_most=max(0, constraints - control_points), at_least=max(0, constraints - control_points), reason=exact),
-        "too few": Bound(at_most=max(0, control_points - constraints), at_least=max(0, control_points - constraints), reason=exact),
+        "too many": Bound(at_most=many, at_least=many, reason=exact),
+        "too few": Bound(at_most=few, at_least=few, reason=exact),
         "inf-sup": Shown("theory: positive; of the constraints that are not too many"),
     }
 

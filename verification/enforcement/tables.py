@@ -137,7 +137,7 @@ def demko(order: int, knots: str) -> dict[str, float]:
     spline = make_interp_spline(places, (-1.0) ** np.arange(len(places)), k=order, t=direction.knots)
     chebyshev = 0.5 - 0.5 * np.cos(np.pi * np.arange(order + 1) / order)
     found = {
-        "above": max(0.0, float(np.abs(spline(np.linspace(0.0, 1.0, 2001))).max() - 1.0)),
+        "above": float(np.maximum(0.0, np.abs(spline(np.linspace(0.0, 1.0, 2001))).max() - 1.0)),
         "spread": float(np.abs(np.abs(spline(places)) - 1.0).max()),
     }
     return found | ({"chebyshev": float(np.abs(places - chebyshev).max())} if knots == "one element" else {})

@@ -16,6 +16,17 @@ NEAR_ORIGIN = 16.0
 #: turn or more not which way; a tenth of a turn is far from that, and near enough for Newton's method.
 LARGEST_TURN = 36.0
 
+#: Angle between the normals of both sides, in radians, above which a C0 line of a master is a kink: joints of arcs are as smooth as their
+#: digits, and where normals turn by less, those that are averaged differ from the own ones by next to nothing.
+KINK_ANGLE = 1e-3
+#: Share of an element beside a line where its sides are asked for their normals: these turn by about as much on the way.
+BESIDE_A_LINE = 1e-6
+#: Largest distance of the extrema of Chebyshev splines from one (theory 10.6): far more digits than a place of a constraint needs.
+CHEBYSHEV_LEVEL = 1e-12
+#: Steps to get there: the exchange converges quadratically from Greville's abscissae, and has taken 5 to 8 on graded and repeated knots.
+CHEBYSHEV_STEPS = 50
+#: Share of the largest area below which a function has none at the constraints (theory 10.8): it is zero there, but for round-off.
+NO_SHARE = 1e-9
 #: How far masters go on beyond their edges for constraints at points, as a share of the outer elements (theory 10.7): points on an edge of
 #: the slave often lie on the master's, and the least tilt of a face would have them come and go from one iteration to the next.
 BRIM = 0.05

@@ -8,13 +8,9 @@ import numpy as np
 
 from isomortar import _bindings
 from isomortar.geometry.patch import Direction, FloatArray, Patch
+from isomortar.model import constants
 from isomortar.model.entities import Body
 from isomortar.model.numbering import patch_arrays
-
-#: Angle between the normals of both sides, in radians, above which a C0 line is a kink: joints of arcs are as smooth as their digits.
-KINK = 1e-3
-#: Share of an element beside a line where its sides are asked: they turn by about as much.
-BESIDE = 1e-6
 
 
 def has_kinks(body: Body, face: str) -> bool:
@@ -27,7 +23,9 @@ def has_kinks(body: Body, face: str) -> bool:
     if any(d.kinks and (d.family == "L" or d.order == 1) for d in directions):
         return True
     first = "uvw".index(face[0]) + 1
-    return any(_turn(body.patch, face, axis, name == body.closed) > KINK for axis, name in enumerate("uvwuv"[first : first + 2]))
+    return any(
+        _turn(body.patch, face, axis, name == body.closed) > constants.KINK_ANGLE for axis, name in enumerate("uvwuv"[first : first + 2])
+    )
 
 
 def _turn(patch: Patch, face: str, axis: int, closed: bool) -> float:
@@ -42,7 +40,7 @@ def _turn(patch: Patch, face: str, axis: int, closed: bool) -> float:
 def _sides(direction: Direction, closed: bool) -> list[tuple[float, float]]:
     """Places on either side of each C0 line across a direction, the seam of a closed one among them (theory 2.9)."""
     lines, first = direction.boundaries, direction.first_points
-    beside = BESIDE * np.diff(lines)
+    beside = constants.BESIDE_A_LINE * np.diff(lines)
     sides = [
         (float(lines[e + 1] - beside[e]), float(lines[e + 1] + beside[e + 1]))
         for e, (one, next_one) in enumerate(pairwise(first))

@@ -9,12 +9,10 @@ import numpy as np
 from scipy.interpolate import BSpline, PPoly, make_interp_spline
 
 from isomortar.geometry.patch import Direction, FloatArray
+from isomortar.model import constants
 from isomortar.model.enforcement.collocation import collocated
 from isomortar.model.enforcement.face import SlaveFace
 from isomortar.model.enforcement.side import SlaveSide
-
-#: Largest distance of the extrema's sizes from one, and steps to get there (it converges quadratically; 5 to 8 are usual).
-_LEVEL, _STEPS = 1e-12, 50
 
 
 def side(face: SlaveFace) -> SlaveSide:
@@ -29,10 +27,10 @@ def abscissae(direction: Direction) -> FloatArray:
     """
     places = direction.greville
     signs = (-1.0) ** np.arange(direction.count)
-    for _ in range(_STEPS):
+    for _ in range(constants.CHEBYSHEV_STEPS):
         spline = make_interp_spline(places, signs, k=direction.order, t=direction.knots)
         places = _extrema(spline, places, direction.boundaries)
-        if np.abs(np.abs(spline(places)) - 1.0).max() <= _LEVEL:
+        if np.abs(np.abs(spline(places)) - 1.0).max() <= constants.CHEBYSHEV_LEVEL:
             break
     return places
 

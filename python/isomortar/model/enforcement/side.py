@@ -12,10 +12,8 @@ from scipy.spatial import cKDTree
 from isomortar._bindings import FunctionArrays, SlaveArrays
 from isomortar.errors import InputError
 from isomortar.geometry.patch import FloatArray, IntArray
+from isomortar.model import constants
 from isomortar.model.enforcement.face import SlaveFace
-
-#: Share of the largest area below which a function has none.
-_NOTHING = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +45,7 @@ class SlaveSide:
             return values
         shares = sparse.csr_array(self.carriers.T.multiply(self.arrays.area))
         total = shares.sum(axis=1)
-        known = total > _NOTHING * total.max()
+        known = total > constants.NO_SHARE * total.max()
         means = (shares @ values.reshape(len(values), -1)) / np.where(known, total, 1.0)[:, None]
         means[~known] = values.reshape(len(values), -1)[self.nearest[~known]]
         return np.asarray(means.reshape(-1, *values.shape[1:]))
