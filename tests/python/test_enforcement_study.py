@@ -38,7 +38,7 @@ def made_up(steps: int = 20, peak: float = 1.0) -> list[Found]:
             "cpu_seconds": 1.0, "constraints": 4, "control_points": 4,
         }  # fmt: skip
         measurement = Measurement("measured", {name: stored(value) for name, value in numbers.items()})
-        runs.append(Found(entry, Result(entry.run.case, measurement, (), True)))  # type: ignore[arg-type]
+        runs.append(Found(Result(entry.run.case, measurement, (), True), entry))  # type: ignore[arg-type]
     return runs
 
 

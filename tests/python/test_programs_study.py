@@ -53,7 +53,7 @@ def made_up(**otherwise: Measurement) -> list[Found]:
     for entry in planned((TINY,)):
         cell = entry.run.case
         measurement = otherwise.get(entry.program) or measured(forces(entry, OFF[entry.program]))
-        runs.append(Found(entry, Result(cell, measurement, (), True)))  # type: ignore[arg-type]
+        runs.append(Found(Result(cell, measurement, (), True), entry))  # type: ignore[arg-type]
     return runs
 
 

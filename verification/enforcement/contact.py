@@ -9,6 +9,7 @@ from enforcement.tables import POINTWISE
 from extremes.discretisation import compliance, equilibrium_of, masses
 from patch_tests.contact import errors, problem
 from scipy import linalg
+from supports import symmetry
 from tangents.placed import placed
 
 from isomortar.harness import Bound, Shown, case
@@ -127,6 +128,21 @@ def matching(method: Enforcement, order: int) -> dict[str, float]:
     """Errors of pressures and positions; master and slave of one mesh."""
     found = errors(by_method(problem(order, order, 0.0, order + 1, 3), method))
     return {"pressure": found.control, "position": found.position}
+
+
+@case(
+    claim="With friction, a half or a quarter of a symmetric body is that of the whole body, whatever is constrained.",
+    tier=lambda method, part: "gate" if (method, part) == ("greville", "quarter") else "nightly",
+    grid={"method": ("knots", "greville", "demko"), "part": tuple(symmetry.PARTS)},
+    bounds={
+        "force": Bound(at_most=1e-9, reason="theory: the same equations by symmetry; Newton's method stops at 1e-12"),
+        "positions": Bound(at_most=1e-9, reason="theory: the same equations by symmetry; Newton's method stops at 1e-12"),
+        "mixed": Bound(at_least=1.0, reason="definition: points stick and slip at once in some load step"),
+    },
+)
+def part_of_whole(method: Enforcement, part: str) -> dict[str, float]:
+    """Errors as those of `supports/part_of_whole`, on a plane whose coordinates go along no edge."""
+    return symmetry.apart(part, "oblique", "monolithic", method)
 
 
 def count_bounds(method: Enforcement, order: int) -> dict[str, Bound | Shown]:

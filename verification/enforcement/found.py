@@ -11,46 +11,27 @@ from enforcement.plan import MORTAR, REFERENCE, Planned
 from measures import roughness
 
 from isomortar.geometry.patch import FloatArray
-from isomortar.harness.measurement import words_of
-from isomortar.harness.runner import Result
 from isomortar.harness.statement import NotMeasuredError
+from isomortar.harness.study import Computed
 
 
 @dataclass(frozen=True)
-class Found:
-    """A run, the reference of its scene, and how it ended."""
+class Found(Computed):
+    """A run, and its distance from others."""
 
     planned: Planned
-    result: Result
-
-    @property
-    def ending(self) -> str:
-        """In the words of a process's ending."""
-        ending = self.result.measurement.ending
-        return "not converged" if ending == "measured" and self.number("missing") else ending
-
-    @property
-    def words(self) -> str:
-        """Why it ended so; empty where all load steps are there."""
-        said = words_of(self.result.measurement.numbers.get("words"))
-        return said.text if said else self.result.measurement.reason
-
-    def number(self, name: str) -> float:
-        """One of its numbers; NaN: not known."""
-        return float(np.asarray(self.result.measurement.numbers.get(name, np.nan), float))
 
     @cached_property
     def curve(self) -> FloatArray:
         """The curve that is compared, shape (load steps that converged,)."""
         setup = self.planned.setup
         supports = [support.name for support in setup.load(self.planned.way).problem().supports]
-        values = np.array(self.result.measurement.numbers.get(setup.quantity, []), float).reshape(-1, len(supports), 3)
-        return values[:, supports.index(setup.support), setup.component]
+        return self.curves(setup.quantity, len(supports), 3)[:, supports.index(setup.support), setup.component]
 
     @property
     def peaks(self) -> FloatArray:
         """Largest pressure, shape (load steps that converged,)."""
-        return np.array(self.result.measurement.numbers.get("pressure", []), float).reshape(-1, 2)[:, 1]
+        return self.curves("pressure", 2)[:, 1]
 
     @property
     def roughness(self) -> float:

@@ -118,6 +118,23 @@ def _kept(face: np.ndarray, side: SlaveSide) -> np.ndarray:
     return np.arange(len(face))[np.arange(len(face)) % width < width - 1]
 
 
+@case(
+    claim="Control values that are drawn keep constants, and the resultant of a pressure.",
+    tier="gate",
+    grid={"method": POINTWISE, "kind": ("N1", "N2", "N3")},
+    bounds={"constant": _ROUND_OFF, "resultant": _ROUND_OFF},
+)
+def drawn(method: Enforcement, kind: str) -> dict[str, float]:
+    """Errors of a constant, and of the resultant of random pressures by forces of the drawn field at the constraints."""
+    side = side_of(plate("N", int(kind[1:])), "w0", method, int(kind[1:]) + 1)
+    area, values = side.arrays.area, np.random.default_rng(1).random(side.carriers.shape[0])
+    shown = side.carriers @ side.on_control_points(values)
+    return {
+        "constant": float(np.abs(side.on_control_points(np.ones(len(area))) - 1.0).max()),
+        "resultant": abs(float(area @ shown / (area @ values)) - 1.0),
+    }
+
+
 _LEVEL = Bound(
     at_most=1e-10, reason="theory: the Chebyshev spline is 1 at its extrema, and no larger anywhere; its exchange is stopped at 1e-12"
 )

@@ -12,9 +12,8 @@ from programs.plan import MESHES, Mesh, Planned, programs_of
 from programs.run import PROGRAMS
 
 from isomortar.geometry.patch import FloatArray
-from isomortar.harness.measurement import words_of
-from isomortar.harness.runner import Result
 from isomortar.harness.statement import NotMeasuredError
+from isomortar.harness.study import Computed
 from isomortar.model.entities import Problem
 
 #: What others are compared with.
@@ -24,25 +23,10 @@ STAGES = {"pressed": 2, "dragged": 0}
 
 
 @dataclass(frozen=True)
-class Found:
+class Found(Computed):
     """A run, and how it ended."""
 
     planned: Planned
-    result: Result
-
-    @property
-    def ending(self) -> str:
-        """In the words of a process's ending; what was skipped was not measured."""
-        ending = self.result.measurement.ending
-        if ending == "measured" and self.result.measurement.numbers["missing"]:
-            return "not converged"
-        return "not measured" if ending == "skipped" else ending
-
-    @property
-    def words(self) -> str:
-        """Why it ended so; empty where all load steps are there."""
-        said = words_of(self.result.measurement.numbers.get("words"))
-        return said.text if said else self.result.measurement.reason
 
     @property
     def name(self) -> str:
@@ -52,17 +36,12 @@ class Found:
     @cached_property
     def forces(self) -> FloatArray:
         """On all supports, shape (load steps that converged, supports, 3)."""
-        forces = np.array(self.result.measurement.numbers.get("force", []), float)
-        return forces.reshape(-1, len(self._problem.supports), 3)
+        return self.curves("force", len(self._problem.supports), 3)
 
     @property
     def missing(self) -> int:
         """Load steps that are not there."""
         return self._problem.total_steps - len(self.forces)
-
-    def cost(self, name: str) -> float:
-        """One of its numbers ``solves`` and ``cpu_seconds``; NaN: not known."""
-        return float(np.asarray(self.result.measurement.numbers.get(name, np.nan), float))
 
     def curve(self, component: int) -> FloatArray:
         """A component of the force on the support that moves, shape (load steps that converged,)."""

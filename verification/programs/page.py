@@ -39,8 +39,8 @@ def as_data(runs: Sequence[Found], judgements: Sequence[Judgement], started: dat
                 "ending": run.ending,
                 "words": run.words,
                 "missing": run.missing,
-                "solves": run.cost("solves"),
-                "cpu_seconds": run.cost("cpu_seconds"),
+                "solves": run.number("solves"),
+                "cpu_seconds": run.number("cpu_seconds"),
                 "force": run.forces.tolist(),
             }
             for run in runs
@@ -58,7 +58,7 @@ def page(runs: Sequence[Found], judgements: Sequence[Judgement], started: dateti
         total=len(runs),
         failed=[run for run in runs if run.ending != "measured"],
         unmeasured=[v for judgement in judgements for v in judgement.verdicts if v.state == "not measured"],
-        seconds=sum(run.cost("cpu_seconds") for run in runs if run.ending in ("measured", "not converged")),
+        seconds=sum(run.number("cpu_seconds") for run in runs if run.ending in ("measured", "not converged")),
         started=started,
     )
 
