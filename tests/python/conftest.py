@@ -28,7 +28,8 @@ def unhashed():
     from isomortar.harness import store  # within: as above
 
     def clear():
-        for hashed in (store.kernel_hash, store.package_hash, store.program_hash, store.identity, store._case_hash, store._sources):
+        of_program = (store.kernel_hash, store.package_hash, store.program_hash, store.identity)
+        for hashed in (*of_program, store._case_hash, store._sources, store._imports_of):
             hashed.cache_clear()
 
     clear()

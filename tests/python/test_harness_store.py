@@ -1,7 +1,9 @@
 """Measurements are kept by all that their numbers depend on, with the history of runs, and taken again when any of it changes."""
 
+import ast
 import importlib.metadata
 import json
+import re
 import sys
 from concurrent.futures import Future
 from dataclasses import replace
@@ -109,16 +111,24 @@ def test_all_ways_to_import_count(root, how):
 
 
 @pytest.mark.usefixtures("unhashed")
-def test_imports_are_looked_for_once_for_all_runs_of_a_case(root, monkeypatch):
-    """A study has a cell a scene file: looking anew for each took seconds a run."""
-    walked, real = [], store._with_imports
-    monkeypatch.setattr(store, "_with_imports", lambda path, cases, seen: walked.append(path) or real(path, cases, seen))
-    made = collect(root)[0]
+def test_a_file_is_read_for_its_imports_once_for_all_runs_and_cases(root, monkeypatch):
+    """A study has a cell a scene file, and many cases import the same: reading anew for each took most of a minute."""
+    read, parse = [], ast.parse
+    monkeypatch.setattr(store.ast, "parse", lambda text, *how: read.append(text) or parse(text, *how))
+    (root / "shared.py").write_text("import isomortar.geometry.patch\n")
+    (family,) = root.glob("*/")
+    for name in "ab":
+        (family / f"{name}.py").write_text(re.sub(r"def (\w+)", rf"def \1_{name}", GOOD) + "\nimport shared\n")
     scenes = [root / f"{name}.toml" for name in "abc"]
     for scene in scenes:
         scene.write_text(scene.stem)
-    assert len({cell_key(Cell(replace(made, files=(scene,)), {})) for scene in scenes}) == 3
-    assert walked.count(made.path) == 1
+    made = [case for case in collect(root) if case.path.stem in "ab"]
+    runs = [Cell(replace(case, files=(scene,)), {}) for case in made for scene in scenes]
+    read.clear()
+    assert len({cell_key(run) for run in runs}) == len(runs)
+    assert len({case.path for case in made}) == 2
+    assert "import isomortar.geometry.patch\n" in read
+    assert len(read) == len(set(read))
 
 
 def test_packages_beside_an_installed_program_are_not_read(root, monkeypatch):
@@ -130,7 +140,7 @@ def test_packages_beside_an_installed_program_are_not_read(root, monkeypatch):
     path = root / "family" / "case.py"
     path.parent.mkdir()
     path.write_text("import beside\nimport isomortar.ours\n")
-    assert store._with_imports(path, root, set()) == {path, packages / "isomortar/ours.py"}
+    assert store._sources(path) == sorted([path, packages / "isomortar/ours.py"])
 
 
 @pytest.mark.parametrize("sources", ["another", ""])

@@ -13,6 +13,7 @@ from isomortar.geometry.primitives import box
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
 from isomortar.model.entities import Body, Face, Material, Motion, Problem, Support
+from isomortar.solve.record import StepResult
 from isomortar.solve.simulation import Simulation
 
 METHODS = ("monolithic", "uzawa")
@@ -61,9 +62,13 @@ def _other(face: Face) -> Face:
     return Face(f"other-{face.body}", face.face)
 
 
-def measure(problem: Problem, pair: int, supports: slice) -> dict[str, FloatArray]:
+def load_steps(problem: Problem) -> list[StepResult]:
+    """The problem's load steps."""
+    return list(Simulation(problem).run())
+
+
+def measure(results: list[StepResult], pair: int, supports: slice) -> dict[str, FloatArray]:
     """Forces on some supports, pressures and traction norms of a pair; by load step."""
-    results = list(Simulation(problem).run())
     return {
         "forces": np.array([[reaction.force for reaction in result.reactions[supports]] for result in results]),
         "pressures": np.array([result.state.contacts[pair].pressure for result in results]),
@@ -87,7 +92,7 @@ def stiffness(method: str, young: float, does: str) -> dict[str, float]:
     problem = with_method(bowl("block"), method)
     motion = Motion() if does == "rests" else Motion((0.05, 0.0, -0.1))
     supports = slice(0, len(problem.supports))
-    return apart(measure(beside(problem, young, motion), 0, supports), measure(problem, 0, supports))
+    return apart(measure(load_steps(beside(problem, young, motion)), 0, supports), measure(load_steps(problem), 0, supports))
 
 
 @case(
@@ -99,10 +104,10 @@ def stiffness(method: str, young: float, does: str) -> dict[str, float]:
 def pairs(method: str, stress: float) -> dict[str, float]:
     """The softer pair hides behind the stiffer one unless each is measured by itself."""
     length, problem = 0.1, with_method(bowl("block"), method)
-    together, count = both(problem, length, stress), len(problem.supports)
+    together, count = load_steps(both(problem, length, stress)), len(problem.supports)
     first = measure(together, 0, slice(0, count))
     second = measure(together, 1, slice(count, 2 * count))
     units = {"forces": stress * length**2, "pressures": stress, "tractions": stress}
-    right = measure(problem, 0, slice(0, count))
+    right = measure(load_steps(problem), 0, slice(0, count))
     own, other = apart(first, right), apart({name: value / units[name] for name, value in second.items()}, right)
     return {name: max(own[name], other[name]) for name in own}

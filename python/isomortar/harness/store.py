@@ -143,16 +143,23 @@ def _case_hash(path: Path, files: tuple[Path, ...]) -> str:
 
 @functools.cache
 def _sources(path: Path) -> list[Path]:
-    """A case's file and all that it imports: looked for once, as a study has many runs of one case, each with a scene file of its own."""
-    return sorted(_with_imports(path, path.parent.parent, set()))
+    """A case's file and all that it imports, and so on: those in the folder of cases, and those of this package.
 
-
-def _with_imports(path: Path, cases: Path, seen: set[Path]) -> set[Path]:
-    """A file and the files that it imports, and so on: those in the folder of cases, and those of this package.
-
-    Other packages count by their versions; an installed program has them beside itself.
+    Looked for once, as a study has many runs of one case, each with a scene file of its own. Other packages count by their versions; an
+    installed program has them beside itself.
     """
-    seen.add(path)
+    found, left = {path}, [path]
+    while left:
+        new = _imports_of(left.pop(), path.parent.parent) - found
+        found |= new
+        left += new
+    return sorted(found)
+
+
+@functools.cache
+def _imports_of(path: Path, cases: Path) -> set[Path]:
+    """What a file imports itself. Read once, as many cases import the same."""
+    files: set[Path] = set()
     for node in ast.walk(ast.parse(path.read_text())):
         names: list[str] = []
         within = [cases, _PACKAGE.parent]
@@ -161,12 +168,9 @@ def _with_imports(path: Path, cases: Path, seen: set[Path]) -> set[Path]:
         elif isinstance(node, ast.ImportFrom):
             names = [".".join(filter(None, (node.module, name))) for name in ("", *(alias.name for alias in node.names))]
             within = [path.parents[node.level - 1]] if node.level else within
-        for base in (root.joinpath(*name.split(".")) for name in names for root in within):
-            for imported in (base.with_suffix(".py"), base / "__init__.py"):
-                ours = imported.is_relative_to(cases) or imported.is_relative_to(_PACKAGE)
-                if ours and imported.is_file() and imported not in seen and imported != _ENTRANCE:
-                    _with_imports(imported, cases, seen)
-    return seen
+        bases = [root.joinpath(*name.split(".")) for name in names for root in within]
+        files |= {file for base in bases for file in (base.with_suffix(".py"), base / "__init__.py") if file.is_file()}
+    return {file for file in files if (file.is_relative_to(cases) or file.is_relative_to(_PACKAGE)) and file != _ENTRANCE}
 
 
 def _content_hash(measurement: dict[str, Any]) -> str:
