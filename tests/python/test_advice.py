@@ -56,10 +56,25 @@ def warnings(text: str, overrides: list[str] | None = None) -> list[str]:
     return list(doubts(problem, Simulation(problem).state))
 
 
+AVERAGED = PAIR.replace('master = "lower.w1"', 'master = "lower.w1"\nprojection = "averaged"')
+
 # Scene, what is replaced, by what, and words of the one warning.
 DOUBTFUL = {
     "overlap": (PRESS, "point = [0, 0, 0]", "point = [0, 0, 0.3]", "overlap by 0.3 at the start"),
     "overlap of bodies": (PAIR, "-0.4, 0.0]", "-0.4, -0.2]", "overlap by 0.2 at the start"),
+    "overlap too deep": (AVERAGED, "-0.4, 0.0]", "-0.4, -0.4]", "144 of its slave quadrature points are inside their master"),
+    "overlap too deep in part": (
+        AVERAGED,
+        'kind = "box", lower = [-0.4, -0.4, 0.0], upper = [0.4, 0.4, 0.6]',
+        'kind = "bowl", half_width = 0.4, bottom = -0.4, rise = 0.2, top = 0.6',
+        "inside their master",
+    ),
+    "overlap too deep of thick bodies": (
+        AVERAGED.replace("-1, -1, -1]", "-1, -1, -30]"),
+        "0.0], upper = [0.4, 0.4, 0.6]",
+        "-0.35], upper = [0.4, 0.4, 30]",
+        "inside their master",
+    ),
     "wholly beside": (*UNUSUAL["slave beside its master"], "upper.w0 is wholly beside its master"),
     "cannot close": (PRESS, "point = [0, 0, 0]", "point = [0, 0, -0.5]", "0.5 apart at the start, and all supports together travel 0.1"),
     "bodies cannot close": (PAIR, "-0.4, 0.0], upper = [0.4, 0.4, 0.6]", "-0.4, 0.9], upper = [0.4, 0.4, 1.6]", "it cannot close"),
@@ -91,6 +106,26 @@ def test_what_is_doubtful_is_told_once(case: str) -> None:
     said = warnings(scene.replace(old, new))
     assert len(said) == 1
     assert words in said[0]
+
+
+@pytest.mark.parametrize("depth", [0.1, 0.28, 0.29, 0.4, 0.5])
+@pytest.mark.parametrize("text", [PAIR, AVERAGED], ids=["closest", "averaged"])
+def test_what_is_told_to_be_pushed_apart_has_feet(text: str, depth: float) -> None:
+    """Its master is below the whole of the slave: points that have no foot are too deep, whatever the projection allows."""
+    problem = Scene.from_toml(text.replace("-0.4, 0.0]", f"-0.4, {-depth}]")).problem()
+    simulation = Simulation(problem)
+    (said,) = doubts(problem, simulation.state)
+    feet = simulation.state.contacts[0].projected
+    assert ("pushes them apart" in said) == bool(feet.all())
+    assert ("inside their master" in said) == (not feet.any())
+
+
+def test_the_cure_of_an_overlap_too_deep_cures() -> None:
+    text = AVERAGED.replace("-0.4, 0.0]", "-0.4, -0.4]")
+    (said,) = warnings(text)
+    assert 'contacts.pair.projection = "closest"' in said
+    (said,) = warnings(text, ["contacts.pair.projection=closest"])
+    assert "pushes them apart" in said
 
 
 def test_averaged_normals_that_nobody_asked_for_are_told() -> None:

@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
 
+from isomortar import _bindings
 from isomortar.errors import FoldedElementError
-from isomortar.geometry.patch import MAX_ORDER
+from isomortar.geometry.patch import MAX_ORDER, FloatArray, IntArray
 from isomortar.model import constants
 from isomortar.model.contrasts import element_lengths
 from isomortar.model.entities import Body, Contact, Face, Problem, RigidPlane, Support, unit
 from isomortar.model.memory import memory_needed, memory_of_machine
 from isomortar.model.numbering import Numbering, ends_apart
+from isomortar.model.pairs import Pair
 from isomortar.model.rational import QUADRATURE_TOLD, quadrature_error, too_few_points
 from isomortar.model.stance import Stance, stance
 from isomortar.model.supports import Supports
+from isomortar.solve.feet import gaps
 from isomortar.solve.record import State
 
 #: An overlap of less than this share of the thinner body may be round-off of the geometry; what is more is told.
@@ -58,8 +62,9 @@ def doubts(problem: Problem, state: State) -> Iterator[str]:
     travel = _travel(problem)
     if not any(support.moves for support in problem.supports) and not any(_overlaps(found) for found in stances):
         yield "no support moves in any stage, and nothing overlaps at the start: nothing will happen"
-    for contact, found, contact_state in zip(problem.contacts, stances, state.contacts, strict=True):
-        yield from _of_stance(contact, found, travel, beside=not np.any(contact_state.projected))
+    for contact, found, feet in zip(problem.contacts, stances, (contact.projected for contact in state.contacts), strict=True):
+        too_deep = _too_deep(problem, contact, state.positions, feet) if found.depth > 0.0 else 0
+        yield from _of_stance(contact, found, travel, too_deep, beside=not np.any(feet))
         yield from _of_contact(problem, contact)
     for one, other in combinations(problem.contacts, 2):
         if (one.slave, one.master) == (other.master, other.slave):
@@ -159,18 +164,34 @@ def _overlaps(found: Stance) -> bool:
     return found.depth > TOLD_OVERLAP * found.thickness
 
 
-def _of_stance(contact: Contact, found: Stance, travel: float, beside: bool) -> Iterator[str]:
+def _too_deep(problem: Problem, contact: Contact, positions: FloatArray, feet: IntArray) -> int:
+    """How many slave quadrature points are inside their master, as closest points tell, and have no foot along its averaged normals."""
+    if feet.all() or not contact.averaged:
+        return 0
+    pair = Pair(replace(contact, projection="closest"), problem, Numbering(problem))
+    closest = _bindings.project_points(pair.slave, pair.master, positions, np.zeros((len(feet), 2)), np.zeros_like(feet))
+    return int(np.count_nonzero((gaps(pair, positions, closest) > 0.0) & (feet == 0)))
+
+
+def _of_stance(contact: Contact, found: Stance, travel: float, too_deep: int, beside: bool) -> Iterator[str]:
     """How the faces of a contact stand to each other; no prescribed point goes farther than `travel`."""
     ratio = np.sqrt(found.slave_area / found.master_area)
-    if _overlaps(found):
+    if too_deep and (_overlaps(found) or beside):
         yield (
-            f"contact {contact.name!r}: the bodies overlap by {found.depth:.3g} at the start (the thinner is {found.thickness:.3g} thick); "
-            "the first load step pushes them apart. If no shrink fit is meant, move one of them"
+            f"contact {contact.name!r}: the bodies overlap by {found.depth:.3g} at the start (the thinner is {found.thickness:.3g} thick), "
+            f"and {too_deep} of its slave quadrature points are inside their master without a foot: along averaged normals feet are found "
+            "up to a tenth of the master's size deep. Nothing pushes those points out. Move one of the bodies; if a shrink fit is meant, "
+            f'take contacts.{contact.name}.projection = "closest"'
         )
     elif beside:
         yield (
             f"contact {contact.name!r}: the slave face {contact.slave.body}.{contact.slave.face} is wholly beside its master at the "
             "start; it meets only what motions bring before it. Check places and faces"
+        )
+    elif _overlaps(found):
+        yield (
+            f"contact {contact.name!r}: the bodies overlap by {found.depth:.3g} at the start (the thinner is {found.thickness:.3g} thick); "
+            "the first load step pushes them apart. If no shrink fit is meant, move one of them"
         )
     elif found.gap > 2.0 * travel > 0.0:
         yield (

@@ -68,7 +68,7 @@ class Feet:
             q = int(bad[0])
             raise LostProjectionError(
                 f"contact {self._pair.contact.name!r}: slave quadrature point {q} at {self._place(positions, q)}, with a gap of "
-                f"{self._gap(positions, projections, q):.3g}, is where contact acts, but {_DOUBTS[int(doubt[q])]}", q
+                f"{gaps(self._pair, positions, projections)[q]:.3g}, is where contact acts, but {_DOUBTS[int(doubt[q])]}", q
             )  # fmt: skip
 
     def named(self, error: LostProjectionError, positions: FloatArray) -> LostProjectionError:
@@ -76,22 +76,27 @@ class Feet:
         where = f", at {self._place(positions, error.place)}" if np.isfinite(positions).all() else ""
         return LostProjectionError(f"contact {self._pair.contact.name!r}: {error}{where}", error.place)
 
-    def _point(self, positions: FloatArray, q: int) -> FloatArray:
-        slave = self._pair.slave
-        point: FloatArray = slave.shape.values[q] @ positions[slave.point[slave.shape.nodes[q // slave.per_element]]]
-        return point
-
     def _place(self, positions: FloatArray, q: int) -> str:
-        point = self._point(positions, q)
+        point = _points(self._pair, positions)[q]
         point[np.abs(point) <= 1e-12 * np.abs(positions).max()] = 0.0  # round-off is no place
         return "({:.4g}, {:.4g}, {:.4g})".format(*(point + self._origin))
 
-    def _gap(self, positions: FloatArray, projections: Projections, q: int) -> float:
-        """The gap of one quadrature point, negative where it is open: the kernel gives averages, here of this point alone."""
-        slave = SlaveArrays.of_points(np.array([len(positions)], np.int32))
-        one = slice(q, q + 1)
-        foot = Projections(*(np.ascontiguousarray(getattr(projections, name)[one]) for name in Projections.__dataclass_fields__))
-        return float(_bindings.control_quantities(slave, self._pair.master, np.vstack([positions, self._point(positions, q)]), foot).gap[0])
+
+def gaps(pair: Pair, positions: FloatArray, projections: Projections) -> FloatArray:
+    """Gap of each slave quadrature point, shape (points,): negative where it is open, 0 without a foot.
+
+    The kernel gives averages: here each point is the only one of a control point of its own.
+    """
+    points = _points(pair, positions)
+    slave = SlaveArrays.of_points(np.arange(len(positions), len(positions) + len(points), dtype=np.int32))
+    return _bindings.control_quantities(slave, pair.master, np.vstack([positions, points]), projections).gap
+
+
+def _points(pair: Pair, positions: FloatArray) -> FloatArray:
+    """Positions of the slave quadrature points, shape (points, 3)."""
+    nodes = np.repeat(pair.slave.shape.nodes, pair.slave.per_element, axis=0)
+    points: FloatArray = np.einsum("qa,qai->qi", pair.slave.shape.values, positions[pair.slave.point[nodes]])
+    return points
 
 
 def beside_poles(pair: Pair, projections: Projections) -> np.ndarray:
