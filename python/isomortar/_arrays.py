@@ -304,9 +304,9 @@ class Control:
 class Law:
     """Augmented penalty law: penalties (normal, tangential), law of friction, current multipliers, the paper's slip sum or the local one.
 
-    What supports hold: control points with `bears` 0 bear nothing, and `free`, shape (n, 2, 2), projects the covariant tractions of the
+    What supports hold: constraints with `bears` 0 bear nothing, and `free`, shape (n, 2, 2), projects the covariant tractions of the
     others (component, traction) so that nothing is left along it.
-    Trials above (1 - `slip_margin`) of what friction bears slip; `held` control points (1) stick whatever their trial; `forgiving` takes
+    Trials above (1 - `slip_margin`) of what friction bears slip; `held` constraints (1) stick whatever their trial; `forgiving` takes
     the current traction for the radial part of the slip derivative (theory 4.14).
     """
 

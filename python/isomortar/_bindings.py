@@ -295,7 +295,7 @@ def project_points(slave: SlaveArrays, master: MasterArrays, positions: FloatArr
 
 
 def control_quantities(slave: SlaveArrays, master: MasterArrays, positions: FloatArray, projections: Projections) -> Control:
-    """Integrate the control quantities of every slave control point."""
+    """Integrate the control quantities of every constraint."""
     _check_bodies(positions, slave, master)
     _check_projections(projections, slave, master)
     weight, square, gap, slip, metric, point_metric, status = _kernel.control_quantities(

@@ -28,7 +28,7 @@ class Status(IntEnum):
 
 
 class PointState(IntEnum):
-    """State of a control point of a slave (isomortar_contact_friction_return_map)."""
+    """State of a constraint of a contact (isomortar_contact_friction_return_map)."""
 
     OPEN = 0
     STICK = 1

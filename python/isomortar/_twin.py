@@ -122,7 +122,7 @@ def contact_difference(
     -------
     ContactChange
     int
-        Points and control points whose branch (projection, master element, fixed coordinates, state) is not the same on both sides of
+        Points and constraints whose branch (projection, master element, fixed coordinates, state) is not the same on both sides of
         the difference.
 
     Raises

@@ -78,12 +78,12 @@ def test_held_body_is_not_said_to_move() -> None:
 
 def test_repeated_conditions_name_their_contact() -> None:
     said = explained([], [3, 5])
-    assert "contact 'base': the conditions of 2 slave control points, the first of them 3, repeat each other" in said
+    assert "contact 'base': the conditions of 2 constraints, the first of them 3, repeat each other" in said
 
 
 def test_conditions_whose_points_have_left_the_master_say_so() -> None:
     said = explained([], [3, 5], found=0)
-    assert "contact 'base': the conditions of 2 slave control points, the first of them 3, rest on 0 of the" in said
+    assert "contact 'base': the conditions of 2 constraints, the first of them 3, rest on 0 of the" in said
 
 
 def test_no_direction_says_nothing() -> None:
@@ -113,7 +113,7 @@ stages = [{ name = "press", steps = 1, motions.top.translate = [-0.05, 0, -0.05]
 def test_conditions_of_two_contacts_on_the_same_control_points(overrides: list[str], both: tuple[str, str]) -> None:
     said = error(CORNER, *overrides)
     assert all(f"contact '{name}'" in said for name in both), said
-    assert "slave control points are slave control points of contact" in said
+    assert "constrain control points that contact" in said
 
 
 @pytest.mark.parametrize("friction", [0.2, 2.0])
@@ -127,7 +127,7 @@ def test_a_corner_whose_support_pushes_its_edge_into_the_wall_says_so(elements: 
     except ConvergenceError as stopped:
         heard.reasons.append(str(stopped))
     assert any("behind the plane, by 0.05 at the end of stage 'press', and those cannot give way" in told for told in heard.said)
-    assert not any("slave control points of contact" in reason for reason in heard.reasons), heard.reasons
+    assert not any("constrain control points that contact" in reason for reason in heard.reasons), heard.reasons
 
 
 STICKING = CORNER.replace("[-0.05, 0, -0.05]", "MOTION").replace("max_cuts = 1", "max_cuts = 4")

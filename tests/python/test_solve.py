@@ -189,7 +189,7 @@ def test_unconverged_step_is_cut_and_then_named() -> None:
 
 @pytest.mark.parametrize("method", ["monolithic", "uzawa"])
 def test_a_loop_that_ends_too_early_says_which_states_change(method: str) -> None:
-    with pytest.raises(ConvergenceError, match="after 2 iterations; slave control points 5, 6, 9, 10 change their states"):
+    with pytest.raises(ConvergenceError, match="after 2 iterations; constraints 5, 6, 9, 10 change their states"):
         run(small_iron(method=method, max_iterations=2, max_cuts=0))
 
 

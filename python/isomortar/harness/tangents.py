@@ -30,14 +30,14 @@ HARDLY = 1e-3
 PARTS = {
     "solid": "internal forces",
     "normal, geometric": "contact forces, pressures held, tractions left out",
-    "normal, gap": "<R g> of active control points",
+    "normal, gap": "<R g> of active constraints",
     "normal, pressure": "control pressures",
     "tangential, geometric": "contact forces, tractions held, pressures left out",
-    "tangential, projection": "<R xi> of active control points",
-    "tangential, slip increment": "<R (xi - xi_n)> of active control points",
-    "tangential, metric": "<R R a_ab> of active control points",
-    "stick": "control tractions of sticking control points",
-    "slip": "control tractions of slipping control points",
+    "tangential, projection": "<R xi> of active constraints",
+    "tangential, slip increment": "<R (xi - xi_n)> of active constraints",
+    "tangential, metric": "<R R a_ab> of active constraints",
+    "stick": "tractions of sticking constraints",
+    "slip": "tractions of slipping constraints",
     "multipliers": "control pressures and tractions, and forces, by the multipliers before",
     "whole": "all forces, multipliers condensed",
     "symmetry": "solid and normal parts, relative to their norm",
@@ -64,8 +64,8 @@ class PartError:
 class TangentReport:
     """Errors of the tangent by part at `states` visited states of a load step.
 
-    `active`, `stick`, `slip`: control points by state, of each visited state. Parts that a scene does not have are left out.
-    `idle`: contacts with no active control point at any of the states, whose tangent was not measured.
+    `active`, `stick`, `slip`: constraints by state, of each visited state. Parts that a scene does not have are left out.
+    `idle`: contacts with no active constraint at any of the states, whose tangent was not measured.
     """
 
     scene: str
@@ -83,7 +83,7 @@ class TangentReport:
 
     def __rich__(self) -> Table:
         counts = ", ".join(f"{a} ({t} stick, {s} slip)" for a, t, s in zip(self.active, self.stick, self.slip, strict=True))
-        table = Table(title=f"Tangent of {self.scene}, load step {self.step}", caption=f"Active control points of the states: {counts}")
+        table = Table(title=f"Tangent of {self.scene}, load step {self.step}", caption=f"Active constraints of the states: {counts}")
         for heading in ("part", "derivative of", "products", "error", "bound", ""):
             table.add_column(heading, justify="left" if heading in ("part", "derivative of", "") else "right")
         for row in self.rows:
@@ -167,7 +167,7 @@ def _slips(state: IntArray) -> np.ndarray:
 def _part_error(part: str, samples: list[Sample]) -> PartError | None:
     """The largest relative error of a part; None where the scene has nothing of it.
 
-    A product of a control point that hardly reaches the part has fewer digits: it is measured by `HARDLY` of the largest product.
+    A product of a constraint that hardly reaches the part has fewer digits: it is measured by `HARDLY` of the largest product.
     """
     mine = [(ours, twin) for name, ours, twin in samples if name == part and (np.any(ours) or np.any(twin))]
     if not mine:
@@ -214,7 +214,7 @@ class PairState:
 
 
 class PairTangent(PairState):
-    """The tangent of one contact pair at a visited state where some control point is active, in double precision, in parts."""
+    """The tangent of one contact pair at a visited state where some constraint is active, in double precision, in parts."""
 
     def __init__(self, pair: PairMechanics, positions: FloatArray, visit: PairVisit) -> None:
         super().__init__(pair, positions, visit)
@@ -251,7 +251,7 @@ class PairTangent(PairState):
         return samples, block_product(self.pattern, self.condensed, along), twin.forces
 
     def _near_lines(self) -> np.ndarray:
-        """Whether a foot within the reach of a slave control point is on a C0 line, shape (slave control points,)."""
+        """Whether a foot within the reach of a constraint is on a C0 line, shape (constraints,)."""
         slave = self.pair.pair.slave
         elements = np.any(self.kinematics.projections.fixed.reshape(slave.elements, -1), axis=1)
         near = np.zeros(slave.test.count, dtype=bool)
@@ -286,7 +286,7 @@ class PairTangent(PairState):
 
 
 def row_product(pattern: Pattern, rows: FloatArray, along: FloatArray) -> FloatArray:
-    """Products of constraint rows, shape (blocks, kinds, 3), with a field, shape (slave control points, kinds)."""
+    """Products of constraint rows, shape (blocks, kinds, 3), with a field, shape (constraints, kinds)."""
     products = np.zeros((len(pattern.start) - 1, rows.shape[1]))
     owner = np.repeat(np.arange(len(products)), np.diff(pattern.start))
     np.add.at(products, owner, np.einsum("bkc,bc->bk", rows, along[pattern.column]))

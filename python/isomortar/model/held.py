@@ -1,6 +1,6 @@
-"""What supports hold of a contact's slave control points: multipliers that could do nothing there, and what is left of the others.
+"""What supports hold of a contact's constraints: multipliers that could do nothing there, and what is left of the others.
 
-On a rigid plane there are as many multipliers as components of the slave control points. For each component that is prescribed one is
+On a rigid plane there are as many multipliers as components of what its constraints stand for. For each component that is prescribed one is
 redundant: the support takes its force. It is the pressure where the normal is held, else the traction along what is held. A support that
 has moved along the plane is another matter: there slip is prescribed, and the traction is that of sliding.
 
@@ -23,12 +23,12 @@ from isomortar.model.supports import BoolArray, Supports
 
 @dataclass(frozen=True)
 class Held:
-    """What supports hold of the slave control points of a pair in one load increment.
+    """What supports hold of the constraints of a pair in one load increment.
 
     Attributes
     ----------
     bears : ndarray of int32, shape (test functions,)
-        0 where supports hold the normal, which leaves nothing to the pressure as long as the neighbours keep the control point out of
+        0 where supports hold the normal, which leaves nothing to the pressure as long as the neighbours keep the slave out of
         the master; else 1.
     free : ndarray, shape (test functions, 2, 2)
         Symmetric projections of covariant tractions that leave nothing along what is held.

@@ -82,9 +82,9 @@ CONTACT = {
     "force_master": _real("force", "resultant of the contact forces that the master side exerts", (3,)),
     "moment_slave": _real("force*length", "moment of the contact forces that the slave side exerts, about the origin", (3,)),
     "moment_master": _real("force*length", "moment of the contact forces that the master side exerts, about the origin", (3,)),
-    "active": _count("active slave control points"),
-    "slip": _count("slipping slave control points"),
-    "pressure_field": _real("force/area", "smallest and largest contact pressure p = sum R^I p^I at the contact quadrature points", (2,)),
+    "active": _count("active constraints"),
+    "slip": _count("slipping constraints"),
+    "pressure_field": _real("force/area", "smallest and largest contact pressure p = sum R^J p^J at the contact quadrature points", (2,)),
     "excluded": _count("contact quadrature points without a projection"),
     "friction_work": _later("force*length", "work that friction took up within the load step"),
     "spurious_work": _later("force*length", "work that pressures along averaged normals took up within the load step; else zero"),
@@ -92,17 +92,17 @@ CONTACT = {
 
 #: Restart state of a contact pair, named as in `ContactState`.
 CONTACT_STATE = {
-    "pressure": _real("force/area", "control pressures p^I of the slave control points"),
-    "traction": _real("force/area*length/parameter", "covariant control tractions tau_alpha^I of the slave control points"),
+    "pressure": _real("force/area", "pressures p^J of the constraints: slave control points (mortar), or points of the slave"),
+    "traction": _real("force/area*length/parameter", "covariant tractions tau_alpha^J of the constraints"),
     "projection": _real("parameter", "master coordinates of the slave quadrature points (on a rigid plane: lengths)"),
     "projected": _flag("1 where the slave quadrature point has a projection on the master, else 0"),
 }
 
-#: Measured values at the slave control points, named as in `ContactResult`; kept with the states.
+#: Measured values of the constraints, named as in `ContactResult`; kept with the states.
 CONTACT_VALUES = {
-    "traction_norm": _real("force/area", "metric norm of the control tractions"),
-    "status": _flag("slave control points: 0 open, 1 stick, 2 slip"),
-    "gap": _real("length", "control gap g^I, positive is penetration"),
+    "traction_norm": _real("force/area", "metric norm of the tractions"),
+    "status": _flag("constraints: 0 open, 1 stick, 2 slip"),
+    "gap": _real("length", "gap g^J of the constraints, positive is penetration"),
 }
 
 STATE_STEP = _count("number of the load step whose state this row is")
@@ -141,7 +141,7 @@ _ITERATIONS = Quantity(
         ]
     ),
     "1",
-    "Newton iterations with the relative residual before the solve, control points by state, number of notes",
+    "Newton iterations with the relative residual before the solve, constraints by state, number of notes",
 )
 
 _NOTES = Quantity(TEXT, "text", "what acted in a Newton iteration, in the order of the iterations")

@@ -27,10 +27,10 @@ Value = TypeVar("Value")
 
 @dataclass(frozen=True)
 class ContactHistory:
-    """The control values of a contact pair over the kept states.
+    """The values of a contact pair's constraints over the kept states.
 
     `steps`: shape (m,); `pressure`, `traction_norm`, `status`, `gap`: shape (m, n); `traction`: shape (m, n, 2);
-    n slave control points as in `ContactState` and `ContactResult`.
+    n constraints as in `ContactState` and `ContactResult`.
     """
 
     contact: Contact

@@ -40,10 +40,10 @@ class Border:
     pair: PairMechanics
     blocks: Blocks
     equation: IntArray
-    row_scale: FloatArray  # (slave control points, 3)
+    row_scale: FloatArray  # (constraints, 3)
     column_scale: FloatArray  # (3,)
     target: Response
-    loose: BoolArray  # (slave control points, 3)
+    loose: BoolArray  # (constraints, 3)
 
     def sources(self, unknowns: IntArray) -> tuple[list[Source], list[FloatArray]]:
         """Geometric tangent, constraint columns, condition rows, and the multipliers' own block."""
@@ -63,19 +63,19 @@ class Border:
         return sources, [self.blocks.geometric, columns, conditions, np.ascontiguousarray(own)]
 
     def _own_block(self) -> FloatArray:
-        """Derivative of multiplier - target by the multipliers, shape (slave control points, 3, 3) (theory 6.3)."""
+        """Derivative of multiplier - target by the multipliers, shape (constraints, 3, 3) (theory 6.3)."""
         active = self.target.state > 0
         own = np.zeros((len(active), 3, 3))
         own[:, [0, 1, 2], [0, 1, 2]] = 1.0
         own[active, 0, 0] = 0.0
-        slope = self.target.traction_slope[active]  # (control points, pressure | trial | metric, component)
+        slope = self.target.traction_slope[active]  # (constraints, pressure | trial | metric, component)
         own[active, 1:, 0] = -slope[:, 0]
         own[active, 1:, 1:] -= slope[:, 1:3].transpose(0, 2, 1)
         own[:, [0, 1, 2], [0, 1, 2]] += constants.RESISTANCE * (self.loose & active[:, None])
         return own
 
     def trial_change(self, correction: FloatArray) -> FloatArray:
-        """Change of the trial tractions with the positions, shape (slave control points, 2)."""
+        """Change of the trial tractions with the positions, shape (constraints, 2)."""
         padded = np.zeros((len(self.blocks.trial), 3, 3))
         padded[:, :2] = self.blocks.trial
         return block_product(self.blocks.patterns.wide, padded, correction)[:, :2]
@@ -190,7 +190,7 @@ def _add_product(pattern: Pattern, row_of: IntArray, block: FloatArray, vector: 
 
 
 def _multiplier_change(border: Border | None, target: Response, solution: FloatArray) -> FloatArray:
-    """Corrections of p, t_1, t_2 of one pair, shape (slave control points, 3)."""
+    """Corrections of p, t_1, t_2 of one pair, shape (constraints, 3)."""
     change = np.zeros((len(target.state), 3))
     if border is not None:
         kept = border.equation >= 0

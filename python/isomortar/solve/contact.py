@@ -56,7 +56,7 @@ def moment(arms: FloatArray, forces: FloatArray) -> FloatArray:
     return np.array([products[1, 2] - products[2, 1], products[2, 0] - products[0, 2], products[0, 1] - products[1, 0]])
 
 
-#: Control pressures, shape (n,), and control tractions, shape (n, 2), of a pair.
+#: Pressures, shape (n,), and tractions, shape (n, 2), of the constraints of a pair.
 Multipliers = tuple[FloatArray, FloatArray]
 
 
@@ -79,7 +79,7 @@ class PairMechanics:
     Attributes
     ----------
     shared : ndarray of bool, shape (test functions,)
-        Those that constrain slave control points of another pair as well.
+        Those that constrain control points of the slave of another pair as well.
     """
 
     def __init__(self, pair: Pair, settings: SolverSettings, ledger: Ledger, origin: FloatArray, others: Sequence[Pair]) -> None:
@@ -152,7 +152,7 @@ class PairMechanics:
         return Law(penalties, self.friction, pressure, traction, self.summed, self.held.bears, self.held.free, sticks)
 
     def bear(self, kinematics: Kinematics, depth: float) -> bool:
-        """Let control points that supports hold along the normal bear if deeper than `depth` (theory 4.11); whether there are any."""
+        """Let constraints that supports hold along the normal bear if deeper than `depth` (theory 4.11); whether there are any."""
         alone = (self.held.bears == 0) & (kinematics.control.weight > 0)
         sunk = alone & (kinematics.control.gap > depth * kinematics.control.weight)
         self.held.bears[sunk] = 1
@@ -213,7 +213,7 @@ class PairMechanics:
         return Blocks(patterns, rows, changes, trial, geometric)
 
     def loose(self, projections: Projections) -> BoolArray:
-        """Multipliers whose conditions may repeat others where they are active, shape (slave control points, 3) (theory 6.4).
+        """Multipliers whose conditions may repeat others where they are active, shape (constraints, 3) (theory 6.4).
 
         Control points of two contacts have six conditions for three components, of which the pressures are not too many; where supports
         have moved them along a plane slips are given, and where these have them just touch one they leave nothing to a pressure; and of
@@ -235,7 +235,7 @@ class PairMechanics:
         return blocks.patterns.tangent, tangent
 
     def contravariant(self, control: Control, traction: FloatArray) -> FloatArray:
-        """Contravariant components of control tractions in the discrete metric, shape (..., slave control points, 2) (theory 4.2)."""
+        """Contravariant components of control tractions in the discrete metric, shape (..., constraints, 2) (theory 4.2)."""
         m11, m12, m22 = (control.metric / np.where(control.square > 0, control.square, 1.0)[:, None]).T
         determinant = m11 * m22 - m12**2
         scale = 1.0 / np.where(determinant > 0, determinant, 1.0)
@@ -252,11 +252,11 @@ class PairMechanics:
         return np.sqrt(median(squared)) if np.any(present) and self.friction.acts else np.ones(2)
 
     def traction_squares(self, control: Control, traction: FloatArray) -> FloatArray:
-        """Squared metric norm of control tractions, shape (..., slave control points) (theory 4.2)."""
+        """Squared metric norm of control tractions, shape (..., constraints) (theory 4.2)."""
         return np.maximum(np.einsum("...a,...a->...", self.contravariant(control, traction), traction), 0.0)
 
     def traction_norms(self, control: Control, traction: FloatArray) -> FloatArray:
-        """Metric norm of control tractions, shape (..., slave control points)."""
+        """Metric norm of control tractions, shape (..., constraints)."""
         return np.sqrt(self.traction_squares(control, traction))
 
     def apart(

@@ -40,12 +40,12 @@ class Balance:
 
     @property
     def active(self) -> int:
-        """Number of active slave control points."""
+        """Number of active constraints."""
         return sum(int(np.count_nonzero(r.state)) for r in self.responses)
 
     @property
     def slipping(self) -> int:
-        """Number of slipping slave control points."""
+        """Number of slipping constraints."""
         return sum(int(np.count_nonzero(r.state == PointState.SLIP)) for r in self.responses)
 
 
@@ -134,7 +134,7 @@ class Equilibrium:
         return Balance(positions, internal, total, tuple(kinematics), tuple(responses))
 
     def bear(self, balance: Balance) -> bool:
-        """Whether control points that supports hold along the normal are inside their master, and bear on it from now on (theory 4.11)."""
+        """Whether constraints that supports hold along the normal are inside their master, and bear on it from now on (theory 4.11)."""
         depth = constants.SUNK * self.numbering.size
         return any(pair.bear(k, depth) for pair, k in zip(self.pairs, balance.kinematics, strict=True))
 

@@ -48,7 +48,7 @@ class Feet:
         self._slips = pair.contact.friction_law.acts
 
     def check(self, positions: FloatArray, projections: Projections, response: Response) -> None:
-        """Refuse feet that do not follow their points, or cannot slip, under active control points.
+        """Refuse feet that do not follow their points, or cannot slip, under active constraints.
 
         Raises
         ------

@@ -83,7 +83,7 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
     def _evaluate(
         self, positions: FloatArray, multipliers: Sequence[Multipliers], margin: float = 0.0, held: Sequence[np.ndarray] | None = None
     ) -> _BorderedIterate:
-        """An iterate; multipliers of control points that turn out inactive are set to zero (theory 6.2)."""
+        """An iterate; multipliers of constraints that turn out inactive are set to zero (theory 6.2)."""
         laws, targets = list[Law](), list[Response]()
 
         def respond(k: int, kinematics: Kinematics) -> Response:
@@ -150,7 +150,7 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
         return self._evaluate(iterate.balance.positions + share * correction.positions, multipliers)
 
     def _reversals(self, k: int, iterate: _BorderedIterate, correction: Correction) -> np.ndarray:
-        """Slipping control points whose predicted trial change opposes their traction: t^a Dt_a < 0 (theory 6.5)."""
+        """Slipping constraints whose predicted trial change opposes their traction: t^a Dt_a < 0 (theory 6.5)."""
         target, border = iterate.targets[k], self._borders[k]
         if border is None or not self._equilibrium.pairs[k].friction.acts:
             return np.zeros(len(target.state), dtype=bool)

@@ -41,7 +41,7 @@ class Iterate:
 
     @property
     def states(self) -> bytes:
-        """The states of all control points, to compare with."""
+        """The states of all constraints, to compare with."""
         return states(self.balance)
 
 
@@ -184,7 +184,7 @@ def observed_order(log: Sequence[IterationRecord], round_off: float) -> float:
     """Observed order of convergence of one Newton loop; NaN where it can not be told (theory 8.4).
 
     The order q solves r_(k+1) = C r_k^q over three successive residuals. Taken are the last three that fall, with unchanged numbers of
-    active and slipping control points and nothing else acting, and that are not at round-off: at order two the third would be
+    active and slipping constraints and nothing else acting, and that are not at round-off: at order two the third would be
     r_1^3 / r_0^2, and must then still be above `round_off`. (A slower convergence is above it as well, so that none is left out for it.)
     """
     for first, second, third in zip(log[-3::-1], log[-2:0:-1], log[:1:-1], strict=True):

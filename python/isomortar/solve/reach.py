@@ -28,7 +28,7 @@ class Reach:
     `update` keeps the patterns while everything needed is in them; else it rebuilds them, with what the same load increment
     needed before, so that Newton's iterations do not trade one pattern for another. The next increment begins with none: what an
     earlier one needed would change the order of elimination, and a run that is resumed would differ in its last bits.
-    A `condensed` tangent couples all that the rows of a control point reach; else it couples the control points of an element alone.
+    A `condensed` tangent couples all that the rows of a constraint reach; else it couples the control points of an element alone.
     """
 
     def __init__(self, pair: Pair, summed: bool, condensed: bool) -> None:
@@ -45,7 +45,7 @@ class Reach:
         self._fresh, self.patterns = True, None
 
     def update(self, projections: Projections, state: IntArray) -> ContactPatterns:
-        """The patterns for the given projections and states of the control points."""
+        """The patterns for the given projections and states of the constraints."""
         active = state > 0
         touched = self._touched_elements(projections, active)
         if self.patterns is not None and not np.any(active & ~self._active) and _is_part(touched, self._touched):
@@ -57,7 +57,7 @@ class Reach:
         return self.patterns
 
     def _touched_elements(self, projections: Projections, active: np.ndarray) -> np.ndarray:
-        """Pairs of a slave element with an active control point and a master element that it projects on, as one number."""
+        """Pairs of a slave element with an active constraint and a master element that it projects on, as one number."""
         pair = self._pair
         if pair.master_reach is None:
             return np.zeros(0, dtype=np.int64)

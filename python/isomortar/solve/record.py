@@ -17,9 +17,9 @@ class ContactState:
     Parameters
     ----------
     pressure : ndarray, shape (n,)
-        Control pressures p^I of the slave control points, force per area.
+        Pressures p^J of the n constraints: slave control points (mortar), or points of the slave; force per area.
     traction : ndarray, shape (n, 2)
-        Covariant control tractions tau_alpha^I.
+        Covariant tractions tau_alpha^J of the constraints.
     projection : ndarray, shape (q, 2)
         Master coordinates of each slave quadrature point at the end of the step.
     projected : ndarray of int32, shape (q,)
@@ -42,7 +42,7 @@ class State:
 
 @dataclass(frozen=True)
 class IterationRecord:
-    """One Newton iteration: number, relative residual before the solve, counts of control points by state, what acted."""
+    """One Newton iteration: number, relative residual before the solve, counts of constraints by state, what acted."""
 
     iteration: int
     residual: float
@@ -78,8 +78,8 @@ class ContactResult:
     """Measured quantities of one contact pair at the end of a load step.
 
     `force_slave`, `force_master`: resultants of the contact forces that each side exerts, `moment_*` about the origin, shape (3,).
-    `active`, `slip`: numbers of control points. `traction_norm`: metric norm of each control traction, shape (n,).
-    `status`: per slave control point 0 open, 1 stick, 2 slip, shape (n,). `gap`: control gap g^I, shape (n,);
+    `active`, `slip`: numbers of constraints. `traction_norm`: metric norm of the traction of each, shape (n,).
+    `status`: of each constraint 0 open, 1 stick, 2 slip, shape (n,). `gap`: g^J of each, shape (n,);
     positive is penetration. `pressure_field`: smallest and largest p at the contact quadrature points, shape (2,).
     `excluded`: number of quadrature points without a projection. `friction_work`, `spurious_work`: what friction, and pressures along
     averaged normals, took up within the load step (theory 3.31); by closest points these make none, and a file from before has NaN.

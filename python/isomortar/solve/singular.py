@@ -21,7 +21,7 @@ _PART = 0.1
 
 @dataclass(frozen=True)
 class PairConditions:
-    """A pair with the equations of its multipliers, shape (3 * slave control points,), -1: none; and its kinematics."""
+    """A pair with the equations of its multipliers, shape (3 * constraints,), -1: none; and its kinematics."""
 
     pair: PairMechanics
     equation: IntArray
@@ -65,19 +65,19 @@ def explain(
 
 
 def _of_pair(contact: PairConditions, null: FloatArray) -> FloatArray:
-    """Entries of a direction for the multipliers of a pair, largest by slave control point, shape (slave control points,)."""
+    """Entries of a direction for the multipliers of a pair, largest by constraint, shape (constraints,)."""
     values = np.zeros(len(contact.equation))
     values[contact.equation >= 0] = null[contact.equation[contact.equation >= 0]]
     return np.abs(values).reshape(-1, 3).max(axis=1)
 
 
 def _active(contact: PairConditions) -> NDArray[np.intp]:
-    """Slave control points that have conditions."""
+    """Constraints that have conditions."""
     return np.flatnonzero(contact.equation.reshape(-1, 3)[:, 0] >= 0)
 
 
 def _points_around(contact: PairConditions, among: NDArray[np.intp]) -> tuple[int, int]:
-    """How many quadrature points around some slave control points are on the master, and how many there are."""
+    """How many quadrature points around some constraints are on the master, and how many there are."""
     nodes = contact.pair.pair.slave.test.nodes
     found = contact.kinematics.projections.found.reshape(len(nodes), -1) > 0
     around = found[np.isin(nodes, among).any(axis=1)]
@@ -92,7 +92,7 @@ def _repeated(
     touched = np.asarray(held.reshape(-1, 3).any(axis=1))
     prescribed = int(np.count_nonzero(pair.some_carriers(touched)[among]))
     there, total = _points_around(contact, among)
-    where = f"contact {contact.pair.pair.contact.name!r}: the conditions of {len(among)} slave control points, the first of them {among[0]}"
+    where = f"contact {contact.pair.pair.contact.name!r}: the conditions of {len(among)} constraints, the first of them {among[0]}"
     others = {other.pair.pair.contact.name: _shared(contact, among, other) for other in contacts if other is not contact}
     twice = max(others, key=lambda name: others[name], default="")
     beside = (
@@ -103,13 +103,13 @@ def _repeated(
         reason = beside
     elif prescribed:
         reason = (
-            f"repeat what supports prescribe: {prescribed} of these control points are held by supports, and the others cannot make good "
-            "what is prescribed there. Keep supports off the edge of the contact face, hold fewer components, or do not move the edge into "
-            "the master"
+            f"repeat what supports prescribe: {prescribed} of them constrain control points that supports hold, and the others cannot make "
+            "good what is prescribed there. Keep supports off the edge of the contact face, hold fewer components, or do not move the edge "
+            "into the master"
         )
     elif others.get(twice):
         reason = (
-            f"repeat others: {others[twice]} of the slave control points are slave control points of contact {twice!r} as well, and "
+            f"repeat others: {others[twice]} of them constrain control points that contact {twice!r} constrains as well, and "
             "what sticks to one master can neither stick to another one nor press on it in the same direction. Take friction from one of "
             'the two contacts, remove one, keep their faces apart, or try solver.method = "uzawa"'
         )
@@ -121,7 +121,7 @@ def _repeated(
 
 
 def _shared(contact: PairConditions, among: NDArray[np.intp], other: PairConditions) -> int:
-    """How many of some slave control points of a contact are active slave control points of another one."""
+    """How many of some constraints of a contact are on control points that active constraints of another one are on as well."""
     one, two = contact.pair.pair, other.pair.pair
     theirs = np.isin(one.slave.point, two.slave.point[two.carriers[_active(other)].nonzero()[1]])
     return int(np.count_nonzero(one.carriers[among] @ theirs.astype(np.float64)))

@@ -1,4 +1,4 @@
-"""Where a Newton loop has been: states of control points and master elements of feet, and which of them go to and fro."""
+"""Where a Newton loop has been: states of constraints and master elements of feet, and which of them go to and fro."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ RECENT = 6
 
 
 def states(balance: Balance) -> bytes:
-    """The states of all slave control points, to compare with."""
+    """The states of all constraints, to compare with."""
     return b"".join(response.state.tobytes() for response in balance.responses)
 
 
@@ -33,7 +33,7 @@ class Trail:
     Attributes
     ----------
     states : list of bytes
-        Their states of control points.
+        Their states of constraints.
     """
 
     def __init__(self) -> None:
@@ -58,7 +58,7 @@ def toggling(seen: Sequence[bytes], visited: Sequence[IntArray], by_poles: np.nd
     points = np.flatnonzero(np.any(states != states[0], axis=0))
     if points.size:
         hint = ' (solver.slip_sum = "local" has no jump where a neighbour becomes active)' if summed else ""
-        return f"; slave control points {_first_few(points)} change their states from iteration to iteration{hint}"
+        return f"; constraints {_first_few(points)} change their states from iteration to iteration{hint}"
     elements = np.array(visited)
     crossing = np.flatnonzero(np.any(elements != elements[0], axis=(0, 2)))
     about = crossing[by_poles[crossing]]
