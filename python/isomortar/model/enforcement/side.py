@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -17,32 +18,49 @@ from isomortar.model.enforcement.face import SlaveFace
 
 
 @dataclass(frozen=True, eq=False)
-class SlaveSide:
+class SlaveSide(ABC):
     """The slave side of a contact.
 
     Attributes
     ----------
     arrays : SlaveArrays
-    places : ndarray, shape (constraints, 2)
-        Where on the face, by its coordinates, each constraint belongs.
     carriers : csr_array, shape (constraints, slave control points)
-        Whose motion it constrains there: its own control point's (mortar), or that of the functions at its point.
+        Whose motion each constraint constrains: its own control point's (mortar), or that of the functions at its point.
+    """
+
+    arrays: SlaveArrays
+    carriers: sparse.csr_array
+
+    @abstractmethod
+    def on_control_points(self, values: FloatArray) -> FloatArray:
+        """Control values of a field that is drawn, from the constraints' values, shape (n, ...)."""
+
+    @property
+    @abstractmethod
+    def nearest(self) -> IntArray:
+        """The constraint that is nearest to where each control point belongs, by the face's coordinates, shape (n,)."""
+
+
+@dataclass(frozen=True, eq=False)
+class PointSide(SlaveSide):
+    """A slave side with constraints at points.
+
+    Attributes
+    ----------
+    places : ndarray, shape (constraints, 2)
+        Where on the face, by its coordinates, each point is.
     control_places : ndarray, shape (slave control points, 2)
         Where control points belong.
     """
 
-    arrays: SlaveArrays
     places: FloatArray
-    carriers: sparse.csr_array
     control_places: FloatArray
 
     def on_control_points(self, values: FloatArray) -> FloatArray:
-        """Control values of a field that is drawn: means of the constraints' values (theory 10.8), shape (n, ...).
+        """Means of the constraints' values (theory 10.8), shape (n, ...).
 
         A constant stays what it is, and so does the resultant. A function that is zero at all constraints takes the nearest one's value.
         """
-        if self.carriers.shape[0] == self.carriers.shape[1] == self.carriers.nnz:
-            return values
         shares = sparse.csr_array(self.carriers.T.multiply(self.arrays.area))
         total = shares.sum(axis=1)
         known = total > constants.NO_SHARE * total.max()
@@ -56,7 +74,7 @@ class SlaveSide:
         return np.asarray(cKDTree(self.places).query(self.control_places)[1], dtype=np.int32)
 
 
-def pointwise(face: SlaveFace, coordinates: FloatArray, area: FloatArray) -> SlaveSide:
+def pointwise(face: SlaveFace, coordinates: FloatArray, area: FloatArray) -> PointSide:
     """Constraints at points of a face, each with an area (theory 10.2): a quadrature point, an element and a test function of its own.
 
     Raises
@@ -77,7 +95,7 @@ def pointwise(face: SlaveFace, coordinates: FloatArray, area: FloatArray) -> Sla
     shape = FunctionArrays(nodes, values, len(face.point))
     test = FunctionArrays(np.arange(count, dtype=np.int32)[:, None].copy(), np.ones((count, 1)), count)
     arrays = SlaveArrays(shape, test, np.ascontiguousarray(area), face.point, slopes, face.outward)
-    return SlaveSide(arrays, coordinates, functions_at(face, coordinates), face.control_places)
+    return PointSide(arrays, functions_at(face, coordinates), coordinates, face.control_places)
 
 
 def functions_at(face: SlaveFace, coordinates: FloatArray) -> sparse.csr_array:
