@@ -138,11 +138,20 @@ def _contact(name: str, table: ContactTable, bodies: dict[str, Body], summed: bo
     if master == slave:
         raise InputError(f"is the slave face {table.slave!r} itself; allowed: another face", f"{path}.master")
     first, second = bodies[slave.body].patch.face_directions(slave.face)
-    quadrature = table.quadrature or (contact_points(first), contact_points(second))
-    law = (table.friction, quadrature, table.reference_area, table.cohesion, table.traction_max)
-    if table.projection is None and isinstance(master, Face) and _wants_averaged(bodies[master.body], master.face) and not summed:
-        return Contact(name, slave, master, *law, "averaged", True, table.enforcement)
-    return Contact(name, slave, master, *law, table.projection or "closest", False, table.enforcement)
+    by_default = table.projection is None and isinstance(master, Face) and _wants_averaged(bodies[master.body], master.face) and not summed
+    return Contact(
+        name=name,
+        slave=slave,
+        master=master,
+        friction=table.friction,
+        quadrature=table.quadrature or (contact_points(first), contact_points(second)),
+        reference_area=table.reference_area,
+        cohesion=table.cohesion,
+        traction_max=table.traction_max,
+        projection="averaged" if by_default else table.projection or "closest",
+        by_default=by_default,
+        enforcement=table.enforcement,
+    )
 
 
 def _wants_averaged(body: Body, face: str) -> bool:
