@@ -8,8 +8,8 @@ module isomortar_nurbs_surface
   implicit none
   private
 
-  public :: element_bounds, face_of, homogeneous_net, shortest_way, step_across, surface_basis, surface_element_count, &
-    surface_element_of, surface_nodes, surface_point
+  public :: element_bounds, element_span, face_of, first_bound, homogeneous_net, shortest_way, step_across, surface_basis, &
+    surface_element_count, surface_element_of, surface_nodes, surface_point
 
   !> Column of each partial derivative (k, l) in a table of derivatives to order three.
   integer, parameter, public :: derivative_column(0:3, 0:3) = reshape( &
@@ -117,6 +117,35 @@ contains
       if (place(a) == self%direction(a)%elements .and. .not. self%pole(2, a)) high(a) = high(a) + beyond
     end do
   end subroutine element_bounds
+
+  !> Lower bounds and lengths of an element.
+  pure subroutine element_span(self, place, low, length)
+    type(surface_t), intent(in) :: self
+    integer, intent(in) :: place(2)
+    real(wp), intent(out) :: low(2), length(2)
+
+    call element_bounds(self, place, low, length)
+    length = length - low
+  end subroutine element_span
+
+  !> Share of a step up to the first bound of an element that it comes to, at most one, and the coordinate across that.
+  pure subroutine first_bound(xi, step, low, length, share, across)
+    real(wp), intent(in) :: xi(2), step(2), low(2), length(2)
+    real(wp), intent(out) :: share
+    integer, intent(out) :: across
+    real(wp) :: bound
+    integer :: a
+
+    share = 1.0_wp
+    across = 1
+    do a = 1, 2
+      bound = merge(low(a) + length(a), low(a), step(a) > 0.0_wp)
+      if (.not. abs(step(a)) > abs(bound - xi(a))) cycle
+      if (abs(bound - xi(a)) >= share * abs(step(a))) cycle
+      share = abs(bound - xi(a)) / abs(step(a))
+      across = a
+    end do
+  end subroutine first_bound
 
   !> A difference of coordinates, the shortest way round in closed directions (theory 3.20).
   pure function shortest_way(self, difference) result(way)

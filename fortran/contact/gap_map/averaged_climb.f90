@@ -1,10 +1,9 @@
 !> How far a foot has climbed along the averaged normal (theory 3.31): of pressures this makes spurious work.
 module isomortar_contact_gap_map_averaged_climb
   use isomortar_base_kinds, only: wp
-  use isomortar_contact_gap_map_averaged_foot, only: bounds_of, first_bound
   use isomortar_nurbs_direction, only: element_at
   use isomortar_nurbs_quadrature, only: gauss_legendre
-  use isomortar_nurbs_surface, only: shortest_way, step_across, surface_basis, surface_nodes, surface_t
+  use isomortar_nurbs_surface, only: element_span, first_bound, shortest_way, step_across, surface_basis, surface_nodes, surface_t
   implicit none
   private
 
@@ -17,20 +16,20 @@ contains
   pure real(wp) function climb_between(surface, positions, from, to) result(climb)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :), from(2), to(2)
-    real(wp) :: left(3), length(2), low(2), share, xi(2)
+    real(wp) :: left(2), length(2), low(2), share, xi(2)
     integer :: across, k, place(2), way(2)
     logical :: within
 
     climb = 0.0_wp
     xi = from
-    left = [shortest_way(surface, to - from), 0.0_wp]
+    left = shortest_way(surface, to - from)
     place = [element_at(surface%direction(1), xi(1)), element_at(surface%direction(2), xi(2))]
     do k = 1, sum(surface%direction%elements) + 2
-      call bounds_of(surface, place, low, length)
+      call element_span(surface, place, low, length)
       call first_bound(xi, left, low, length, share, across)
-      climb = climb + climb_inside(surface, positions, place, xi, share * left(1:2))
+      climb = climb + climb_inside(surface, positions, place, xi, share * left)
       if (.not. share < 1.0_wp) return
-      xi = xi + share * left(1:2)
+      xi = xi + share * left
       left = (1.0_wp - share) * left
       way = 0
       way(across) = merge(1, -1, left(across) > 0.0_wp)

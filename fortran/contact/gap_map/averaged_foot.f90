@@ -6,12 +6,12 @@ module isomortar_contact_gap_map_averaged_foot
   use isomortar_base_algebra, only: determinant, inverse
   use isomortar_base_kinds, only: wp
   use isomortar_nurbs_direction, only: element_at
-  use isomortar_nurbs_surface, only: element_bounds, step_across, surface_basis, surface_element_count, surface_element_of, &
-    surface_nodes, surface_t
+  use isomortar_nurbs_surface, only: element_span, first_bound, step_across, surface_basis, surface_element_count, &
+    surface_element_of, surface_nodes, surface_t
   implicit none
   private
 
-  public :: accept, bounds_of, find_foot, first_bound, follow, foot_equation, scope_of
+  public :: accept, find_foot, follow, foot_equation, scope_of
 
   !> Relative size of the last Newton step: its error is the square of that.
   real(wp), parameter :: last_step = epsilon(1.0_wp)**0.6_wp
@@ -140,8 +140,8 @@ contains
     do k = 1, most_steps
       call newton_step(surface, positions, x, foot, step, regular)
       if (.not. regular) return
-      call bounds_of(surface, foot%place, low, length)
-      call first_bound(foot%xi, step, low, length, share, across)
+      call element_span(surface, foot%place, low, length)
+      call first_bound(foot%xi, step(1:2), low, length, share, across)
       if (share < 1.0_wp .and. maxval(abs(step(1:2)) / length) > on_bound) then
         foot%xi = foot%xi + share * step(1:2)
         way = 0
@@ -156,35 +156,6 @@ contains
       if (foot%found) return
     end do
   end subroutine follow
-
-  !> Lower bounds and lengths of an element.
-  pure subroutine bounds_of(surface, place, low, length)
-    type(surface_t), intent(in) :: surface
-    integer, intent(in) :: place(2)
-    real(wp), intent(out) :: low(2), length(2)
-
-    call element_bounds(surface, place, low, length)
-    length = length - low
-  end subroutine bounds_of
-
-  !> Share of a step up to the first bound that it comes to, at most one, and the coordinate across that.
-  pure subroutine first_bound(xi, step, low, length, share, across)
-    real(wp), intent(in) :: xi(2), step(3), low(2), length(2)
-    real(wp), intent(out) :: share
-    integer, intent(out) :: across
-    real(wp) :: bound
-    integer :: a
-
-    share = 1.0_wp
-    across = 1
-    do a = 1, 2
-      bound = merge(low(a) + length(a), low(a), step(a) > 0.0_wp)
-      if (.not. abs(step(a)) > abs(bound - xi(a))) cycle
-      if (abs(bound - xi(a)) >= share * abs(step(a))) cycle
-      share = abs(bound - xi(a)) / abs(step(a))
-      across = a
-    end do
-  end subroutine first_bound
 
   !> The foot with the smallest gap among those of all elements that may hold one (theory 3.30).
   pure subroutine find_foot(surface, scope, positions, x, across, foot)
@@ -236,7 +207,7 @@ contains
     integer :: k
     logical :: regular
 
-    call bounds_of(surface, place, low, length)
+    call element_span(surface, place, low, length)
     foot%found = .false.
     foot%place = place
     foot%xi = low + 0.5_wp * length
