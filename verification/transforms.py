@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 
@@ -112,22 +113,48 @@ def relabelled(problem: Problem) -> Problem:
 def reversed_along(patch: Patch, axes: tuple[int, ...]) -> Patch:
     """The same body with some of its directions reversed."""
     grid = np.flip(_grid(patch), axes)
-    directions = [_reversed(d) if axis in axes else d for axis, d in enumerate(patch.directions)]
+    directions = [d.reversed() if axis in axes else d for axis, d in enumerate(patch.directions)]
     return _patch((directions[0], directions[1], directions[2]), grid)
 
 
-def permuted(patch: Patch) -> Patch:
-    """The same body, its directions v, w, u taken as u, v, w."""
-    u, v, w = patch.directions
-    return _patch((v, w, u), np.transpose(_grid(patch), (1, 2, 0, 3)))
+def permuted(patch: Patch, order: tuple[int, int, int] = (1, 2, 0)) -> Patch:
+    """The same body, its directions of these numbers (v, w, u) taken as u, v, w."""
+    first, second, third = (patch.directions[axis] for axis in order)
+    return _patch((first, second, third), np.transpose(_grid(patch), (*order, 3)))
+
+
+def orientations() -> tuple[tuple[tuple[int, int, int], tuple[int, ...]], ...]:
+    """The 24 ways to name the directions of a body that keep its volume positive: their order, and which are reversed."""
+    found: list[tuple[tuple[int, int, int], tuple[int, ...]]] = []
+    for order in ((0, 1, 2), (1, 2, 0), (2, 0, 1), (0, 2, 1), (1, 0, 2), (2, 1, 0)):
+        odd = order in ((0, 2, 1), (1, 0, 2), (2, 1, 0))  # which turn a right hand into a left one
+        found += [(order, axes) for n in range(4) if n % 2 == odd for axes in combinations(range(3), n)]
+    return tuple(found)
+
+
+def oriented(problem: Problem, name: str, order: tuple[int, int, int], axes: tuple[int, ...]) -> Problem:
+    """The problem with the directions of a body named in another order, some of them reversed."""
+    names = {}
+    for face in FACES:
+        axis = order.index("uvw".index(face[0]))
+        names[face] = "uvw"[axis] + (face[1] if axis not in axes else "10"[int(face[1])])
+
+    def renamed(place: Face) -> Face:
+        return _named(place, names) if place.body == name else place
+
+    body = problem.body(name)
+    first, second, third = (body.quadrature[axis] for axis in order)
+    new = replace(body, patch=reversed_along(permuted(body.patch, order), axes), quadrature=(first, second, third))
+    return replace(
+        problem,
+        bodies=tuple(new if old is body else old for old in problem.bodies),
+        supports=tuple(replace(support, place=renamed(support.place)) for support in problem.supports),
+        glue=tuple((renamed(one), renamed(other)) for one, other in problem.glue),
+    )
 
 
 def _named(face: Face, names: dict[str, str]) -> Face:
     return replace(face, face=names[face.face])
-
-
-def _reversed(direction: Direction) -> Direction:
-    return replace(direction, knots=direction.knots[0] + direction.knots[-1] - direction.knots[::-1])
 
 
 def _grid(patch: Patch) -> FloatArray:

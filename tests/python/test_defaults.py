@@ -39,7 +39,7 @@ ENTITIES = {
     "Motion": {"translate": (0.0, 0.0, 0.0), "rotate": 0.0},
     "Support": {"components": (0, 1, 2), "centre": (0.0, 0.0, 0.0), "axis": (0.0, 0.0, 1.0)},
     "SolverSettings": SOLVER,
-    "Problem": {"settings": SOLVER},
+    "Problem": {"settings": SOLVER, "glue": ()},
 }
 _MESH = {"family": ("N", "N", "N"), "order": None, "elements": None, "quadrature": None}
 _RECORD = {"states": "every", "curves": None}
@@ -65,7 +65,16 @@ TABLES = {
     "StageTable": {"motions": {}},
     "CurveTable": {"quantity": "force", "component": "norm"},
     "RecordTable": _RECORD,
-    "SceneTable": {"name": None, "title": "", "materials": {}, "contacts": {}, "supports": {}, "solver": SOLVER, "record": _RECORD},
+    "SceneTable": {
+        "name": None,
+        "title": "",
+        "materials": {},
+        "glue": [],
+        "contacts": {},
+        "supports": {},
+        "solver": SOLVER,
+        "record": _RECORD,
+    },
 }
 
 ORDERS = {"N": range(1, 8), "L": range(1, 5)}

@@ -24,6 +24,7 @@ from isomortar.solve.trail import toggling
 from results_samples import problem, step_result
 from test_advice import DOUBTFUL, PLATE, PRESS, Warned, _of_weights, material, rational, warnings
 from test_causes import said, scene
+from test_glue import WRONG as UNGLUED
 from test_scene_contacts import WRONG
 from test_scene_errors import CASES, GOOD
 from test_singular import BLOCK, CORNER, STICKING, Heard, error, explained
@@ -56,6 +57,12 @@ def bad_contacts(_: pytest.MonkeyPatch) -> Told:
     """Refused for what cannot be meant."""
     for name, (text, old, new, *_) in WRONG.items():
         yield name, refused(text.replace(old, new))
+
+
+def bad_joints(_: pytest.MonkeyPatch) -> Told:
+    """Refused for faces that cannot be glued."""
+    for name, (text, *_) in UNGLUED.items():
+        yield name, refused(text)
 
 
 def bad_words(_: pytest.MonkeyPatch) -> Told:
@@ -207,7 +214,7 @@ def _general(part: str) -> str:
     return "NUMBER" if part.isdigit() else names.get(part, part)
 
 
-KINDS = (bad_scenes, bad_contacts, bad_words, doubtful, along_the_way, given_up, of_results, in_results)
+KINDS = (bad_scenes, bad_contacts, bad_joints, bad_words, doubtful, along_the_way, given_up, of_results, in_results)
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.__name__)

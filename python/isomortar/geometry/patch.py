@@ -125,6 +125,10 @@ class Direction:
             return self.subdivided(self.order)
         return np.array([self.knots[i + 1 : i + self.order + 1].mean() for i in range(self.count)])
 
+    def reversed(self) -> Direction:
+        """The same direction, run through from its end."""
+        return Direction(self.family, self.order, self.knots[0] + self.knots[-1] - self.knots[::-1])
+
     def subdivided(self, parts: int) -> FloatArray:
         """Element boundaries of elements cut into equal parts each, shape (parts * elements + 1,)."""
         inside = self.boundaries[:-1, None] + np.diff(self.boundaries)[:, None] * (np.arange(parts) / parts)

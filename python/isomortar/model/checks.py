@@ -11,13 +11,14 @@ import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
 from isomortar.errors import FoldedElementError, InputError
-from isomortar.geometry.patch import FloatArray, IntArray
+from isomortar.geometry.patch import FloatArray
 from isomortar.geometry.refinement import surface_samples
 from isomortar.model.contact_checks import check_contacts
 from isomortar.model.entities import Body, Contact, Face, Problem, SolverSettings, Support
+from isomortar.model.glue import check_glue, named, pieces
 from isomortar.model.memory import memory_needed, memory_of_machine
 from isomortar.model.messages import input_error, located
-from isomortar.model.numbering import check_closed, same_points
+from isomortar.model.numbering import Numbering, check_closed
 from isomortar.model.rational import QUADRATURE_TOLD, quadrature_error, too_few_points
 
 #: Sizes of bodies, and forces and force densities (Young's modulus times the square of the size, and over the size) whose squares and
@@ -38,9 +39,9 @@ def check(problem: Problem) -> None:
     Raises
     ------
     InputError
-        Settings of the solver that are not allowed; units that no number holds; more memory than there is; a support that turns too
-        often in a load step; a body that nothing holds; supports that contradict each other; contacts that cannot be meant; too few
-        Gauss points for a body's weights.
+        Settings of the solver that are not allowed; units that no number holds; more memory than there is; glue of faces that do not
+        conform; a support that turns too often in a load step; a body that nothing holds; supports that contradict each other; contacts
+        that cannot be meant; too few Gauss points for a body's weights.
     """
     _check_settings(problem.settings)
     for body in problem.bodies:
@@ -48,12 +49,13 @@ def check(problem: Problem) -> None:
         check_closed(body)
         _check_weights(body)
     _check_memory(problem)
+    check_glue(problem)
     check_contacts(problem)
     _check_turns(problem)
     _check_held(problem)
+    numbering = Numbering(problem)
     for one, other in combinations(problem.supports, 2):
-        if one.place.body == other.place.body:
-            _check_agreement(problem.body(one.place.body), one, other)
+        _check_agreement(problem, numbering, one, other)
 
 
 @cache
@@ -128,25 +130,29 @@ def _check_turns(problem: Problem) -> None:
 
 
 def _check_held(problem: Problem) -> None:
-    """Every body needs a support, or must touch a held body from the start."""
-    held = {support.place.body for support in problem.supports}
+    """Every body needs a support, or must be glued to or touch a held body from the start."""
+    whole = {body.name: piece for piece in pieces(problem) for body in piece}
+    held = {body.name for support in problem.supports for body in whole[support.place.body]}
     touching = [c for c in problem.contacts if _touch(problem, c)]
     for _ in problem.bodies:
         for contact in touching:
             assert isinstance(contact.master, Face)  # a plane holds nobody
-            pair = {contact.slave.body, contact.master.body}
+            pair = {body.name for face in (contact.slave, contact.master) for body in whole[face.body]}
             if pair & held:
                 held |= pair
-    in_contact = {place.body for c in problem.contacts for place in (c.slave, c.master) if isinstance(place, Face)}
+    touched = [place.body for c in problem.contacts for place in (c.slave, c.master) if isinstance(place, Face)]
+    in_contact = {body.name for name in touched for body in whole[name]}
     for body in problem.bodies:
         if body.name not in held:
             raise InputError(
-                f"body {body.name!r} is free: it has no support and touches no held body at the start; add a support on one of its faces",
+                f"{named(whole[body.name], body.name)} is free: it has no support and touches no held body at the start; "
+                "add a support on one of its faces",
                 f"bodies.{body.name}",
             )
-        if body.name not in in_contact and _rigid_rank(problem, body) < 6:
+        if body.name not in in_contact and _rigid_rank(problem, whole[body.name]) < 6:
             raise InputError(
-                f"body {body.name!r} is free to move: its supports leave a rigid motion, and it is in no contact; support more components",
+                f"{named(whole[body.name], body.name)} is free to move: its supports leave a rigid motion, and it is in "
+                "no contact; support more components",
                 f"bodies.{body.name}",
             )
 
@@ -161,12 +167,14 @@ def _touch(problem: Problem, contact: Contact) -> bool:
     return bool(np.all(slave.min(axis=0) - margin <= master.max(axis=0)) and np.all(master.min(axis=0) - margin <= slave.max(axis=0)))
 
 
-def _rigid_rank(problem: Problem, body: Body) -> int:
-    """How many of the six rigid motions of a body its supports prevent."""
+def _rigid_rank(problem: Problem, piece: tuple[Body, ...]) -> int:
+    """How many of the six rigid motions of a body, with what is glued to it, its supports prevent."""
     rows = []
-    for support in (s for s in problem.supports if s.place.body == body.name):
-        points = body.patch.control_points[body.patch.face_points(support.place.face)]
-        arms = (points - body.patch.control_points.mean(axis=0)) / body.size
+    together = np.concatenate([body.patch.control_points for body in piece])
+    centre, size = together.mean(axis=0), np.ptp(together, axis=0).max()
+    for support in (s for s in problem.supports if s.place.body in {body.name for body in piece}):
+        patch = problem.body(support.place.body).patch
+        arms = (patch.control_points[patch.face_points(support.place.face)] - centre) / size
         for component in support.components:
             direction = np.zeros_like(arms)
             direction[:, component] = 1.0
@@ -174,22 +182,18 @@ def _rigid_rank(problem: Problem, body: Body) -> int:
     return int(np.linalg.matrix_rank(np.vstack(rows), tol=1e-9)) if rows else 0
 
 
-def _check_agreement(body: Body, one: Support, other: Support) -> None:
+def _check_agreement(problem: Problem, numbering: Numbering, one: Support, other: Support) -> None:
     """Two supports may share control points only where they prescribe the same."""
-    shared = np.intersect1d(_unknowns(body, one), _unknowns(body, other))
+    first, second = (numbering.face_points(problem.body(s.place.body), s.place.face) for s in (one, other))
+    shared = np.intersect1d(first, second)
     for component in sorted(set(one.components) & set(other.components)):
         if len(shared) and not _agree(one, other, component):
-            x, y, z = body.patch.control_points[shared[0]]
+            x, y, z = numbering.reference[shared[0]]
             raise InputError(
                 f"prescribes {'xyz'[component]} of {len(shared)} control points (the first at {x:g}, {y:g}, {z:g}) "
                 f"that support {one.name!r} moves differently; allowed: the same motion, or that component in only one of the two",
                 f"supports.{other.name}",
             )
-
-
-def _unknowns(body: Body, support: Support) -> IntArray:
-    """Numbers of the control points of a support, those that are the same by their first number."""
-    return same_points(body.patch, body.closed)[body.patch.face_points(support.place.face)]
 
 
 def _agree(one: Support, other: Support, component: int) -> bool:

@@ -234,7 +234,7 @@ class SolverSettings:
 class Problem:
     """A whole computation, ready for `isomortar.solve`: plain data, no unknowns, no state.
 
-    Scenes build it (`isomortar.scene`); it can be built by hand as well.
+    Scenes build it (`isomortar.scene`); it can be built by hand as well. `glue`: faces of two bodies each that share their control points.
     """
 
     name: str
@@ -243,6 +243,7 @@ class Problem:
     supports: tuple[Support, ...]
     stages: tuple[Stage, ...]
     settings: SolverSettings = field(default_factory=SolverSettings)
+    glue: tuple[tuple[Face, Face], ...] = ()
 
     def body(self, name: str) -> Body:
         """The body of that name."""

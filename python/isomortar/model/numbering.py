@@ -1,4 +1,4 @@
-"""Global numbers of control points: bodies one after the other, a closed ring's repeated row, and a pole, counted once."""
+"""Global numbers of control points: bodies one after the other, a closed ring's repeated row, a pole, and what is glued, counted once."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from isomortar.errors import InputError
 from isomortar.geometry.patch import FloatArray, IntArray, Patch
 from isomortar.model import constants
 from isomortar.model.entities import Body, Problem
+from isomortar.model.glue import pieces, shared_points
 
 _FAMILY_CODE = {"N": 1, "L": 2}
 
@@ -20,6 +21,10 @@ class Numbering:
     ----------
     count : int
         Number of global control points; unknowns are three times as many.
+    pieces : tuple of tuples of Body
+        Bodies with all that is glued to them: their numbers follow each other.
+    starts : ndarray of int32, shape (pieces,)
+        The first control point of each piece.
     points : dict of str to ndarray of int32
         For each body the global number of each control point of its patch.
     reference : ndarray, shape (count, 3)
@@ -30,26 +35,38 @@ class Numbering:
     Raises
     ------
     InputError
-        The ends of a closed ring do not meet.
+        The ends of a closed ring do not meet; faces that are to be glued do not conform.
     """
 
     def __init__(self, problem: Problem) -> None:
-        self.points: dict[str, IntArray] = {}
-        self.offsets: dict[str, int] = {}
-        self.count = 0
-        positions = []
-        for body in problem.bodies:
-            local, kept = _numbers(body)
-            self.points[body.name] = (local + self.count).astype(np.int32)
-            self.offsets[body.name] = self.count
-            self.count += len(kept)
-            positions.append(body.patch.control_points[kept])
-        self.reference: FloatArray = np.ascontiguousarray(np.concatenate(positions))
+        self.pieces = pieces(problem)
+        bodies = [body for piece in self.pieces for body in piece]
+        offsets = dict(zip((b.name for b in bodies), np.cumsum([0, *(len(b.patch.weights) for b in bodies)]).tolist(), strict=False))
+        first = _same_points(problem, bodies, offsets)
+        kept = first == np.arange(len(first))
+        number = np.cumsum(kept, dtype=np.int32) - 1
+        places = {body.name: slice(offsets[body.name], offsets[body.name] + len(body.patch.weights)) for body in problem.bodies}
+        self.points: dict[str, IntArray] = {name: number[first[place]].astype(np.int32) for name, place in places.items()}
+        self.count = int(np.count_nonzero(kept))
+        self.starts: IntArray = number[[offsets[piece[0].name] for piece in self.pieces]]
+        self.reference: FloatArray = np.ascontiguousarray(np.concatenate([body.patch.control_points for body in bodies])[kept])
         self.size = float(np.linalg.norm(np.ptp(self.reference, axis=0)))
 
+    def piece_of(self, point: int) -> int:
+        """Number of the piece that a global control point belongs to."""
+        return int(np.searchsorted(self.starts, point, side="right")) - 1
+
+    def piece_points(self, piece: int) -> slice:
+        """The control points of a piece."""
+        return slice(int(self.starts[piece]), int([*self.starts, self.count][piece + 1]))
+
     def body_of(self, point: int) -> str:
-        """Name of the body of a global control point."""
-        return [name for name, offset in self.offsets.items() if offset <= point][-1]
+        """Name of a body of a global control point; with what it is glued to, the first one there."""
+        return next(body.name for body in self.pieces[self.piece_of(point)] if point in self.points[body.name])
+
+    def face_points(self, body: Body, face: str) -> IntArray:
+        """Global numbers of the control points of a face, in the order of its net, shape (n2 * n1,)."""
+        return self.points[body.name][body.patch.face_points(face)]
 
     def patch_arrays(self, body: Body) -> PatchArrays:
         """The body's patch as the kernel reads it."""
@@ -106,11 +123,17 @@ def check_closed(body: Body) -> None:
         )
 
 
-def _numbers(body: Body) -> tuple[IntArray, IntArray]:
-    """For each control point of a body its number among those kept, and the kept ones."""
-    check_closed(body)
-    first = same_points(body.patch, body.closed)
-    kept = np.flatnonzero(first == np.arange(len(first))).astype(np.int32)
-    number = np.empty(len(first), dtype=np.int32)
-    number[kept] = np.arange(len(kept), dtype=np.int32)
-    return number[first], kept
+def _same_points(problem: Problem, bodies: list[Body], offsets: dict[str, int]) -> IntArray:
+    """For each control point of all bodies, one body after the other, the first one that is the same."""
+    for body in bodies:
+        check_closed(body)
+    first = np.concatenate([same_points(body.patch, body.closed) + offsets[body.name] for body in bodies])
+    links = [np.stack([np.arange(len(first)), first])]
+    for number, joint in enumerate(problem.glue):
+        shared = zip(shared_points(problem, number), joint, strict=True)
+        links.append(np.stack([points + offsets[face.body] for points, face in shared]))
+    one, other = np.concatenate(links, axis=1)
+    while np.any(first[one] != first[other]):  # what is linked to the same has the same first one: as often as links follow each other
+        np.minimum.at(first, one, first[other])
+        np.minimum.at(first, other, first[one])
+    return first

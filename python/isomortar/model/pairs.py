@@ -41,10 +41,10 @@ class Pair:
         For each edge of that face the surface coordinate that runs across it, and its control points.
     neighbours : Pattern
         Test functions that share an element.
-    bodies : ndarray of int
-        Numbers of the deformable bodies of the pair.
+    pieces : ndarray of int
+        Numbers of the pieces that its deformable bodies belong to.
     softest : ndarray
-        Modulus of the softest of these over that of each.
+        Modulus of the softest of these bodies over the largest one in each of the pieces.
     """
 
     def __init__(self, contact: Contact, problem: Problem, numbering: Numbering) -> None:
@@ -71,15 +71,16 @@ class Pair:
             directions = body.patch.face_directions(contact.master.face)
             self.master_boundaries = (directions[0].boundaries, directions[1].boundaries)
             self.master_elements = (directions[0].elements, directions[1].elements)
-            grid = numbering.points[body.name][body.patch.face_points(contact.master.face)].reshape(directions[1].count, -1)
+            grid = numbering.face_points(body, contact.master.face).reshape(directions[1].count, -1)
             self.master_face = grid.ravel()
             self.master_edges = [(0, grid[:, 0]), (0, grid[:, -1]), (1, grid[0]), (1, grid[-1])]
         self.neighbour_matrix = sparse.csr_array(self.elements_of_point @ self.elements_of_point.T)
         self.neighbours: Pattern = pattern_of(self.neighbour_matrix)
         names = {side.body for side in (contact.slave, contact.master) if isinstance(side, Face)}
-        self.bodies: IntArray = np.array([k for k, body in enumerate(problem.bodies) if body.name in names], dtype=np.int32)
-        moduli = np.array([problem.bodies[k].material.modulus for k in self.bodies])
-        self.softest: FloatArray = moduli.min() / moduli
+        meeting = [k for k, piece in enumerate(numbering.pieces) if any(body.name in names for body in piece)]
+        self.pieces: IntArray = np.array(meeting, dtype=np.int32)
+        stiffest = np.array([max(body.material.modulus for body in numbering.pieces[k]) for k in meeting])
+        self.softest: FloatArray = min(problem.body(name).material.modulus for name in names) / stiffest
 
     def field(self, control_values: FloatArray) -> FloatArray:
         """A field at the quadrature points from its control values, shape (points, ...)."""

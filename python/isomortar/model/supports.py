@@ -51,9 +51,7 @@ class Supports:
     def __init__(self, problem: Problem, numbering: Numbering) -> None:
         self._problem = problem
         self._numbering = numbering
-        self.points: list[IntArray] = [
-            np.unique(numbering.points[s.place.body][problem.body(s.place.body).patch.face_points(s.place.face)]) for s in problem.supports
-        ]
+        self.points: list[IntArray] = [np.unique(numbering.face_points(problem.body(s.place.body), s.place.face)) for s in problem.supports]
         unknowns = [self._unknowns(k) for k in range(len(problem.supports))]
         self.prescribed = np.unique(np.concatenate(unknowns)) if unknowns else np.zeros(0, dtype=np.int64)
         holders = np.zeros(3 * numbering.count)

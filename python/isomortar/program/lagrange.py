@@ -38,12 +38,14 @@ class LagrangeProblem:
     ------
     InputError
         No program of Lagrange elements has this, or not this one: NURBS, weights, elements of which an edge is a point, another law of
-        material, rigid planes, friction other than Coulomb's.
+        material, glue, rigid planes, friction other than Coulomb's.
     """
 
     def __init__(self, problem: Problem, program: str, laws: Collection[str]) -> None:
         check(problem)
         self.problem, self._program = problem, program
+        if problem.glue:
+            raise self.refuse("is not told of glued bodies", "glue")
         self._numbering = Numbering(problem)
         self._supports = Supports(problem, self._numbering)
         self.nodes, self.prescribed = self._numbering.reference, self._supports.prescribed

@@ -47,9 +47,11 @@ def draw_bodies(problem: Problem, step: StepResult, number: int) -> Figure:
     figure = Figure(figsize=(8.6, 4.2), layout="constrained")
     whole, contact = figure.subplots(1, 2, width_ratios=(1.35, 1.0))
     canvas = Canvas(_VIEW)
+    glued = [face for joint in problem.glue for face in joint]
     for body in problem.bodies:
         fine = (surface.contact.slave.face,) if body is slave else ()
-        add_body(canvas, body, points[body.name], _by_pressure(body, surface, colours), fine)
+        inside = [face.face for face in glued if face.body == body.name]
+        add_body(canvas, body, points[body.name], _by_pressure(body, surface, colours), fine, inside=inside)
     if isinstance(surface.contact.master, RigidPlane):
         margin = 0.2 * float(np.ptp(points[slave.name], axis=0).max())
         canvas.add_floor(plane_corners(surface.contact.master, points[slave.name], margin), np.array(to_rgb(style.PLANE)))
@@ -115,7 +117,15 @@ def _samplings(directions: tuple[Direction, Direction], parts: tuple[int, int]) 
     return first, second
 
 
-def add_body(canvas: Canvas, body: Body, points: FloatArray, paint: Paint, fine: Collection[str] = (), opacity: float = 1.0) -> None:
+def add_body(
+    canvas: Canvas,
+    body: Body,
+    points: FloatArray,
+    paint: Paint,
+    fine: Collection[str] = (),
+    opacity: float = 1.0,
+    inside: Collection[str] = (),
+) -> None:
     """Add the faces of a deformed body with its knot lines.
 
     Parameters
@@ -130,9 +140,11 @@ def add_body(canvas: Canvas, body: Body, points: FloatArray, paint: Paint, fine:
         Faces that are cut twice as finely.
     opacity : float
         Below 1 the body is seen through, and faces from their inner sides too.
+    inside : collection of str
+        Faces that are not drawn: what is glued to them hides them.
     """
     for name in FACES:
-        if name[0] == body.closed:
+        if name[0] == body.closed or name in inside:
             continue  # the two ends of a ring are inside it
         numbers = body.patch.face_points(name)
         directions = body.patch.face_directions(name)

@@ -14,7 +14,7 @@ import numpy as np
 from pydantic import TypeAdapter
 
 from isomortar.geometry.patch import Direction, Patch
-from isomortar.model.entities import Body, Contact, Material, Problem, SolverSettings, Stage, Support
+from isomortar.model.entities import Body, Contact, Face, Material, Problem, SolverSettings, Stage, Support
 from isomortar.results.layout import CONTROL_POINTS, KNOTS, WEIGHTS, Quantity
 
 _AXES = "uvw"
@@ -23,7 +23,10 @@ _PLAIN: dict[str, Any] = {
     "supports": tuple[Support, ...],
     "stages": tuple[Stage, ...],
     "settings": SolverSettings,
+    "glue": tuple[tuple[Face, Face], ...],
 }
+#: What earlier files of the same format do not hold, and had not.
+_LATER = ("glue",)
 _BODY: dict[str, Any] = {"name": str, "material": Material, "quadrature": tuple[int, int, int], "closed": Literal["u", "v", "w"] | None}
 
 
@@ -43,7 +46,8 @@ def read_problem(group: h5py.Group) -> Problem:
     ValueError
         Bodies are missing.
     """
-    plain: dict[str, Any] = {name: TypeAdapter(kind).validate_json(bytes(group.attrs[name])) for name, kind in _PLAIN.items()}
+    there = {name: kind for name, kind in _PLAIN.items() if name in group.attrs or name not in _LATER}
+    plain: dict[str, Any] = {name: TypeAdapter(kind).validate_json(bytes(group.attrs[name])) for name, kind in there.items()}
     bodies = tuple(_read_body(group[f"bodies/{number}"]) for number in range(len(group["bodies"])))
     problem = Problem(name=json.loads(group.attrs["name"]), bodies=bodies, **plain)
     named = {support.place.body for support in problem.supports} | {contact.slave.body for contact in problem.contacts}

@@ -106,7 +106,9 @@ CONTACT_VALUES = {
 }
 
 STATE_STEP = _count("number of the load step whose state this row is")
-POSITIONS = _real("length", "positions of all control points, bodies one after the other, shared points once")
+POSITIONS = _real(
+    "length", "positions of all control points, bodies one after the other, those glued to one right after it, shared points once"
+)
 TIMING = Quantity(np.dtype(np.float64), "s", "time spent in the phase within the load step", missing=np.nan)
 ORDERING = Quantity(
     TEXT, "text", "ordering of the unknowns in use since it was chosen, by the number of matrices in the system", missing=""

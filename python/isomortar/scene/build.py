@@ -52,6 +52,7 @@ def build(scene: SceneTable, name: str, folder: Path) -> Problem:
         supports=tuple(_support(support, table, by_name, _motions(scene, support)) for support, table in scene.supports.items()),
         stages=_stages(scene),
         settings=scene.solver,
+        glue=tuple(_joint(faces, by_name, f"glue.{number}") for number, faces in enumerate(scene.glue)),
     )
 
 
@@ -127,6 +128,11 @@ def _face(text: str, bodies: dict[str, Body], field: str) -> Face:
         closed = f" ({body} is closed in {bodies[body].closed})" if face in FACES else ""
         raise InputError(f"is {text!r}, but {body} has no face {face!r}{closed}; allowed: {', '.join(faces)}", field)
     return Face(body, face)
+
+
+def _joint(faces: tuple[str, str], bodies: dict[str, Body], field: str) -> tuple[Face, Face]:
+    one, other = (_face(face, bodies, field) for face in faces)
+    return one, other
 
 
 def _contact(name: str, table: ContactTable, bodies: dict[str, Body], summed: bool) -> Contact:

@@ -259,6 +259,8 @@ class SceneTable(Table):
     """Materials by name."""
     bodies: Annotated[dict[Name, BodyTable], Field(min_length=1)]
     """Bodies by name."""
+    glue: list[tuple[FaceName, FaceName]] = Field([])
+    """Pairs of faces, ["BODY.FACE", "BODY.FACE"], that share their control points: those of two bodies with the same mesh there."""
     contacts: dict[Name, ContactTable] = Field({})
     """Contact pairs by name."""
     supports: dict[Name, SupportTable] = Field({})

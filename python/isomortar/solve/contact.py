@@ -138,7 +138,7 @@ class PairMechanics:
 
         Parameters taken from a stiffer body fail at stiffness ratios of 1e5.
         """
-        return float(np.max(scales.stiffness[self.pair.bodies] * self.pair.softest))
+        return float(np.max(scales.stiffness[self.pair.pieces] * self.pair.softest))
 
     def parameters(self, control: Control, scales: Scales) -> FloatArray:
         """Complementarity parameters, normal and tangential (theory 6.1): stiffness / median of w^I and a multiple of it."""

@@ -137,7 +137,7 @@ def _pushed_in(problem: Problem) -> Iterator[str]:
     for contact in problem.contacts:
         if isinstance(contact.master, RigidPlane):
             body, normal = problem.body(contact.slave.body), unit(contact.master.normal)
-            points = np.unique(numbering.points[body.name][body.patch.face_points(contact.slave.face)])
+            points = np.unique(numbering.face_points(body, contact.slave.face))
             points = points[np.all(supports.held[points] | (np.abs(normal) < constants.NO_PART), axis=1)]
             ends = np.cumsum([stage.steps for stage in problem.stages])
             depths = [-((supports.place(float(end))[points] - contact.master.point) @ normal).min(initial=np.inf) for end in ends]

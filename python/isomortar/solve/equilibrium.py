@@ -22,7 +22,7 @@ from isomortar.model.solid import Solid
 from isomortar.model.supports import Supports
 from isomortar.solve.contact import Kinematics, PairMechanics
 from isomortar.solve.record import State
-from isomortar.solve.scales import BodyMeasures, Scales
+from isomortar.solve.scales import PieceMeasures, Scales
 from isomortar.solve.singular import PairConditions, explain
 from isomortar.solve.system import LinearSystem, Source, block_product, entries
 from isomortar.solve.timing import Ledger
@@ -74,7 +74,7 @@ class Equilibrium:
         self.numbering = Numbering(problem)
         self.supports = Supports(problem, self.numbering)
         self.solid = Solid(problem, self.numbering)
-        self.measures = BodyMeasures(self.numbering, self.supports, self.solid)
+        self.measures = PieceMeasures(self.numbering, self.supports, self.solid)
         pairs = [Pair(c, problem, self.numbering) for c in problem.contacts]
         self.pairs = [
             PairMechanics(pair, problem.settings, ledger, self.origin, pairs[:k] + pairs[k + 1 :]) for k, pair in enumerate(pairs)

@@ -7,7 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from isomortar.geometry.patch import FloatArray
-from isomortar.model.entities import Body, Face
+from isomortar.model.entities import Face
+from isomortar.model.glue import named
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.record import StepResult
 
@@ -18,36 +19,37 @@ DEFORMED = 1e-10
 
 
 class LostDigits:
-    """Warnings of forces that are nothing but round-off; each is given once a body."""
+    """Warnings of forces that are nothing but round-off; each is given once a body, or bodies that are glued."""
 
     def __init__(self, equilibrium: Equilibrium) -> None:
         self._equilibrium = equilibrium
-        self._told = set[str]()
+        self._told = set[int]()
 
     def after_step(self, balance: Balance, result: StepResult) -> Iterator[str]:
         """Warnings that the end of a load step gives rise to."""
         equilibrium = self._equilibrium
         measures, problem = equilibrium.measures, equilibrium.problem
         by_round_off = measures.free_norms(balance.total) > problem.settings.newton_tolerance * measures.norms(balance.internal)
-        for body in [body for body, so in zip(problem.bodies, by_round_off, strict=True) if so and body.name not in self._told]:
-            own = np.unique(equilibrium.numbering.points[body.name])
+        for number in [k for k, so in enumerate(by_round_off) if so and k not in self._told]:
+            own, piece = equilibrium.numbering.piece_points(number), equilibrium.numbering.pieces[number]
             left = float(np.linalg.norm(np.where(equilibrium.supports.held[own], 0.0, balance.total[own]).sum(axis=0)))
-            borne = self._borne(body, result)
+            borne = self._borne({body.name for body in piece}, np.ptp(equilibrium.numbering.reference[own], axis=0).max(), result)
             if left > LOST * borne and _deforms(equilibrium.numbering.reference[own], balance.positions[own]):
-                self._told.add(body.name)
+                self._told.add(number)
                 yield (
-                    f"body {body.name!r}, load step {result.step}: its forces are lost in round-off: {left:.2g} is out of balance where "
-                    f"supports and contacts bear {borne:.2g}. It is too thin for so small a load: take larger motions, or a thicker body"
+                    f"{named(piece, piece[0].name)}, load step {result.step}: its forces are lost in round-off: {left:.2g} is out of "
+                    f"balance where supports and contacts bear {borne:.2g}. It is too thin for so small a load: take larger motions, or "
+                    "a thicker body"
                 )
 
-    def _borne(self, body: Body, result: StepResult) -> float:
-        """The largest force of a support or contact on a body, or moment of a support over the body's size."""
+    def _borne(self, bodies: set[str], size: float, result: StepResult) -> float:
+        """The largest force of a support or contact on bodies that are one, or moment of a support over their size."""
         problem = self._equilibrium.problem
-        reactions = [r for s, r in zip(problem.supports, result.reactions, strict=True) if s.place.body == body.name]
-        vectors = [v for r in reactions for v in (r.force, r.moment / body.size)]
+        reactions = [r for s, r in zip(problem.supports, result.reactions, strict=True) if s.place.body in bodies]
+        vectors = [v for r in reactions for v in (r.force, r.moment / size)]
         for contact, found in zip(problem.contacts, result.contacts, strict=True):
-            sides = [side.body for side in (contact.slave, contact.master) if isinstance(side, Face)]
-            vectors += [found.force_slave] if body.name in sides else []
+            sides = {side.body for side in (contact.slave, contact.master) if isinstance(side, Face)}
+            vectors += [found.force_slave] if bodies & sides else []
         return float(np.max([np.linalg.norm(vector) for vector in vectors], initial=0.0))
 
 

@@ -1,4 +1,7 @@
-"""What forces are measured against, body by body: a stiff or large body must not hide what goes on in another one."""
+"""What forces are measured against, body by body: a stiff or large body must not hide what goes on in another one.
+
+Bodies that are glued are one here: next to no force acts on one that nothing else bears on.
+"""
 
 from __future__ import annotations
 
@@ -15,30 +18,30 @@ from isomortar.model.supports import Supports
 
 @dataclass(frozen=True)
 class Scales:
-    """Stiffness and round-off of every body at the start of a load increment.
+    """Stiffness and round-off of every piece at the start of a load increment.
 
     Parameters
     ----------
-    stiffness : ndarray, shape (bodies,)
-        Largest diagonal entry of each body's tangent, force per length.
-    round_off : ndarray, shape (bodies,)
-        Norm of the forces at the free unknowns of each body that no iteration can remove.
+    stiffness : ndarray, shape (pieces,)
+        Largest diagonal entry of each piece's tangent, force per length.
+    round_off : ndarray, shape (pieces,)
+        Norm of the forces at the free unknowns of each piece that no iteration can remove.
     """
 
     stiffness: FloatArray
     round_off: FloatArray
 
 
-class BodyMeasures:
-    """Norms over the control points of each body."""
+class PieceMeasures:
+    """Norms over the control points of each body, with all that is glued to it."""
 
     def __init__(self, numbering: Numbering, supports: Supports, solid: Solid) -> None:
         self._numbering, self._solid = numbering, solid
-        self._starts = np.array(list(numbering.offsets.values()))
+        self._starts = numbering.starts
         self._free = (supports.equation >= 0).reshape(-1, 3)
 
     def norms(self, forces: FloatArray) -> FloatArray:
-        """Norm of the forces, shape (control points, 3), on each body."""
+        """Norm of the forces, shape (control points, 3), on each piece, shape (pieces,)."""
         size = _power_of_two(forces)
         scaled = forces / size
         return np.sqrt(np.add.reduceat(np.einsum("ij,ij->i", scaled, scaled), self._starts)) * size

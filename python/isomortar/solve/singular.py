@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from isomortar.errors import SingularSystemError
 from isomortar.geometry.patch import FloatArray, IntArray
+from isomortar.model.glue import named
 from isomortar.model.numbering import Numbering
 from isomortar.solve.contact import Kinematics, PairMechanics
 
@@ -130,12 +131,12 @@ def _shared(contact: PairConditions, among: NDArray[np.intp], other: PairConditi
 def _rigid(moved: FloatArray, positions: FloatArray, numbering: Numbering) -> tuple[int, str]:
     """The control point that moves most, and how its body moves without forces; empty if it deforms."""
     point = int(np.argmax(np.linalg.norm(moved, axis=1)))
-    body = numbering.body_of(point)
-    own = np.unique(numbering.points[body])
+    piece = numbering.piece_of(point)
+    own = numbering.piece_points(piece)
     arms = positions[own] - positions[own].mean(axis=0)
     size = float(np.abs(arms).max())
     turns = [np.cross(axis, arms / size) for axis in np.eye(3)]
-    rigid = np.column_stack([np.tile(axis, len(own)) for axis in np.eye(3)] + [turn.ravel() for turn in turns])
+    rigid = np.column_stack([np.tile(axis, len(arms)) for axis in np.eye(3)] + [turn.ravel() for turn in turns])
     motion = moved[own].ravel()
     amounts = np.linalg.lstsq(rigid, motion, rcond=None)[0]
     if np.linalg.norm(motion - rigid @ amounts) <= _RIGID * np.linalg.norm(motion):
@@ -143,7 +144,10 @@ def _rigid(moved: FloatArray, positions: FloatArray, numbering: Numbering) -> tu
         axis = amounts[3:] if turning else amounts[:3]
         along = ", ".join(f"{value:g}" for value in np.round(axis / axis[np.argmax(np.abs(axis))], 2) + 0.0)
         how = f"turn about an axis along ({along})" if turning else f"move along ({along})"
-        return point, f"body {body!r} can {how} freely; hold it by a support, or bring it into contact"
+        return (
+            point,
+            f"{named(numbering.pieces[piece], numbering.body_of(point))} can {how} freely; hold it by a support, or bring it into contact",
+        )
     return point, ""
 
 

@@ -134,5 +134,5 @@ class Uzawa(Method):
         present = kinematics.control.weight[kinematics.control.weight > 0]
         if not present.size:
             return 0.0
-        forces = float(self._equilibrium.measures.norms(balance.internal)[pair.pair.bodies].max())
+        forces = float(self._equilibrium.measures.norms(balance.internal)[pair.pair.pieces].max())
         return constants.LEFT_OPEN * self._settings.newton_tolerance * forces / median(present)

@@ -42,7 +42,7 @@ class SlaveFace:
         self.directions = body.patch.face_directions(face)
         across = "uvw".index(face[0])
         self.closed = tuple("uvw"[(across + i) % 3] == body.closed for i in (1, 2))
-        points = numbering.points[body.name][body.patch.face_points(face)]
+        points = numbering.face_points(body, face)
         found, first = np.unique(points, return_index=True)
         order = np.argsort(first)
         number = np.empty(len(order), dtype=np.int32)

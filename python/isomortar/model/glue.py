@@ -1,0 +1,86 @@
+"""Bodies that are glued: which control points of two faces are one, what that takes, and which bodies hang together."""
+
+from __future__ import annotations
+
+from isomortar.errors import InputError
+from isomortar.geometry.net import Net, misfit
+from isomortar.geometry.patch import IntArray
+from isomortar.model import constants
+from isomortar.model.entities import Body, Face, Problem
+
+
+def pieces(problem: Problem) -> tuple[tuple[Body, ...], ...]:
+    """Bodies with all that is glued to them, each body once, in the order of the problem."""
+    together = {body.name: {body.name} for body in problem.bodies}
+    for one, other in problem.glue:
+        both = together[one.body] | together[other.body]
+        together |= dict.fromkeys(both, both)
+    found: dict[frozenset[str], tuple[Body, ...]] = {}
+    for names in (frozenset(together[body.name]) for body in problem.bodies):
+        found[names] = tuple(body for body in problem.bodies if body.name in names)
+    return tuple(found.values())
+
+
+def named(piece: tuple[Body, ...], body: str) -> str:
+    """A body by its name, and by what it is glued to."""
+    others = [repr(other.name) for other in piece if other.name != body]
+    return f"body {body!r}" + (f" (glued to {', '.join(others)})" if others else "")
+
+
+def check_glue(problem: Problem) -> None:
+    """Refuse joints that cannot be.
+
+    Raises
+    ------
+    InputError
+        A face is glued to its own body or twice, or is in a contact; two faces do not conform.
+    """
+    glued: dict[Face, Face] = {}
+    for number, joint in enumerate(problem.glue):
+        path, (one, other) = f"glue.{number}", joint
+        if one.body == other.body:
+            raise InputError(f"joins two faces of {one.body!r}; a body that meets itself is closed: bodies.{one.body}.closed", path)
+        for face, mate in (joint, (other, one)):
+            if face in glued:
+                raise InputError(f"joins {_words(face)} to {_words(mate)}, and it is glued to {_words(glued[face])} already", path)
+            glued[face] = mate
+        shared_points(problem, number)
+    for contact in problem.contacts:
+        for side, place in (("slave", contact.slave), ("master", contact.master)):
+            if isinstance(place, Face) and place in glued:
+                raise InputError(
+                    f"is {_words(place)}, which is glued to {_words(glued[place])}: it lies inside; name an outer face",
+                    f"contacts.{contact.name}.{side}",
+                )
+
+
+def shared_points(problem: Problem, number: int) -> tuple[IntArray, IntArray]:
+    """Control points of the two faces of a joint, by their numbers in their patches, each with the one that it is.
+
+    Raises
+    ------
+    InputError
+        The faces do not conform: with what differs, by how much, and where.
+    """
+    faces = problem.glue[number]
+    bodies = [problem.body(face.body) for face in faces]
+    one, other = (Net.of(body.patch, face.face) for body, face in zip(bodies, faces, strict=True))
+    names, near = (faces[0].body, faces[1].body), constants.SAME_POINT * max(body.size for body in bodies)
+    misfits = []
+    for turned in other.turned():
+        found = misfit(one, turned, names, near, constants.SAME_POINT)
+        if found is None:
+            return one.numbers.ravel(), turned.numbers.ravel()
+        misfits.append(found)
+    best = max(misfits, key=lambda found: found.stage)
+    if best.stage == 0:
+        best = min(misfits, key=lambda found: found.size)
+    raise InputError(
+        f"joins {_words(faces[0])} to {_words(faces[1])}, which do not conform: {best.reason}. Glued faces share their control points: "
+        "give both bodies the same mesh there, bring them together, or let them touch by a contact",
+        f"glue.{number}",
+    )
+
+
+def _words(face: Face) -> str:
+    return f"{face.body}.{face.face}"
