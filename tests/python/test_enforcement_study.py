@@ -80,7 +80,7 @@ def test_a_run_that_stops_is_a_failure_and_its_pressure_counts() -> None:
 def test_the_page_has_every_run(tmp_path: Path) -> None:
     runs = made_up(steps=7)
     judgements = [statement.judged([Evidence(runs, method) for method in statement.methods]) for statement in STATEMENTS]
-    path = page.write(tmp_path, runs, judgements, datetime(2026, 1, 1))
+    path = page.write(tmp_path, runs, judgements, datetime(2026, 1, 1)).page
     text, data = path.read_text(encoding="utf-8"), json.loads(path.with_suffix(".json").read_text(encoding="utf-8"))
     assert all(way in text for way in WAYS)
     assert [row["way"] for row in data["scenes"][0]] == [REFERENCE, *WAYS]

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import typer
-from programs.found import Evidence, Found
+from programs.found import Evidence, Found, common
 from programs.plan import SETUPS, Planned, Setup, planned
 from programs.statements import STATEMENTS
 from programs.study import _written, study
@@ -69,7 +69,7 @@ def measured(force: np.ndarray, words: str = "") -> Measurement:
 
 
 def verdicts(runs: list[Found]) -> dict[tuple[str, str], tuple[str, dict[str, float], str]]:
-    judged = [statement.judged([Evidence(runs, method) for method in statement.methods]) for statement in STATEMENTS]
+    judged = [statement.judged([Evidence(common(runs), method) for method in statement.methods]) for statement in STATEMENTS]
     return {(j.statement.section, v.method): (v.state, dict(v.values), v.why) for j in judged for v in j.verdicts}
 
 

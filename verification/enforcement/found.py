@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -11,8 +10,7 @@ from enforcement.plan import MORTAR, REFERENCE, Planned
 from measures import roughness
 
 from isomortar.geometry.patch import FloatArray
-from isomortar.harness.statement import NotMeasuredError
-from isomortar.harness.study import Computed
+from isomortar.harness.runs import ByMethod, Computed
 
 
 @dataclass(frozen=True)
@@ -20,6 +18,16 @@ class Found(Computed):
     """A run, and its distance from others."""
 
     planned: Planned
+
+    @property
+    def name(self) -> str:
+        """Its scene."""
+        return self.planned.setup.scene
+
+    @property
+    def method(self) -> str:
+        """The way of enforcement."""
+        return self.planned.way
 
     @cached_property
     def curve(self) -> FloatArray:
@@ -47,22 +55,12 @@ class Found(Computed):
         return float(np.linalg.norm(self.curve - reference.curve) / np.linalg.norm(reference.curve))
 
 
-@dataclass(frozen=True)
-class Evidence:
+class Evidence(ByMethod[Found]):
     """The runs by one way of enforcement, beside those by the others."""
-
-    runs: Sequence[Found]
-    method: str
-    left_out: list[str] = field(default_factory=list)
-
-    @property
-    def without(self) -> str:
-        """Runs that did not come to their end."""
-        return "; ".join(self.left_out)
 
     def missing(self) -> dict[str, float]:
         """Load steps that are missing, by scene."""
-        return {run.planned.setup.scene: run.number("missing") for run in self._of(self.method)}
+        return {run.name: run.number("missing") for run in self.by(self.method)}
 
     def beside_mortar(self) -> dict[str, float]:
         """Distance from the reference over that of the mortar method on the same meshes, by scene."""
@@ -70,24 +68,17 @@ class Evidence:
         for run, mortar, reference in self._compared():
             ratio = run.off(reference) / mortar.off(reference)
             if np.isnan(ratio):
-                self.left_out.append(f"{run.planned.setup.scene}: {run.words or mortar.words or reference.words}")
+                self.left_out.append(f"{run.name}: {run.words or mortar.words or reference.words}")
             else:
-                found[run.planned.setup.scene] = ratio
+                found[run.name] = ratio
         return found
 
     def peak_beside_mortar(self) -> dict[str, float]:
         """Largest pressure of the last load step that both have, over that of the mortar method, by scene."""
-        both = {run.planned.setup.scene: (run.peaks, mortar.peaks) for run, mortar, _ in self._compared()}
+        both = {run.name: (run.peaks, mortar.peaks) for run, mortar, _ in self._compared()}
         last = {scene: min(len(mine), len(theirs)) - 1 for scene, (mine, theirs) in both.items()}
         return {scene: float(mine[last[scene]] / theirs[last[scene]]) for scene, (mine, theirs) in both.items() if last[scene] >= 0}
 
     def _compared(self) -> list[tuple[Found, Found, Found]]:
-        scenes = {way: {run.planned.setup.scene: run for run in self._of(way)} for way in (MORTAR, REFERENCE)}
-        of = [run.planned.setup.scene for run in self._of(self.method)]
-        return [(run, scenes[MORTAR][scene], scenes[REFERENCE][scene]) for run, scene in zip(self._of(self.method), of, strict=True)]
-
-    def _of(self, way: str) -> list[Found]:
-        found = [run for run in self.runs if run.planned.way == way]
-        if lost := [run for run in found if run.ending not in ("measured", "not converged")]:
-            raise NotMeasuredError("; ".join(run.words or run.ending for run in lost))
-        return found
+        mortar, reference = ({run.name: run for run in self.by(way)} for way in (MORTAR, REFERENCE))
+        return [(run, mortar[run.name], reference[run.name]) for run in self.by(self.method)]

@@ -14,7 +14,7 @@ from enforcement.statements import STATEMENTS
 
 from isomortar.errors import InputError
 from isomortar.harness.runner import Result
-from isomortar.harness.study import Conclusion, Study, concluded
+from isomortar.harness.study import Conclusion, Study
 
 
 def study(scenes: Sequence[str] = ()) -> Study:
@@ -36,4 +36,4 @@ def _written(plan: Sequence[Planned], folder: Path, results: Sequence[Result], s
     """Judge the statements and write ``report.html``."""
     runs = [Found(result, entry) for entry, result in zip(plan, results, strict=True)]
     judgements = [statement.judged([Evidence(runs, method) for method in statement.methods]) for statement in STATEMENTS]
-    return concluded(page.write(folder, runs, judgements, started), runs, judgements)
+    return page.write(folder, runs, judgements, started)

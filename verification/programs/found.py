@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate
 
@@ -12,8 +12,7 @@ from programs.plan import MESHES, Mesh, Planned, programs_of
 from programs.run import PROGRAMS
 
 from isomortar.geometry.patch import FloatArray
-from isomortar.harness.statement import NotMeasuredError
-from isomortar.harness.study import Computed
+from isomortar.harness.runs import ByMethod, Computed
 from isomortar.model.entities import Problem
 
 #: What others are compared with.
@@ -32,6 +31,11 @@ class Found(Computed):
     def name(self) -> str:
         """What of the study it is, for a program: ``block L1 fine``."""
         return " ".join((self.planned.setup.scene, self.planned.kind, self.planned.mesh))
+
+    @property
+    def method(self) -> str:
+        """The program."""
+        return self.planned.program
 
     @cached_property
     def forces(self) -> FloatArray:
@@ -69,28 +73,13 @@ class Found(Computed):
         return self.planned.setup.load(self.planned.kind, self.planned.mesh).problem()
 
 
-@dataclass(frozen=True)
-class Evidence:
-    """The runs by one program, which is the method here, beside those of isomortar."""
+def common(runs: Sequence[Found]) -> list[Found]:
+    """The runs on elements that all programs have."""
+    return [run for run in runs if len(programs_of(run.planned.kind)) > 1]
 
-    runs: Sequence[Found]
-    method: str
-    left_out: list[str] = field(default_factory=list)
 
-    @property
-    def without(self) -> str:
-        """Runs that did not come as far as a statement speaks of."""
-        return "; ".join(self.left_out)
-
-    def all(self) -> list[Found]:
-        """The runs of the program on elements that all programs have, however far they came.
-
-        Raises
-        ------
-        NotMeasuredError
-            One ended by what says nothing of the problem; it is not installed, say.
-        """
-        return self._of(self.method)
+class Evidence(ByMethod[Found]):
+    """The `common` runs by one program, which is the method here, beside those of isomortar."""
 
     def compared(self, stage: str) -> Iterator[tuple[str, dict[Mesh, FloatArray], dict[Mesh, FloatArray]]]:
         """Scene and kind, and by mesh the curves of a stage by isomortar and by the program; without those of which one stopped before.
@@ -98,20 +87,14 @@ class Evidence:
         Raises
         ------
         NotMeasuredError
-            As by `all`, of isomortar too.
+            As by `by`, of isomortar too.
         """
-        pairs = list(zip(self._of(OWN), self.all(), strict=True))
+        pairs = list(zip(self.by(OWN), self.by(self.method), strict=True))
         for first in range(0, len(pairs), len(MESHES)):
             by_mesh = pairs[first : first + len(MESHES)]
             stopped = [run for pair in by_mesh for run in pair if np.isnan(run.last(stage))]
-            said = [f"{run.name} by {run.planned.program}, {run.ending}" for run in stopped]
+            said = [f"{run.name} by {run.method}, {run.ending}" for run in stopped]
             self.left_out.extend(words for words in said if words not in self.left_out)
             if not stopped:
                 own, other = ({run.planned.mesh: run.stage(stage) for run in runs} for runs in zip(*by_mesh, strict=True))
                 yield by_mesh[0][0].name.rpartition(" ")[0], own, other
-
-    def _of(self, program: str) -> list[Found]:
-        found = [run for run in self.runs if run.planned.program == program and len(programs_of(run.planned.kind)) > 1]
-        if lost := [run for run in found if run.ending not in ("measured", "not converged")]:
-            raise NotMeasuredError("; ".join(dict.fromkeys(f"{run.planned.program}: {run.words or run.ending}" for run in lost)))
-        return found

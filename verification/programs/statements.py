@@ -13,11 +13,11 @@ OWN, *OTHERS = PROGRAMS
 
 
 def _missing(evidence: Evidence) -> Values:
-    return {run.name: float(run.missing) for run in evidence.all()}
+    return {run.name: float(run.missing) for run in evidence.by(evidence.method)}
 
 
 def _out_of_balance(evidence: Evidence) -> Values:
-    found = {run.name: run.forces for run in evidence.all() if len(run.forces)}
+    found = {run.name: run.forces for run in evidence.by(evidence.method) if len(run.forces)}
     return {name: _over(forces.sum(axis=1), forces) for name, forces in found.items()}
 
 

@@ -8,12 +8,12 @@ from functools import partial
 from pathlib import Path
 
 from programs import page
-from programs.found import Evidence, Found
+from programs.found import Evidence, Found, common
 from programs.plan import SETUPS, Planned, Setup, planned
 from programs.statements import STATEMENTS
 
 from isomortar.harness.runner import Result
-from isomortar.harness.study import Conclusion, Study, concluded
+from isomortar.harness.study import Conclusion, Study
 
 
 def study(setups: tuple[Setup, ...] = SETUPS) -> Study:
@@ -25,5 +25,5 @@ def study(setups: tuple[Setup, ...] = SETUPS) -> Study:
 def _written(plan: Sequence[Planned], folder: Path, results: Sequence[Result], started: datetime) -> Conclusion:
     """Judge the statements and write ``report.html``."""
     runs = [Found(result, entry) for entry, result in zip(plan, results, strict=True)]
-    judgements = [statement.judged([Evidence(runs, method) for method in statement.methods]) for statement in STATEMENTS]
-    return concluded(page.write(folder, runs, judgements, started), runs, judgements)
+    judgements = [statement.judged([Evidence(common(runs), method) for method in statement.methods]) for statement in STATEMENTS]
+    return page.write(folder, runs, judgements, started)

@@ -6,22 +6,16 @@ draws stands beside it.
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import datetime
 from pathlib import Path
 from types import ModuleType
 
-import numpy as np
-
 from isomortar.errors import InputError
-from isomortar.geometry.patch import FloatArray
 from isomortar.harness.cases import Case, Cell, Settings
 from isomortar.harness.collection import module_at
-from isomortar.harness.measurement import words_of
 from isomortar.harness.runner import Result
-from isomortar.harness.statement import STATEMENT_STATES, Judgement
 from isomortar.harness.store import Store, write_whole
 from isomortar.scene.scene import Scene
 
@@ -65,43 +59,6 @@ class Run:
         path = folder / f"{self.name}.toml"
         write_whole(path, self.scene.to_toml())
         return Cell(replace(self.case, files=(*self.case.files, path.absolute())), {"scene": str(path), **self.settings})
-
-
-@dataclass(frozen=True)
-class Computed:
-    """What became of a run that measures how many load steps are ``missing``, and ``words`` where one did not converge."""
-
-    result: Result
-
-    @property
-    def ending(self) -> str:
-        """In the words of a process's ending; what was skipped was not measured."""
-        ending = self.result.measurement.ending
-        if ending == "measured" and self.result.measurement.numbers["missing"]:
-            return "not converged"
-        return "not measured" if ending == "skipped" else ending
-
-    @property
-    def words(self) -> str:
-        """Why it ended so; empty where all load steps are there."""
-        said = words_of(self.result.measurement.numbers.get("words"))
-        return said.text if said else self.result.measurement.reason
-
-    def number(self, name: str) -> float:
-        """One of its numbers; NaN: not known."""
-        return float(np.asarray(self.result.measurement.numbers.get(name, np.nan), float))
-
-    def curves(self, name: str, *shape: int) -> FloatArray:
-        """Numbers by load step, shape (load steps that converged, ...)."""
-        return np.array(self.result.measurement.numbers.get(name, []), float).reshape(-1, *shape)
-
-
-def concluded(page: Path, runs: Sequence[Computed], judgements: Sequence[Judgement]) -> Conclusion:
-    """What a study of such runs came to, by the page that was written of what was judged."""
-    states = Counter(judgement.state for judgement in judgements)
-    counted = ", ".join(f"{states[state]} {state}" for state in reversed(STATEMENT_STATES))
-    measured = all(verdict.state != "not measured" for judgement in judgements for verdict in judgement.verdicts)
-    return Conclusion(page, sum(run.ending != "measured" for run in runs), measured, counted)
 
 
 @dataclass(frozen=True)
