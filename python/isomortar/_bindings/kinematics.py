@@ -1,0 +1,59 @@
+"""Where a slave is on its master: feet, gaps and slips."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from isomortar import _arguments as check
+from isomortar._arguments import FloatArray, IntArray
+from isomortar._arrays import Control, MasterArrays, Projections, SlaveArrays
+from isomortar._bindings import handles
+from isomortar._bindings.checks import check_bodies, check_projections
+from isomortar._bindings.statuses import raise_status
+from isomortar._compiled import kernel as _kernel
+
+
+def project_points(slave: SlaveArrays, master: MasterArrays, positions: FloatArray, origin: FloatArray, had: IntArray) -> Projections:
+    """Project every slave quadrature point, from `origin` where `had` is 1, from a coarse search elsewhere.
+
+    `origin` is also where the slip increment is counted from.
+
+    Raises
+    ------
+    LostProjectionError
+        With the number of the quadrature point.
+    """
+    check_bodies(positions, slave, master)
+    q = len(slave.area)
+    check.finite("origin", check.array("origin", origin, np.float64, q, 2))
+    check.array("had", had, np.int32, q)
+    xi = origin.copy()
+    element, fixed, found, doubt, slip, slips, status, place = _kernel.project_points(
+        handles.slave(slave), handles.master(master), positions.T, had, origin.T, had, xi.T
+    )
+    if status:
+        raise_status(status, place - 1)
+    return Projections(xi, element.T, fixed.T, found, doubt, origin, slip.T, slips)
+
+
+def control_quantities(slave: SlaveArrays, master: MasterArrays, positions: FloatArray, projections: Projections) -> Control:
+    """Integrate the control quantities of every constraint."""
+    check_bodies(positions, slave, master)
+    check_projections(projections, slave, master)
+    weight, square, gap, slip, metric, point_metric, status = _kernel.control_quantities(
+        handles.slave(slave), handles.master(master), positions.T, projections.xi.T, projections.element.T, projections.fixed.T,
+        projections.found, projections.slip.T, slave.test.count,
+    )  # fmt: skip
+    if status:
+        raise_status(status, -1)
+    return Control(weight, square, gap, slip.T, metric.T, point_metric.T)
+
+
+def find_climbs(slave: SlaveArrays, master: MasterArrays, positions: FloatArray, projections: Projections) -> FloatArray:
+    """How far the foot of every slave quadrature point has climbed along its normal since `origin` (theory 3.31), shape (points,)."""
+    check_bodies(positions, slave, master)
+    check_projections(projections, slave, master)
+    climbs, status = _kernel.find_climbs(handles.master(master), positions.T, projections.xi.T, projections.origin.T, projections.slips)
+    if status:
+        raise_status(status, -1)
+    return np.asarray(climbs)
