@@ -35,7 +35,7 @@ _FRICTION = {"cohesion": 0.0, "traction_max": None}
 ENTITIES = {
     "Material": {"young": 10.0, "poisson": 0.3, "law": "neo-hookean"},
     "Body": {"closed": None},
-    "Contact": {"reference_area": None, **_FRICTION, "projection": "closest", "by_default": False, "enforcement": "mortar"},
+    "Contact": {"reference_area": None, **_FRICTION, "projection": "closest", "by_default": False, "enforcement": "mortar", "subcells": 0},
     "Motion": {"translate": (0.0, 0.0, 0.0), "rotate": 0.0},
     "Support": {"components": (0, 1, 2), "centre": (0.0, 0.0, 0.0), "axis": (0.0, 0.0, 1.0)},
     "SolverSettings": SOLVER,
@@ -59,6 +59,7 @@ TABLES = {
         "projection": None,
         "enforcement": "mortar",
         "quadrature": None,
+        "subcells": 0,
         "reference_area": None,
     },
     "SupportTable": {"components": ("x", "y", "z"), "centre": (0.0, 0.0, 0.0), "axis": (0.0, 0.0, 1.0)},

@@ -343,3 +343,18 @@ def test_points_that_cannot_bear_are_refused(text, overrides, sentence):
 def test_quadrature_points_are_enforced_by_augmentations_or_where_they_are_few():
     Scene.from_toml(PAIR, overrides=["contacts.pair.enforcement=kts", "solver.method=uzawa"]).problem()
     Scene.from_toml(PAIR, overrides=["contacts.pair.enforcement=kts", "contacts.pair.quadrature=2"]).problem()
+
+
+@pytest.mark.parametrize(
+    ("text", "overrides", "sentence"),
+    [
+        (PRESS, ["contacts.floor.subcells=1"], "a rigid plane, which has no knot lines"),
+        (PAIR, ["contacts.pair.subcells=1", "contacts.pair.enforcement=greville"], "whose constraints are at points"),
+        (PAIR, ["contacts.pair.subcells=9"], "less than or equal to 8"),
+        (PAIR, ["contacts.pair.subcells=-1"], "greater than or equal to 0"),
+    ],
+)
+def test_cells_that_cannot_be_are_refused(text, overrides, sentence):
+    with pytest.raises(InputError, match=sentence) as refused:
+        Scene.from_toml(text, overrides=overrides).problem()
+    assert refused.value.field.endswith(".subcells")

@@ -30,6 +30,15 @@ NO_SHARE = 1e-9
 #: How far masters go on beyond their edges for constraints at points, as a share of the outer elements (theory 10.7): points on an edge of
 #: the slave often lie on the master's, and the least tilt of a face would have them come and go from one iteration to the next.
 BRIM = 0.05
+#: How near to a knot line of the master, as a share of its coordinates, places count as beyond it: beside a line by less than the root of
+#: round-off its elements are as near as each other, and chance decides.
+ON_LINE = 1e-7
+#: How near to the bounds of cells, as a share of the slave's element, knot lines of the master are left alone (theory 10.9).
+CELL_MARGIN = 1e-5
+#: Lines of a cell along which these are looked for, as shares of it: the middle one counts first.
+CELL_LINES = (0.5, 0.0, 1.0)
+#: Halvings by which a crossing is found: more than a number has bits, so that round-off ends them.
+CELL_HALVINGS = 50
 
 # ---- Load increments (theory 5)
 

@@ -26,12 +26,14 @@ def check_contacts(problem: Problem) -> None:
     ------
     InputError
         Faces without an area, that look away from each other, or have passed through each other; the same contact twice; a friction
-        whose numbers contradict each other; averaged normals where there are none; constraints at points that cannot be.
+        whose numbers contradict each other; averaged normals where there are none; constraints at points, and cells along
+        knot lines, that cannot be.
     """
     for contact in problem.contacts:
         _check_friction(contact)
         _check_projection(problem, contact)
         _check_enforcement(problem, contact)
+        _check_subcells(contact)
         found = stance(problem, contact)
         _check_area(problem, contact, found)
         _check_stance(problem, contact, found)
@@ -102,6 +104,18 @@ def _check_enforcement(problem: Problem, contact: Contact) -> None:
                 f'multipliers would repeat each other; take solver.method = "uzawa", or fewer points (contacts.{contact.name}.quadrature)',
                 path,
             )
+
+
+def _check_subcells(contact: Contact) -> None:
+    """Refuse cells along knot lines that there are not, or of methods that do not integrate."""
+    path = f"contacts.{contact.name}.subcells"
+    if contact.subcells and not isinstance(contact.master, Face):
+        raise InputError(f"is {contact.subcells}, but the master is a rigid plane, which has no knot lines; allowed: 0", path)
+    if contact.subcells and contact.enforcement != "mortar":
+        raise InputError(
+            f'is {contact.subcells}, but enforcement is "{contact.enforcement}", whose constraints are at points; allowed: 0, or "mortar"',
+            path,
+        )
 
 
 def has_pole(body: Body, face: str) -> bool:

@@ -100,6 +100,7 @@ class Contact:
     `projection`: how a slave point finds its point on a master that is a face: the closest one, or along the averaged normal;
     `by_default`: nobody asked for it, the master's C0 lines do.
     `enforcement`: which functionals of gap and slip are constrained (theory 10).
+    `subcells`: how many times over slave elements are cut in each direction where the master's knot lines cross them (theory 10.9).
     """
 
     name: str
@@ -113,6 +114,7 @@ class Contact:
     projection: Projection = "closest"
     by_default: bool = False
     enforcement: Enforcement = "mortar"
+    subcells: int = 0
 
     @property
     def averaged(self) -> bool:

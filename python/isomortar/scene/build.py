@@ -157,6 +157,7 @@ def _contact(name: str, table: ContactTable, bodies: dict[str, Body], summed: bo
         projection="averaged" if by_default else table.projection or "closest",
         by_default=by_default,
         enforcement=table.enforcement,
+        subcells=table.subcells,
     )
 
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from isomortar import _bindings
+from isomortar._bindings import FaceArrays
 from isomortar.geometry.patch import FloatArray, IntArray
-from isomortar.model.entities import Contact, Problem
+from isomortar.model.entities import Contact, Face, Problem
 from isomortar.model.numbering import Numbering
 
 
@@ -30,6 +31,11 @@ class SlaveFace:
         Their numbers among these.
     control_places : ndarray, shape (n, 2)
         Where control points belong on the face: at Greville's abscissae; of a point that the face meets twice the first.
+    reference : ndarray, shape (control points of all bodies, 3)
+    master : FaceArrays or None
+        The master's face; None for a rigid plane.
+    lines : tuple of ndarray
+        Its knot lines by direction; none of a rigid plane.
     outward : int
         Sign of the product of the tangents that points out of the body.
     """
@@ -37,7 +43,13 @@ class SlaveFace:
     def __init__(self, contact: Contact, problem: Problem, numbering: Numbering) -> None:
         self.contact = contact
         body, face = problem.body(contact.slave.body), contact.slave.face
-        self._patch, self._reference = numbering.patch_arrays(body), numbering.reference
+        self._patch, self.reference = numbering.patch_arrays(body), numbering.reference
+        self.master: FaceArrays | None = None
+        self.lines: tuple[FloatArray, ...] = ()
+        if isinstance(contact.master, Face):
+            master, opposite = problem.body(contact.master.body), contact.master.face
+            self.master = FaceArrays(numbering.patch_arrays(master), "uvw".index(opposite[0]) + 1, int(opposite[1]))
+            self.lines = tuple(direction.boundaries for direction in master.patch.face_directions(opposite))
         self._axis, self._end = "uvw".index(face[0]) + 1, int(face[1])
         self.directions = body.patch.face_directions(face)
         across = "uvw".index(face[0])
@@ -55,7 +67,7 @@ class SlaveFace:
 
     def gauss(self) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
         """Tables at the contact's Gauss points: control points by element, values, derivatives, reference areas."""
-        nodes, values, slopes, area = _bindings.slave_tables(self._patch, self._axis, self._end, self.contact.quadrature, self._reference)
+        nodes, values, slopes, area = _bindings.slave_tables(self._patch, self._axis, self._end, self.contact.quadrature, self.reference)
         return np.ascontiguousarray(self.within[nodes]), values, slopes, area
 
     def at(self, coordinates: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:
@@ -65,5 +77,5 @@ class SlaveFace:
 
     def areas(self, nodes: IntArray, slopes: FloatArray) -> FloatArray:
         """Reference area per parameters of tables at some points, shape (m,)."""
-        first, second = np.einsum("mal,mlx->amx", slopes, self._reference[self.point[nodes]])
+        first, second = np.einsum("mal,mlx->amx", slopes, self.reference[self.point[nodes]])
         return np.asarray(np.linalg.norm(np.cross(first, second), axis=1))

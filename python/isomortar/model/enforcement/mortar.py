@@ -9,6 +9,7 @@ from isomortar._bindings import FunctionArrays, SlaveArrays
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model.enforcement.face import SlaveFace
 from isomortar.model.enforcement.side import SlaveSide
+from isomortar.model.enforcement.subcells import Subcells
 
 
 class MortarSide(SlaveSide):
@@ -26,7 +27,7 @@ class MortarSide(SlaveSide):
 
 def side(face: SlaveFace) -> SlaveSide:
     """A constraint a control point (theory 10.1)."""
-    nodes, values, slopes, area = face.gauss()
+    nodes, values, slopes, area = Subcells(face).gauss() if face.contact.subcells else face.gauss()
     count = len(face.point)
     functions = FunctionArrays(nodes, values, count)
     arrays = SlaveArrays(functions, functions, area, face.point, slopes, face.outward)

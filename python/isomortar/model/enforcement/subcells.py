@@ -1,0 +1,91 @@
+"""Cells of the slave's contact elements, cut where knot lines of the master cross them: quadrature that sees the master (theory 10.9)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from isomortar import _bindings
+from isomortar._bindings import SlaveArrays
+from isomortar.geometry.patch import FloatArray, IntArray
+from isomortar.model import constants
+from isomortar.model.enforcement.face import SlaveFace, grid
+
+
+class Subcells:
+    """The contact elements of a slave face, cut again and again (theory 10.9).
+
+    Parameters
+    ----------
+    face : SlaveFace
+        Its master is a face.
+
+    Attributes
+    ----------
+    low, high : ndarray, shape (cells, 2)
+        Bounds of the cells by the face's coordinates.
+    """
+
+    def __init__(self, face: SlaveFace) -> None:
+        self._face = face
+        first, second = (direction.boundaries for direction in face.directions)
+        self.low, self.high = grid(first[:-1], second[:-1]), grid(first[1:], second[1:])
+        self._margin = constants.CELL_MARGIN * (self.high - self.low)
+        for _ in range(face.contact.subcells):
+            self._cut(0)
+            self._cut(1)
+
+    def gauss(self) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
+        """Tables at the cells' Gauss points: control points by cell, values, derivatives, reference areas."""
+        (u, du), (v, dv) = (np.polynomial.legendre.leggauss(count) for count in self._face.contact.quadrature)
+        at, weights = 0.5 * (1.0 + grid(u, v)), 0.25 * np.prod(grid(du, dv), axis=1)
+        length = self.high - self.low
+        coordinates = (self.low[:, None] + length[:, None] * at).reshape(-1, 2)
+        nodes, values, slopes = self._face.at(coordinates)
+        area = (np.prod(length, axis=1)[:, None] * weights).ravel() * self._face.areas(nodes, slopes)
+        return np.ascontiguousarray(nodes[:: len(weights)]), values, slopes, area
+
+    def _cut(self, axis: int) -> None:
+        """Cut cells across a direction where the master's element changes along their middle, else along their edges (theory 10.9)."""
+        at = np.full(len(self.low), np.nan)
+        for line in constants.CELL_LINES:
+            left = np.isnan(at)
+            at[left] = self._crossing(axis, self.low[left] + self._margin[left], self.high[left] - self._margin[left], line)
+        here = ~np.isnan(at)
+        low, high = self.low[here].copy(), self.high.copy()
+        low[:, axis] = high[here, axis] = at[here]
+        self.low, self.high = np.concatenate([self.low, low]), np.concatenate([high, self.high[here]])
+        self._margin = np.concatenate([self._margin, self._margin[here]])
+
+    def _crossing(self, axis: int, low: FloatArray, high: FloatArray, line: float) -> FloatArray:
+        """Where the element below a line of each box changes next to its middle (theory 10.9), by halving; NaN where it does not."""
+        middle = low + line * (high - low)
+        middle[:, axis] = 0.5 * (low + high)[:, axis]
+        start, end = middle.copy(), middle.copy()
+        start[:, axis], end[:, axis] = low[:, axis], high[:, axis]
+        below = self._elements(middle)
+        before, after = (np.any(self._elements(one) != below, axis=1) for one in (start, end))
+        changes = before | after
+        near, far, below = middle[changes], np.where(before[:, None], start, end)[changes], below[changes]
+        for _ in range(constants.CELL_HALVINGS):
+            between = 0.5 * (near + far)
+            same = np.all(self._elements(between) == below, axis=1)
+            near[same], far[~same] = between[same], between[~same]
+        found = np.full(len(low), np.nan)
+        found[changes] = 0.5 * (near + far)[:, axis]
+        return found
+
+    def _elements(self, coordinates: FloatArray) -> IntArray:
+        """Elements of the master below places of the face, shape (m, 2); -1 beside it."""
+        count = len(coordinates)
+        if not count:
+            return np.zeros((0, 2), dtype=np.int32)
+        master, reference = self._face.master, self._face.reference
+        assert master is not None
+        nodes, values, _ = self._face.at(coordinates)
+        places = np.einsum("ma,max->mx", values, reference[self._face.point[nodes]])
+        points = SlaveArrays.of_points(len(reference) + np.arange(count, dtype=np.int32))
+        positions = np.concatenate([reference, places])
+        feet = _bindings.project_points(points, master, positions, np.zeros((count, 2)), np.zeros(count, dtype=np.int32))
+        beyond = [constants.ON_LINE * np.ptp(lines) for lines in self._face.lines]
+        below = [np.searchsorted(self._face.lines[i], feet.xi[:, i] + beyond[i], side="right") for i in (0, 1)]
+        return np.where(feet.found[:, None] != 0, np.stack(below, axis=1), -1)

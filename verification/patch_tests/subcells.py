@@ -1,0 +1,90 @@
+"""Quadrature that sees the master: cells of the slave's elements, cut where knot lines of the master cross them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from patch_tests.contact import ORDERS, TILTS, errors, nested_bounds, problem
+
+from isomortar.geometry.patch import FloatArray
+from isomortar.harness import Bound, case
+from isomortar.harness.cases import Tier
+from isomortar.model.enforcement import SlaveFace
+from isomortar.model.enforcement.subcells import Subcells
+from isomortar.model.entities import Problem
+from isomortar.model.numbering import Numbering
+
+#: Master elements on the three of the slave: up to three knot lines cross one, nowhere where halving would find them.
+MASTER_ELEMENTS = 7
+#: Enough for these: a cut each way leaves half of the lines on either side.
+SUBCELLS = 2
+#: Cuts after which cells over an oblique mesh are compared.
+FEW, MANY = 3, 5
+#: The slave of oblique meshes is turned by so many degrees, about its middle, and is this much smaller than its master.
+TURN, SHARE = 20.0, 0.6
+
+
+def tier(slave_order: int, master_order: int, tilt: float) -> Tier:
+    """Equal orders and the first with the third stand for the others at the gate."""
+    shown = slave_order == master_order <= 4 or {slave_order, master_order} == {1, 3}
+    return "gate" if shown and tilt == TILTS[-1] else "nightly"
+
+
+@case(
+    claim="With contact elements cut along the master's knot lines a uniform pressure passes a non-matching interface, to round-off.",
+    tier=tier,
+    grid={"slave_order": ORDERS, "master_order": ORDERS, "tilt": TILTS},
+    bounds=nested_bounds,
+)
+def uniform_pressure_in_cells(slave_order: int, master_order: int, tilt: float) -> dict[str, float]:
+    """Error of the pressure field; as many points a cell as the product of both sides' functions needs."""
+    given = problem(slave_order, master_order, tilt, (slave_order + master_order) // 2 + 1, MASTER_ELEMENTS)
+    contact = replace(given.contacts[0], subcells=SUBCELLS)
+    settings = replace(given.settings, measures=())  # a tangent for every solve: the last one goes far below the tolerance
+    return {"pressure": errors(replace(given, contacts=(contact,), settings=settings)).field}
+
+
+def rotation() -> FloatArray:
+    """By which the slave of oblique meshes is turned."""
+    angle = np.deg2rad(TURN)
+    return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+
+
+def turned(subcells: int) -> Problem:
+    """The lower block's upper face as a master of linear elements, and a smaller slave on it, turned."""
+    given = problem(1, 1, 0.0, 2, MASTER_ELEMENTS)
+    contact = replace(given.contacts[0], subcells=subcells)
+    slave = given.body(contact.slave.body)
+    points = slave.patch.control_points.copy()
+    points[:, :2] = 0.5 + SHARE * (points[:, :2] - 0.5) @ rotation().T
+    moved = replace(slave, patch=replace(slave.patch, control_points=points))
+    return replace(given, bodies=tuple(moved if body is slave else body for body in given.bodies), contacts=(contact,))
+
+
+def crossed(subcells: int) -> tuple[float, float]:
+    """Share of the face in cells that lie over several elements of the master; error of the sum of all areas."""
+    given = turned(subcells)
+    cells = Subcells(SlaveFace(given.contacts[0], given, Numbering(given)))
+    line = np.linspace(1e-3, 1.0 - 1e-3, 9)
+    at = np.stack(np.meshgrid(line, line), axis=-1).reshape(-1, 2)
+    places = 0.5 + SHARE * (cells.low[:, None] + (cells.high - cells.low)[:, None] * at - 0.5) @ rotation().T
+    below = np.floor(MASTER_ELEMENTS * places)
+    several = np.any(below != below[:, :1], axis=(1, 2))
+    areas = np.prod(cells.high - cells.low, axis=1)
+    return float(areas[several].sum()), abs(float(cells.gauss()[3].sum()) / SHARE**2 - 1.0)
+
+
+@case(
+    claim="Over an oblique mesh cells fill the face, and close in on the master's knot lines.",
+    bounds={
+        "areas": Bound(at_most=1e-13, reason="round-off: cells do not overlap, and leave nothing out"),
+        "left": Bound(
+            at_most=0.75 ** (MANY - FEW), reason="theory: of the four parts of a cell that a line crosses one at least lies beside it"
+        ),
+    },
+)
+def cells_over_an_oblique_mesh() -> dict[str, float]:
+    """Error of the sum of areas; what two more cuts leave of the area of cells over several elements of the master."""
+    few, many = crossed(FEW), crossed(MANY)
+    return {"areas": max(few[1], many[1]), "left": many[0] / few[0]}
