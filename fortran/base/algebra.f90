@@ -11,7 +11,7 @@ module isomortar_base_algebra
 
 contains
 
-  !> Vector product a x b.
+  !> Vector product `a` x `b`.
   pure function cross(a, b) result(c)
     real(wp), intent(in) :: a(3), b(3)
     real(wp) :: c(3)
@@ -21,7 +21,7 @@ contains
     c(3) = a(1) * b(2) - a(2) * b(1)
   end function cross
 
-  !> Determinant of a 3x3 matrix.
+  !> Determinant of a 3x3 matrix `a`.
   pure function determinant(a) result(d)
     real(wp), intent(in) :: a(3, 3)
     real(wp) :: d
@@ -29,7 +29,7 @@ contains
     d = dot_product(a(:, 1), cross(a(:, 2), a(:, 3)))
   end function determinant
 
-  !> Inverse of a 3x3 matrix whose determinant is known.
+  !> Inverse of a 3x3 matrix `a` whose determinant, `det`, is known.
   pure function inverse(a, det) result(b)
     real(wp), intent(in) :: a(3, 3)
     real(wp), intent(in) :: det
@@ -41,7 +41,7 @@ contains
     b(3, :) = cross(a(:, 1), a(:, 2)) * scale
   end function inverse
 
-  !> Determinant of a 2x2 matrix.
+  !> Determinant of a 2x2 matrix `a`.
   pure function determinant2(a) result(d)
     real(wp), intent(in) :: a(2, 2)
     real(wp) :: d
@@ -49,7 +49,7 @@ contains
     d = a(1, 1) * a(2, 2) - a(1, 2) * a(2, 1)
   end function determinant2
 
-  !> Inverse of a 2x2 matrix.
+  !> Inverse of a 2x2 matrix `a`.
   pure function inverse2(a) result(b)
     real(wp), intent(in) :: a(2, 2)
     real(wp) :: b(2, 2)
@@ -61,7 +61,7 @@ contains
     b = b / determinant2(a)
   end function inverse2
 
-  !> Trace of a 3x3 matrix.
+  !> Trace of a 3x3 matrix `a`.
   pure function trace(a) result(t)
     real(wp), intent(in) :: a(3, 3)
     real(wp) :: t
@@ -69,7 +69,7 @@ contains
     t = a(1, 1) + a(2, 2) + a(3, 3)
   end function trace
 
-  !> ln(1 + y) without losing the digits of a small y (theory 1.5, Kahan's correction of the sum), in every mode of rounding.
+  !> ln(1 + `y`) without losing the digits of a small `y` (theory 1.5, Kahan's correction of the sum), in every mode of rounding.
   elemental function log1p(y) result(r)
     real(wp), intent(in) :: y
     real(wp) :: r
@@ -84,7 +84,7 @@ contains
     end if
   end function log1p
 
-  !> form += scale * left right^T.
+  !> Add a number, `scale`, times the product of `left` (rows) and the transpose of `right` (columns) to `form` (rows, columns).
   pure subroutine add_product(scale, left, right, form)
     real(wp), intent(in) :: scale, left(:), right(:)
     real(wp), intent(inout) :: form(:, :)
@@ -95,7 +95,7 @@ contains
     end do
   end subroutine add_product
 
-  !> The first of some control points whose position is not finite; 0 where there is none.
+  !> The first of some control points, `points` (number), whose place in `positions` (3, control points) is not finite; 0: none.
   pure integer function first_not_finite(positions, points) result(point)
     real(wp), intent(in) :: positions(:, :)
     integer, intent(in) :: points(:)

@@ -13,7 +13,7 @@ module isomortar_base_contract
 
 contains
 
-  !> What a contract names; never called.
+  !> What a contract names; never called. `holds`: whether it is kept. `what`: "procedure: condition in words".
   pure subroutine require(holds, what)
     logical, intent(in) :: holds
     character(*), intent(in) :: what

@@ -14,6 +14,7 @@ module isomortar_base_contract
 contains
 
   !> End with the words of a contract unless it holds.
+  !> `holds`: whether the contract is kept. `what`: "procedure: condition in words".
   pure subroutine require(holds, what)
     logical, intent(in) :: holds
     character(*), intent(in) :: what

@@ -17,20 +17,21 @@ module isomortar_base_predicate
 
 contains
 
-  !> Whether forces, shape (3, points), have none as their sum.
+  !> Whether `forces` (3, points) have none as their sum.
   pure logical function is_balanced(forces)
     real(wp), intent(in) :: forces(:, :)
 
     is_balanced = .not. any(abs(sum(forces, 2)) > slack * sum(abs(forces)))
   end function is_balanced
 
-  !> Whether a number is one of 1 .. last.
+  !> Whether `number` is one of 1 .. `last`.
   elemental logical function is_index(number, last)
     integer, intent(in) :: number, last
 
     is_index = number >= 1 .and. number <= last
   end function is_index
 
+  !> Whether `start` (rows + 1) is that of compressed rows with so many `entries`; of 32 bits.
   pure logical function is_compressed_narrow(start, entries) result(is)
     integer(int32), intent(in) :: start(:)
     integer, intent(in) :: entries
@@ -38,6 +39,7 @@ contains
     is = is_compressed_wide(int(start, int64), entries)
   end function is_compressed_narrow
 
+  !> The same of `start` (rows + 1) and `entries`; of 64 bits.
   pure logical function is_compressed_wide(start, entries) result(is)
     integer(int64), intent(in) :: start(:)
     integer, intent(in) :: entries
@@ -46,7 +48,7 @@ contains
     if (is) is = start(1) == 0 .and. start(size(start)) == entries .and. all(start(2:) >= start(:size(start) - 1))
   end function is_compressed_wide
 
-  !> Whether each of 0 .. n - 1 is once among n numbers.
+  !> Whether each of 0 .. n - 1 is once among `numbers` (n).
   pure logical function is_permutation(numbers) result(is)
     integer(int64), intent(in) :: numbers(:)
     logical :: met(0:size(numbers) - 1)
@@ -61,28 +63,28 @@ contains
     is = all(met)
   end function is_permutation
 
-  !> Whether a matrix is its transpose.
+  !> Whether `matrix` (n, n) is its transpose.
   pure logical function is_symmetric(matrix)
     real(wp), intent(in) :: matrix(:, :)
 
     is_symmetric = .not. any(abs(matrix - transpose(matrix)) > slack * maxval(abs(matrix)))
   end function is_symmetric
 
-  !> Whether a vector has length one.
+  !> Whether `vector` (components) has length one.
   pure logical function is_unit(vector)
     real(wp), intent(in) :: vector(:)
 
     is_unit = .not. abs(norm2(vector) - 1.0_wp) > slack
   end function is_unit
 
-  !> Whether numbers have a sum.
+  !> Whether `numbers` (any) have the sum `total`.
   pure logical function sums_to(numbers, total)
     real(wp), intent(in) :: numbers(:), total
 
     sums_to = .not. abs(sum(numbers) - total) > slack * (sum(abs(numbers)) + abs(total))
   end function sums_to
 
-  !> Whether a number is between two others, or beyond them by a share of their distance at most.
+  !> Whether `number` is between `low` and `high`, or beyond them by at most `share` of their distance.
   elemental logical function within(number, low, high, share)
     real(wp), intent(in) :: number, low, high, share
 

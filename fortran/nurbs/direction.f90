@@ -1,4 +1,6 @@
 !> One parametric direction of a patch: elements, and the functions that do not vanish on each of them.
+!>
+!> - `u`: coordinate, P. `element`: of the direction, from 1.
 module isomortar_nurbs_direction
   use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
@@ -31,7 +33,8 @@ module isomortar_nurbs_direction
 
 contains
 
-  !> A direction from its knots. The knots have been validated by the caller.
+  !> A direction of a `family` (family_nurbs, family_lagrange) and `order` from its `knots` (knots), as `direction_t` has
+  !> them, P. The knots have been validated by the caller.
   pure function new_direction(family, order, knots) result(self)
     integer, intent(in) :: family, order
     real(wp), intent(in) :: knots(:)
@@ -58,7 +61,7 @@ contains
     if (contracts) call require(self%first(self%elements) + order == self%count - 1, "new_direction: elements end at the end")
   end function new_direction
 
-  !> The element that holds coordinate u; the one above where u is a boundary, the last one at the end.
+  !> The element that holds coordinate `u`; the one above where `u` is a boundary, the last one at the end.
   pure function element_at(self, u) result(element)
     type(direction_t), intent(in) :: self
     real(wp), intent(in) :: u
@@ -81,7 +84,7 @@ contains
     if (contracts) call require(element == self%elements .or. .not. u > self%boundary(element), "element_at: u is not above it")
   end function element_at
 
-  !> Whether functions are only continuous from element to element + 1 (theory 2.9). From the last one on, at a seam, they are:
+  !> Whether functions are only continuous from `element` to the next (theory 2.9). From the last one on, at a seam, they are:
   !> knots are open.
   pure logical function is_kink(self, element)
     type(direction_t), intent(in) :: self
@@ -92,7 +95,8 @@ contains
     if (.not. is_kink) is_kink = self%first(element + 1) - self%first(element) >= self%order
   end function is_kink
 
-  !> The order + 1 functions of an element at u, and their derivatives: values(j, k) is the k-th derivative.
+  !> The order + 1 functions of an `element` at `u`, and so many `derivatives`: `values`(j, k) is the k-th derivative of function
+  !> j, 1/P^k.
   pure subroutine basis(self, element, u, derivatives, values)
     type(direction_t), intent(in) :: self
     integer, intent(in) :: element

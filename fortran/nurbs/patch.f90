@@ -36,7 +36,7 @@ contains
     element_count = product(self%direction%elements)
   end function element_count
 
-  !> Element numbers by direction of element number e (from 1, first direction fastest).
+  !> Element numbers by direction of element number `e` (from 1, first direction fastest).
   pure function element_of(self, e) result(place)
     type(patch_t), intent(in) :: self
     integer, intent(in) :: e
@@ -49,6 +49,9 @@ contains
   end function element_of
 
   !> Local numbers (from 1) of the control points of an element, first direction fastest.
+  !>
+  !> - `place`: the element by direction, from 1.
+  !> - `nodes` (functions of an element): these numbers.
   pure subroutine element_nodes(self, place, nodes)
     type(patch_t), intent(in) :: self
     integer, intent(in) :: place(3)
@@ -73,6 +76,9 @@ contains
   end subroutine element_nodes
 
   !> Functions and quadrature of every element of one direction.
+  !>
+  !> - `points`, `derivatives`: Gauss points of an element, and how often functions are differentiated.
+  !> - `rule` (elements): what comes of it. `direction`: of the patch.
   pure subroutine line_rule(direction, points, derivatives, rule)
     type(direction_t), intent(in) :: direction
     integer, intent(in) :: points, derivatives

@@ -1,4 +1,10 @@
 !> Contact patches: a face of a volume patch, with derivatives to order three.
+!>
+!> - `place`: an element by direction, from 1. `xi`: coordinates, P.
+!> - `low`, `high`, `length`: lower and upper bounds of an element, and what is between them, P.
+!> - `nodes` (functions of an element): its control points, numbered within the surface, from 1.
+!> - `positions` (3, control points): of all control points, L.
+!> - `net` (4, functions of u, functions of v): control points of an element times their weights, L, and these.
 module isomortar_nurbs_surface
   use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
@@ -35,7 +41,7 @@ module isomortar_nurbs_surface
 
 contains
 
-  !> The face of a patch: axis 1..3 is the direction that is constant, at its start (end = 0) or end (end = 1) (theory 3.2).
+  !> The face of a `patch`: `axis` 1..3 is the direction that is constant, at its start (`end` = 0) or end (`end` = 1) (theory 3.2).
   pure function face_of(patch, axis, end) result(self)
     type(patch_t), intent(in) :: patch
     integer, intent(in) :: axis, end
@@ -128,7 +134,8 @@ contains
     length = length - low
   end subroutine element_span
 
-  !> Share of a step up to the first bound of an element that it comes to, at most one, and the coordinate across that.
+  !> The `share` of a `step`, P, from `xi` up to the first bound of an element that it comes to, at most one, and the coordinate
+  !> `across` it.
   pure subroutine first_bound(xi, step, low, length, share, across)
     real(wp), intent(in) :: xi(2), step(2), low(2), length(2)
     real(wp), intent(out) :: share
@@ -147,7 +154,7 @@ contains
     end do
   end subroutine first_bound
 
-  !> A difference of coordinates, the shortest way round in closed directions (theory 3.20).
+  !> A `difference` of coordinates, P, the shortest way round in closed directions (theory 3.20).
   pure function shortest_way(self, difference) result(way)
     type(surface_t), intent(in) :: self
     real(wp), intent(in) :: difference(2)
@@ -169,7 +176,7 @@ contains
     surface_element_count = self%direction(1)%elements * self%direction(2)%elements
   end function surface_element_count
 
-  !> Element numbers by direction of surface element e (from 1, first direction fastest).
+  !> Element numbers by direction of surface element `e` (from 1, first direction fastest).
   pure function surface_element_of(self, e) result(place)
     type(surface_t), intent(in) :: self
     integer, intent(in) :: e
@@ -216,7 +223,7 @@ contains
     if (contracts) call require(all(net(4, :, :) > 0.0_wp), "homogeneous_net: weights are positive")
   end subroutine homogeneous_net
 
-  !> Point of an element and its derivatives to order 2 (columns: derivative_column), from its net (theory 2.5).
+  !> Point of an element and its `derivatives` to order 2, L/P^order (columns: derivative_column), from its `net` (theory 2.5).
   pure subroutine surface_point(self, place, net, xi, derivatives)
     type(surface_t), intent(in) :: self
     integer, intent(in) :: place(2)
@@ -253,8 +260,8 @@ contains
     end associate
   end subroutine surface_point
 
-  !> Rational functions of an element at xi and their partial derivatives up to `order` (columns: derivative_column) (theory 2.4).
-  !> Quotient rule on the homogeneous form, Piegl and Tiller 1997, Section 4.5.
+  !> Rational functions of an element at `xi` and their partial derivatives up to `order` (columns: derivative_column) (theory 2.4):
+  !> `values` (functions of an element, derivatives). Quotient rule on the homogeneous form, Piegl and Tiller 1997, Section 4.5.
   pure subroutine surface_basis(self, place, nodes, xi, order, values)
     type(surface_t), intent(in) :: self
     integer, intent(in) :: place(2), nodes(:)

@@ -4,6 +4,8 @@
 !> parameters. Every contraction takes the first index of an array away and appends the new one as the last, so that after
 !> three of them the indices have gone round. In integrals, of the kinds that are left on the way the first is the value and the
 !> second the derivative along the direction that is next; in interpolation the kinds are those met so far.
+!>
+!> - `u`, `v`, `w`: functions of the three directions in an element, or their pairs, at its points. `fields`: how many fields.
 module isomortar_nurbs_tensor_product
   use isomortar_base_kinds, only: wp
   use isomortar_nurbs_patch, only: line_rule_t
@@ -24,7 +26,8 @@ module isomortar_nurbs_tensor_product
 
 contains
 
-  !> Fields and their derivatives at all points: from (u, v, w, field) of the control points to (field, points, kind).
+  !> Fields and their derivatives at all points: from `coefficients` (u, v, w, field) of the control points to `values` (field,
+  !> points, kind).
   pure subroutine interpolate(u, v, w, fields, coefficients, values)
     type(line_rule_t), intent(in) :: u, v, w
     integer, intent(in) :: fields
@@ -66,7 +69,8 @@ contains
     end do
   end subroutine contract
 
-  !> Sum over points and kinds of densities times functions: from (points, field, kind) to (field, u, v, w) of the control points.
+  !> Sum over points and kinds of `densities` times functions: from (points, field, kind) to `sums` (field, u, v, w) of the
+  !> control points.
   pure subroutine integrate(u, v, w, fields, densities, sums)
     type(line_rule_t), intent(in) :: u, v, w
     integer, intent(in) :: fields
@@ -101,7 +105,7 @@ contains
     end associate
   end subroutine gather_line
 
-  !> Tables of the elements of a direction for `integrate_pairs`.
+  !> The `tables` (elements) for `integrate_pairs` of the elements of a direction, whose functions are `lines` (elements).
   pure subroutine line_pairs(lines, tables)
     type(line_rule_t), intent(in) :: lines(:)
     type(line_pairs_t), allocatable, intent(out) :: tables(:)
@@ -140,7 +144,7 @@ contains
     end do
   end subroutine tabulate
 
-  !> Sum over points and kinds of densities times pairs of functions: from (points, field, kind, kind) to (field, u, v, w),
+  !> Sum over points and kinds of `densities` times pairs of functions: from (points, field, kind, kind) to `sums` (field, u, v, w),
   !> where each of u, v, w runs over pairs of functions, the first faster.
   pure subroutine integrate_pairs(u, v, w, fields, densities, sums)
     type(line_pairs_t), intent(in) :: u, v, w

@@ -37,9 +37,13 @@ contains
 
   !> Add internal forces and, where a pattern is given, the tangent of a body.
   !>
-  !> Blocks of the tangent are stored as (column component, row component, block). On failure `place` is the element
-  !> (from 1). `smallest_jacobian` is the least J met, of an
-  !> element folded initially the determinant of its map.
+  !> - `patch`, `material`: its mesh and its law. `points`: Gauss points of an element by direction.
+  !> - `positions` (3, control points), `references` (3, control points): of all control points, now and in the reference
+  !>   configuration, L.
+  !> - `residual` (3, control points): forces on all of them, F.
+  !> - `pattern`, `tangent` (column component, row component, blocks): pattern of the tangent, and its blocks, F/L.
+  !> - `smallest_jacobian`: least J met; of an element folded initially the determinant of its map.
+  !> - `status`, `place`: how it ended (isomortar_base_status), and on failure the element, from 1.
   subroutine add_body(patch, points, material, positions, references, residual, smallest_jacobian, status, place, &
       pattern, tangent)
     type(patch_t), intent(in) :: patch

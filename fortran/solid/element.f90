@@ -1,4 +1,8 @@
 !> Residual and tangent of one solid element, by sum factorisation.
+!>
+!> - `u`, `v`, `w`: functions of the three directions in the element, or their pairs, at its Gauss points.
+!> - `weight` (control points): weights of its control points.
+!> - `samples`: everything at its Gauss points. `material`: its law.
 module isomortar_solid_element
   use isomortar_base_algebra, only: determinant, inverse
   use isomortar_base_contract, only: contracts, require
@@ -28,7 +32,9 @@ module isomortar_solid_element
 contains
 
   !> Evaluate an element at all its quadrature points (theory 1.3, 2.6, 2.8).
-  !> `positions` and `references` are its control points, shape (3, control points).
+  !>
+  !> - `positions` (3, control points), `references` (3, control points): its own, now and in the reference configuration, L.
+  !> - `status`: whether it is folded (isomortar_base_status).
   pure subroutine sample_element(u, v, w, weight, positions, references, samples, status)
     type(line_rule_t), intent(in) :: u, v, w
     real(wp), intent(in) :: weight(:), positions(:, :), references(:, :)
@@ -102,7 +108,7 @@ contains
     allocate (samples%gradient(m, 3, 4), samples%volume(m), samples%state(m))
   end subroutine reserve
 
-  !> Internal forces, shape (3, control points) (theory 1.7).
+  !> Internal forces `residual` (3, control points), F (theory 1.7).
   pure subroutine element_residual(u, v, w, weight, samples, material, residual)
     type(line_rule_t), intent(in) :: u, v, w
     real(wp), intent(in) :: weight(:)
@@ -123,8 +129,8 @@ contains
     if (contracts) call require(is_balanced(residual), "element_residual: forces are in balance")
   end subroutine element_residual
 
-  !> The tangents K_ik of `component_pairs` without the weights of the control points: (pair, u, v, w), where each of u, v, w
-  !> runs over pairs of functions (theory 1.8).
+  !> The tangents K_ik, F/L, of `component_pairs` without the weights of the control points: `tangent` (numbers), as (pair, u, v,
+  !> w), where each of u, v, w runs over pairs of functions (theory 1.8).
   pure subroutine element_tangent(u, v, w, samples, material, tangent)
     type(line_pairs_t), intent(in) :: u, v, w
     type(samples_t), intent(in) :: samples

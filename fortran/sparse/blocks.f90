@@ -1,5 +1,8 @@
 !> Compressed rows of 3x3 blocks: places are found by marking a row once, never by searching, and `lacks` tells of those
 !> that there are not.
+!>
+!> - `pattern`, `row`: a pattern, and a row of it, from 1.
+!> - `place` (columns): of the row that was marked last the block at each column, from 1; 0: none.
 module isomortar_sparse_blocks
   use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
@@ -19,7 +22,7 @@ module isomortar_sparse_blocks
 
 contains
 
-  !> Write the place of each block of a row at its column: place(column) = block. Other columns keep what they hold, zero at first.
+  !> Write the place of each block of a row at its column. Other columns keep what they hold, zero at first.
   pure subroutine mark_row(pattern, row, place)
     type(pattern_t), intent(in) :: pattern
     integer, intent(in) :: row
@@ -32,7 +35,7 @@ contains
     end do
   end subroutine mark_row
 
-  !> Whether the row that was marked last has no block at one of some columns.
+  !> Whether the row that was marked last has no block at one of some `columns` (number).
   pure function lacks(pattern, row, place, columns)
     type(pattern_t), intent(in) :: pattern
     integer, intent(in) :: row, place(:), columns(:)

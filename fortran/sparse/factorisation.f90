@@ -5,6 +5,10 @@
 !> draws from the random numbers of the whole process). `factorise` and `solve` touch their own slot only and may run at
 !> the same time for different handles: the table therefore never moves in memory, and what they call is `recursive`
 !> (locals of their own; without it Fortran 2008 lets them be shared).
+!>
+!> - `handle`: a pattern that was analysed, and the factors of the last matrix of that pattern.
+!> - `values` (entries): entries of the matrix, in the order of the pattern.
+!> - `status`, `place`: how it ended (isomortar_base_status); on failure UMFPACK's return code, else -1.
 module isomortar_sparse_factorisation
   use, intrinsic :: iso_c_binding, only: c_associated, c_double, c_int64_t
   use isomortar_base_status, only: status_ok, status_singular, status_stale_handle, status_out_of_memory, &
@@ -30,18 +34,17 @@ module isomortar_sparse_factorisation
 
 contains
 
-  !> Order and analyse a pattern, and take a slot for it.
+  !> Order and analyse a pattern, and take a slot for it; where all are taken, `place` is their number.
+  !>
+  !> - `indptr` (unknowns + 1), `indices` (entries): compressed rows, from 0, columns increasing within a row.
+  !> - `by_metis`: METIS's nested dissection; otherwise AMD.
+  !> - `narrow`: whether indices of 32 bits are in use: for a factorisation that is estimated at no more than `narrow_limit` bytes.
   subroutine analyse(indptr, indices, by_metis, narrow_limit, handle, narrow, place, status)
-    !> Compressed rows, 0-based, columns increasing within a row.
     integer(c_int64_t), contiguous, intent(in) :: indptr(:), indices(:)
-    !> METIS's nested dissection; otherwise AMD.
     logical, intent(in) :: by_metis
-    !> Most bytes of a factorisation, as estimated, for indices of 32 bits.
     real(c_double), intent(in) :: narrow_limit
     integer(c_int64_t), intent(out) :: handle
-    !> Whether indices of 32 bits are in use.
     logical, intent(out) :: narrow
-    !> UMFPACK's return code when that is the failure, the number of slots when all are taken; else -1.
     integer(c_int64_t), intent(out) :: place
     integer, intent(out) :: status
 
@@ -66,18 +69,17 @@ contains
 
   !> Factorise a matrix of the pattern analysed; takes the place of the factors before.
   !>
-  !> With a reciprocal condition below `rcond_min` (or none) the status is singular, and no factors are kept.
+  !> With a reciprocal condition below `rcond_min` (or none) the status is singular, no factors are kept, and `place` is the unknown
+  !> (from 0) that is determined least.
+  !>
+  !> - `rcond`: estimate of the reciprocal condition: smallest over largest pivot.
+  !> - `flops`, `peak_bytes`, `factor_entries`: operations, peak memory (analysis included), entries of L and U.
   recursive subroutine factorise(handle, values, rcond_min, rcond, flops, peak_bytes, factor_entries, place, status)
     integer(c_int64_t), intent(in) :: handle
-    !> Entries in the order of the pattern.
     real(c_double), contiguous, intent(in) :: values(:)
-    !> Smallest reciprocal condition that passes for regular.
     real(c_double), intent(in) :: rcond_min
-    !> Estimate of the reciprocal condition: smallest over largest pivot.
     real(c_double), intent(out) :: rcond
-    !> Floating-point operations, peak memory (analysis included), entries of L and U.
     real(c_double), intent(out) :: flops, peak_bytes, factor_entries
-    !> The unknown (0-based) that is determined least when singular, UMFPACK's return code when that is the failure; else -1.
     integer(c_int64_t), intent(out) :: place
     integer, intent(out) :: status
 
@@ -112,16 +114,15 @@ contains
   end subroutine factorise
 
   !> Solve A x = b for several right-hand sides with the factors of the last `factorise`.
+  !>
+  !> - `b` (unknowns, right-hand sides), `x` (unknowns, right-hand sides): these, and their solutions.
+  !> - `refine`: most steps of iterative refinement.
   recursive subroutine solve(handle, values, b, refine, x, place, status)
     integer(c_int64_t), intent(in) :: handle
-    !> Entries of the matrix that was factorised.
     real(c_double), contiguous, intent(in) :: values(:)
-    !> Right-hand sides, shape (n, number).
     real(c_double), contiguous, intent(in) :: b(:, :)
-    !> Most steps of iterative refinement.
     integer, intent(in) :: refine
     real(c_double), contiguous, intent(out) :: x(:, :)
-    !> UMFPACK's return code when that is the failure; else -1.
     integer(c_int64_t), intent(out) :: place
     integer, intent(out) :: status
 

@@ -3,6 +3,8 @@
 !> Narrow indices are a tenth to an eighth faster; they cap the memory of a factorisation (matrix, fronts and factors) at 2 GiB.
 !> The matrix A comes in compressed rows (0-based). UMFPACK reads these as the compressed columns of the transpose, factorises that,
 !> and solves with the transpose of what it factorised: A x = b.
+!>
+!> - `values` (entries): entries of the matrix, in the order of the pattern. `code`: what UMFPACK returned.
 module isomortar_sparse_lu
   use, intrinsic :: iso_c_binding, only: c_double, c_int, c_int64_t, c_null_ptr, c_ptr
   use isomortar_base_contract, only: contracts, require
@@ -39,9 +41,11 @@ module isomortar_sparse_lu
 
 contains
 
-  !> Order and analyse a pattern. `code` is UMFPACK's.
+  !> Order and analyse a pattern.
   !>
-  !> Indices are narrow where the memory of a factorisation is estimated at no more than `narrow_limit` bytes.
+  !> - `indptr` (unknowns + 1), `indices` (entries): compressed rows, from 0, columns increasing within a row.
+  !> - `ordering`: UMFPACK's number of it.
+  !> - `narrow_limit`: indices are narrow where the memory of a factorisation is estimated at no more than so many bytes.
   subroutine order(self, indptr, indices, ordering, narrow_limit, code)
     type(lu_t), intent(inout) :: self
     integer(c_int64_t), contiguous, intent(in) :: indptr(:), indices(:)
@@ -103,7 +107,7 @@ contains
     end associate
   end subroutine order_wide
 
-  !> Factorise a matrix of the pattern; the factors take the place of those before. `info` and `code` are UMFPACK's.
+  !> Factorise a matrix of the pattern; the factors take the place of those before. `info` is what UMFPACK tells of it.
   recursive subroutine eliminate(self, values, info, code)
     type(lu_t), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: values(:)
@@ -120,7 +124,8 @@ contains
     end if
   end subroutine eliminate
 
-  !> Solve A x = b with the factors, and at most `refine` steps of iterative refinement; UMFPACK stops when they gain nothing.
+  !> Solve A x = b with the factors: `b` (unknowns), `x` (unknowns). At most `refine` steps of iterative refinement; UMFPACK stops
+  !> when they gain nothing.
   recursive subroutine substitute(self, values, b, refine, x, code)
     type(lu_t), intent(in) :: self
     real(c_double), contiguous, intent(in) :: values(:), b(:)

@@ -12,10 +12,15 @@ module isomortar_sparse_scatter
 
 contains
 
-  !> Where each entry of a matrix of 3x3 blocks goes in a compressed matrix: places(column, row, block), 0 where it is dropped.
+  !> Where each entry of a matrix of 3x3 blocks goes in a compressed matrix.
   !>
-  !> `row_of` and `column_of` number the rows and columns of the system (from 0; negative: dropped). With `transposed`, rows of the
-  !> source are columns of the system. `missing` is set where the system lacks an entry.
+  !> - `pattern`: of the matrix of blocks, the source.
+  !> - `row_of` (rows), `column_of` (columns): rows and columns of the system for those of the source, all from 0; negative:
+  !>   dropped.
+  !> - `transposed`: whether rows of the source are columns of the system.
+  !> - `system_start` (unknowns + 1), `system_column` (entries): compressed rows of the system, from 0.
+  !> - `places` (column, row, block): in the system, from 1; 0 where it is dropped.
+  !> - `missing`: whether the system lacks an entry.
   pure subroutine find_places(pattern, row_of, column_of, transposed, system_start, system_column, places, missing)
     type(pattern_t), intent(in) :: pattern
     integer(c_int), intent(in) :: row_of(0:), column_of(0:)
@@ -98,7 +103,8 @@ contains
     end do
   end subroutine find_transposed
 
-  !> values(places(k)) += source(k), where places(k) > 0.
+  !> Add each number of `source` (entries) to that of `values` (system entries) at its place, `places` (entries), from 1, where it
+  !> has one.
   pure subroutine add_values(places, source, values)
     integer(c_int64_t), intent(in) :: places(:)
     real(wp), intent(in) :: source(:)

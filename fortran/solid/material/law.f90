@@ -1,6 +1,8 @@
 !> What a material law has to answer at a quadrature point, and the deformation that it is asked about.
 !>
 !> A law is one file beside this one, with one entry in `isomortar_solid_material_table`. The element does not know which it serves.
+!>
+!> - `state`: the deformation.
 module isomortar_solid_material_law
   use isomortar_base_algebra, only: determinant, identity, log1p, trace
   use isomortar_base_contract, only: contracts, require
@@ -34,8 +36,8 @@ module isomortar_solid_material_law
   end type material_t
 
   abstract interface
-    !> P Fᵀ, force per reference area turned to the current configuration: of an objective law the Kirchhoff stress J sigma
-    !> (theory 1.6).
+    !> P Fᵀ, force per reference area turned to the current configuration: of an objective law the Kirchhoff stress J sigma,
+    !> `kirchhoff` (theory 1.6).
     pure subroutine stress_of(self, state, kirchhoff)
       import :: material_t, stretch_t, wp
       implicit none
@@ -44,8 +46,8 @@ module isomortar_solid_material_law
       real(wp), intent(out) :: kirchhoff(3, 3)
     end subroutine stress_of
 
-    !> a_ijkl = F_jJ (dP_iJ / dF_kL) F_lL as (j, l, pair of i and k): with spatial gradients g of control points a and b
-    !> K_ik = g_jᵃ a_ijkl g_lᵇ (theory 1.8).
+    !> a_ijkl = F_jJ (dP_iJ / dF_kL) F_lL as `moduli` (j, l, pair of i and k), force per area: with spatial gradients g of control
+    !> points a and b K_ik = g_jᵃ a_ijkl g_lᵇ (theory 1.8).
     pure subroutine tangent_of(self, state, moduli)
       import :: material_t, stretch_t, wp
       implicit none
@@ -57,7 +59,7 @@ module isomortar_solid_material_law
 
 contains
 
-  !> Stretch of the displacement gradient h = F - 1. J - 1 is summed from the invariants of h (theory 1.4).
+  !> Stretch of the displacement gradient `h` = F - 1. J - 1 is summed from the invariants of h (theory 1.4).
   pure subroutine stretch(h, self)
     real(wp), intent(in) :: h(3, 3)
     type(stretch_t), intent(out) :: self

@@ -1,4 +1,6 @@
 !> Neo-Hookean energies that split into volume and shape, W = U(J) + A2/2 (J^(-2/3) tr C - 3): what laws of that kind share.
+!>
+!> - `state`: the deformation. `spherical`: J U', force per area. `shear`: A2, the same.
 module isomortar_solid_material_split
   use isomortar_base_kinds, only: wp
   use isomortar_solid_material_law, only: component_pairs, stretch_t
@@ -9,7 +11,7 @@ module isomortar_solid_material_split
 
 contains
 
-  !> Kirchhoff stress J U' 1 + A2 J^(-2/3) dev b. `spherical` is J U' (theory 1.6).
+  !> Kirchhoff stress J U' 1 + A2 J^(-2/3) dev b, force per area: `stress` (theory 1.6).
   pure subroutine split_stress(state, spherical, shear, stress)
     type(stretch_t), intent(in) :: state
     real(wp), intent(in) :: spherical, shear
@@ -22,8 +24,8 @@ contains
     end do
   end subroutine split_stress
 
-  !> Moduli c1 delta_ij delta_kl + c2 delta_il delta_jk + c3 delta_ik b_jl - c4 (b_ij delta_kl + delta_ij b_kl).
-  !> `spherical` is J U', `slope` J (J U')' (theory 1.9, 1.10).
+  !> The `moduli` c1 delta_ij delta_kl + c2 delta_il delta_jk + c3 delta_ik b_jl - c4 (b_ij delta_kl + delta_ij b_kl), force per
+  !> area, as (j, l, pair of i and k). `slope` is J (J U')' (theory 1.9, 1.10).
   pure subroutine split_tangent(state, spherical, slope, shear, moduli)
     type(stretch_t), intent(in) :: state
     real(wp), intent(in) :: spherical, slope, shear

@@ -17,6 +17,9 @@ module isomortar_solid_material_table
 contains
 
   !> The law of a number with its parameters.
+  !>
+  !> - `law`, `parameters` (number): which one, and what it takes, A1 and A2, force per area.
+  !> - `material`: the law. `status`: whether there is one that takes so many (isomortar_base_status).
   subroutine material_of(law, parameters, material, status)
     integer, intent(in) :: law
     real(wp), intent(in) :: parameters(:)
