@@ -3,6 +3,10 @@
 !>
 !> A handle is a slot of a table and the generation that the slot was in when it was given out: one that was released is told from
 !> those after it.
+!>
+!> - `handle`: of what is kept. `status`: how it ended (isomortar_base_status).
+!> - `descriptor`, `patch`, `material`, `friction`, `slave`, `map`, `pattern`: what is kept; null where a handle does not stand
+!>   for it.
 module isomortar_api_descriptors
   use, intrinsic :: iso_c_binding, only: c_int64_t
   use isomortar_base_status, only: status_ok, status_out_of_memory, status_stale_handle

@@ -40,7 +40,7 @@ module isomortar_api_difference
 
 contains
 
-  !> Central difference (upper - lower) / (2 step), theory 9.4.
+  !> Central difference (`upper` - `lower`) / (2 `step`), theory 9.4.
   elemental function difference(upper, lower, step) result(slope)
     real(wp), intent(in) :: upper, lower, step
     real(wp) :: slope
@@ -49,6 +49,10 @@ contains
   end function difference
 
   !> The quantities at given positions and multipliers.
+  !> - `fixed`: what stays. `law`: with the multipliers.
+  !> - `positions` (3, control points): of all control points, L.
+  !> - `quantities`: what comes of it.
+  !> - `status`, `place`: how it ended (isomortar_base_status), and on failure the quadrature point, from 1.
   subroutine evaluate_contact(fixed, positions, law, quantities, status, place)
     type(fixed_t), intent(in) :: fixed
     real(wp), intent(in) :: positions(:, :)

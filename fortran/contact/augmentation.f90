@@ -1,4 +1,11 @@
 !> Control pressures and tractions of an augmented penalty law, and their derivatives as rows (theory 4).
+!>
+!> - `slave`, `control`, `law`: the slave side, its control quantities, and what is done with them.
+!> - `response`: what the law makes of them. `active` (test functions): whose conditions act.
+!> - `pattern`, `rows` (component, kind, blocks): pattern of the constraint rows, and these (isomortar_contact_rows).
+!> - `wide`: pattern of the derivatives of the multipliers by positions; `neighbours`: of test functions that share an element.
+!> - `trial` (component, trial traction, blocks): derivatives of the trial tractions by positions, F/(L^2 P).
+!> - `lacking`: a row of a pattern without one of the blocks, 0: none.
 module isomortar_contact_augmentation
   use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
@@ -49,7 +56,7 @@ module isomortar_contact_augmentation
 contains
 
   !> What the law makes of the control quantities, with the paper's slip sum if `summed`, whose field of control slips at the
-  !> quadrature points is `field_slip` (else zero).
+  !> quadrature points is `field_slip` (2, points), P (else zero).
   pure subroutine respond(slave, control, law, summed, response, field_slip)
     type(slave_t), intent(in) :: slave
     type(control_t), intent(in) :: control
@@ -165,7 +172,8 @@ contains
     end associate
   end subroutine apply_friction
 
-  !> Rows of the trial traction, "local" slip sum (theory 4.10): e_T (m_ab <R^I dxi^b> / w + dm_ab slip^b), shape (3, 2, blocks).
+  !> Rows of the trial traction, "local" slip sum (theory 4.10): e_T (m_ab <R^I dxi^b> / w + dm_ab slip^b); blocks are those of
+  !> `pattern`.
   pure subroutine trial_rows(control, law, active, pattern, rows, trial)
     type(control_t), intent(in) :: control
     type(law_t), intent(in) :: law
@@ -198,8 +206,7 @@ contains
   end subroutine trial_rows
 
   !> Rows of the trial traction (theory 4.10), the paper's slip sum: e_T / w^I (sum_J M_ab^IJ <R^J dxi^b> / w^J + <R^I da_ab
-  !> zeta^b>). `wide` is the pattern of the result, `neighbours` that of M^IJ. `lacking` is a row of them without one of the
-  !> blocks, 0: none.
+  !> zeta^b>). `wide` is the pattern of the result, `neighbours` that of M^IJ.
   pure subroutine trial_rows_summed(slave, control, law, active, pattern, rows, neighbours, wide, trial, lacking)
     type(slave_t), intent(in) :: slave
     type(control_t), intent(in) :: control
@@ -280,8 +287,8 @@ contains
     lacking = 0
   end subroutine pair_metric
 
-  !> Rows of the multipliers p, t_1, t_2 (theory 4.8, 4.9) on the pattern `wide` of the trial rows: result(component, multiplier,
-  !> block). `lacking` is a row of it without one of the blocks, 0: none.
+  !> Rows of the multipliers p, t_1, t_2 (theory 4.8, 4.9) on the pattern `wide` of the trial rows: `result` (component, multiplier,
+  !> block), F/L^3 and F/(L^2 P).
   pure subroutine multiplier_rows(control, response, pattern, rows, wide, trial, result, lacking)
     type(control_t), intent(in) :: control
     type(response_t), intent(in) :: response
@@ -321,8 +328,10 @@ contains
     lacking = 0
   end subroutine multiplier_rows
 
-  !> Add sum_I <R^I dg> Dp^I + <R^I ds^a> Dt_a^I (theory 4.8) to a matrix of blocks; `lacking` is a row without one of the blocks,
-  !> 0: none.
+  !> Add sum_I <R^I dg> Dp^I + <R^I ds^a> Dt_a^I (theory 4.8) to a matrix of blocks.
+  !>
+  !> - `changes` (component, multiplier, blocks): rows of the multipliers, on `wide`.
+  !> - `target_pattern`, `target` (column component, row component, blocks): that matrix, F/L.
   pure subroutine condense(active, pattern, rows, wide, changes, target_pattern, target, lacking)
     logical, intent(in) :: active(:)
     type(pattern_t), intent(in) :: pattern, wide, target_pattern

@@ -1,4 +1,6 @@
 !> Sums over slave quadrature points that share their control points: products of matrices, and where they are added.
+!>
+!> - `slave`, `map`: the slave side, and the gap map onto its master. `batch`: the sums.
 module isomortar_contact_batch
   use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
@@ -32,7 +34,9 @@ module isomortar_contact_batch
 
 contains
 
-  !> Make room for the quadrature points of an element.
+  !> Make room for the quadrature points of an element, of which there are `per_element`.
+  !>
+  !> - `vectors`, `kinds`: numbers of short vectors, and of kinds of constraint rows.
   pure subroutine reserve(slave, map, per_element, vectors, kinds, batch)
     type(slave_t), intent(in) :: slave
     class(gap_map_t), intent(in) :: map
@@ -46,7 +50,10 @@ contains
     if (map%bends) allocate (batch%second(n, 3, 3, vectors, per_element))
   end subroutine reserve
 
-  !> Add a quadrature point to a batch.
+  !> Add quadrature point `q` to a batch.
+  !>
+  !> - `slips`: whether its slip counts. `sample`: what bears on it.
+  !> - `field_slip`: field of control slips there, P. `field`: p, t_1, t_2 there, F/L^2 and F/(L P).
   pure subroutine add_sample(slave, map, q, slips, sample, field_slip, field, batch)
     type(slave_t), intent(in) :: slave
     class(gap_map_t), intent(in) :: map
@@ -122,8 +129,14 @@ contains
     second = reshape(matmul(sample%coefficients, reshape(by_vector, [vectors, 9 * vectors])), shape(second))
   end subroutine spread_geometric
 
-  !> Add the sums of a batch, in which control points bear and normals of nodes, to what these depend on; `lacking` is a row of a
-  !> pattern without one of the blocks, 0: none.
+  !> Add the sums of a batch, in which control points bear and normals of nodes, to what these depend on.
+  !>
+  !> - `normals`: normals of nodes. `points` (bearing): what bears, normals counted on from the control points.
+  !> - `nodes` (functions of an element), `active` (test functions): test functions of the element; which of all act.
+  !> - `row_pattern`, `rows` (component, kind, blocks): pattern of the constraint rows, and these (isomortar_contact_rows).
+  !> - `pattern`, `tangent` (column component, row component, blocks): pattern of the tangent, and this, F/L.
+  !> - `columns` (control points): to mark places of blocks in (isomortar_sparse_blocks), zero at first.
+  !> - `lacking`: a row of a pattern without one of the blocks, 0: none.
   pure subroutine scatter(normals, nodes, active, batch, points, row_pattern, pattern, columns, rows, tangent, lacking)
     type(normals_t), intent(in) :: normals
     integer, intent(in) :: nodes(:), points(:)

@@ -1,6 +1,10 @@
 !> Second pass over the slave quadrature points: contact forces, constraint rows and the geometric tangent.
 !>
 !> The rows are returned apart from what they are multiplied with, so that one pass serves every way of enforcing contact.
+!>
+!> - `slave`, `map`: the slave side, and the gap map onto its master.
+!> - `positions` (3, control points): of all control points, L. `projections`: feet of the quadrature points there.
+!> - `multipliers`: those that act.
 module isomortar_contact_blocks
   use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
@@ -20,7 +24,7 @@ module isomortar_contact_blocks
 
 contains
 
-  !> Add the contact forces r(d) = sum p^I <R^I dg> + sum t_a^I <R^I dxi^a> (theory 4.7).
+  !> Add the contact forces r(d) = sum p^I <R^I dg> + sum t_a^I <R^I dxi^a> (theory 4.7) to `forces` (3, control points), F.
   subroutine integrate_forces(slave, map, positions, projections, multipliers, forces)
     type(slave_t), intent(in) :: slave
     class(gap_map_t), intent(in) :: map
@@ -76,9 +80,12 @@ contains
 
   !> Add constraint rows and the geometric tangent <p Ddg> + <t_a Ddxi^a> (theory 4.8).
   !>
-  !> `row_pattern` holds for each slave control point (row) the control points (columns) that its rows reach;
-  !> rows(component, kind, block). `field_slip` is the field of control slips, used by the slip sum's rows. On failure
-  !> `place` is the row of a pattern that lacks a block.
+  !> - `with_friction`: whether there are rows and tangents of slips.
+  !> - `field_slip` (2, points): field of control slips, P, for the slip sum's rows.
+  !> - `row_pattern`, `rows` (component, kind, blocks): for each test function (row) the control points (columns) that its rows
+  !>   reach, and these rows (isomortar_contact_rows).
+  !> - `pattern`, `tangent` (column component, row component, blocks): pattern of the tangent, and this, F/L.
+  !> - `status`, `place`: how it ended (isomortar_base_status), and on failure the row of a pattern that lacks a block.
   subroutine integrate_blocks(slave, map, positions, projections, with_friction, multipliers, field_slip, row_pattern, rows, &
       pattern, tangent, status, place)
     type(slave_t), intent(in) :: slave

@@ -1,4 +1,8 @@
 !> First pass over the slave quadrature points: projection and control quantities (theory 4.1).
+!>
+!> - `slave`, `map`: the slave side, and the gap map onto its master.
+!> - `positions` (3, control points): of all control points, L. `projections`: feet of the quadrature points there.
+!> - `control`: what is integrated.
 module isomortar_contact_control
   use isomortar_base_algebra, only: first_not_finite
   use isomortar_base_contract, only: contracts, require
@@ -28,9 +32,11 @@ module isomortar_contact_control
 
 contains
 
-  !> Project every slave quadrature point; `xi` holds starts where `started`, elsewhere the nearest sample of the master is one.
-  !> `origin` and `had` are the projections at the last converged load step (theory 3.4, 3.20). On failure `place` is the quadrature
-  !> point.
+  !> Project every slave quadrature point (theory 3.4, 3.20); coordinates of `projections` hold the starts.
+  !>
+  !> - `started` (points): whether there is a start; elsewhere the nearest sample of the master is one.
+  !> - `origin` (2, points), `had` (points): feet at the last converged load step, P, and whether there were any.
+  !> - `status`, `place`: how it ended (isomortar_base_status), and on failure the quadrature point.
   subroutine project_points(slave, map, positions, started, origin, had, projections, status, place)
     type(slave_t), intent(in) :: slave
     class(gap_map_t), intent(in) :: map
@@ -59,8 +65,8 @@ contains
     end do
   end subroutine project_points
 
-  !> How far the foot of every slave quadrature point has climbed since the last converged load step; zero at points without a slip
-  !> (theory 3.31).
+  !> How far the foot of every slave quadrature point has climbed since the last converged load step, `climbs` (points), L; zero
+  !> at points without a slip (theory 3.31).
   pure subroutine find_climbs(map, positions, projections, climbs)
     class(gap_map_t), intent(in) :: map
     real(wp), intent(in) :: positions(:, :)
@@ -152,6 +158,9 @@ contains
   end subroutine integrate_squares
 
   !> <R^I a_ab zeta^b> with zeta the field of control slips (theory 4.5); zero slip where inactive.
+  !>
+  !> - `point_metric` (3, points): a_ab as 11, 12, 22, L^2/P^2. `control_slip` (2, test functions): control slips, P.
+  !> - `field_slip` (2, points): zeta, P. `totals` (2, test functions): the integrals, L^4/P.
   pure subroutine integrate_slip_sum(slave, point_metric, control_slip, field_slip, totals)
     type(slave_t), intent(in) :: slave
     real(wp), intent(in) :: point_metric(:, :), control_slip(:, :)

@@ -1,6 +1,9 @@
 !> Where the elements of a surface can be at most: convex hulls of their Bezier points, in oriented boxes, in spheres.
 !>
 !> A point that is farther from a sphere, box or hull than from some point of the surface has no nearer point in that element.
+!>
+!> - `surface`, `hulls`: the face, and the hulls of its elements. `positions` (3, control points): of all control points, L.
+!> - `x`: place of a point, L. `e`: an element, from 1. `distance`: L.
 module isomortar_contact_hulls
   use isomortar_base_algebra, only: cross, identity
   use isomortar_base_contract, only: contracts, require
@@ -220,7 +223,7 @@ contains
     curvature = maxval(bend / [along(1)**2, product(along), along(2)**2])
   end function largest_curvature
 
-  !> Elements whose spheres come nearer than `distance` to a point.
+  !> Elements whose spheres come nearer than `distance` to a point: the first `count` of `list` (elements).
   pure subroutine within_reach(hulls, x, distance, list, count)
     type(hulls_t), intent(in) :: hulls
     real(wp), intent(in) :: x(3), distance
@@ -278,7 +281,7 @@ contains
     if (square > 0.0_wp) nearest = a + min(max(dot_product(a, a - b) / square, 0.0_wp), 1.0_wp) * (b - a)
   end function nearest_on_way
 
-  !> Coordinates of the sample of element e that is nearest to x, and its squared distance.
+  !> Coordinates `xi`, P, of the sample of element `e` that is nearest to `x`, and the `square` of its distance, L^2.
   pure subroutine nearest_sample(surface, hulls, e, x, xi, square)
     type(surface_t), intent(in) :: surface
     type(hulls_t), intent(in) :: hulls

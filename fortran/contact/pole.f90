@@ -2,6 +2,10 @@
 !>
 !> Feet beside a pole are as any others, if what is a difference of nearly equal numbers there is formed about the pole itself. At
 !> the pole the foot is the control point, as on a corner of C0 lines: the pole of a body that deforms is a cone's vertex.
+!>
+!> - `surface`, `positions` (3, control points): the face; all control points, L.
+!> - `place`, `xi`: an element by direction, from 1, and coordinates in it, P. `x`: place of a slave point, L.
+!> - `pole`: a for that at the end of direction a, -a at its start.
 module isomortar_contact_pole
   use isomortar_base_algebra, only: cross
   use isomortar_base_contract, only: contracts, require
@@ -35,7 +39,7 @@ module isomortar_contact_pole
 
 contains
 
-  !> The pole of an element: a for that at the end of direction a, -a at its start, 0: none. Of two the one that is nearer to xi.
+  !> The pole of an element, 0: none. Of two the one that is nearer to `xi`.
   pure integer function pole_of(surface, place, xi) result(pole)
     type(surface_t), intent(in) :: surface
     integer, intent(in) :: place(2)
@@ -84,7 +88,8 @@ contains
     if (pole == 2) node = size(surface%point)
   end function pole_node
 
-  !> Count an element's net from the pole, in homogeneous form: what is left there is exactly nothing.
+  !> Count an element's `net` (4, functions of u, functions of v) from the pole, at `centre`, L, in homogeneous form: what is left
+  !> there is exactly nothing.
   pure subroutine net_about_pole(surface, positions, pole, net, centre)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :)
@@ -99,8 +104,8 @@ contains
     end do
   end subroutine net_about_pole
 
-  !> Give the functions of the pole's row, which all belong to one control point, to the first one of them: what the others leave of
-  !> one, and of zero.
+  !> Give the `functions` (functions of an element, derivatives) of the pole's row, which all belong to one control point, to the
+  !> first one of them: what the others leave of one, and of zero.
   pure subroutine gather_at_pole(surface, pole, functions)
     type(surface_t), intent(in) :: surface
     integer, intent(in) :: pole
@@ -117,7 +122,7 @@ contains
     functions(row(1), 1) = 1.0_wp + functions(row(1), 1)
   end subroutine gather_at_pole
 
-  !> What a point sees from the pole, looking along lines of all elements round it (theory 3.11).
+  !> What a point sees from the pole, looking along lines of all elements round it: `view` (theory 3.11).
   pure subroutine look_from_pole(surface, positions, x, pole, view)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :), x(3)
@@ -164,7 +169,8 @@ contains
     end associate
   end subroutine look_from_pole
 
-  !> Kinematics of a foot at a pole (theory 3.11): it stays the foot of what moves about it if the distance rises in all directions.
+  !> Kinematics of a foot at a pole, `point` (theory 3.11): it stays the foot of what moves about it if the distance rises in all
+  !> directions.
   pure subroutine hold_at_pole(surface, positions, x, pole, point)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :), x(3)

@@ -1,6 +1,10 @@
 !> Closest-point projection onto a surface: the nearest point of the whole of it, from any start (theory 3.1).
 !>
 !> A search from a start ends at the nearest place near that. Then every other element whose hull comes nearer is searched too.
+!>
+!> - `surface`, `opposite`, `hulls`: the face, that across from it, and the hulls of its elements.
+!> - `positions` (3, control points): of all control points, L. `x`: place of a slave point, L.
+!> - `place`, `xi`: an element by direction, from 1, and coordinates in it, P. `here`: where the search stands.
 module isomortar_contact_projection
   use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
@@ -44,8 +48,8 @@ contains
     if (contracts) call require(all(is_index(here%place, surface%direction%elements)), "start_nearest: there is such an element")
   end function start_nearest
 
-  !> Search the elements of a list that may hold a nearer point than the one found, and go on from there: first from what samples
-  !> are nearer, then in all elements that may still hold one (theory 3.1).
+  !> Search the elements of a `list` (number) that may hold a nearer point than the one found, and go on from there: first from
+  !> what samples are nearer, then in all elements that may still hold one (theory 3.1).
   pure subroutine look_round(surface, hulls, positions, x, list, here)
     type(surface_t), intent(in) :: surface
     type(hulls_t), intent(in) :: hulls

@@ -25,7 +25,7 @@ module isomortar_contact_rows
 
 contains
 
-  !> The kinds by how many they are (in Python: ROW_KINDS).
+  !> The kinds that there are, by how many, `kinds` (in Python: ROW_KINDS).
   pure type(rows_t) function rows_of(kinds) result(rows)
     integer, intent(in) :: kinds
 

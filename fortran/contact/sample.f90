@@ -1,4 +1,8 @@
 !> A slave quadrature point as the passes over it see it: the control points that bear on it, its variations, the fields there.
+!>
+!> - `slave`, `map`: the slave side, and the gap map onto its master. `e`, `q`: a slave element, and a quadrature point, from 1.
+!> - `positions` (3, control points and nodes): of all control points, L; normals of nodes at the end, where the map has any.
+!> - `projections`: feet of the quadrature points. `sample`: what bears on the point.
 module isomortar_contact_sample
   use isomortar_base_kinds, only: wp
   use isomortar_contact_gap_map_map, only: contact_point_t, gap_map_t, projections_t, variations_t
@@ -27,7 +31,7 @@ module isomortar_contact_sample
 
 contains
 
-  !> p, t_1, t_2 at a quadrature point (theory 4.7).
+  !> The fields p, t_1, t_2 of `multipliers` at a quadrature point, F/L^2 and F/(L P) (theory 4.7).
   pure function fields_at(slave, multipliers, e, q) result(field)
     type(slave_t), intent(in) :: slave
     type(multipliers_t), intent(in) :: multipliers
@@ -42,7 +46,8 @@ contains
     end do
   end function fields_at
 
-  !> Control points, kinematics, variations and coefficients of the short vectors at a quadrature point.
+  !> Control points, kinematics, variations and coefficients of the short vectors at a quadrature point, `of_slip` those of slips
+  !> too.
   pure subroutine take_sample(slave, map, positions, projections, e, q, of_slip, sample)
     type(slave_t), intent(in) :: slave
     class(gap_map_t), intent(in) :: map

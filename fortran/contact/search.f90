@@ -4,6 +4,9 @@
 !> on in the neighbour. The distance falls strictly from element to element, so the search ends: inside an element, on a line that
 !> neither side improves (a C0 line), at a pole, or on the edge of the patch (no projection). Coordinates across such a line are
 !> fixed, and the foot belongs to the lower element, wherever the search came from.
+!>
+!> - `surface`, `positions` (3, control points): the face; all control points, L.
+!> - `x`, `xi`: place of a slave point, L; coordinates, P. `here`: where the search stands.
 module isomortar_contact_search
   use isomortar_base_algebra, only: cross
   use isomortar_base_contract, only: contracts, require

@@ -1,4 +1,6 @@
 !> The slave side of a contact pair: its functions and quadrature, fixed for a whole computation.
+!>
+!> - `slave`, `positions` (3, control points): the slave side; all control points, L. `q`: a quadrature point, from 1.
 module isomortar_contact_slave
   use isomortar_base_algebra, only: add_product, cross
   use isomortar_base_contract, only: contracts, require
@@ -44,7 +46,12 @@ module isomortar_contact_slave
 contains
 
   !> Functions, their derivatives and reference areas at the quadrature points of a contact patch (theory 2.8).
-  !> `nodes` are numbered within the surface.
+  !>
+  !> - `surface`, `references` (3, control points): the face; all control points in the reference configuration, L.
+  !> - `points`: quadrature points of an element by direction.
+  !> - `nodes` (functions of an element, elements): control points of each element, numbered within the surface.
+  !> - `basis` (functions of an element, points), `slopes` (functions of an element, 2, points): functions; their derivatives, 1/P.
+  !> - `area` (points): quadrature weight times reference area, L^2.
   pure subroutine slave_tables(surface, points, references, nodes, basis, slopes, area)
     type(surface_t), intent(in) :: surface
     integer, intent(in) :: points(2)
@@ -95,7 +102,7 @@ contains
     end do
   end function slave_position
 
-  !> Tangent vectors t_1, t_2 of the slave at a quadrature point.
+  !> Tangent vectors t_1, t_2 of the slave at a quadrature point, L/P.
   pure function slave_tangents(slave, positions, q) result(tangents)
     type(slave_t), intent(in) :: slave
     real(wp), intent(in) :: positions(:, :)
@@ -124,7 +131,8 @@ contains
     if (contracts) call require(is_unit(normal), "slave_normal: it is a unit vector")
   end function slave_normal
 
-  !> <R^I f> (theory 2.8) for every test function, of fields given at the quadrature points: totals(field, I).
+  !> <R^I f> (theory 2.8) for every test function, of `fields` (field, points) at the quadrature points: `totals` (field, test
+  !> functions).
   pure subroutine integrate_functions(slave, fields, totals)
     type(slave_t), intent(in) :: slave
     real(wp), intent(in) :: fields(:, :)

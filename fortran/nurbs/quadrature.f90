@@ -10,8 +10,7 @@ module isomortar_nurbs_quadrature
 
 contains
 
-  !> Points and weights on [0, 1], by Newton's method on the Legendre polynomial (theory 2.7): `points` (number), `weights`
-  !> (number).
+  !> The `points` (number) and their `weights` (number) on [0, 1], by Newton's method on the Legendre polynomial (theory 2.7).
   pure subroutine gauss_legendre(points, weights)
     real(wp), intent(out) :: points(:), weights(:)
     real(wp), parameter :: pi = acos(-1.0_wp)

@@ -2,6 +2,8 @@
 !>
 !> A law is one file beside this one, with one entry in `isomortar_contact_friction_table`. The return map does not know which it
 !> serves.
+!>
+!> - `pressure`: control pressure, above 0. `radius`, `slope`: of the disk, and its derivative by the pressure.
 module isomortar_contact_friction_law
   use isomortar_base_kinds, only: wp
   implicit none

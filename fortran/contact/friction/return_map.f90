@@ -1,4 +1,6 @@
 !> Friction at a control point: the return map of a trial traction, by any law, and its exact derivative (theory 4.6).
+!>
+!> - `metric`: a_ab as 11, 12, 22, L^2/P^2. `traction`, `trial`: covariant tractions, F/(L P).
 module isomortar_contact_friction_return_map
   use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
@@ -15,7 +17,7 @@ module isomortar_contact_friction_return_map
 
 contains
 
-  !> Symmetric 2x2 matrix from its 11, 12, 22 entries.
+  !> Symmetric 2x2 matrix from its 11, 12, 22 `entries`.
   pure function metric_matrix(entries) result(m)
     real(wp), intent(in) :: entries(3)
     real(wp) :: m(2, 2)
@@ -43,11 +45,12 @@ contains
     metric_norm = sqrt(square)
   end function metric_norm
 
-  !> Return the trial traction of a control point under pressure to the disk of its friction law (theory 4.6, 4.13).
+  !> Return the `trial` traction of a control point under `pressure`, F/L^2, to the disk of its `friction` law (theory 4.6, 4.13).
   !>
-  !> `derivative(a, :)` is d traction_a by the pressure (1), the trial traction (2:3) and the metric (4:6: 11, 12, 22).
-  !> A trial above (1 - margin) of the radius slips. `radial` replaces the traction in the part of the derivative that shortens the
-  !> trial: the current traction there is more forgiving on the way and the same at the solution (theory 4.14).
+  !> - `margin`: a trial above (1 - margin) of the radius slips. `state`: state_open, state_stick or state_slip.
+  !> - `derivative`(a, :): d traction_a by the pressure (1), the trial traction (2:3) and the metric (4:6: 11, 12, 22).
+  !> - `radial`: replaces the traction in the part of the derivative that shortens the trial: the current traction there is more
+  !>   forgiving on the way and the same at the solution (theory 4.14).
   pure subroutine return_map(trial, pressure, friction, metric, margin, traction, state, derivative, radial)
     real(wp), intent(in) :: trial(2), pressure
     class(friction_t), intent(in) :: friction

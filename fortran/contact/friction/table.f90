@@ -17,6 +17,8 @@ module isomortar_contact_friction_table
 contains
 
   !> The law of a number with its parameters; not allocated where there is no friction.
+  !> - `law`, `parameters` (number): which one, and what it takes.
+  !> - `friction`: the law. `status`: whether there is one that takes so many (isomortar_base_status).
   subroutine friction_of(law, parameters, friction, status)
     integer, intent(in) :: law
     real(wp), intent(in) :: parameters(:)

@@ -46,6 +46,7 @@ module isomortar_contact_gap_map_averaged
 contains
 
   !> The map onto a face of a body, and the face across from it.
+  !> `surface`, `opposite`: the face, and that across from it.
   pure function averaged_on(surface, opposite) result(self)
     type(surface_t), intent(in) :: surface, opposite
     type(averaged_t) :: self

@@ -11,8 +11,10 @@ module isomortar_contact_gap_map_averaged_climb
 
 contains
 
-  !> Integral of n dS along the shortest way between two feet, element by element (theory 3.31). `positions` end with the normals of
-  !> the nodes.
+  !> Integral of n dS along the shortest way between two feet, element by element (theory 3.31), L.
+  !>
+  !> - `surface`: the face. `positions` (3, control points and nodes): of all control points, L; normals of its nodes at the end.
+  !> - `from`, `to`: coordinates of the feet, P.
   pure real(wp) function climb_between(surface, positions, from, to) result(climb)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :), from(2), to(2)

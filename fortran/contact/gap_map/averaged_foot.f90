@@ -2,6 +2,10 @@
 !>
 !> Newton's method on coordinates and gap. Within an element the equation is smooth, from one to the next it is continuous: the path
 !> of Newton's steps is followed through the elements that it crosses.
+!>
+!> - `surface`: the face. `positions` (3, control points and nodes): of all control points, L; normals of its nodes at the end.
+!> - `x`, `across`: place of a slave point, L, and its unit normal. `xi`: coordinates of a start, P.
+!> - `scope`, `foot`: where feet are looked for, and one that is found, or not.
 module isomortar_contact_gap_map_averaged_foot
   use isomortar_base_algebra, only: determinant, inverse
   use isomortar_base_kinds, only: wp
@@ -43,7 +47,7 @@ module isomortar_contact_gap_map_averaged_foot
 
 contains
 
-  !> Where to look for feet on a face (theory 3.30). `positions` end with the normals of its nodes.
+  !> Where to look for feet on a face (theory 3.30).
   pure function scope_of(surface, positions) result(self)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :)
@@ -85,6 +89,8 @@ contains
   end function accept
 
   !> Derivative of S - g n by the coordinates and the gap (theory 3.26).
+  !>
+  !> - `tangents`: S,1 and S,2, L/P. `field`: the normal before it is made a unit vector, and its derivatives, 1/P. `gap`: g, L.
   pure function foot_equation(tangents, field, gap) result(matrix)
     real(wp), intent(in) :: tangents(3, 2), field(3, 3), gap
     real(wp) :: matrix(3, 3)

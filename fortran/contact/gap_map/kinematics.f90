@@ -2,6 +2,8 @@
 !>
 !> Variations are linear forms in short vectors: dx - dS, dS,1, dS,2, dS,11, dS,12, dS,22. A frictionless surface needs the first
 !> three, friction on a surface all six.
+!>
+!> - `point`, `variations`: kinematics of a slave point at its foot, and its first variations.
 module isomortar_contact_gap_map_kinematics
   use isomortar_base_algebra, only: add_product, cross, inverse2
   use isomortar_base_contract, only: contracts, require
@@ -24,8 +26,10 @@ module isomortar_contact_gap_map_kinematics
 
 contains
 
-  !> Kinematics on a deformable surface (theory 3.2, 3.3). `derivatives` holds S and its derivatives by column, `outward` the sign
-  !> of the normal.
+  !> Kinematics on a deformable surface (theory 3.2, 3.3) of a slave point at `x`, L.
+  !>
+  !> - `derivatives` (3, columns): S and its derivatives at the foot by column (derivative_column), L/P^order.
+  !> - `outward`: sign of the normal.
   pure function contact_point(x, derivatives, outward) result(self)
     real(wp), intent(in) :: x(3), derivatives(:, :), outward
     type(contact_point_t) :: self
@@ -57,7 +61,7 @@ contains
     range = [3 * k - 2, 3 * k - 1, 3 * k]
   end function components
 
-  !> Rows of dg, dxi and the slip (theory 3.5, 3.6, 3.12).
+  !> Rows of dg, dxi and the slip (theory 3.5, 3.6, 3.12) over so many short `vectors`.
   pure function first_variations(point, vectors) result(self)
     type(contact_point_t), intent(in) :: point
     integer, intent(in) :: vectors
@@ -114,7 +118,8 @@ contains
     rows(:all_components, 3) = 2.0_wp * matmul(second, point%tangent(:, 2))
   end function metric_variation
 
-  !> Add pressure * Ddg + traction_a D(slip)^a to a bilinear form over the components (theory 3.9, 3.10, 3.13).
+  !> Add `pressure` * Ddg + `traction`_a D(slip)^a, F/L^2 and F/(L P), to a bilinear form over the components (theory 3.9, 3.10,
+  !> 3.13): `form` (components, components).
   pure subroutine second_variations(point, variations, pressure, traction, form)
     type(contact_point_t), intent(in) :: point
     type(variations_t), intent(in) :: variations

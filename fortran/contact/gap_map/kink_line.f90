@@ -22,6 +22,10 @@ module isomortar_contact_gap_map_kink_line
 contains
 
   !> Kinematics at a foot with fixed coordinates, from those of the lower element's face at the same place (theory 3.11, 3.14).
+  !>
+  !> - `surface`, `positions` (3, control points): the master's face, and all control points, L.
+  !> - `x`: place of the slave point, L. `xi`, `place`, `fixed`: coordinates of its foot, P, their element, and which do not vary.
+  !> - `point`: the kinematics.
   pure subroutine hold_on_lines(surface, positions, x, xi, place, fixed, point)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :), x(3), xi(2)
@@ -96,7 +100,8 @@ contains
     end do
   end function element_size
 
-  !> Add scale * (dx - dS)^T P (Dx - DS), P the projector across the normal and the free tangents: on a C0 line (theory 3.13).
+  !> Add `scale` * (dx - dS)^T P (Dx - DS), P the projector across the normal and the free tangents, to `form` (components,
+  !> components): at a `point` on a C0 line (theory 3.13).
   pure subroutine add_turn(point, scale, form)
     type(contact_point_t), intent(in) :: point
     real(wp), intent(in) :: scale

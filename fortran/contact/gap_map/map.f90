@@ -3,6 +3,14 @@
 !> A gap map is one file beside this one, with a routine that keeps one in api/descriptor_api.f90. The two passes over the slave
 !> quadrature points do not know which they serve. Variations are linear forms in short vectors, three components each: the first
 !> is dx - dS, the others are the map's own, as sums over the master control points that bear on the point.
+!>
+!> What means the same for all maps:
+!>
+!> - `slave`, `positions` (3, control points): the slave side; all control points, and normals of nodes after them where a map has
+!>   any, L.
+!> - `projections`: feet of the quadrature points. `q`: one of these points, from 1.
+!> - `point`, `variations`: kinematics of a slave point at its foot, and its first variations. `of_slip`: whether those of slips
+!>   are wanted.
 module isomortar_contact_gap_map_map
   use isomortar_base_kinds, only: wp
   use isomortar_contact_gap_map_nodal_normals, only: normals_t
@@ -109,8 +117,10 @@ module isomortar_contact_gap_map_map
       logical, intent(in) :: of_slip
     end function count_vectors
 
-    !> Find the master points of all slave quadrature points: all of `projections` but the slips. `xi` holds starts where
-    !> `started`; `had` says which had one at the last converged load step. On failure `place` is the quadrature point.
+    !> Find the master points of all slave quadrature points: all of `projections` but the slips; its coordinates hold starts.
+    !>
+    !> - `started` (points), `had` (points): whether there is a start; whether there was a foot at the last converged load step.
+    !> - `status`, `place`: how it ended (isomortar_base_status), and on failure the quadrature point.
     subroutine locate_points(self, slave, positions, started, had, projections, status, place)
       import :: gap_map_t, projections_t, slave_t, wp
       implicit none
@@ -122,7 +132,7 @@ module isomortar_contact_gap_map_map
       integer, intent(out) :: status, place
     end subroutine locate_points
 
-    !> Slip of quadrature point q from its foot at the last converged load step to that which it has now.
+    !> Slip of quadrature point `q`, P, from its foot at the last converged load step to that which it has now.
     pure function slip_between(self, slave, positions, projections, q) result(slip)
       import :: gap_map_t, projections_t, slave_t, wp
       implicit none
@@ -134,8 +144,10 @@ module isomortar_contact_gap_map_map
       real(wp) :: slip(2)
     end function slip_between
 
-    !> Kinematics of slave quadrature point q, which has a projection; the master control points (and normals of nodes, counted on
-    !> from these) that bear on it, and their coefficients in the short vectors, (control points, vectors).
+    !> Kinematics of slave quadrature point `q`, which has a projection, and what bears on it.
+    !>
+    !> - `points` (bearing): master control points, and normals of nodes, counted on from these.
+    !> - `coefficients` (bearing, vectors): of each in the short vectors.
     pure subroutine point_at(self, slave, positions, projections, q, of_slip, point, points, coefficients)
       import :: contact_point_t, gap_map_t, projections_t, slave_t, wp
       implicit none
@@ -150,7 +162,7 @@ module isomortar_contact_gap_map_map
       real(wp), intent(out) :: coefficients(:, :)
     end subroutine point_at
 
-    !> Rows of dg, dxi and what pressures and tractions work on.
+    !> Rows of dg, dxi and what pressures and tractions work on, over so many short `vectors`.
     pure function first_of(point, vectors) result(variations)
       import :: contact_point_t, variations_t
       implicit none
@@ -168,7 +180,8 @@ module isomortar_contact_gap_map_map
       real(wp) :: rows(all_components, 3)
     end function metric_of
 
-    !> Add pressure * Ddg + traction_a D(slip)^a to a bilinear form over the components of the short vectors.
+    !> Add `pressure` * Ddg + `traction`_a D(slip)^a, F/L^2 and F/(L P), to a bilinear form over the components of the short
+    !> vectors: `form` (components, components).
     pure subroutine second_of(point, variations, pressure, traction, form)
       import :: contact_point_t, variations_t, wp
       implicit none
@@ -181,8 +194,8 @@ module isomortar_contact_gap_map_map
 
 contains
 
-  !> Normals of nodes, which bear on points like control points do, and the list of positions of both that all the above take: of
-  !> control points alone.
+  !> The `normals` of nodes, which bear on points like control points do, and the list of positions of both that all the above
+  !> take, `all` (3, control points and nodes): of control points alone.
   pure subroutine add_nothing(self, positions, normals, all)
     class(gap_map_t), intent(in) :: self
     real(wp), intent(in) :: positions(:, :)
@@ -202,8 +215,8 @@ contains
     stencils = projections%place
   end function elements
 
-  !> Integral of n dS along the way of quadrature point q's foot since the last converged load step: none where normals are at right
-  !> angles to the face (theory 3.31).
+  !> Integral of n dS along the way of quadrature point `q`'s foot since the last converged load step, L: none where normals are
+  !> at right angles to the face (theory 3.31).
   pure real(wp) function stay_level(self, positions, projections, q)
     class(gap_map_t), intent(in) :: self
     real(wp), intent(in) :: positions(:, :)

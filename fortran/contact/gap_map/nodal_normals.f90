@@ -3,6 +3,9 @@
 !>
 !> To a gap map they are as control points are: vectors that stand after these in the list of positions. What the map makes of them
 !> is carried on to the control points here.
+!>
+!> - `positions` (3, control points): of all control points, L.
+!> - `forces` (3, control points), `on_normals` (3, nodes): forces on them, F; those on the normals of nodes, F L.
 module isomortar_contact_gap_map_nodal_normals
   use isomortar_base_algebra, only: add_product, cross, identity, inverse2
   use isomortar_base_contract, only: contracts, require
@@ -53,7 +56,7 @@ module isomortar_contact_gap_map_nodal_normals
 
 contains
 
-  !> Averaged normals at the nodes of a face, with their derivatives (theory 3.21, 3.22).
+  !> Averaged normals at the nodes of a face, `surface`, with their derivatives (theory 3.21, 3.22).
   pure subroutine average(surface, positions, self)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :)
@@ -224,7 +227,7 @@ contains
     slope = sums(:, :, :count)
   end subroutine sum_slopes
 
-  !> Add to the forces on control points those on the normals of nodes, shape (3, nodes).
+  !> Add to the forces on control points those on the normals of nodes.
   pure subroutine carry(self, on_normals, forces)
     type(normals_t), intent(in) :: self
     real(wp), intent(in) :: on_normals(:, :)
@@ -239,8 +242,8 @@ contains
     end do
   end subroutine carry
 
-  !> What a list of points reaches: its control points, and those that the normals among it depend on. The numbers of normals
-  !> count on from the number n of control points.
+  !> What a list of `points` (number) reaches: its control points, and those that the normals among it depend on: `reached`. The
+  !> numbers of normals count on from the number `n` of control points.
   pure subroutine reach(self, n, points, reached)
     type(normals_t), intent(in) :: self
     integer, intent(in) :: n, points(:)
@@ -290,7 +293,7 @@ contains
     reached%slope(:, :, entries) = slope
   end subroutine add_reached
 
-  !> Linear forms in a list of points, (points, component, row, kind), as forms in the control points that it reaches.
+  !> Linear `forms` (points, component, row, kind) in a list of points as forms in the control points that it has `reached`.
   pure function carry_rows(reached, forms) result(carried)
     type(reached_t), intent(in) :: reached
     real(wp), intent(in) :: forms(:, :, :, :)
@@ -311,8 +314,8 @@ contains
     end do
   end function carry_rows
 
-  !> A bilinear form in a list of points, (right point, left component, right component, left point), as one in the control points
-  !> that it reaches.
+  !> A bilinear `form` (right point, left component, right component, left point) in a list of points as one in the control points
+  !> that it has `reached`.
   pure function carry_form(reached, form) result(carried)
     type(reached_t), intent(in) :: reached
     real(wp), intent(in) :: form(:, :, :, :)
@@ -345,8 +348,11 @@ contains
     end do
   end function carry_form
 
-  !> Add the second variation of the normals, times forces on them, to a tangent (theory 3.23); `lacking` is a row of its pattern
-  !> without one of the blocks, 0: none.
+  !> Add the second variation of the normals, times forces on them, to a tangent (theory 3.23).
+  !>
+  !> - `pattern`, `tangent` (column component, row component, blocks): pattern of the tangent, and this, F/L.
+  !> - `columns` (control points): to mark places of blocks in (isomortar_sparse_blocks), zero at first.
+  !> - `lacking`: a row of the pattern without one of the blocks, 0: none.
   pure subroutine add_turning(self, positions, on_normals, pattern, columns, tangent, lacking)
     type(normals_t), intent(in) :: self
     real(wp), intent(in) :: positions(:, :), on_normals(:, :)

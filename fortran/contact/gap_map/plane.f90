@@ -29,7 +29,7 @@ module isomortar_contact_gap_map_plane
 
 contains
 
-  !> Rigid plane through a point; normal and first tangent are made orthonormal (theory 3.4).
+  !> Rigid plane through a `point`, L; `normal` and first `tangent` are made orthonormal (theory 3.4).
   pure function plane_through(point, normal, tangent) result(self)
     real(wp), intent(in) :: point(3), normal(3), tangent(3)
     type(plane_t) :: self
