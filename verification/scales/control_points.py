@@ -44,7 +44,7 @@ def pressed(patch: Patch) -> Problem:
 @case(
     claim="A uniform pressure is uniform whatever the ratio of the knot spans.",
     tier="gate",
-    grid={"span": (0.25, 1e-2, 1e-4, 1e-5)},
+    grid={"span": (0.25, 1e-2, 1e-4, 2e-6)},
     bounds=lambda span: {
         "spread": Bound(
             at_most=max(1e-10, 1e-12 / span**2),
