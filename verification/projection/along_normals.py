@@ -1,4 +1,4 @@
-"""Feet along averaged normals from any start: near the master the foot is the one that a search of all elements finds."""
+"""Feet along averaged normals: near the master the one that a search of all elements finds, from any start, and as far as there are any."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ import numpy as np
 from friction.virtual_work import areas
 from projection.closest_points import Surface
 
+from isomortar.errors import LostProjectionError
+from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, case
 from isomortar.scene import Scene
 from isomortar.solve.equilibrium import Equilibrium
@@ -66,3 +68,44 @@ def from_any_start(order: int, lift: float) -> dict[str, float]:
         "found": float(np.min([np.mean(found) for found in (first, *(found for _, found in warm))])),
         "near": float(np.linalg.norm(points - cold, axis=1).max()),
     }
+
+
+#: About which the block is turned: the middle of its lower face.
+MIDDLE = np.array([0.5, 0.5, 0.0])
+#: What is given of a place beside a limit of theory 3.30: a gap as a share of the face's diagonal, or the angle between the faces, degrees.
+LIMITS = {"open": (-0.499, -0.501), "closed": (0.099, 0.101), "turned": (78.4, 78.6)}
+
+
+@case(
+    claim="Along averaged normals feet are up to half the face's diagonal away, a tenth of it deep, and where both sides face each other.",
+    tier="gate",
+    grid={"limit": list(LIMITS), "order": [1, 2]},
+    bounds={
+        "within": Bound(at_least=1.0, at_most=1.0, reason="definition: share of points that have a foot just below the limit"),
+        "beyond": Bound(at_least=0.0, at_most=0.0, reason="definition: share of points that have a foot just above the limit"),
+    },
+)
+def scope(limit: str, order: int) -> dict[str, float]:
+    """Shares of slave points that are found on a flat plate, from no start and from where they are."""
+    equilibrium = Equilibrium(Scene.from_toml(_SCENE.format(order=order, elements=4)).problem(), Ledger())
+    pair, slave, reference = equilibrium.pairs[0], equilibrium.numbering.points["slave"], equilibrium.numbering.reference
+    start = equilibrium.initial_state().contacts[0]
+
+    def found(value: float) -> list[float]:
+        positions = reference.copy()
+        if limit == "turned":
+            angle, arms = np.deg2rad(value), reference[slave] - MIDDLE
+            x, z = np.cos(angle) * arms[:, 0] + np.sin(angle) * arms[:, 2], np.cos(angle) * arms[:, 2] - np.sin(angle) * arms[:, 0]
+            positions[slave] = MIDDLE + np.column_stack([x, arms[:, 1], z + 0.3])
+        else:
+            positions[slave, 2] -= value * np.sqrt(2.0)
+        return [share(positions, one) for one in (replace(start, projected=np.zeros_like(start.projected)), start)]
+
+    def share(positions: FloatArray, one: ContactState) -> float:
+        try:
+            return float(np.mean(pair.kinematics(positions, one).projections.found))
+        except LostProjectionError:  # a point that was there before
+            return 0.0
+
+    within, beyond = LIMITS[limit]
+    return {"within": min(found(within)), "beyond": max(found(beyond))}
