@@ -182,7 +182,7 @@ class ContactTable(Table):
     """What is constrained: averages of gap and slip ("mortar"), or values at Gauss points ("kts"), "knots", "greville" or "demko"."""
     quadrature: PerSurfaceDirection[GaussPoints] | None = None
     """Gauss points per slave contact element; default by family and order (Table 1 of the paper; above order 5: order + 2)."""
-    subcells: Annotated[int, Field(ge=0, le=8)] = 0
+    subcells: Annotated[int, Field(ge=0, le=5)] = 0
     """How many times over slave elements are cut in each direction where the master's knot lines cross them at the start."""
     reference_area: Positive | None = None
     """Divides the penalties; default: area of the slave face in the reference configuration. The paper's numbers imply 1."""
