@@ -9,7 +9,7 @@ from itertools import combinations
 import numpy as np
 
 from isomortar.geometry.patch import FACES, Direction, FloatArray, Patch
-from isomortar.model.entities import Contact, Face, Motion, Problem, RigidPlane, Support
+from isomortar.model.entities import Contact, Face, Faces, Motion, Problem, RigidPlane, Support
 
 Vector = tuple[float, float, float]
 
@@ -148,6 +148,14 @@ def oriented(problem: Problem, name: str, order: tuple[int, int, int], axes: tup
     return replace(
         problem,
         bodies=tuple(new if old is body else old for old in problem.bodies),
+        contacts=tuple(
+            replace(
+                contact,
+                slave=_side([renamed(face) for face in contact.slave.faces]),
+                master=_side([renamed(face) for face in contact.master.faces]) if isinstance(contact.master, Face) else contact.master,
+            )
+            for contact in problem.contacts
+        ),
         supports=tuple(replace(support, place=renamed(support.place)) for support in problem.supports),
         glue=tuple((renamed(one), renamed(other)) for one, other in problem.glue),
     )
@@ -155,6 +163,11 @@ def oriented(problem: Problem, name: str, order: tuple[int, int, int], axes: tup
 
 def _named(face: Face, names: dict[str, str]) -> Face:
     return replace(face, face=names[face.face])
+
+
+def _side(faces: list[Face]) -> Face:
+    first, *others = faces
+    return Faces(first.body, first.face, tuple(others)) if others else first
 
 
 def _grid(patch: Patch) -> FloatArray:

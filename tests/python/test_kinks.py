@@ -12,6 +12,7 @@ from isomortar.geometry.primitives import ring
 from isomortar.geometry.refinement import mesh
 from isomortar.model.entities import Body, Material
 from isomortar.model.kinks import has_kinks
+from isomortar.model.sheet import Sheet
 
 LINE = Direction("N", 1, np.array([0.0, 0.0, 1.0, 1.0]))
 FACES_OF_RIDGE = ("w0", "w1", "v0", "v1", "u0", "u1")
@@ -48,36 +49,36 @@ def dented(patch: Patch, row: int) -> Patch:
 @pytest.mark.parametrize("slope", [0.2, -0.2, 0.002])
 def test_a_line_where_two_slopes_meet_is_a_kink(slope: float, order: int) -> None:
     ridge = body(roof(slope, order))
-    assert [has_kinks(ridge, face) for face in FACES_OF_RIDGE] == [True, True, False, False, False, False]
+    assert [has_kinks(Sheet.of_face(ridge, face)) for face in FACES_OF_RIDGE] == [True, True, False, False, False, False]
 
 
 @pytest.mark.parametrize("order", [2, 3])
 @pytest.mark.parametrize("slope", [0.0, 1e-5])
 def test_a_line_of_a_flat_face_is_none(slope: float, order: int) -> None:
-    assert not any(has_kinks(body(roof(slope, order)), face) for face in FACES_OF_RIDGE)
+    assert not any(has_kinks(Sheet.of_face(body(roof(slope, order)), face)) for face in FACES_OF_RIDGE)
 
 
 @pytest.mark.parametrize(("family", "order"), [("N", 1), ("L", 1), ("L", 2), ("L", 3)])
 def test_elements_of_order_one_and_lagranges_have_kinks_once_they_deform(family: Family, order: int) -> None:
     flat = body(roof(0.0, order, family))
-    assert [has_kinks(flat, face) for face in FACES_OF_RIDGE] == [True] * 4 + [order == 1] * 2
+    assert [has_kinks(Sheet.of_face(flat, face)) for face in FACES_OF_RIDGE] == [True] * 4 + [order == 1] * 2
 
 
 @pytest.mark.parametrize("order", [2, 3, 4])
 @pytest.mark.parametrize("closed", ["u", None])
 def test_arcs_that_meet_smoothly_have_none(order: int, closed: str | None) -> None:
-    assert not any(has_kinks(body(tyre(order), closed), face) for face in ("v0", "v1", "w0", "w1"))
+    assert not any(has_kinks(Sheet.of_face(body(tyre(order), closed), face)) for face in ("v0", "v1", "w0", "w1"))
 
 
 @pytest.mark.parametrize("row", [1, 3, 4])
 def test_arcs_that_do_not_are_told_apart(row: int) -> None:
     patch = dented(tyre(2, 4), row)
-    assert has_kinks(body(patch), "v1")
-    assert not has_kinks(body(patch), "u0")
+    assert has_kinks(Sheet.of_face(body(patch), "v1"))
+    assert not has_kinks(Sheet.of_face(body(patch), "u0"))
 
 
 def test_the_seam_of_a_closed_body_is_a_line_too() -> None:
     patch = mesh(ring((0.0, 0.0, 0.0), 0.5, 1.0, 0.5), ("N", "N", "N"), (2, 1, 1), (4, 1, 1))
     teardrop = dented(patch, 0)
-    assert has_kinks(body(teardrop, "u"), "v1")
-    assert not has_kinks(body(teardrop, None), "v1")
+    assert has_kinks(Sheet.of_face(body(teardrop, "u"), "v1"))
+    assert not has_kinks(Sheet.of_face(body(teardrop, None), "v1"))

@@ -27,6 +27,8 @@ from test_causes import said, scene
 from test_glue import WRONG as UNGLUED
 from test_scene_contacts import WRONG
 from test_scene_errors import CASES, GOOD
+from test_sides import GOOD as SIDES
+from test_sides import WRONG as NO_SIDES
 from test_singular import BLOCK, CORNER, STICKING, Heard, error, explained
 
 SENTENCES: dict[str, dict[str, str]] = tomllib.loads((Path(__file__).parent / "sentences.toml").read_text(encoding="utf-8"))
@@ -63,6 +65,12 @@ def bad_joints(_: pytest.MonkeyPatch) -> Told:
     """Refused for faces that cannot be glued."""
     for name, (text, *_) in UNGLUED.items():
         yield name, refused(text)
+
+
+def bad_sides(_: pytest.MonkeyPatch) -> Told:
+    """Refused for faces that make no side of a contact."""
+    for name, (old, new, *_) in NO_SIDES.items():
+        yield name, refused(SIDES.replace(old, new))
 
 
 def bad_words(_: pytest.MonkeyPatch) -> Told:
@@ -214,7 +222,7 @@ def _general(part: str) -> str:
     return "NUMBER" if part.isdigit() else names.get(part, part)
 
 
-KINDS = (bad_scenes, bad_contacts, bad_joints, bad_words, doubtful, along_the_way, given_up, of_results, in_results)
+KINDS = (bad_scenes, bad_contacts, bad_joints, bad_sides, bad_words, doubtful, along_the_way, given_up, of_results, in_results)
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.__name__)

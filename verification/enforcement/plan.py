@@ -63,7 +63,7 @@ class Setup:
         plain = WAYS[MORTAR if way == REFERENCE else way]
         overrides = [f"contacts.{name}.{entry}" for entry in plain if contact.master or not entry.startswith("projection")]
         if way.endswith("swapped"):
-            overrides += [f"contacts.{name}.slave={contact.master}", f"contacts.{name}.master={contact.slave}"]
+            overrides += [f"contacts.{name}.slave={list(contact.master)}", f"contacts.{name}.master={list(contact.slave)}"]
         overrides += _AUGMENTED if way == "kts" else ()
         overrides += self.finer if way == REFERENCE else ()
         return Scene.load(self.scene, [*self.changes, *overrides])

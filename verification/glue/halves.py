@@ -59,18 +59,17 @@ def halves(load: str, family: str, order: int, method: str) -> Problem:
 def whole(problem: Problem) -> Problem:
     """The halves as one body, "lower", with a C0 line where they are glued."""
     lower, upper = problem.body("lower"), problem.body("upper")
-    body = replace(lower, patch=stacked(lower.patch, upper.patch))
+    body = replace(lower, patch=chained(lower.patch, upper.patch, 2))
     supports = tuple(replace(support, place=Face("lower", support.place.face)) for support in problem.supports if support.name != "upper")
     return replace(problem, bodies=(body,), supports=supports, glue=())
 
 
-def stacked(lower: Patch, upper: Patch) -> Patch:
-    """Two patches that meet at w1 and w0 as one, with a C0 line there."""
-    u, v, w = lower.directions
-    along = followed_by(w, upper.directions[2])
-    layer = u.count * v.count
-    points, weights = (np.concatenate([getattr(lower, name), getattr(upper, name)[layer:]]) for name in ("control_points", "weights"))
-    return Patch((u, v, along), points, weights)
+def chained(one: Patch, other: Patch, axis: int) -> Patch:
+    """Two patches, of which one goes on along a direction where the other ends, as one patch with a C0 line there."""
+    u, v, w = (followed_by(d, other.directions[k]) if k == axis else d for k, d in enumerate(one.directions))
+    grids = [np.column_stack([p.control_points, p.weights]).reshape((*p.shape, 4), order="F") for p in (one, other)]
+    values = np.concatenate([grids[0], np.delete(grids[1], 0, axis)], axis=axis).reshape((-1, 4), order="F")
+    return Patch((u, v, w), values[:, :3], values[:, 3])
 
 
 def followed_by(one: Direction, other: Direction) -> Direction:

@@ -137,10 +137,10 @@ def _check_held(problem: Problem) -> None:
     for _ in problem.bodies:
         for contact in touching:
             assert isinstance(contact.master, Face)  # a plane holds nobody
-            pair = {body.name for face in (contact.slave, contact.master) for body in whole[face.body]}
+            pair = {body.name for place in (contact.slave, contact.master) for face in place.faces for body in whole[face.body]}
             if pair & held:
                 held |= pair
-    touched = [place.body for c in problem.contacts for place in (c.slave, c.master) if isinstance(place, Face)]
+    touched = [face.body for c in problem.contacts for side in (c.slave, c.master) if isinstance(side, Face) for face in side.faces]
     in_contact = {body.name for name in touched for body in whole[name]}
     for body in problem.bodies:
         if body.name not in held:
@@ -161,8 +161,10 @@ def _touch(problem: Problem, contact: Contact) -> bool:
     """Whether two deformable faces may touch in the reference configuration: their bounding boxes meet."""
     if not isinstance(contact.master, Face):
         return False
-    slave = surface_samples(problem.body(contact.slave.body).patch, contact.slave.face)
-    master = surface_samples(problem.body(contact.master.body).patch, contact.master.face)
+    slave, master = (
+        np.concatenate([surface_samples(problem.body(face.body).patch, face.face) for face in side.faces])
+        for side in (contact.slave, contact.master)
+    )
     margin = 0.01 * np.ptp(slave, axis=0).max()
     return bool(np.all(slave.min(axis=0) - margin <= master.max(axis=0)) and np.all(master.min(axis=0) - margin <= slave.max(axis=0)))
 

@@ -7,8 +7,11 @@ from itertools import combinations
 import numpy as np
 
 from isomortar.errors import InputError
+from isomortar.geometry.net import Net
 from isomortar.model.constants import SAME_POINT
-from isomortar.model.entities import Body, Contact, Face, Problem, RigidPlane
+from isomortar.model.entities import Contact, Face, Problem, RigidPlane
+from isomortar.model.messages import located
+from isomortar.model.sheet import Sheet
 from isomortar.model.stance import Stance, stance
 
 #: Least area of a contact face over the square of its own extent, and least extent over its body's: what is below is a line or a point.
@@ -30,6 +33,7 @@ def check_contacts(problem: Problem) -> None:
         knot lines, that cannot be.
     """
     for contact in problem.contacts:
+        _check_sides(problem, contact)
         _check_friction(contact)
         _check_projection(problem, contact)
         _check_enforcement(problem, contact)
@@ -43,6 +47,17 @@ def check_contacts(problem: Problem) -> None:
                 f"is between the same faces as contact {one.name!r}: their pressures could be shared in any way; remove one of them",
                 f"contacts.{other.name}",
             )
+
+
+def _check_sides(problem: Problem, contact: Contact) -> None:
+    """Refuse sides of several faces that do not join to one, and faces that are on both sides."""
+    for side, place in (("slave", contact.slave), ("master", contact.master)):
+        if isinstance(place, Face):
+            with located(f"contacts.{contact.name}.{side}"):
+                Sheet.of(problem, place)
+    both = set(contact.slave.faces) & set(contact.master.faces) if isinstance(contact.master, Face) else set()
+    if both:
+        raise InputError(f"has {both.pop().words} in common with the slave; allowed: other faces", f"contacts.{contact.name}.master")
 
 
 def _check_friction(contact: Contact) -> None:
@@ -71,9 +86,9 @@ def _check_projection(problem: Problem, contact: Contact) -> None:
     path = f"contacts.{contact.name}.projection"
     if isinstance(contact.master, RigidPlane):
         raise InputError('is "averaged", but a rigid plane has one normal everywhere; remove it', path)
-    if has_pole(problem.body(contact.master.body), contact.master.face):
+    if has_pole(Sheet.of(problem, contact.master)):
         raise InputError(
-            f'is "averaged", but the master {contact.master.body}.{contact.master.face} has a pole, an edge that is one point, where '
+            f'is "averaged", but the master {contact.master.words} has a pole, an edge that is one point, where '
             'elements have no normal; take "closest", or a mesh without a pole',
             path,
         )
@@ -83,15 +98,15 @@ def _check_projection(problem: Problem, contact: Contact) -> None:
 
 def _check_enforcement(problem: Problem, contact: Contact) -> None:
     """Refuse constraints at points that there are not, that fall together, or are too many for multipliers of their own."""
-    path, body, face = f"contacts.{contact.name}.enforcement", problem.body(contact.slave.body), contact.slave.face
-    directions = body.patch.face_directions(face)
+    path, sheet, words = f"contacts.{contact.name}.enforcement", Sheet.of(problem, contact.slave), contact.slave.words
+    directions = sheet.directions
     if contact.enforcement == "demko" and any(direction.family == "L" for direction in directions):
         raise InputError(
-            f'is "demko", but {body.name}.{face} is of Lagrange elements, which have no such abscissae; take "greville": their nodes', path
+            f'is "demko", but {words} is of Lagrange elements, which have no such abscissae; take "greville": their nodes', path
         )
-    if contact.enforcement in ("knots", "greville", "demko") and has_pole(body, face):
+    if contact.enforcement in ("knots", "greville", "demko") and has_pole(sheet):
         raise InputError(
-            f'is "{contact.enforcement}", but the slave {body.name}.{face} has a pole, an edge that is one point: constraints would fall '
+            f'is "{contact.enforcement}", but the slave {words} has a pole, an edge that is one point: constraints would fall '
             'together there; take "mortar" or "kts"',
             path,
         )
@@ -100,7 +115,7 @@ def _check_enforcement(problem: Problem, contact: Contact) -> None:
         control_points = np.prod([direction.count for direction in directions])
         if points > control_points:
             raise InputError(
-                f'is "kts", with {points} conditions for the {control_points} control points of {body.name}.{face}: as unknowns their '
+                f'is "kts", with {points} conditions for the {control_points} control points of {words}: as unknowns their '
                 f'multipliers would repeat each other; take solver.method = "uzawa", or fewer points (contacts.{contact.name}.quadrature)',
                 path,
             )
@@ -118,31 +133,29 @@ def _check_subcells(contact: Contact) -> None:
         )
 
 
-def has_pole(body: Body, face: str) -> bool:
-    """Whether an edge of a face is one point."""
-    first, second = body.patch.face_directions(face)
-    grid = body.patch.control_points[body.patch.face_points(face)].reshape(second.count, first.count, 3)
-    return any(float(np.ptp(edge, axis=0).max()) <= SAME_POINT * body.size for edge in (grid[0], grid[-1], grid[:, 0], grid[:, -1]))
+def has_pole(sheet: Sheet) -> bool:
+    """Whether an edge of a sheet's face is one point."""
+    grid = Net.of(sheet.patch, sheet.face).points
+    return any(float(np.ptp(edge, axis=0).max()) <= SAME_POINT * sheet.size for edge in (grid[0], grid[-1], grid[:, 0], grid[:, -1]))
 
 
 def _check_area(problem: Problem, contact: Contact, found: Stance) -> None:
     for side, place, area in (("slave", contact.slave, found.slave_area), ("master", contact.master, found.master_area)):
-        if isinstance(place, Face) and not _spreads(problem.body(place.body), place.face, area):
+        if isinstance(place, Face) and not _spreads(Sheet.of(problem, place), area):
             raise InputError(
-                f"is {place.body}.{place.face}, a face of area {area:.3g}: its control points fall onto a line or a point; "
-                "name another face",
+                f"is {place.words}, a face of area {area:.3g}: its control points fall onto a line or a point; name another face",
                 f"contacts.{contact.name}.{side}",
             )
 
 
-def _spreads(body: Body, face: str, area: float) -> bool:
+def _spreads(sheet: Sheet, area: float) -> bool:
     """Whether a face is a surface. It is judged by its own extent: that of a long body makes each of its ends seem a point."""
-    extent = float(np.ptp(body.patch.control_points[body.patch.face_points(face)], axis=0).max())
-    return area > LEAST * extent**2 and extent > LEAST * body.size
+    extent = float(np.ptp(sheet.patch.control_points[sheet.patch.face_points(sheet.face)], axis=0).max())
+    return area > LEAST * extent**2 and extent > LEAST * sheet.size
 
 
 def _check_stance(problem: Problem, contact: Contact, found: Stance) -> None:
-    slave = f"{contact.slave.body}.{contact.slave.face}"
+    slave = contact.slave.words
     looks_away = found.cosine > SAME_WAY
     if isinstance(contact.master, RigidPlane):
         field = f"contacts.{contact.name}.plane.normal"

@@ -80,6 +80,28 @@ class Face:
     body: str
     face: str
 
+    @property
+    def faces(self) -> tuple[Face, ...]:
+        """The single faces that it is of."""
+        return (self,)
+
+    @property
+    def words(self) -> str:
+        """As scene files name it."""
+        return ", ".join(f"{face.body}.{face.face}" for face in self.faces)
+
+
+@dataclass(frozen=True)
+class Faces(Face):
+    """A side of a contact of several faces that join to one, the first and those `beside`; no place of a support."""
+
+    beside: tuple[Face, ...]
+
+    @property
+    def faces(self) -> tuple[Face, ...]:
+        """The single faces that it is of."""
+        return (Face(self.body, self.face), *self.beside)
+
 
 @dataclass(frozen=True)
 class RigidPlane:
@@ -104,8 +126,8 @@ class Contact:
     """
 
     name: str
-    slave: Face
-    master: Face | RigidPlane
+    slave: Faces | Face
+    master: Faces | Face | RigidPlane
     friction: float
     quadrature: tuple[int, int]
     reference_area: float | None = None

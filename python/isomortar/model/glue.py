@@ -42,16 +42,17 @@ def check_glue(problem: Problem) -> None:
             raise InputError(f"joins two faces of {one.body!r}; a body that meets itself is closed: bodies.{one.body}.closed", path)
         for face, mate in (joint, (other, one)):
             if face in glued:
-                raise InputError(f"joins {_words(face)} to {_words(mate)}, and it is glued to {_words(glued[face])} already", path)
+                raise InputError(f"joins {face.words} to {mate.words}, and it is glued to {glued[face].words} already", path)
             glued[face] = mate
         shared_points(problem, number)
     for contact in problem.contacts:
         for side, place in (("slave", contact.slave), ("master", contact.master)):
-            if isinstance(place, Face) and place in glued:
-                raise InputError(
-                    f"is {_words(place)}, which is glued to {_words(glued[place])}: it lies inside; name an outer face",
-                    f"contacts.{contact.name}.{side}",
-                )
+            for face in place.faces if isinstance(place, Face) else ():
+                if face in glued:
+                    raise InputError(
+                        f"is {face.words}, which is glued to {glued[face].words}: it lies inside; name an outer face",
+                        f"contacts.{contact.name}.{side}",
+                    )
 
 
 def shared_points(problem: Problem, number: int) -> tuple[IntArray, IntArray]:
@@ -76,11 +77,7 @@ def shared_points(problem: Problem, number: int) -> tuple[IntArray, IntArray]:
     if best.stage == 0:
         best = min(misfits, key=lambda found: found.size)
     raise InputError(
-        f"joins {_words(faces[0])} to {_words(faces[1])}, which do not conform: {best.reason}. Glued faces share their control points: "
+        f"joins {faces[0].words} to {faces[1].words}, which do not conform: {best.reason}. Glued faces share their control points: "
         "give both bodies the same mesh there, bring them together, or let them touch by a contact",
         f"glue.{number}",
     )
-
-
-def _words(face: Face) -> str:
-    return f"{face.body}.{face.face}"

@@ -9,23 +9,19 @@ import numpy as np
 from isomortar import _bindings
 from isomortar.geometry.patch import Direction, FloatArray, Patch
 from isomortar.model import constants
-from isomortar.model.entities import Body
 from isomortar.model.numbering import patch_arrays
+from isomortar.model.sheet import Sheet
 
 
-def has_kinks(body: Body, face: str) -> bool:
-    """Whether a face has kinks between its edges, or at the seam of a closed body.
+def has_kinks(sheet: Sheet) -> bool:
+    """Whether the face of a sheet has kinks between its edges, or where it meets itself.
 
     Elements of Lagrange's or of order 1 are the mesh of something else, and every line between them becomes a kink as they deform. A
     C0 line of a higher order is one where the tangent planes of its sides differ as they are given: arcs that meet smoothly have none.
     """
-    directions = body.patch.face_directions(face)
-    if any(d.kinks and (d.family == "L" or d.order == 1) for d in directions):
+    if any(d.kinks and (d.family == "L" or d.order == 1) for d in sheet.directions):
         return True
-    first = "uvw".index(face[0]) + 1
-    return any(
-        _turn(body.patch, face, axis, name == body.closed) > constants.KINK_ANGLE for axis, name in enumerate("uvwuv"[first : first + 2])
-    )
+    return any(_turn(sheet.patch, sheet.face, axis, closed) > constants.KINK_ANGLE for axis, closed in enumerate(sheet.closed))
 
 
 def _turn(patch: Patch, face: str, axis: int, closed: bool) -> float:

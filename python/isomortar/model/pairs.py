@@ -13,6 +13,7 @@ from isomortar.model.enforcement import slave_side
 from isomortar.model.entities import Contact, Face, Problem, RigidPlane
 from isomortar.model.numbering import Numbering
 from isomortar.model.pattern import elements_about, incidence, pattern_of, surface_element_points
+from isomortar.model.sheet import Sheet
 
 
 class Pair:
@@ -62,21 +63,20 @@ class Pair:
         self.master_elements = (0, 0)
         self.master_boundaries: tuple[FloatArray, ...] = ()
         if not isinstance(contact.master, RigidPlane):
-            body = problem.body(contact.master.body)
-            reached = surface_element_points(body.patch, contact.master.face, numbering.points[body.name])
-            self.master_reach = incidence(reached, numbering.count)
+            sheet = Sheet.of(problem, contact.master)
+            patch, face, points = sheet.patch, sheet.face, sheet.points(numbering)
+            self.master_reach = incidence(surface_element_points(patch, face, points), numbering.count)
             if contact.averaged:
-                about = elements_about(body.patch, contact.master.face, numbering.points[body.name])
-                self.master_reach = sparse.csr_array(about @ self.master_reach)
-            directions = body.patch.face_directions(contact.master.face)
+                self.master_reach = sparse.csr_array(elements_about(patch, face, points) @ self.master_reach)
+            directions = sheet.directions
             self.master_boundaries = (directions[0].boundaries, directions[1].boundaries)
             self.master_elements = (directions[0].elements, directions[1].elements)
-            grid = numbering.face_points(body, contact.master.face).reshape(directions[1].count, -1)
+            grid = points[patch.face_points(face)].reshape(directions[1].count, -1)
             self.master_face = grid.ravel()
             self.master_edges = [(0, grid[:, 0]), (0, grid[:, -1]), (1, grid[0]), (1, grid[-1])]
         self.neighbour_matrix = sparse.csr_array(self.elements_of_point @ self.elements_of_point.T)
         self.neighbours: Pattern = pattern_of(self.neighbour_matrix)
-        names = {side.body for side in (contact.slave, contact.master) if isinstance(side, Face)}
+        names = {face.body for side in (contact.slave, contact.master) if isinstance(side, Face) for face in side.faces}
         meeting = [k for k, piece in enumerate(numbering.pieces) if any(body.name in names for body in piece)]
         self.pieces: IntArray = np.array(meeting, dtype=np.int32)
         stiffest = np.array([max(body.material.modulus for body in numbering.pieces[k]) for k in meeting])
@@ -103,15 +103,10 @@ class Pair:
         return missing
 
 
-def _axis(face: str) -> int:
-    return "uvw".index(face[0]) + 1
-
-
 def _master_arrays(contact: Contact, problem: Problem, numbering: Numbering) -> MasterArrays:
     if isinstance(contact.master, RigidPlane):
         plane = contact.master
         return PlaneArrays(*(np.array(vector, dtype=np.float64) for vector in (plane.point, plane.normal, plane.tangent)))
-    patch = numbering.patch_arrays(problem.body(contact.master.body))
     kind = AveragedFaceArrays if contact.averaged else FaceArrays
     brim = 0.0 if contact.enforcement == "mortar" else constants.BRIM
-    return kind(patch, _axis(contact.master.face), int(contact.master.face[1]), brim)
+    return kind(*Sheet.of(problem, contact.master).arrays(numbering), brim)

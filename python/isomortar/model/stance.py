@@ -9,7 +9,8 @@ from scipy.spatial import KDTree
 
 from isomortar.geometry.faces import Cells, cells
 from isomortar.geometry.patch import FloatArray
-from isomortar.model.entities import Body, Contact, Face, Problem, RigidPlane
+from isomortar.model.entities import Contact, Face, Problem, RigidPlane
+from isomortar.model.sheet import Sheet
 
 #: Faces whose outward normals include more than about 96 degrees face each other.
 FACING = -0.1
@@ -48,20 +49,21 @@ class Stance:
 
 def stance(problem: Problem, contact: Contact) -> Stance:
     """How a pair stands."""
-    body = problem.body(contact.slave.body)
-    slave = cells(body.patch, contact.slave.face)
+    sheet = Sheet.of(problem, contact.slave)
+    slave = cells(sheet.patch, sheet.face)
     if isinstance(contact.master, RigidPlane):
-        return _on_plane(body, slave, contact.master)
+        return _on_plane(np.concatenate([body.patch.control_points for body in sheet.bodies]), slave, contact.master)
     return _on_face(slave, _cells_of(problem, contact.master))
 
 
-def _cells_of(problem: Problem, face: Face) -> Cells:
-    return cells(problem.body(face.body).patch, face.face)
+def _cells_of(problem: Problem, place: Face) -> Cells:
+    sheet = Sheet.of(problem, place)
+    return cells(sheet.patch, sheet.face)
 
 
-def _on_plane(body: Body, slave: Cells, plane: RigidPlane) -> Stance:
+def _on_plane(points: FloatArray, slave: Cells, plane: RigidPlane) -> Stance:
     normal = np.asarray(plane.normal)
-    heights = (body.patch.control_points - plane.point) @ normal
+    heights = (points - plane.point) @ normal
     thickness = np.full(len(slave.areas), np.ptp(heights))
     cosines = slave.normals @ normal
     above = (slave.centres - plane.point) @ normal

@@ -102,6 +102,9 @@ class LagrangeProblem:
         place = f"contacts.{contact.name}"
         if not isinstance(contact.master, Face):
             raise self.refuse("is not told of rigid planes; take a body as the master", f"{place}.plane")
+        for side, faces in (("slave", contact.slave), ("master", contact.master)):
+            if len(faces.faces) > 1:
+                raise self.refuse("is not told of sides of several faces", f"{place}.{side}")
         if contact.cohesion:
             raise self.refuse("has no friction with a cohesion", f"{place}.cohesion")
         if contact.traction_max is not None:

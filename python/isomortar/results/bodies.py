@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +11,7 @@ from matplotlib.colors import Normalize, to_rgb
 from matplotlib.figure import Figure
 
 from isomortar.geometry.patch import FACES, Direction, FloatArray
-from isomortar.model.entities import Body, Problem, RigidPlane, unit
+from isomortar.model.entities import Body, Face, Problem, RigidPlane, unit
 from isomortar.results import style
 from isomortar.results.bezier import rational, sampling_matrix
 from isomortar.results.fields import ContactSurface, body_points, contact_surfaces
@@ -41,7 +41,8 @@ def draw_bodies(problem: Problem, step: StepResult, number: int) -> Figure:
     """
     surface = contact_surfaces(problem, step)[number]
     points = body_points(problem, step.state.positions)
-    slave = problem.body(surface.contact.slave.body)
+    faces = surface.contact.slave.faces
+    slaves = {face.body for face in faces}
     face = _face(surface)
     colours = ScalarMappable(Normalize(0.0, face.peak), style.pressure_colours())
     figure = Figure(figsize=(8.6, 4.2), layout="constrained")
@@ -49,18 +50,21 @@ def draw_bodies(problem: Problem, step: StepResult, number: int) -> Figure:
     canvas = Canvas(_VIEW)
     glued = [face for joint in problem.glue for face in joint]
     for body in problem.bodies:
-        fine = (surface.contact.slave.face,) if body is slave else ()
-        inside = [face.face for face in glued if face.body == body.name]
-        add_body(canvas, body, points[body.name], _by_pressure(body, surface, colours), fine, inside=inside)
+        colour = style.SLAVE if body.name in slaves else style.MASTER
+        add_body(canvas, body, points[body.name], plain(colour), inside=_of_body([*glued, *faces], body))
+    _add_contact(canvas, surface, colours)
     if isinstance(surface.contact.master, RigidPlane):
-        margin = 0.2 * float(np.ptp(points[slave.name], axis=0).max())
-        canvas.add_floor(plane_corners(surface.contact.master, points[slave.name], margin), np.array(to_rgb(style.PLANE)))
+        near = np.concatenate([points[name] for name in slaves])
+        margin = 0.2 * float(np.ptp(near, axis=0).max())
+        canvas.add_floor(plane_corners(surface.contact.master, near, margin), np.array(to_rgb(style.PLANE)))
     canvas.paint(whole)
     canvas = Canvas(_camera_towards(face.normal))
-    add_body(canvas, slave, points[slave.name], _by_pressure(slave, surface, colours), (surface.contact.slave.face,))
+    for name in sorted(slaves):
+        add_body(canvas, problem.body(name), points[name], plain(style.SLAVE), inside=_of_body(faces, problem.body(name)))
+    _add_contact(canvas, surface, colours)
     canvas.paint(contact)
     whole.set_title(f"{problem.name}, load step {step.step} ({step.stage})", loc="left")
-    contact.set_title(f"{slave.name} from the master's side", loc="left")
+    contact.set_title(f"{surface.contact.slave.body} from the master's side", loc="left")
     bar = figure.colorbar(colours, ax=contact, shrink=0.7, aspect=22, pad=0.02, extend="min" if face.pulls else "neither")
     bar.set_label("contact pressure (force / area)")
     return figure
@@ -82,7 +86,7 @@ def _face(surface: ContactSurface) -> _Face:
     grid, corner = points.reshape(*shape, 3), pressure.reshape(shape)[:-1, :-1]
     normals = np.cross(grid[1:, 1:] - grid[:-1, :-1], grid[1:, :-1] - grid[:-1, 1:])
     weight = np.maximum(corner, 0.0) if corner.max() > 0 else np.ones_like(corner)
-    normal = (1 if surface.contact.slave.face[1] == "1" else -1) * np.tensordot(weight, normals, axes=2)
+    normal = surface.outward * np.tensordot(weight, normals, axes=2)
     peak = max(float(pressure.max()), 1e-300)
     return _Face(peak, bool(pressure.min() < -1e-9 * peak), normal / np.linalg.norm(normal))
 
@@ -150,13 +154,30 @@ def add_body(
         directions = body.patch.face_directions(name)
         parts = face_parts(directions, _FINENESS_OF_CONTACT if name in fine else FINENESS)
         matrices = _samplings(directions, parts)
-        shape = (len(matrices[1]), len(matrices[0]))
-        grid = rational(matrices, body.patch.weights[numbers], points[numbers])[0].reshape(*shape, 3)
-        lines = (np.arange(0, shape[1], parts[0]), np.arange(0, shape[0], parts[1]))
-        colours, shading = paint(name, parts)
-        cells = np.broadcast_to(colours, (shape[0] - 1, shape[1] - 1, 3))
+        places = rational(matrices, body.patch.weights[numbers], points[numbers])[0]
         outward = 0 if opacity < 1 else 1 if name[1] == "1" else -1
-        canvas.add_surface(grid, cells, outward, lines, shading, opacity)
+        _add_face(canvas, matrices, parts, places, paint(name, parts), outward, opacity)
+
+
+def _add_face(
+    canvas: Canvas,
+    matrices: tuple[FloatArray, FloatArray],
+    parts: tuple[int, int],
+    places: FloatArray,
+    painted: tuple[FloatArray, float],
+    outward: int,
+    opacity: float = 1.0,
+) -> None:
+    """Add a face, sampled at `places`, with its knot lines, in colours and with shading as of a `Paint`."""
+    shape = (len(matrices[1]), len(matrices[0]))
+    lines = (np.arange(0, shape[1], parts[0]), np.arange(0, shape[0], parts[1]))
+    cells = np.broadcast_to(painted[0], (shape[0] - 1, shape[1] - 1, 3))
+    canvas.add_surface(places.reshape(*shape, 3), cells, outward, lines, painted[1], opacity)
+
+
+def _of_body(faces: Sequence[Face], body: Body) -> list[str]:
+    """Those of some faces that are of a body."""
+    return [face.face for face in faces if face.body == body.name]
 
 
 def plain(colour: str, shading: float = 1.0) -> Paint:
@@ -165,18 +186,12 @@ def plain(colour: str, shading: float = 1.0) -> Paint:
     return lambda _name, _parts: (rgb, shading)
 
 
-def _by_pressure(body: Body, surface: ContactSurface, colours: ScalarMappable) -> Paint:
-    """The contact face by its pressure, the rest in the colour of the body."""
-    is_slave = body.name == surface.contact.slave.body
-    elsewhere = plain(style.SLAVE if is_slave else style.MASTER)
-
-    def paint(name: str, parts: tuple[int, int]) -> tuple[FloatArray, float]:
-        if not (is_slave and name == surface.contact.slave.face):
-            return elsewhere(name, parts)
-        matrices = _samplings(surface.directions, parts)
-        pressure = surface.fields(matrices)[1].reshape(len(matrices[1]), len(matrices[0]))
-        middle = 0.25 * (pressure[1:, 1:] + pressure[1:, :-1] + pressure[:-1, 1:] + pressure[:-1, :-1])
-        cells = colours.to_rgba(np.where(np.abs(middle) < 1e-9 * np.abs(middle).max(), 0.0, middle))
-        return cells[..., :3], _SHADING_OF_PRESSURE
-
-    return paint
+def _add_contact(canvas: Canvas, surface: ContactSurface, colours: ScalarMappable) -> None:
+    """Add the contact face, by its pressure."""
+    parts = face_parts(surface.directions, _FINENESS_OF_CONTACT)
+    matrices = _samplings(surface.directions, parts)
+    places, pressure, _ = surface.fields(matrices)
+    grid = pressure.reshape(len(matrices[1]), len(matrices[0]))
+    middle = 0.25 * (grid[1:, 1:] + grid[1:, :-1] + grid[:-1, 1:] + grid[:-1, :-1])
+    cells = colours.to_rgba(np.where(np.abs(middle) < 1e-9 * np.abs(middle).max(), 0.0, middle))
+    _add_face(canvas, matrices, parts, places, (cells[..., :3], _SHADING_OF_PRESSURE), surface.outward)

@@ -10,6 +10,7 @@ from isomortar.geometry.patch import Direction, FloatArray, IntArray
 from isomortar.model.enforcement import METHODS, SlaveFace
 from isomortar.model.entities import Contact, Problem
 from isomortar.model.numbering import Numbering
+from isomortar.model.sheet import Sheet
 from isomortar.results.bezier import rational
 from isomortar.solve.record import ContactResult, ContactState, StepResult
 
@@ -19,11 +20,15 @@ class ContactSurface:
     """A slave face with its contact quantities, everything by control point of the face (shape (n,), points (n, 3)).
 
     The fields are p = sum R^I p^I, for the magnitude of the traction sum R^I |tau^I|, and by `field` any other. `covariant`: control
-    tractions tau_alpha^I in the master's coordinates, shape (n, 2); `gap`: control gaps g^I, positive is penetration.
+    tractions tau_alpha^I in the master's coordinates, shape (n, 2); `gap`: control gaps g^I, positive is penetration. `letters`: names of
+    the surface coordinates among u, v, w, in the first of several bodies; `outward`: sign of the product of the tangents that points out
+    of them.
     """
 
     contact: Contact
+    letters: tuple[str, str]
     directions: tuple[Direction, Direction]
+    outward: int
     weights: FloatArray
     reference_points: FloatArray
     points: FloatArray
@@ -32,12 +37,6 @@ class ContactSurface:
     covariant: FloatArray
     gap: FloatArray
     status: IntArray
-
-    @property
-    def letters(self) -> tuple[str, str]:
-        """Names of the surface coordinates among u, v, w."""
-        axis = "uvw".index(self.contact.slave.face[0])
-        return "uvw"[(axis + 1) % 3], "uvw"[(axis + 2) % 3]
 
     @property
     def lengths(self) -> tuple[float, float]:
@@ -68,18 +67,20 @@ def contact_surfaces(problem: Problem, result: StepResult) -> list[ContactSurfac
     numbering = Numbering(problem)
     surfaces = []
     for contact, state, measured in zip(problem.contacts, result.state.contacts, result.contacts, strict=True):
-        patch = problem.body(contact.slave.body).patch
-        face = patch.face_points(contact.slave.face)
-        points = numbering.points[contact.slave.body][face]
+        sheet = Sheet.of(problem, contact.slave)
+        face = sheet.patch.face_points(sheet.face)
+        points = sheet.points(numbering)[face]
         slave = SlaveFace(contact, problem, numbering)
         side = METHODS[contact.enforcement](slave)
         by_control = {name: side.on_control_points(values)[slave.within] for name, values in _quantities(state, measured).items()}
         surfaces.append(
             ContactSurface(
                 contact=contact,
-                directions=patch.face_directions(contact.slave.face),
-                weights=patch.weights[face],
-                reference_points=patch.control_points[face],
+                letters=sheet.letters,
+                directions=sheet.directions,
+                outward=sheet.outward,
+                weights=sheet.patch.weights[face],
+                reference_points=sheet.patch.control_points[face],
                 points=result.state.positions[points],
                 status=measured.status[side.nearest][slave.within],
                 **by_control,

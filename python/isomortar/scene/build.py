@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import hypot
 from pathlib import Path
 
@@ -11,9 +12,10 @@ from isomortar.geometry.quadrature import contact_points, volume_points
 from isomortar.geometry.refinement import mesh
 from isomortar.model import constants
 from isomortar.model.contact_checks import has_pole
-from isomortar.model.entities import Body, Contact, Face, Material, Motion, Problem, RigidPlane, Stage, Support
+from isomortar.model.entities import Body, Contact, Face, Faces, Material, Motion, Problem, RigidPlane, Stage, Support
 from isomortar.model.kinks import has_kinks
 from isomortar.model.messages import located
+from isomortar.model.sheet import Sheet
 from isomortar.scene.geometry_file import read_geometry
 from isomortar.scene.schema import BodyTable, ContactTable, MeshTable, PlaneTable, SceneTable, SupportTable
 from isomortar.scene.types import listed
@@ -44,16 +46,16 @@ def build(scene: SceneTable, name: str, folder: Path) -> Problem:
     _check_curves(scene)
     bodies = tuple(_body(body, table, coarse[body], meshes[body], _material(scene, body)) for body, table in scene.bodies.items())
     by_name = {body.name: body for body in bodies}
-    summed = scene.solver.slip_sum == "paper"
-    return Problem(
+    problem = Problem(
         name=scene.name or name,
         bodies=bodies,
-        contacts=tuple(_contact(contact, table, by_name, summed) for contact, table in scene.contacts.items()),
+        contacts=(),
         supports=tuple(_support(support, table, by_name, _motions(scene, support)) for support, table in scene.supports.items()),
         stages=_stages(scene),
         settings=scene.solver,
         glue=tuple(_joint(faces, by_name, f"glue.{number}") for number, faces in enumerate(scene.glue)),
     )
+    return replace(problem, contacts=tuple(_contact(contact, table, problem) for contact, table in scene.contacts.items()))
 
 
 def coarse_patch(name: str, table: BodyTable, folder: Path) -> Patch:
@@ -135,16 +137,21 @@ def _joint(faces: tuple[str, str], bodies: dict[str, Body], field: str) -> tuple
     return one, other
 
 
-def _contact(name: str, table: ContactTable, bodies: dict[str, Body], summed: bool) -> Contact:
-    """A contact; `summed`: with the paper's slip sum, which needs closest points."""
+def _contact(name: str, table: ContactTable, problem: Problem) -> Contact:
+    """A contact of a problem that has its bodies."""
     path = f"contacts.{name}"
-    slave = _face(table.slave, bodies, f"{path}.slave")
+    slave, slave_sheet = _side(table.slave, problem, f"{path}.slave")
     master: Face | RigidPlane
-    master = _plane(table.plane, f"{path}.plane") if table.plane else _face(str(table.master), bodies, f"{path}.master")
+    if table.plane:
+        master, by_default = _plane(table.plane, f"{path}.plane"), False
+    else:
+        master, sheet = _side(table.master or (), problem, f"{path}.master")
+        # The paper's slip sum needs closest points; at a pole there are no averaged normals.
+        wanted = table.projection is None and problem.settings.slip_sum != "paper"
+        by_default = wanted and has_kinks(sheet) and not has_pole(sheet)
     if master == slave:
-        raise InputError(f"is the slave face {table.slave!r} itself; allowed: another face", f"{path}.master")
-    first, second = bodies[slave.body].patch.face_directions(slave.face)
-    by_default = table.projection is None and isinstance(master, Face) and _wants_averaged(bodies[master.body], master.face) and not summed
+        raise InputError(f"is the slave face {slave.words!r} itself; allowed: another face", f"{path}.master")
+    first, second = slave_sheet.directions
     return Contact(
         name=name,
         slave=slave,
@@ -161,9 +168,12 @@ def _contact(name: str, table: ContactTable, bodies: dict[str, Body], summed: bo
     )
 
 
-def _wants_averaged(body: Body, face: str) -> bool:
-    """Whether a master's face has kinks, and averaged normals everywhere."""
-    return has_kinks(body, face) and not has_pole(body, face)
+def _side(names: tuple[str, ...], problem: Problem, field: str) -> tuple[Face, Sheet]:
+    """A side of a contact and its sheet."""
+    first, *others = (_face(name, {body.name: body for body in problem.bodies}, field) for name in names)
+    place = Faces(first.body, first.face, tuple(others)) if others else first
+    with located(field):
+        return place, Sheet.of(problem, place)
 
 
 def _plane(table: PlaneTable, path: str) -> RigidPlane:

@@ -25,6 +25,7 @@ from isomortar.scene.types import (
     PerDirection,
     PerSurfaceDirection,
     PlanePoint,
+    Side,
     Table,
     entity,
 )
@@ -164,10 +165,10 @@ class PlaneTable(Table):
 class ContactTable(Table):
     """A contact pair: slave face, and a master face or a rigid plane."""
 
-    slave: FaceName
-    """BODY.FACE; the faces are u0, u1, v0, v1, w0, w1: first and last parametric value of each direction."""
-    master: FaceName | None = None
-    """BODY.FACE of the deformable master."""
+    slave: Side
+    """BODY.FACE (u0, u1, v0, v1, w0, w1: first and last parametric value of each direction), or a list of faces, edge to edge."""
+    master: Side | None = None
+    """BODY.FACE of the deformable master, or a list of faces, edge to edge."""
     plane: PlaneTable | None = None
     """Rigid master plane, instead of master."""
     friction: Annotated[Real, Field(ge=0, le=1e100)] = 0.3

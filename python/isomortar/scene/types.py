@@ -62,6 +62,12 @@ def _spread(count: int) -> Callable[[Any], Any]:
 GaussPoints = Annotated[int, Strict(), Field(ge=1, le=64)]
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+$")]
 FaceName = Annotated[str, Field(json_schema_extra={"pattern": r"^[A-Za-z0-9_-]+\.[uvw][01]$"})]
+#: A side of a contact: a face, or several.
+Side = Annotated[
+    tuple[FaceName, ...],
+    Field(min_length=1),
+    BeforeValidator(lambda value: (value,) if isinstance(value, str) else value, json_schema_input_type=FaceName | list[FaceName]),
+]
 Axis = Literal["u", "v", "w"]
 
 PlanePoint = Annotated[tuple[Real, Real], coordinates(2)]

@@ -7,7 +7,8 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from isomortar.model.contrasts import element_lengths
-from isomortar.model.entities import Body, Contact, Face, Problem, RigidPlane
+from isomortar.model.entities import Contact, Face, Material, Problem, RigidPlane
+from isomortar.model.sheet import Sheet
 from isomortar.solve.contact import PairMechanics
 from isomortar.solve.record import ContactResult, ContactState
 
@@ -26,15 +27,16 @@ def advice_on_problem(problem: Problem, pairs: Sequence[PairMechanics]) -> Itera
     for contact, pair in zip(problem.contacts, pairs, strict=True):
         if isinstance(contact.master, RigidPlane):
             continue
-        slave, master = problem.body(contact.slave.body), problem.body(contact.master.body)
-        stiffer = slave.material.young / master.material.young
+        slave, master = Sheet.of(problem, contact.slave), Sheet.of(problem, contact.master)
+        stiffer = _softest(slave).young / max(body.material.young for body in master.bodies)
         elements = np.prod(pair.pair.master_elements)
-        master_area = _area(master.patch.control_points[master.patch.face_points(contact.master.face)])
+        master_area = _area(master.patch.control_points[master.patch.face_points(master.face)])
         finer = (master_area / elements) / (pair.pair.area / pair.pair.slave.elements)
         if stiffer > STIFFER and finer > 1.0:
             yield (
-                f"contact {contact.name!r}: the slave {slave.name!r} is {stiffer:.0f} times stiffer and its elements are {finer:.1f} times "
-                "smaller than the master's; control pressures may be far off. Swap slave and master, or refine the master"
+                f"contact {contact.name!r}: the slave {contact.slave.body!r} is {stiffer:.0f} times stiffer and its elements "
+                f"are {finer:.1f} times smaller than the master's; control pressures may be far off. Swap slave and master, or refine the "
+                "master"
             )
     for contact in problem.contacts:
         yield from few_points(problem, contact)
@@ -45,7 +47,7 @@ def by_default(contact: Contact) -> Iterator[str]:
     """Averaged normals that nobody asked for."""
     if contact.by_default and isinstance(contact.master, Face):
         yield (
-            f"contact {contact.name!r}: the master {contact.master.body}.{contact.master.face} has C0 lines, which are kinks once it "
+            f"contact {contact.name!r}: the master {contact.master.words} has C0 lines, which are kinks once it "
             f'deforms: feet are found along averaged normals. contacts.{contact.name}.projection = "averaged" says that this is meant, '
             '"closest" takes closest points'
         )
@@ -55,10 +57,10 @@ def few_points(problem: Problem, contact: Contact) -> Iterator[str]:
     """Slaves whose quadrature points are farther apart than their master's elements are long: some of these bear nothing (theory 9.5)."""
     if isinstance(contact.master, RigidPlane):
         return
-    slave, master = problem.body(contact.slave.body), problem.body(contact.master.body)
-    apart = _element_size(slave, contact.slave) / np.sqrt(np.prod(contact.quadrature))
-    share = float(_element_size(master, contact.master) / apart)
-    if share < ENOUGH and slave.material.modulus >= master.material.modulus:
+    slave, master = Sheet.of(problem, contact.slave), Sheet.of(problem, contact.master)
+    apart = _element_size(slave) / np.sqrt(np.prod(contact.quadrature))
+    share = float(_element_size(master) / apart)
+    if share < ENOUGH and max(body.material.modulus for body in slave.bodies) >= _softest(master).modulus:
         needed = [int(np.ceil(2.0 * points / share)) for points in contact.quadrature]
         yield (
             f"contact {contact.name!r}: quadrature points of the slave are {1.0 / share:.1f} elements of its softer or equal master apart, "
@@ -66,11 +68,15 @@ def few_points(problem: Problem, contact: Contact) -> Iterator[str]:
         )
 
 
-def _element_size(body: Body, face: Face) -> float:
-    """Typical length of the elements at a face."""
-    lengths = element_lengths(body.patch)
-    axis = "uvw".index(face.face[0])
-    return float(np.sqrt(np.prod([np.median(lengths[(axis + k) % 3]) for k in (1, 2)])))
+def _softest(sheet: Sheet) -> Material:
+    """The softest material of a sheet's bodies."""
+    return min((body.material for body in sheet.bodies), key=lambda material: material.modulus)
+
+
+def _element_size(sheet: Sheet) -> float:
+    """Typical length of the elements at a side of a contact."""
+    lengths = element_lengths(sheet.patch)
+    return float(np.sqrt(np.prod([np.median(of_direction) for of_direction in lengths[:2]])))
 
 
 def _area(points: np.ndarray) -> float:
@@ -91,7 +97,7 @@ class StepAdvice:
     """
 
     def __init__(self, problem: Problem, step: int, states: Sequence[ContactState]) -> None:
-        self._slaves = {contact.name: f"{contact.slave.body}.{contact.slave.face}" for contact in problem.contacts}
+        self._slaves = {contact.name: contact.slave.words for contact in problem.contacts}
         self._begun = self._last = step
         self._closed = {name: step for name, state in zip(self._slaves, states, strict=True) if np.any(state.pressure)}
         self._given: set[tuple[str, str]] = set()

@@ -18,6 +18,7 @@ from isomortar.model.memory import memory_needed, memory_of_machine
 from isomortar.model.numbering import Numbering, ends_apart
 from isomortar.model.pairs import Pair
 from isomortar.model.rational import QUADRATURE_TOLD, quadrature_error, too_few_points
+from isomortar.model.sheet import Sheet
 from isomortar.model.stance import Stance, stance
 from isomortar.model.supports import Supports
 from isomortar.solve.feet import gaps
@@ -136,12 +137,12 @@ def _pushed_in(problem: Problem) -> Iterator[str]:
     supports = Supports(problem, numbering)
     for contact in problem.contacts:
         if isinstance(contact.master, RigidPlane):
-            body, normal = problem.body(contact.slave.body), unit(contact.master.normal)
-            points = np.unique(numbering.face_points(body, contact.slave.face))
+            sheet, normal = Sheet.of(problem, contact.slave), unit(contact.master.normal)
+            points = np.unique(sheet.points(numbering)[sheet.patch.face_points(sheet.face)])
             points = points[np.all(supports.held[points] | (np.abs(normal) < constants.NO_PART), axis=1)]
             ends = np.cumsum([stage.steps for stage in problem.stages])
             depths = [-((supports.place(float(end))[points] - contact.master.point) @ normal).min(initial=np.inf) for end in ends]
-            if max(depths) > constants.NO_PART * body.size:
+            if max(depths) > constants.NO_PART * sheet.size:
                 stage = problem.stages[int(np.argmax(depths))].name
                 yield (
                     f"contact {contact.name!r}: supports put {len(points)} of its slave control points behind the plane, by "
@@ -185,7 +186,7 @@ def _of_stance(contact: Contact, found: Stance, travel: float, too_deep: int, be
         )
     elif beside:
         yield (
-            f"contact {contact.name!r}: the slave face {contact.slave.body}.{contact.slave.face} is wholly beside its master at the "
+            f"contact {contact.name!r}: the slave face {contact.slave.words} is wholly beside its master at the "
             "start; it meets only what motions bring before it. Check places and faces"
         )
     elif _overlaps(found):
@@ -231,4 +232,5 @@ def _holder(problem: Problem, place: Face | RigidPlane) -> str:
     """What prescribes all components of just that face, as words; empty: nothing."""
     if isinstance(place, RigidPlane):
         return "a rigid plane"
-    return next((f"support {s.name!r}" for s in problem.supports if s.place == place and len(s.components) == 3), "")
+    holders = [next((s.name for s in problem.supports if s.place == face and len(s.components) == 3), "") for face in place.faces]
+    return " and ".join(f"support {name!r}" for name in holders) if all(holders) else ""

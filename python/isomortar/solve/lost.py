@@ -48,7 +48,7 @@ class LostDigits:
         reactions = [r for s, r in zip(problem.supports, result.reactions, strict=True) if s.place.body in bodies]
         vectors = [v for r in reactions for v in (r.force, r.moment / size)]
         for contact, found in zip(problem.contacts, result.contacts, strict=True):
-            sides = {side.body for side in (contact.slave, contact.master) if isinstance(side, Face)}
+            sides = {face.body for side in (contact.slave, contact.master) if isinstance(side, Face) for face in side.faces}
             vectors += [found.force_slave] if bodies & sides else []
         return float(np.max([np.linalg.norm(vector) for vector in vectors], initial=0.0))
 

@@ -9,6 +9,7 @@ import numpy as np
 from isomortar import _bindings
 from isomortar.geometry.patch import FloatArray, IntArray, opposite
 from isomortar.model.entities import Contact, RigidPlane
+from isomortar.model.sheet import Sheet
 from isomortar.solve.equilibrium import Balance, Equilibrium
 
 #: Share of a contact's normal forces that may pull: beside an edge the normals of both sides can be a right angle apart.
@@ -45,9 +46,9 @@ class _Outward:
     """Normals of a contact's slave face, out of its body, from the net of its control points, whose numbers are `points`."""
 
     def __init__(self, equilibrium: Equilibrium, contact: Contact) -> None:
-        patch, face = equilibrium.problem.body(contact.slave.body).patch, contact.slave.face
-        numbers, reference = equilibrium.numbering.points[contact.slave.body], equilibrium.numbering.reference
-        first, second = patch.face_directions(face)
+        sheet, reference = Sheet.of(equilibrium.problem, contact.slave), equilibrium.numbering.reference
+        patch, face, numbers = sheet.patch, sheet.face, sheet.points(equilibrium.numbering)
+        first, second = sheet.directions
         self.points: IntArray = numbers[patch.face_points(face)]
         self._shape, self._sign = (second.count, first.count, 3), 1.0
         inward = reference[numbers[patch.face_points(opposite(face))]] - reference[self.points]
@@ -64,7 +65,7 @@ class _Outward:
 def _sentence(contact: Contact, step: int) -> str:
     cure = "turn its normal round, or" if isinstance(contact.master, RigidPlane) else f"name another face in contacts.{contact.name}, or"
     return (
-        f"contact {contact.name!r}, load step {step}: it pulls where it should push: the slave face {contact.slave.body}."
-        f"{contact.slave.face} looks away from its master, as if it had come through it from behind. Look at the motions, {cure} "
+        f"contact {contact.name!r}, load step {step}: it pulls where it should push: the slave face {contact.slave.words} "
+        f"looks away from its master, as if it had come through it from behind. Look at the motions, {cure} "
         "start on the other side"
     )

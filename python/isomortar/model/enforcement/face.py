@@ -9,6 +9,7 @@ from isomortar._bindings import FaceArrays
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model.entities import Contact, Face, Problem
 from isomortar.model.numbering import Numbering
+from isomortar.model.sheet import Sheet
 
 
 def grid(first: FloatArray, second: FloatArray) -> FloatArray:
@@ -27,7 +28,7 @@ class SlaveFace:
         Along which directions the face meets itself.
     point : ndarray of int32, shape (n,)
         Global numbers of its control points; one that the face meets twice counts once.
-    within : ndarray of int32, shape (control points of the patch's face,)
+    within : ndarray of int32, shape (control points of the face,)
         Their numbers among these.
     control_places : ndarray, shape (n, 2)
         Where control points belong on the face: at Greville's abscissae; of a point that the face meets twice the first.
@@ -42,19 +43,17 @@ class SlaveFace:
 
     def __init__(self, contact: Contact, problem: Problem, numbering: Numbering) -> None:
         self.contact = contact
-        body, face = problem.body(contact.slave.body), contact.slave.face
-        self._patch, self.reference = numbering.patch_arrays(body), numbering.reference
+        sheet = Sheet.of(problem, contact.slave)
+        self._patch, self._axis, self._end = sheet.arrays(numbering)
+        self.reference = numbering.reference
         self.master: FaceArrays | None = None
         self.lines: tuple[FloatArray, ...] = ()
         if isinstance(contact.master, Face):
-            master, opposite = problem.body(contact.master.body), contact.master.face
-            self.master = FaceArrays(numbering.patch_arrays(master), "uvw".index(opposite[0]) + 1, int(opposite[1]))
-            self.lines = tuple(direction.boundaries for direction in master.patch.face_directions(opposite))
-        self._axis, self._end = "uvw".index(face[0]) + 1, int(face[1])
-        self.directions = body.patch.face_directions(face)
-        across = "uvw".index(face[0])
-        self.closed = tuple("uvw"[(across + i) % 3] == body.closed for i in (1, 2))
-        points = numbering.face_points(body, face)
+            master = Sheet.of(problem, contact.master)
+            self.master = FaceArrays(*master.arrays(numbering))
+            self.lines = tuple(direction.boundaries for direction in master.directions)
+        self.directions, self.closed, self.outward = sheet.directions, sheet.closed, sheet.outward
+        points = self._patch.point[sheet.patch.face_points(sheet.face)]
         found, first = np.unique(points, return_index=True)
         order = np.argsort(first)
         number = np.empty(len(order), dtype=np.int32)
@@ -63,7 +62,6 @@ class SlaveFace:
         self.within: IntArray = number[np.searchsorted(found, points)]
         self.control_places = np.zeros((len(order), 2))
         self.control_places[self.within[::-1]] = grid(*(direction.greville for direction in self.directions))[::-1]
-        self.outward = 1 if face[1] == "1" else -1
 
     def gauss(self) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
         """Tables at the contact's Gauss points: control points by element, values, derivatives, reference areas."""

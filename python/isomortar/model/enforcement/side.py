@@ -86,7 +86,7 @@ def pointwise(face: SlaveFace, coordinates: FloatArray, area: FloatArray) -> Poi
         worst = int(np.argmin(area))
         contact, where = face.contact, ", ".join(f"{c:.4g}" for c in coordinates[worst])
         raise InputError(
-            f"is {contact.enforcement!r}, but its point at ({where}) of {contact.slave.body}.{contact.slave.face} has an area of "
+            f"is {contact.enforcement!r}, but its point at ({where}) of {contact.slave.words} has an area of "
             f'{area[worst]:.3g}: pressure there would pull; take "mortar", or a mesh that is less graded',
             f"contacts.{contact.name}.enforcement",
         )

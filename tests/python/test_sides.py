@@ -1,0 +1,138 @@
+"""Sides of contacts of several faces: those that do not join to one are refused, and runs, files and pictures know of them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import isomortar
+from isomortar.errors import InputError
+from isomortar.model.entities import Faces
+from isomortar.model.sheet import Sheet
+from isomortar.program.getfem import GetFEM
+from isomortar.results.definition import differences
+from isomortar.results.reader import Results
+from isomortar.scene import Scene
+from isomortar.solve.simulation import Simulation
+
+# Four boxes round a line, of which three are glued in a row, and a block above them; each case below changes one place.
+GOOD = """
+format = 1
+glue = [["a.u1", "b.u0"], ["a.v1", "c.v0"]]
+bodies.a = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }, mesh = { elements = [1, 2, 1] } }
+bodies.b = { geometry = { kind = "box", lower = [1, 0, 0], upper = [2, 1, 1] }, mesh = { elements = [2, 2, 1] } }
+bodies.c = { geometry = { kind = "box", lower = [0, 1, 0], upper = [1, 2, 1] }, mesh = { elements = [1, 1, 1] } }
+bodies.d = { geometry = { kind = "box", lower = [1, 1, 0], upper = [2, 2, 1] }, mesh = { elements = [2, 1, 1] } }
+bodies.block = { geometry = { kind = "box", lower = [0.5, 0.25, 1], upper = [1.5, 0.75, 2] } }
+contacts.pair = { slave = "block.w0", master = ["a.w1", "b.w1"] }
+supports.low = { face = "a.w0" }
+supports.far = { face = "d.w0" }
+supports.top = { face = "block.w1" }
+stages = [{ name = "press", steps = 1, motions.top.translate = [0, 0, -0.02] }]
+"""
+ALL = '["a.w1", "b.w1", "c.w1", "d.w1"]'
+PAIR = '["a.w1", "b.w1"]'
+JOINED = '["a.v1", "c.v0"], ["b.v1", "d.v0"], ["c.u1", "d.u0"]]'
+#: What is replaced, by what; the field that the error names, and a part of its text.
+WRONG = {
+    "no face": (PAIR, "[]", "contacts.pair.master", "has 0 entries; allowed: at least 1"),
+    "nobody": (PAIR, '["a.w1", "e.w1"]', "contacts.pair.master", "there is no body 'e'"),
+    "twice": (PAIR, '["a.w1", "b.w1", "a.w1"]', "contacts.pair.master", "names a.w1 twice"),
+    "not glued": (PAIR, ALL, "contacts.pair.master", "a.w1, b.w1, c.w1, d.w1: d.w1 has no edge in common with the others"),
+    "a corner only": (PAIR, '["b.w1", "c.w1"]', "contacts.pair.master", "b.w1, c.w1: c.w1 has no edge in common with the others"),
+    "no rectangle": (PAIR, '["a.w1", "b.w1", "c.w1"]', "contacts.pair.master", "they are 2 x 2 places with 3 faces"),
+    "apart": (PAIR, '["a.w1", "b.u1"]', "contacts.pair.master", "a.w1, b.u1: b.u1 has no edge in common"),
+    "inside": (PAIR, '["a.w1", "a.u1"]', "contacts.pair.master", "is a.u1, which is glued to b.u0"),
+    "orders": (
+        "mesh = { elements = [2, 2, 1] }",
+        "mesh = { order = [3, 2, 2], elements = [2, 2, 1] }",
+        "contacts.pair.master",
+        "a.w1, b.w1: a.w1 has order 2 (N) along u, and b.w1, which goes on from there, order 3 (N) along u; give both the same",
+    ),
+    "both sides": ('"block.w0"', '["a.w1", "b.w1"]', "contacts.pair.master", "is the slave face 'a.w1, b.w1' itself"),
+    "one on both sides": ('"block.w0"', '["b.w1"]', "contacts.pair.master", "has b.w1 in common with the slave"),
+}
+
+
+@pytest.mark.parametrize(("old", "new", "field", "said"), WRONG.values(), ids=WRONG.keys())
+def test_sides_that_cannot_be(old: str, new: str, field: str, said: str) -> None:
+    assert old in GOOD
+    with pytest.raises(InputError) as error:
+        Scene.from_toml(GOOD.replace(old, new)).problem()
+    assert error.value.field == field
+    assert said in str(error.value)
+
+
+def test_faces_in_rows_and_columns_join() -> None:
+    problem = Scene.from_toml(GOOD.replace(PAIR, ALL).replace('["a.v1", "c.v0"]]', JOINED)).problem()
+    sheet = Sheet.of(problem, problem.contacts[0].master)  # type: ignore[arg-type]
+    assert [d.elements for d in sheet.directions] == [3, 3]
+    assert [d.kinks for d in sheet.directions] == [True, True]
+    assert sheet.closed == (False, False)
+    assert [body.name for body in sheet.bodies] == ["a", "b", "c", "d"]
+
+
+def test_a_hole_where_five_faces_meet_is_seen() -> None:
+    """Four tiles of five round a corner: the last two would lie beside each other, and do not."""
+    text = GOOD.replace(PAIR, ALL).replace('["a.v1", "c.v0"]]', '["a.v1", "c.v0"], ["b.v1", "d.v0"]]')
+    with pytest.raises(InputError, match=r"c.w1 and d.w1 would follow each other, and have no edge in common; glue their bodies") as error:
+        Scene.from_toml(text).problem()
+    assert error.value.field == "contacts.pair.master"
+
+
+def test_faces_round_a_body_join_to_a_ring() -> None:
+    """The four sides of a box, as one face that is closed: its edges are C0 lines, and kinks."""
+    text = GOOD.replace(PAIR, '["d.u0", "d.v0", "d.u1", "d.v1"]').replace('"block.w0"', '"block.u1"')
+    problem = Scene.from_toml(
+        text.replace("lower = [0.5, 0.25, 1], upper = [1.5, 0.75, 2]", "lower = [0, 1.2, 0.2], upper = [1, 1.8, 0.8]")
+    ).problem()
+    (contact,) = problem.contacts
+    assert Sheet.of(problem, contact.master).closed == (True, False)  # type: ignore[arg-type]
+    assert (contact.projection, contact.by_default) == ("averaged", True)
+
+
+def test_weights_of_faces_have_a_common_factor() -> None:
+    problem = Scene.from_toml(GOOD).problem()
+    heavy = replace(
+        problem,
+        bodies=tuple(replace(b, patch=replace(b.patch, weights=4.0 * b.patch.weights)) if b.name == "b" else b for b in problem.bodies),
+    )
+    weights = [Sheet.of(p, p.contacts[0].master).patch.weights for p in (problem, heavy)]  # type: ignore[arg-type]
+    assert np.array_equal(weights[0], weights[1])
+    assert np.ptp(weights[0]) == 0.0
+
+
+def test_a_scene_with_sides_of_several_faces_runs_resumes_and_is_drawn(tmp_path: Path) -> None:
+    scene = Scene.load(Path(__file__).parents[2] / "examples" / "tiles.toml")
+    problem = scene.problem()
+    assert all(isinstance(side, Faces) for side in (problem.contacts[0].slave, problem.contacts[0].master))
+    whole = list(Simulation(problem).run())
+    assert sum(step.cuts for step in whole) == 0
+    path = tmp_path / "tiles.h5"
+    isomortar.run(scene, path)
+    with Results(path) as results:
+        assert differences(results.problem, problem) == []
+        assert results.problem.contacts == problem.contacts
+        step = results.step(2)
+    assert np.array_equal(list(Simulation(problem, resume_from=step).run())[-1].state.positions, whole[-1].state.positions)
+    assert len(isomortar.plot(path, tmp_path / "plots")) > 2
+    isomortar.export(path, tmp_path / "out")
+    assert list((tmp_path / "out").rglob("contacts-*.vtu"))
+
+
+def test_other_programs_are_not_told_of_several_faces() -> None:
+    lagrange = GOOD.replace("mesh = { ", 'mesh = { family = "L", ').replace(
+        "upper = [1.5, 0.75, 2] }", 'upper = [1.5, 0.75, 2] }, mesh = { family = "L" }'
+    )
+    single = (
+        lagrange.replace('glue = [["a.u1", "b.u0"], ["a.v1", "c.v0"]]', "")
+        .replace(PAIR, '["d.u0", "d.v0"]')
+        .replace('"block.w0"', '"block.u1"')
+    )
+    free = single.replace("supports.far", 'supports.b = { face = "b.w0" }\nsupports.c = { face = "c.w0" }\nsupports.far')
+    with pytest.raises(InputError, match="is not told of sides of several faces") as error:
+        GetFEM().run(Scene.from_toml(free).problem())
+    assert error.value.field == "contacts.pair.master"
