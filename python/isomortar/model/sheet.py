@@ -127,8 +127,8 @@ def _joined(problem: Problem, place: Face) -> Sheet:
     columns, rows = ({cell[axis] for cell in tiles} for axis in (0, 1))
     if len(tiles) < len(columns) * len(rows):
         raise InputError(
-            f"{place.words}: the faces do not make a rectangle; where they meet they are {len(columns)} x {len(rows)} places with "
-            f"{len(tiles)} faces. Faces of one side stand in rows and columns; three that meet at a corner need a contact each"
+            f"{place.words}: the faces make no rectangle: in {len(columns)} x {len(rows)} places there are {len(tiles)}. A side is rows "
+            "and columns of faces; give those that meet otherwise, such as three at a corner, contacts of their own"
         )
     grid = [[tiles[column, row] for column in sorted(columns)] for row in sorted(rows)]
     _check_joints(place, grid, numbering)
@@ -161,8 +161,8 @@ def _arranged(problem: Problem, place: Face, numbering: Numbering) -> dict[tuple
     if others:
         name = f"{others[0].body.name}.{others[0].face}"
         raise InputError(
-            f"{place.words}: {name} has no edge in common with the others, as a whole edge beside a free one; faces of one side are of one "
-            "body, or of bodies that are glued to each other (glue), and stand in rows and columns, edge to edge"
+            f"{place.words}: {name} has no whole edge in common with the others; faces of a side are of one body, or of bodies that are "
+            "glued where they meet (glue), edge to edge in rows and columns"
         )
     return found
 
