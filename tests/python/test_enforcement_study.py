@@ -8,7 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from enforcement import page
+from enforcement import exact, page
+from enforcement.contact import IN_CELLS
 from enforcement.found import Evidence, Found
 from enforcement.plan import MORTAR, REFERENCE, SETUPS, WAYS, Planned, planned
 from enforcement.statements import STATEMENTS
@@ -16,6 +17,7 @@ from enforcement.study import study
 
 from isomortar.errors import InputError
 from isomortar.harness.cases import Words
+from isomortar.harness.compare import judge
 from isomortar.harness.measurement import Measurement, stored
 from isomortar.harness.runner import Result
 
@@ -40,6 +42,16 @@ def made_up(steps: int = 20, peak: float = 1.0) -> list[Found]:
         measurement = Measurement("measured", {name: stored(value) for name, value in numbers.items()})
         runs.append(Found(Result(entry.run.case, measurement, (), True), entry))  # type: ignore[arg-type]
     return runs
+
+
+def counted(**others: float) -> list[Result]:
+    """Cells of what is exact: every number is `others`', else 0."""
+    results = []
+    for cell in exact.cells():
+        numbers = {name: others.get(name, 0.0) for name in cell.case.bounds_of(cell.settings)}
+        measurement = Measurement("measured", {name: stored(value) for name, value in numbers.items()}, cpu_seconds=1.0)
+        results.append(Result(cell, measurement, tuple(judge(cell, measurement, lambda _: None)), True))  # type: ignore[arg-type]
+    return results
 
 
 def verdicts(runs: list[Found]) -> dict[str, dict[str, str]]:
@@ -80,15 +92,36 @@ def test_a_run_that_stops_is_a_failure_and_its_pressure_counts() -> None:
 def test_the_page_has_every_run(tmp_path: Path) -> None:
     runs = made_up(steps=7)
     judgements = [statement.judged([Evidence(runs, method) for method in statement.methods]) for statement in STATEMENTS]
-    path = page.write(tmp_path, runs, judgements, datetime(2026, 1, 1)).page
+    path = page.write(tmp_path, counted(condition=7.25), runs, judgements, datetime(2026, 1, 1)).page
     text, data = path.read_text(encoding="utf-8"), json.loads(path.with_suffix(".json").read_text(encoding="utf-8"))
     assert all(way in text for way in WAYS)
     assert [row["way"] for row in data["scenes"][0]] == [REFERENCE, *WAYS]
     assert "twist by kts (not converged)" in text
+    assert "<td>7.2</td>" in text
+    assert {row["condition"] for row in data["exact"]} == {7.25}
+    assert f"{next(exact.cells()).name} by mortar" not in text
+
+
+def test_what_is_exact_is_told_by_method_and_order() -> None:
+    cells = counted()
+    rows = exact.table(cells)
+    assert [(row["method"], row["order"]) for row in rows[:4]] == [("mortar", 1), ("mortar", 2), ("mortar", 3), (IN_CELLS, 1)]
+    assert len(rows) == len(exact.ROWS) * len(exact.ORDERS)
+    failing = {exact.Exact(result).method for result in cells if exact.Exact(result).ending == "out of bounds"}
+    assert failing == {"kts", "knots", "greville", "demko"}  # of which more than nothing is claimed
+
+
+def test_a_cell_without_numbers_leaves_its_row() -> None:
+    (first, *others) = counted(pressure=0.5)
+    lost = Result(first.cell, Measurement("timed out"), (), True)
+    row = exact.table([lost, *others])[0]
+    assert np.isnan(row["matching"])
+    assert row["other"] == 0.5
+    assert exact.Exact(lost).ending == "timed out"
 
 
 def test_scenes_that_there_are_not_are_refused() -> None:
-    assert len(study(["twist"]).runs) == 1 + len(WAYS)
+    assert len(study(["twist"]).runs) == len(list(exact.cells())) + 1 + len(WAYS)
     with pytest.raises(InputError, match="press, twist, iron"):
         study(["iorn"])
 

@@ -1,10 +1,13 @@
-"""Curves of the ways of enforcement, and their distance from the reference against cost, as SVG text."""
+"""Curves of the ways of enforcement, their distance from the reference against cost, and what is exact of them, as SVG text."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
+from enforcement.contact import IN_CELLS, MESHES
+from enforcement.exact import ORDERS, ROWS
 from enforcement.found import Found
 from enforcement.plan import REFERENCE
 from matplotlib.figure import Figure
@@ -18,6 +21,7 @@ LOOKS = {
     "mortar": (style.BLUE, "-", "o"),
     "mortar, averaged": (style.BLUE, "--", "s"),
     "mortar, swapped": (style.BLUE, ":", "D"),
+    IN_CELLS: (style.BLUE, ":", "D"),
     "greville": (style.GREEN, "-", "^"),
     "greville, averaged": (style.GREEN, "--", "v"),
     "demko": ("#8C6BB1", "-", "P"),
@@ -57,3 +61,28 @@ def curves(runs: Sequence[Found], reference: Found, name: str) -> str:
         handles, labels = left.get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside upper left", ncols=5, handlelength=2.6, columnspacing=1.4)
         return svg_text(figure, name)
+
+
+def exact(rows: Sequence[Mapping[str, Any]]) -> str:
+    """Errors of the patch test on both meshes, inf-sup constants and conditions over the order."""
+    with page_style():
+        figure = Figure(figsize=(10.6, 3.6), layout="constrained")
+        shown = {
+            "matching": "error, matching meshes",
+            "other": "error, other meshes",
+            "inf-sup": "inf-sup constant",
+            "condition": "condition",
+        }
+        errors, others, stable, condition = figure.subplots(1, 4)
+        others.sharey(errors)
+        for axes, (key, label) in zip((errors, others, stable, condition), shown.items(), strict=True):
+            for method in ROWS:
+                if key in MESHES or method != IN_CELLS:
+                    colour, line, mark = LOOKS[method]
+                    values = [row[key] for row in rows if row["method"] == method]
+                    axes.plot(ORDERS, values, color=colour, linestyle=line, marker=mark, markersize=4.2, linewidth=1.1, label=method)
+            axes.set(xlabel="order", ylabel=label, xticks=ORDERS, yscale="linear" if key == "inf-sup" else "log")
+        stable.set_ylim(bottom=0.0)
+        handles, labels = errors.get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside upper left", ncols=6, handlelength=2.6, columnspacing=1.4)
+        return svg_text(figure, "exact")

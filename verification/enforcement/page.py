@@ -8,20 +8,26 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from enforcement import exact
 from enforcement.figures import curves
+from enforcement.figures import exact as drawn
 from enforcement.found import Found
 from enforcement.plan import REFERENCE, WAYS
 
+from isomortar.harness.runner import Result
 from isomortar.harness.runs import groups, written
 from isomortar.harness.statement import Judgement
 from isomortar.harness.study import Conclusion
 
 
-def write(folder: Path, runs: Sequence[Found], judgements: Sequence[Judgement], started: datetime) -> Conclusion:
+def write(folder: Path, cells: Sequence[Result], runs: Sequence[Found], judgements: Sequence[Judgement], started: datetime) -> Conclusion:
     """Write ``report.html`` and ``report.json``."""
     sections = [_section(group) for group in groups(runs, lambda run: run.planned.setup.scene)]
-    data = {"scenes": [section["rows"] for section in sections]}
-    return written(Path(__file__), folder, runs, judgements, started, tuple(WAYS), sections, data)
+    table = exact.table(cells)
+    data = {"scenes": [section["rows"] for section in sections], "exact": table}
+    everything = [*map(exact.Exact, cells), *runs]
+    more = {"exact": table, "exact_figure": drawn(table)}
+    return written(Path(__file__), folder, everything, judgements, started, tuple(WAYS), sections, data, more)
 
 
 def _section(runs: Sequence[Found]) -> dict[str, Any]:

@@ -7,7 +7,7 @@ from datetime import datetime
 from functools import partial
 from pathlib import Path
 
-from enforcement import page
+from enforcement import exact, page
 from enforcement.found import Evidence, Found
 from enforcement.plan import SETUPS, Planned, planned
 from enforcement.statements import STATEMENTS
@@ -29,11 +29,12 @@ def study(scenes: Sequence[str] = ()) -> Study:
     if unknown := set(scenes) - set(names):
         raise InputError(f"names {', '.join(sorted(unknown))}; allowed: {', '.join(names)}", "scenes")
     plan = tuple(planned(tuple(setup for setup in SETUPS if not scenes or setup.scene in scenes)))
-    return Study(tuple(entry.run for entry in plan), partial(_written, plan))
+    return Study((*exact.cells(), *(entry.run for entry in plan)), partial(_written, plan))
 
 
 def _written(plan: Sequence[Planned], folder: Path, results: Sequence[Result], started: datetime) -> Conclusion:
     """Judge the statements and write ``report.html``."""
-    runs = [Found(result, entry) for entry, result in zip(plan, results, strict=True)]
+    first = len(results) - len(plan)
+    runs = [Found(result, entry) for entry, result in zip(plan, results[first:], strict=True)]
     judgements = [statement.judged([Evidence(runs, method) for method in statement.methods]) for statement in STATEMENTS]
-    return page.write(folder, runs, judgements, started)
+    return page.write(folder, results[:first], runs, judgements, started)

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from itertools import groupby
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, Generic, TypeVar
 
 import numpy as np
@@ -56,6 +57,11 @@ class Computed(ABC):
     def number(self, name: str) -> float:
         """One of its numbers; NaN: not known."""
         return float(np.asarray(self.result.measurement.numbers.get(name, np.nan), float))
+
+    @property
+    def cpu_seconds(self) -> float:
+        """What it took; NaN: not known."""
+        return self.number("cpu_seconds")
 
     def curves(self, name: str, *shape: int) -> FloatArray:
         """Numbers by load step, shape (load steps that converged, ...)."""
@@ -115,6 +121,7 @@ def written(
     names: Sequence[str],
     sections: Sequence[Mapping[str, Any]],
     data: Mapping[str, Any],
+    more: Mapping[str, Any] = MappingProxyType({}),
 ) -> Conclusion:
     """Write ``report.html`` and ``report.json``, and say what the study came to.
 
@@ -132,6 +139,8 @@ def written(
         What the page's template takes of each scene: its ``setup``, and what it shows of it.
     data : mapping
         All numbers of the runs, for ``report.json``.
+    more : mapping
+        What the page's template takes besides.
     """
     path = folder / "report.html"
     unmeasured = [verdict for judgement in judgements for verdict in judgement.verdicts if verdict.state == "not measured"]
@@ -143,8 +152,9 @@ def written(
         total=len(runs),
         failed=failed,
         unmeasured=unmeasured,
-        seconds=float(np.nansum([run.number("cpu_seconds") for run in runs])),
+        seconds=float(np.nansum([run.cpu_seconds for run in runs])),
         started=started,
+        **more,
     )
     write_whole(path, text)
     stated = {"started": started.isoformat(timespec="seconds"), **identity(), "statements": [j.as_data() for j in judgements], **data}

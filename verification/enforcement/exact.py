@@ -1,0 +1,63 @@
+"""What is exact or can be counted of every method: patch tests, constraints too many and too few, stability, condition."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from enforcement.contact import IN_CELLS, MESHES, METHODS, constraints, enforcement_of, patch_test
+
+from isomortar.harness.cases import Cell
+from isomortar.harness.runner import Result
+from isomortar.harness.runs import Computed
+
+ROWS: tuple[str, ...] = ("mortar", IN_CELLS, *METHODS[1:])
+ORDERS = (1, 2, 3)
+#: Of the constraints; they are those of the mortar method in cells too.
+COUNTS = ("too many", "too few", "inf-sup", "condition")
+
+
+def cells() -> Iterator[Cell]:
+    """Those of the patch test, and of the constraints up to the same order."""
+    yield from patch_test.cells
+    yield from (cell for cell in constraints.cells if cell.settings["order"] in ORDERS)
+
+
+@dataclass(frozen=True)
+class Exact(Computed):
+    """A cell of `isomortar verify`."""
+
+    @property
+    def name(self) -> str:
+        """The cell's."""
+        return self.result.cell.name
+
+    @property
+    def method(self) -> str:
+        """What constrains."""
+        return str(self.result.cell.settings["method"])
+
+    @property
+    def ending(self) -> str:
+        """``measured`` only where all that is claimed holds."""
+        ending = self.result.measurement.ending
+        return "out of bounds" if ending == "measured" and self.result.state != "passed" else ending
+
+    @property
+    def cpu_seconds(self) -> float:
+        """Of the cell; it does not say itself."""
+        return self.result.measurement.cpu_seconds
+
+
+def table(results: Sequence[Result]) -> list[dict[str, Any]]:
+    """By method and order: errors of the pressure on both meshes, and what is counted; NaN: not measured."""
+    by_name = {result.cell.name: Exact(result) for result in results}
+    return [_row(by_name, method, order) for method in ROWS for order in ORDERS]
+
+
+def _row(by_name: dict[str, Exact], method: str, order: int) -> dict[str, Any]:
+    tested = {meshes: by_name[Cell(patch_test, {"method": method, "order": order, "meshes": meshes}).name] for meshes in MESHES}
+    counted = by_name[Cell(constraints, {"method": enforcement_of(method), "order": order}).name]
+    errors = {meshes: cell.number("pressure") for meshes, cell in tested.items()}
+    return {"method": method, "order": order, **errors, **{name: counted.number(name) for name in COUNTS}}
