@@ -34,9 +34,10 @@ stages = [{ name = "press", steps = 2, motions.top = { translate = [0.05, 0, -0.
 }
 
 
-def ring(side: str, projection: str) -> Problem:
+def ring(side: str, projection: str, method: str) -> Problem:
     """The ring on a plane, or below a box, at tight tolerances."""
-    problem = Scene.from_toml(_RING + _LOADS[side].replace("PROJECTION", projection)).problem()
+    changes = [f"solver.method={method}", "solver.augmentation_tolerance=1e-3"]
+    problem = Scene.from_toml(_RING + _LOADS[side].replace("PROJECTION", projection), overrides=changes).problem()
     return replace(problem, settings=replace(problem.settings, **TIGHT))  # type: ignore[arg-type]
 
 
@@ -75,16 +76,16 @@ def cut(patch: Patch, at: float) -> tuple[Patch, Patch]:
 @case(
     claim="Two half rings that are glued at both ends are the closed ring, as slave and as master.",
     tier="gate",
-    grid={"side": ("slave", "master"), "projection": ("closest", "averaged")},
+    grid={"side": ("slave", "master"), "projection": ("closest", "averaged"), "method": ("monolithic", "uzawa")},
     bounds={
         "positions": Bound(at_most=1e-9, reason="theory: the same functions on the same unknowns; lengths are 1, and tolerances are left"),
         "forces": Bound(at_most=1e-8, reason="theory: the same functions on the same unknowns"),
         "pressed": Bound(at_least=4.0, reason="definition: the contact is over a joint, or nothing is tested"),
     },
 )
-def halves_of_a_ring(side: str, projection: str) -> dict[str, float]:
+def halves_of_a_ring(side: str, projection: str, method: str) -> dict[str, float]:
     """Distances of positions and forces from those of the closed ring; active constraints."""
-    closed = ring(side, projection)
+    closed = ring(side, projection, method)
     two = halved(closed)
     one, other = solved(two), solved(closed)
     return {

@@ -9,6 +9,14 @@ import numpy as np
 
 from isomortar.geometry.patch import Direction, FloatArray, IntArray, Patch
 
+#: Steps to the places beside a net, with the edges that meet there: in the net here, and in the one there.
+BESIDE = (
+    ((1, 0), np.s_[:, -1], np.s_[:, 0]),
+    ((-1, 0), np.s_[:, 0], np.s_[:, -1]),
+    ((0, 1), np.s_[-1, :], np.s_[0, :]),
+    ((0, -1), np.s_[0, :], np.s_[-1, :]),
+)
+
 
 @dataclass(frozen=True)
 class Net:

@@ -10,19 +10,10 @@ import numpy as np
 
 from isomortar._bindings import PatchArrays
 from isomortar.errors import InputError
-from isomortar.geometry.net import Net
+from isomortar.geometry.net import BESIDE, Net
 from isomortar.geometry.patch import Direction, IntArray, Patch
 from isomortar.model.entities import Body, Face, Problem
 from isomortar.model.numbering import Numbering, patch_arrays
-
-#: Steps to the places beside one, with the edges that meet there: in the net here, and in the one there.
-_BESIDE = (
-    ((1, 0), np.s_[:, -1], np.s_[:, 0]),
-    ((-1, 0), np.s_[:, 0], np.s_[:, -1]),
-    ((0, 1), np.s_[-1, :], np.s_[0, :]),
-    ((0, -1), np.s_[0, :], np.s_[-1, :]),
-)
-_ACROSS = Direction("N", 1, np.array([0.0, 0.0, 1.0, 1.0]))
 
 
 @dataclass(frozen=True)
@@ -148,7 +139,7 @@ def _arranged(problem: Problem, place: Face, numbering: Numbering) -> dict[tuple
     found, todo = {(0, 0): first}, [(0, 0)]
     while todo:
         here = todo.pop(0)
-        for (column, row), mine, theirs in _BESIDE:
+        for (column, row), mine, theirs in BESIDE:
             there = (here[0] + column, here[1] + row)
             edge = _global(numbering, found[here].body, found[here].net)[mine]
             beside = next(((t, net) for t in others for net in t.net.turned() if _is(edge, _global(numbering, t.body, net)[theirs])), None)
@@ -187,7 +178,7 @@ def _check_joints(place: Face, grid: list[list[_Tile]], numbering: Numbering) ->
                 f"{place.words}: {names[0]} has order {first.order} ({first.family}) along {one.net.letters[axis]}, and {names[1]}, which "
                 f"goes on from there, order {second.order} ({second.family}) along {other.net.letters[axis]}; give both the same"
             )
-        _, mine, theirs = _BESIDE[2 * axis]
+        _, mine, theirs = BESIDE[2 * axis]
         if not np.array_equal(_global(numbering, one.body, one.net)[mine], _global(numbering, other.body, other.net)[theirs]):
             raise InputError(
                 f"{place.words}: {names[0]} and {names[1]} would follow each other, and have no edge in common; glue their bodies"
@@ -206,7 +197,8 @@ def _sheet(grid: list[list[_Tile]], first: _Tile, bodies: tuple[Body, ...], clos
     points = np.empty((number.size, 3))
     for k, body in enumerate(bodies):
         points[owner.ravel() == k] = body.patch.control_points[number.ravel()[owner.ravel() == k]]
-    patch = Patch((u, v, _ACROSS), points, weights.ravel())
+    across = Direction("N", 1, np.array([0.0, 0.0, 1.0, 1.0]))
+    patch = Patch((u, v, across), points, weights.ravel())
     letters = (first.net.letters[0], first.net.letters[1])
     return Sheet(patch, "w" + first.face[1], letters, closed, bodies, owner.ravel(), number.ravel())
 
