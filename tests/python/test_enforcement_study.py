@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from enforcement import exact, page
+from enforcement import exact, known, page
 from enforcement.contact import IN_CELLS
-from enforcement.found import Evidence, Found
+from enforcement.found import Evidence, Found, Known
 from enforcement.plan import MORTAR, REFERENCE, SETUPS, WAYS, Planned, planned
 from enforcement.statements import STATEMENTS
 from enforcement.study import study
@@ -20,8 +20,9 @@ from isomortar.harness.cases import Words
 from isomortar.harness.compare import judge
 from isomortar.harness.measurement import Measurement, stored
 from isomortar.harness.runner import Result
+from isomortar.harness.statement import Judgement
 
-PRESS, TWIST = SETUPS[:2]
+PRESS, TWIST, _, LINEAR_BLOCK, _ = SETUPS
 #: How far the curve of each way is off the reference, as a share of it.
 OFF = dict.fromkeys(WAYS, 0.02) | {REFERENCE: 0.0, MORTAR: 0.02, "mortar, swapped": 0.05, "knots": 0.03}
 
@@ -37,7 +38,7 @@ def made_up(steps: int = 20, peak: float = 1.0) -> list[Found]:
         pressure = np.tile([0.0, peak if kts else 1.0], (count, 1))
         numbers = {
             "missing": 20 - count, "force": moment, "moment": moment, "pressure": pressure, "words": Words(""), "solves": 1, "cuts": 0,
-            "cpu_seconds": 1.0, "constraints": 4, "control_points": 4,
+            "cpu_seconds": 1.0, "constraints": 3 if entry.way == "knots" else 4, "control_points": 4,
         }  # fmt: skip
         measurement = Measurement("measured", {name: stored(value) for name, value in numbers.items()})
         runs.append(Found(Result(entry.run.case, measurement, (), True), entry))  # type: ignore[arg-type]
@@ -54,10 +55,29 @@ def counted(**others: float) -> list[Result]:
     return results
 
 
-def verdicts(runs: list[Found]) -> dict[str, dict[str, str]]:
+def tractions(off: float = 0.05, kts: float = 0.7) -> list[Known]:
+    """Runs whose tractions are known, so far off theory."""
+    runs = []
+    for cell in known.cells():
+        share = kts if cell.settings["way"] == "kts" else off
+        x = 0.01 * np.linspace(-1.0, 1.0, 5)
+        numbers = {
+            "missing": 0, "words": Words(""), "off": share, "peak": 1.0, "roughness": 2.0, "places": x, "values": x, "exact": x,
+            "solves": 1, "cuts": 0, "cpu_seconds": 1.0,
+        }  # fmt: skip
+        measurement = Measurement("measured", {name: stored(value) for name, value in numbers.items()})
+        runs.append(Known(Result(cell, measurement, (), True)))
+    return runs
+
+
+def judged(runs: list[Found], beside: list[Known]) -> list[Judgement]:
+    """All statements."""
+    return [statement.judged([Evidence(runs, method, known=beside) for method in statement.methods]) for statement in STATEMENTS]
+
+
+def verdicts(runs: list[Found], beside: list[Known]) -> dict[str, dict[str, str]]:
     """By statement and way."""
-    judged = [statement.judged([Evidence(runs, method) for method in statement.methods]) for statement in STATEMENTS]
-    return {j.statement.section: {verdict.method: verdict.state for verdict in j.verdicts} for j in judged}
+    return {j.statement.section: {verdict.method: verdict.state for verdict in j.verdicts} for j in judged(runs, beside)}
 
 
 def test_every_way_of_every_scene_can_be_built() -> None:
@@ -68,15 +88,17 @@ def test_every_way_of_every_scene_can_be_built() -> None:
             assert contact.averaged == way.endswith("averaged")
 
 
-def test_a_plane_is_no_slave_and_slaves_are_swapped() -> None:
+def test_a_plane_is_no_slave_nodes_have_no_demko_abscissae_and_slaves_are_swapped() -> None:
     assert PRESS.ways == (MORTAR, "greville", "demko", "knots", "kts")
+    assert set(WAYS) - set(LINEAR_BLOCK.ways) == {"demko"}
     (contact,), (swapped,) = (TWIST.load(way).problem().contacts for way in (MORTAR, "mortar, swapped"))
     assert (contact.slave, contact.master) == (swapped.master, swapped.slave)
 
 
 def test_curves_are_judged_beside_the_mortar_method() -> None:
-    found = verdicts(made_up(peak=3.0))
+    found = verdicts(made_up(peak=3.0), tractions())
     assert found["ending"] == dict.fromkeys(WAYS, "holds")
+    assert found["as theory"] == dict.fromkeys([way for way in known.WAYS if way != "kts"], "holds")
     assert found["as good"]["greville"] == "holds"
     assert found["as good"]["mortar, swapped"] == "does not hold"
     assert found["too few"] == {"knots": "holds"}
@@ -84,20 +106,22 @@ def test_curves_are_judged_beside_the_mortar_method() -> None:
 
 
 def test_a_run_that_stops_is_a_failure_and_its_pressure_counts() -> None:
-    found = verdicts(made_up(steps=7, peak=1.5))
+    found = verdicts(made_up(steps=7, peak=1.5), tractions())
     assert found["ending"]["kts"] == "does not hold"
     assert found["too many"] == {"kts": "does not hold"}
 
 
 def test_the_page_has_every_run(tmp_path: Path) -> None:
     runs = made_up(steps=7)
-    judgements = [statement.judged([Evidence(runs, method) for method in statement.methods]) for statement in STATEMENTS]
-    path = page.write(tmp_path, counted(condition=7.25), runs, judgements, datetime(2026, 1, 1)).page
+    beside = tractions(off=0.0543)
+    path = page.write(tmp_path, counted(condition=7.25), beside, runs, judged(runs, beside), datetime(2026, 1, 1)).page
     text, data = path.read_text(encoding="utf-8"), json.loads(path.with_suffix(".json").read_text(encoding="utf-8"))
     assert all(way in text for way in WAYS)
     assert [row["way"] for row in data["scenes"][0]] == [REFERENCE, *WAYS]
     assert "twist by kts (not converged)" in text
     assert "<td>7.2</td>" in text
+    assert "<td>5.43</td>" in text
+    assert [row["way"] for row in data["known"][1]] == list(known.WAYS)
     assert {row["condition"] for row in data["exact"]} == {7.25}
     assert f"{next(exact.cells()).name} by mortar" not in text
 
@@ -122,10 +146,34 @@ def test_a_cell_without_numbers_leaves_its_row() -> None:
 
 def test_scenes_that_there_are_not_are_refused() -> None:
     assert len(study(["twist"]).runs) == len(list(exact.cells())) + 1 + len(WAYS)
-    with pytest.raises(InputError, match="press, twist, iron"):
+    with pytest.raises(InputError, match="hertz, mindlin, press, twist, iron, block L1, block N2"):
         study(["iorn"])
 
 
 def test_plans_have_names_of_their_own() -> None:
     names = [Planned(setup, way).run.name for setup in SETUPS for way in (REFERENCE, *setup.ways)]
     assert len(set(names)) == len(names)
+
+
+def test_tractions_are_judged_by_what_elements_can_hold() -> None:
+    runs = made_up()
+    sections = {(j.statement.section, v.method): (v.state, v.values) for j in judged(runs, tractions(off=0.2, kts=0.2)) for v in j.verdicts}
+    state, values = sections["as theory", "greville"]
+    assert state == "does not hold"
+    assert values == {"hertz": pytest.approx(0.2 / 0.15), "mindlin": pytest.approx(0.2 / 0.3)}
+
+
+@pytest.mark.parametrize("scene", known.SCENES)
+@pytest.mark.parametrize("way", known.WAYS)
+def test_known_tractions_can_be_had_by_every_way(scene: str, way: str) -> None:
+    (contact,) = known.problem(scene, way).contacts
+    assert way == contact.enforcement + ", averaged" * contact.averaged + ", subcells" * bool(contact.subcells)
+
+
+def test_what_is_exact_is_nothing_off() -> None:
+    x = 0.01 * np.linspace(-1.2, 1.2, 25)
+    exact_values = np.sqrt(np.maximum(0.0, 1.0 - (x / 0.01) ** 2))
+    found = known.compared(known.Line(x, exact_values, np.ones(25)), exact_values, exact_values, np.abs(x) < 0.008)
+    assert (found["off"], found["peak"], found["roughness"]) == (0.0, 1.0, 1.0)
+    twice = known.compared(known.Line(x, 2.0 * exact_values, np.ones(25)), exact_values, exact_values, np.abs(x) < 0.008)
+    assert (twice["off"], twice["peak"], twice["roughness"]) == pytest.approx((1.0, 2.0, 4.0))

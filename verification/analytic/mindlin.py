@@ -49,12 +49,16 @@ SETTINGS = {
 }
 
 
-def sheared(shape: str) -> Problem:
+def cap(setting: Setting) -> Cap:
+    """Either body."""
+    return Cap(RADIUS, setting.size * CONTACT, setting.size * CONTACT, FINE * CONTACT, setting.elements, setting.growing)
+
+
+def sheared(shape: str, setting: Setting) -> Problem:
     """The upper body is pressed down, then moved along x; the lower one is held."""
-    setting = SETTINGS[shape]
-    cap = Cap(RADIUS, setting.size * CONTACT, setting.size * CONTACT, FINE * CONTACT, setting.elements, setting.growing)
+    round_body = cap(setting)
     patches = {
-        name: cap.block("N2", below) if shape == "sphere" else cap.cylinder("N2", CONTACT, below)
+        name: round_body.block("N2", below) if shape == "sphere" else round_body.cylinder("N2", CONTACT, below)
         for name, below in (("slave", False), ("master", True))
     }
     bodies = tuple(
@@ -127,7 +131,7 @@ def _sampled(surface: ContactSurface, traction: FloatArray) -> tuple[FloatArray,
 )
 def partial_slip(shape: str) -> dict[str, object]:
     """Shear over mu P; the outermost stick and innermost slip from the stick radius, in elements; tractions; their distance in L2."""
-    given = sheared(shape)
+    given = sheared(shape, SETTINGS[shape])
     result = list(Simulation(given).run())[-1]
     (surface,) = contact_surfaces(given, result)
     shear, _, normal = np.abs(result.contacts[0].force_slave)

@@ -6,9 +6,10 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+from analytic.mindlin import CONTACT
 from enforcement.contact import IN_CELLS, MESHES
 from enforcement.exact import ORDERS, ROWS
-from enforcement.found import Found
+from enforcement.found import Found, Known
 from enforcement.plan import REFERENCE
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, NullFormatter
@@ -58,6 +59,30 @@ def curves(runs: Sequence[Found], reference: Found, name: str) -> str:
             axis.set_major_formatter(lambda value, _: f"{value:g}")
             axis.set_minor_formatter(NullFormatter())
         right.set(xlabel="CPU seconds", ylabel="distance from the reference, %")
+        handles, labels = left.get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside upper left", ncols=5, handlelength=2.6, columnspacing=1.4)
+        return svg_text(figure, name)
+
+
+def tractions(runs: Sequence[Known], name: str) -> str:
+    """Tractions across the contact beside the exact ones, and their distance from these against CPU seconds."""
+    if not runs:
+        return ""
+    with page_style():
+        figure = Figure(figsize=(10.6, 4.2), layout="constrained")
+        left, right = figure.subplots(1, 2, width_ratios=(3, 2))
+        theory = runs[0]
+        left.plot(theory.curves("places") / CONTACT, theory.curves("exact"), color="#B9BEC5", linewidth=4.0, label="theory")
+        for run in runs:
+            colour, line, mark = LOOKS[run.method]
+            look = {"color": colour, "marker": mark, "markersize": 3.4, "label": run.method}
+            left.plot(run.curves("places") / CONTACT, run.curves("values"), linestyle=line, linewidth=1.1, **look)
+            right.loglog(run.number("cpu_seconds"), 100.0 * run.number("off"), linestyle="", **look)
+        left.set(xlabel="x over the contact radius", ylabel="traction", xlim=(-1.3, 1.3), ylim=(-0.1, 1.5))
+        right.set(xlabel="CPU seconds", ylabel="distance from theory, %")
+        for axis in (right.xaxis, right.yaxis):
+            axis.set_major_formatter(lambda value, _: f"{value:g}")
+            axis.set_minor_formatter(NullFormatter())
         handles, labels = left.get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside upper left", ncols=5, handlelength=2.6, columnspacing=1.4)
         return svg_text(figure, name)

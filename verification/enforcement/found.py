@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from enforcement.known import STRIPS
 from enforcement.plan import MORTAR, REFERENCE, Planned
 from measures import roughness
 
@@ -22,7 +24,7 @@ class Found(Computed):
     @property
     def name(self) -> str:
         """Its scene."""
-        return self.planned.setup.scene
+        return self.planned.setup.name
 
     @property
     def method(self) -> str:
@@ -55,12 +57,39 @@ class Found(Computed):
         return float(np.linalg.norm(self.curve - reference.curve) / np.linalg.norm(reference.curve))
 
 
+@dataclass(frozen=True)
+class Known(Computed):
+    """A run whose tractions are known."""
+
+    @property
+    def name(self) -> str:
+        """Its scene."""
+        return str(self.result.cell.settings["scene"])
+
+    @property
+    def method(self) -> str:
+        """The way of enforcement."""
+        return str(self.result.cell.settings["way"])
+
+
+@dataclass(frozen=True)
 class Evidence(ByMethod[Found]):
-    """The runs by one way of enforcement, beside those by the others."""
+    """The runs by one way of enforcement, beside those by the others, and those whose tractions are known."""
+
+    known: Sequence[Known] = ()
+
+    @property
+    def _known(self) -> list[Known]:
+        return ByMethod(self.known, self.method).by(self.method)
+
+    def beside_strip(self) -> dict[str, float]:
+        """Distance of the tractions from the exact ones over what a root at every edge costs, by scene."""
+        self.left_out.extend(f"{run.name}: {run.words}" for run in self._known if run.ending != "measured")
+        return {run.name: run.number("off") / STRIPS[run.name] for run in self._known if run.ending == "measured"}
 
     def missing(self) -> dict[str, float]:
         """Load steps that are missing, by scene."""
-        return {run.name: run.number("missing") for run in self.by(self.method)}
+        return {run.name: run.number("missing") for run in (*self.by(self.method), *self._known)}
 
     def beside_mortar(self) -> dict[str, float]:
         """Distance from the reference over that of the mortar method on the same meshes, by scene."""
@@ -72,6 +101,11 @@ class Evidence(ByMethod[Found]):
             else:
                 found[run.name] = ratio
         return found
+
+    def with_fewer_beside_mortar(self) -> dict[str, float]:
+        """The same of scenes with fewer constraints than control points."""
+        fewer = {run.name for run in self.by(self.method) if run.number("constraints") < run.number("control_points")}
+        return {scene: ratio for scene, ratio in self.beside_mortar().items() if scene in fewer}
 
     def peak_beside_mortar(self) -> dict[str, float]:
         """Largest pressure of the last load step that both have, over that of the mortar method, by scene."""

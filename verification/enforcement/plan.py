@@ -23,7 +23,7 @@ WAYS: dict[str, tuple[str, ...]] = {
 }
 MORTAR = next(iter(WAYS))
 #: Multipliers of quadrature points are augmented, to the paper's tolerance: they go on growing where they are too many.
-_AUGMENTED = ("solver.method=uzawa", "solver.augmentation_tolerance=0.01", "solver.max_augmentations=200")
+AUGMENTED = {"method": "uzawa", "augmentation_tolerance": 0.01, "max_augmentations": 200}
 REFERENCE = "reference"
 
 
@@ -33,7 +33,7 @@ class Setup:
 
     Parameters
     ----------
-    scene, title : str
+    name, scene, title : str
     changes, finer : tuple of str
         Overrides of its runs, and further ones of the reference.
     support : str
@@ -42,6 +42,7 @@ class Setup:
     component : int
     """
 
+    name: str
     scene: str
     title: str
     changes: tuple[str, ...]
@@ -52,9 +53,11 @@ class Setup:
 
     @property
     def ways(self) -> tuple[str, ...]:
-        """Those that there are: a plane is no slave, and has one normal."""
-        contact = self._contact(Scene.load(self.scene))[1]
-        return tuple(way for way in WAYS if contact.master or "," not in way)
+        """Those that there are: a plane is no slave, and has one normal; Demko's abscissae are those of splines."""
+        scene = Scene.load(self.scene, self.changes)
+        contact = self._contact(scene)[1]
+        nodes = "L" in scene.tables.bodies[contact.slave[0].partition(".")[0]].mesh.family
+        return tuple(way for way in WAYS if (contact.master or "," not in way) and not (nodes and way == "demko"))
 
     def load(self, way: str) -> Scene:
         """The scene as it is enforced that way, or as the reference."""
@@ -64,7 +67,7 @@ class Setup:
         overrides = [f"contacts.{name}.{entry}" for entry in plain if contact.master or not entry.startswith("projection")]
         if way.endswith("swapped"):
             overrides += [f"contacts.{name}.slave={list(contact.master)}", f"contacts.{name}.master={list(contact.slave)}"]
-        overrides += _AUGMENTED if way == "kts" else ()
+        overrides += [f"solver.{key}={value}" for key, value in AUGMENTED.items()] if way == "kts" else []
         overrides += self.finer if way == REFERENCE else ()
         return Scene.load(self.scene, [*self.changes, *overrides])
 
@@ -72,20 +75,37 @@ class Setup:
         return next(iter(scene.tables.contacts.items()))
 
 
+_SLID = ("stages.press.steps=3", "stages.slide.steps=6")
+
+
+def _splines(slave: str, master: str) -> tuple[str, str]:
+    """Overrides that make both bodies of the block of quadratic NURBS."""
+    shape = 'family="N", order=[2,2,2]'
+    return f"bodies.slave.mesh={{{shape}, elements={slave}}}", f"bodies.master.mesh={{{shape}, elements={master}}}"
+
+
 SETUPS = (
     Setup(
-        "press", "A bowl, pressed on a plane",
+        "press", "press", "A bowl, pressed on a plane",
         ("bodies.block.mesh.elements=[6,6,3]",), ("bodies.block.mesh.elements=[12,12,6]",), "top", "force", 2,
     ),
     Setup(
-        "twist", "A bowl, pressed on a block and turned",
+        "twist", "twist", "A bowl, pressed on a block and turned",
         ("stages.press.steps=5", "stages.twist.steps=15", "stages.twist.motions.top.rotate=67.5"),
         ("bodies.slave.mesh.elements=[6,6,3]", "bodies.master.mesh.elements=[10,10,3]"), "top", "moment", 2,
     ),
     Setup(
-        "iron", "A bowl, pressed on a base and dragged",
+        "iron", "iron", "A bowl, pressed on a base and dragged",
         ("stages.press.steps=5", "stages.drag.steps=12", "stages.drag.motions.top.translate=[0.54,0,0]"),
         ("bodies.slave.mesh.elements=[10,10,3]", "bodies.master.mesh.elements=[20,10,3]"), "top", "force", 0,
+    ),
+    Setup(
+        "block L1", "block", "A block with sharp edges, slid along a larger one; linear elements, whose master has kinks",
+        _SLID, _splines("[8,8,4]", "[10,10,4]"), "top", "force", 0,
+    ),
+    Setup(
+        "block N2", "block", "The same block; quadratic splines",
+        (*_SLID, *_splines("[5,5,3]", "[8,8,4]")), _splines("[8,8,4]", "[10,10,4]"), "top", "force", 0,
     ),
 )  # fmt: skip
 
@@ -100,7 +120,7 @@ class Planned:
     @property
     def run(self) -> Run:
         """The scene under a name of its own, and what measures it."""
-        return Run(f"{self.setup.scene}-{self.way.replace(', ', '-')}", self.setup.load(self.way), computed)
+        return Run(f"{self.setup.name}-{self.way.replace(', ', '-')}", self.setup.load(self.way), computed)
 
 
 def planned(setups: tuple[Setup, ...]) -> Iterator[Planned]:

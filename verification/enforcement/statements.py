@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from enforcement import known
 from enforcement.found import Evidence
 from enforcement.plan import WAYS
 
@@ -32,10 +33,30 @@ STATEMENTS: tuple[Statement[Evidence], ...] = (
         methods=_ENOUGH,
     ),
     Statement(
+        "as theory",
+        "Unless constraints are too many, tractions are as near the exact ones as elements can be whose edge is a root.",
+        (),
+        Evidence.beside_strip,
+        "distance of the tractions from the exact ones, over that of a root missed by a third over two elements",
+        at_most=1.0,
+        reason="theory: 1.2 h / a at the edge of contact, and as much again at that of stick",
+        methods=tuple(way for way in known.WAYS if way != "kts"),
+    ),
+    Statement(
+        "too many",
+        "More constraints than control points spoil exact tractions: they are farther off than a root at the edge explains.",
+        (),
+        Evidence.beside_strip,
+        "distance of the tractions from the exact ones, over that of a root missed by a third over two elements",
+        at_least=1.0,
+        reason="theory: 1.2 h / a at the edge of contact, and as much again at that of stick",
+        methods=("kts",),
+    ),
+    Statement(
         "too few",
         "Fewer constraints than control points spoil the curve: it is farther from that of finer meshes than the mortar method's.",
         (),
-        Evidence.beside_mortar,
+        Evidence.with_fewer_beside_mortar,
         "distance of the curve from the reference's, over that of the mortar method on the same meshes",
         at_least=1.0,
         reason="definition: an error that is larger",

@@ -7,8 +7,8 @@ from datetime import datetime
 from functools import partial
 from pathlib import Path
 
-from enforcement import exact, page
-from enforcement.found import Evidence, Found
+from enforcement import exact, known, page
+from enforcement.found import Evidence, Found, Known
 from enforcement.plan import SETUPS, Planned, planned
 from enforcement.statements import STATEMENTS
 
@@ -25,16 +25,18 @@ def study(scenes: Sequence[str] = ()) -> Study:
     InputError
         There is no such scene in it.
     """
-    names = [setup.scene for setup in SETUPS]
+    names = [*known.SCENES, *(setup.name for setup in SETUPS)]
     if unknown := set(scenes) - set(names):
         raise InputError(f"names {', '.join(sorted(unknown))}; allowed: {', '.join(names)}", "scenes")
-    plan = tuple(planned(tuple(setup for setup in SETUPS if not scenes or setup.scene in scenes)))
-    return Study((*exact.cells(), *(entry.run for entry in plan)), partial(_written, plan))
+    plan = tuple(planned(tuple(setup for setup in SETUPS if not scenes or setup.name in scenes)))
+    others = [*exact.cells(), *known.cells([scene for scene in known.SCENES if not scenes or scene in scenes])]
+    return Study((*others, *(entry.run for entry in plan)), partial(_written, plan))
 
 
 def _written(plan: Sequence[Planned], folder: Path, results: Sequence[Result], started: datetime) -> Conclusion:
     """Judge the statements and write ``report.html``."""
-    first = len(results) - len(plan)
-    runs = [Found(result, entry) for entry, result in zip(plan, results[first:], strict=True)]
-    judgements = [statement.judged([Evidence(runs, method) for method in statement.methods]) for statement in STATEMENTS]
-    return page.write(folder, results[:first], runs, judgements, started)
+    first, last = len(list(exact.cells())), len(results) - len(plan)
+    runs = [Found(result, entry) for entry, result in zip(plan, results[last:], strict=True)]
+    tractions = [Known(result) for result in results[first:last]]
+    judgements = [statement.judged([Evidence(runs, method, known=tractions) for method in statement.methods]) for statement in STATEMENTS]
+    return page.write(folder, results[:first], tractions, runs, judgements, started)

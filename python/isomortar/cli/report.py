@@ -94,7 +94,7 @@ def programs(
 
 @report.command()
 def enforcement(
-    scenes: Annotated[str, typer.Option(metavar="press,twist,iron", help="Scenes of the study.", show_default="all")] = "",
+    scenes: Annotated[str, typer.Option(metavar="hertz,twist,..", help="Scenes of the study.", show_default="all")] = "",
     jobs: Annotated[int, typer.Option("-j", "--jobs", min=1, help="Runs at the same time; several disturb each other's cost.")] = 1,
     out: Annotated[Path, typer.Option(file_okay=False, help="Folder of the report and its runs.")] = Path("results/enforcement"),
     cases: CasesOption = CASES,
