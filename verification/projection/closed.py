@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 from projection.closest_points import Surface
 
-from isomortar.geometry.patch import FloatArray
+from isomortar.geometry.patch import FloatArray, IntArray, Patch
 from isomortar.geometry.primitives import ring
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
@@ -67,6 +68,41 @@ def over_the_seam(kind: str, side: str) -> dict[str, float]:
         "slip": float(np.abs(slips[0] - slips[1]).max()),
         "moved": float(np.abs(slips[0][:, 1]).min()),
     }
+
+
+def swapped(surface: Surface) -> Surface:
+    """The same face with its coordinates in the other order."""
+    patch, (u, v, w) = surface.patch, surface.patch.directions
+    points = patch.control_points.reshape(w.count, v.count, u.count, 3).transpose(2, 1, 0, 3).reshape(-1, 3)
+    weights = patch.weights.reshape(w.count, v.count, u.count).transpose(2, 1, 0).ravel()
+    return Surface(Patch((w, v, u), points, weights), surface.face, closed={"u": "w", "w": "u"}[str(surface.closed)])
+
+
+@case(
+    claim="A ring that is closed along one coordinate ends along the other, whichever that is: feet are up to its edges, not beyond.",
+    tier="gate",
+    grid={"kind": ["N2", "L2"], "side": ["v0", "v1"], "order": ["as it is", "swapped"]},
+    bounds={
+        "inside": Bound(at_least=1.0, at_most=1.0, reason="definition: share found of the points before the edges"),
+        "beyond": Bound(at_least=0.0, at_most=0.0, reason="definition: share found of those behind them"),
+        "along": Bound(at_most=1e-14, reason="round-off: the closest point of a ring is at the same place along its axis"),
+    },
+)
+def edges_of_a_ring(kind: str, side: str, order: str) -> dict[str, float]:
+    """Shares of points that are found, from a cold start and from random ones; how far feet are from their points along the ring's axis."""
+    master = face(kind, side) if order == "as it is" else swapped(face(kind, side))
+    points, random = targets(side, np.linspace(0.0, 2.0 * np.pi, 120, endpoint=False), 1), np.random.default_rng(2)
+    off, low, high = 10.0 ** random.uniform(-9.0, -1.0, len(points)), *master.ends
+    starts = low + random.uniform(0.0, 1.0, (len(points), 2)) * (high - low)
+    found: dict[float, list[IntArray]] = {-1.0: [], 1.0: []}
+    along = []
+    for way, xi in product(found, (None, starts)):
+        points[:, 1] = np.where(np.arange(len(points)) % 2, 1.0, -1.0) * (0.5 * WIDTH + way * off)
+        feet = master.project(points, xi)
+        found[way].append(feet.found)
+        if way < 0:
+            along.append(np.abs(master.points(feet.xi) - points)[:, 1].max())
+    return {"inside": float(np.mean(found[-1.0])), "beyond": float(np.mean(found[1.0])), "along": float(np.max(along))}
 
 
 #: A block above a closed ring of Lagrange elements, across the ring's seam.
