@@ -205,16 +205,16 @@ def any_orientation_of_tiles(way: int, turned: str) -> dict[str, float]:
 @case(
     claim="A slave goes over the joint of two patches as over the C0 line of one: in the same iterations, without a cut.",
     tier="gate",
-    grid={"family": ("N", "L"), "order": (1, 2, 3)},
+    grid={"family": ("N", "L"), "order": (1, 2, 3), "projection": ("closest", "averaged")},
     bounds={
         "cuts": Bound(at_most=0.0, reason="definition: no load step is cut"),
         "iterations": Bound(at_most=0.0, reason="theory: the same functions on the same unknowns"),
         "across": Bound(at_least=10.0, reason="definition: feet go over the joint, or nothing is tested"),
     },
 )
-def over_a_joint(family: str, order: int) -> dict[str, float]:
+def over_a_joint(family: str, order: int, projection: str) -> dict[str, float]:
     """Cuts; difference of iterations; feet that lie on the other patch at the end."""
-    several = tiled(2, 1, "master", family, order, "averaged", 3)
+    several = tiled(2, 1, "master", family, order, projection, 3)
     one, other = solved(several), solved(untiled(several))
     states = [result.state.contacts[0] for result in (one[0], one[-1])]
     joint = np.unique(several.body("a").patch.directions[0].knots)[-1]
