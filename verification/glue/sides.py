@@ -248,7 +248,7 @@ def beside_a_smooth_patch(order: int, projection: str) -> dict[str, float]:
     points = single.body("a").patch.control_points
     found = [forces(solved(several))]
     for parts in (1, 3):
-        patch = mesh(box(points.min(axis=0), points.max(axis=0)), ("N", "N", "N"), (order, order, 1), (4 * parts, 2 * parts, 1))
+        patch = mesh(box(points.min(axis=0), points.max(axis=0)), ("N", "N", "N"), (order, order, 1), (2 * parts, 2 * parts, 1))
         smooth = replace(single, bodies=tuple(replace(b, patch=patch) if b.name == "a" else b for b in single.bodies))
         found.append(forces(solved(smooth)))
     error = np.linalg.norm(found[1] - found[2])
