@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import json
 from datetime import datetime
 from pathlib import Path
@@ -12,6 +13,7 @@ from enforcement import exact, known, page
 from enforcement.contact import IN_CELLS
 from enforcement.found import Evidence, Found, Known
 from enforcement.plan import MORTAR, REFERENCE, SETUPS, WAYS, Planned, planned
+from enforcement.recommend import NOT_MEASURED, advice, best
 from enforcement.statements import STATEMENTS
 from enforcement.study import study
 
@@ -75,6 +77,10 @@ def judged(runs: list[Found], beside: list[Known]) -> list[Judgement]:
     return [statement.judged([Evidence(runs, method, known=beside) for method in statement.methods]) for statement in STATEMENTS]
 
 
+#: Of what is exact, where every number is 0.
+ROWS = exact.table(counted())
+
+
 def verdicts(runs: list[Found], beside: list[Known]) -> dict[str, dict[str, str]]:
     """By statement and way."""
     return {j.statement.section: {verdict.method: verdict.state for verdict in j.verdicts} for j in judged(runs, beside)}
@@ -91,6 +97,7 @@ def test_every_way_of_every_scene_can_be_built() -> None:
 def test_a_plane_is_no_slave_nodes_have_no_demko_abscissae_and_slaves_are_swapped() -> None:
     assert PRESS.ways == (MORTAR, "greville", "demko", "knots", "kts")
     assert set(WAYS) - set(LINEAR_BLOCK.ways) == {"demko"}
+    assert [setup.name for setup in SETUPS if setup.kinks] == [LINEAR_BLOCK.name]
     (contact,), (swapped,) = (TWIST.load(way).problem().contacts for way in (MORTAR, "mortar, swapped"))
     assert (contact.slave, contact.master) == (swapped.master, swapped.slave)
 
@@ -121,6 +128,7 @@ def test_the_page_has_every_run(tmp_path: Path) -> None:
     assert "twist by kts (not converged)" in text
     assert "<td>7.2</td>" in text
     assert "<td>5.43</td>" in text
+    assert all(entry["text"] in html.unescape(text) for entry in data["advice"])
     assert [row["way"] for row in data["known"][1]] == list(known.WAYS)
     assert {row["condition"] for row in data["exact"]} == {7.25}
     assert f"{next(exact.cells()).name} by mortar" not in text
@@ -177,3 +185,31 @@ def test_what_is_exact_is_nothing_off() -> None:
     assert (found["off"], found["peak"], found["roughness"]) == (0.0, 1.0, 1.0)
     twice = known.compared(known.Line(x, 2.0 * exact_values, np.ones(25)), exact_values, exact_values, np.abs(x) < 0.008)
     assert (twice["off"], twice["peak"], twice["roughness"]) == pytest.approx((1.0, 2.0, 4.0))
+
+
+def test_the_way_that_is_nowhere_far_from_the_best_is_recommended() -> None:
+    values = {"mortar": {"a": 0.02, "b": 0.03}, "greville": {"a": 0.01, "b": 0.09}, "kts": {"a": 0.005, "b": np.nan}, "half": {"b": 0.06}}
+    found = best("Resultants", "distance", values, percent=True)
+    assert dict(found.ratios) == pytest.approx({"half": 2.0, "greville": 3.0, "mortar": 4.0})
+    assert found.text == (
+        "Take half: of b it is at most 2 times the best (b: 6 %, 3 % at best), b 6 %. "
+        "The others at most: greville 3 (b), mortar 4 (a) times the best. No candidates, as numbers are missing: kts (b)."
+    )
+
+
+def test_the_best_everywhere_is_said_to_be_so_and_nothing_is_recommended_without_numbers() -> None:
+    assert best("Speed", "seconds", {"mortar": {"a": 1.5}}, unit=" s").text == "Take mortar: of a it is the best everywhere, a 1.5 s."
+    assert best("Speed", "seconds", {"mortar": {"a": np.nan}}).text == NOT_MEASURED
+    unknown = [row | dict.fromkeys(row.keys() - {"method", "order"}, np.nan) for row in ROWS]
+    assert [entry.text for entry in advice([], [], unknown)] == [NOT_MEASURED] * 7
+
+
+def test_advice_follows_the_runs() -> None:
+    found = {entry.purpose: entry for entry in advice(made_up(steps=7), tractions(), ROWS)}
+    resultants, speed = found["Resultants of splines"], found["Speed of splines"]
+    assert "kts (twist)" in resultants.text
+    assert resultants.ratios["mortar, swapped"] == pytest.approx(0.05 / 0.02)
+    assert set(speed.ratios) == set(WAYS) - {"kts"}
+    assert found["Resultants of a master with kinks"].text == NOT_MEASURED
+    assert found["Pressures and tractions"].ratios["kts"] == pytest.approx(14.0)
+    assert "kts for too many constraints (0; largest pressure 1 times Hertz's)" in found["Teaching, the paper's comparison"].text

@@ -15,6 +15,7 @@ from enforcement.figures import exact as drawn
 from enforcement.found import Found, Known
 from enforcement.known import INSIDE, SCENES
 from enforcement.plan import REFERENCE, WAYS
+from enforcement.recommend import advice
 
 from isomortar.harness.runner import Result
 from isomortar.harness.runs import groups, written
@@ -34,9 +35,15 @@ def write(
     sections = [_section(group) for group in groups(runs, lambda run: run.planned.setup.name)]
     table = exact.table(cells)
     scenes = [_known(group) for group in groups(known, lambda run: run.name)]
-    data = {"scenes": [section["rows"] for section in sections], "known": [scene["rows"] for scene in scenes], "exact": table}
+    advised = advice(runs, known, table)
+    data = {
+        "advice": [vars(entry) for entry in advised],
+        "scenes": [section["rows"] for section in sections],
+        "known": [scene["rows"] for scene in scenes],
+        "exact": table,
+    }
     everything = [*map(exact.Exact, cells), *known, *runs]
-    more = {"exact": table, "exact_figure": drawn(table), "known": scenes, "inside": INSIDE}
+    more = {"exact": table, "exact_figure": drawn(table), "known": scenes, "inside": INSIDE, "advice": advised}
     return written(Path(__file__), folder, everything, judgements, started, (*WAYS, IN_CELLS), sections, data, more)
 
 

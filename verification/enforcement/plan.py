@@ -54,10 +54,13 @@ class Setup:
     @property
     def ways(self) -> tuple[str, ...]:
         """Those that there are: a plane is no slave, and has one normal; Demko's abscissae are those of splines."""
-        scene = Scene.load(self.scene, self.changes)
-        contact = self._contact(scene)[1]
-        nodes = "L" in scene.tables.bodies[contact.slave[0].partition(".")[0]].mesh.family
-        return tuple(way for way in WAYS if (contact.master or "," not in way) and not (nodes and way == "demko"))
+        contact = self._contact(Scene.load(self.scene))[1]
+        return tuple(way for way in WAYS if (contact.master or "," not in way) and not (self.kinks and way == "demko"))
+
+    @property
+    def kinks(self) -> bool:
+        """Whether bodies are of Lagrange elements, so that a master has kinks."""
+        return any("L" in body.mesh.family for body in Scene.load(self.scene, self.changes).tables.bodies.values())
 
     def load(self, way: str) -> Scene:
         """The scene as it is enforced that way, or as the reference."""

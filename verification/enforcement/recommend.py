@@ -1,0 +1,126 @@
+"""Which way to take for which purpose: sentences that are made of the page's numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from enforcement.found import Found, Known
+from enforcement.plan import MORTAR, REFERENCE
+
+from isomortar.harness.report import stated
+from isomortar.harness.runs import Computed
+
+NOT_MEASURED = "not measured"
+#: Of the sentence about the paper's comparison.
+ORDER = 2
+
+#: By way and scene; NaN: not known.
+Values = Mapping[str, Mapping[str, float]]
+
+
+@dataclass(frozen=True)
+class Advice:
+    """What to take for a purpose.
+
+    Parameters
+    ----------
+    purpose, measure, text : str
+        What for, by which numbers, and what they say.
+    ratios : dict of str to float
+        By way: the largest ratio of its number to the best one of the same scene; the best ways first.
+    """
+
+    purpose: str
+    measure: str
+    text: str
+    ratios: Mapping[str, float]
+
+
+def advice(runs: Sequence[Found], known: Sequence[Known], table: Sequence[Mapping[str, Any]]) -> list[Advice]:
+    """All purposes, of the curves of scenes, of known tractions, and of what is exact."""
+    patches: dict[str, dict[str, float]] = {}
+    for row in table:
+        patches.setdefault(row["method"], {})[f"order {row['order']}"] = row["other"]
+    tractions = by_way(known, {id(run): run.number("off") for run in known})
+    smooth = [run for run in runs if not run.planned.setup.kinks]
+    kinked = [run for run in runs if run.planned.setup.kinks]
+    return [
+        *of_scenes(smooth, "of splines"),
+        *of_scenes(kinked, "of a master with kinks"),
+        best("Pressures and tractions", "distance of the tractions from those of theory", tractions, percent=True),
+        best("Flat interfaces, patch test", "error of the patch test on meshes that do not match", patches, percent=True),
+        comparison(known, table),
+    ]
+
+
+def of_scenes(runs: Sequence[Found], which: str) -> tuple[Advice, Advice]:
+    """For resultants and for speed, of some of the scenes."""
+    references = {run.name: run for run in runs if run.method == REFERENCE}
+    others = [run for run in runs if run.method != REFERENCE]
+    off = by_way(others, {id(run): run.off(references[run.name]) for run in others})
+    cost = by_way(others, {id(run): run.number("cpu_seconds") if run.ending == "measured" else np.nan for run in others})
+    return (
+        best(f"Resultants {which}", "distance of the curves from those of finer meshes", off, percent=True),
+        best(f"Speed {which}", "CPU seconds of runs that come to their end", cost, unit=" s"),
+    )
+
+
+def by_way(runs: Sequence[Computed], values: Mapping[int, float]) -> dict[str, dict[str, float]]:
+    """Values of runs, known by their identity, by way and scene."""
+    found: dict[str, dict[str, float]] = {}
+    for run in runs:
+        found.setdefault(run.method, {})[run.name] = values[id(run)]
+    return found
+
+
+def best(purpose: str, measure: str, values: Values, percent: bool = False, unit: str = "") -> Advice:
+    """The way that is nowhere far from the best one: its largest ratio to the best of a scene is the smallest.
+
+    A way that lacks a number of a scene that it has is no candidate; what it has counts where the best of a scene is looked for.
+    """
+    lost = {way: [scene for scene, value in own.items() if not np.isfinite(value)] for way, own in values.items()}
+    whole = {way: own for way, own in values.items() if own and not lost[way]}
+    if not whole:
+        return Advice(purpose, measure, NOT_MEASURED, {})
+    scenes = {scene for own in whole.values() for scene in own}
+    least = {scene: float(np.nanmin([own.get(scene, np.nan) for own in values.values()])) for scene in scenes}
+    worst = {way: max((_ratio(own[scene], least[scene]), scene) for scene in own) for way, own in whole.items()}
+    ranked = sorted(worst, key=lambda way: worst[way][0])
+    first = ranked[0]
+    ratio, scene = worst[first]
+    shown = stated(whole[first][scene], percent) + unit
+    text = f"Take {first}: of {', '.join(whole[first])} "
+    text += (
+        "it is the best everywhere, "
+        if ratio == 1.0
+        else f"it is at most {ratio:.3g} times the best ({scene}: {shown}, {stated(least[scene], percent)}{unit} at best), "
+    )
+    text += "; ".join(f"{name} {stated(value, percent)}{unit}" for name, value in whole[first].items()) + "."
+    if others := [f"{way} {worst[way][0]:.3g} ({worst[way][1]})" for way in ranked[1:]]:
+        text += f" The others at most: {', '.join(others)} times the best."
+    if missing := [f"{way} ({', '.join(lost[way])})" for way in values if lost[way]]:
+        text += f" No candidates, as numbers are missing: {', '.join(missing)}."
+    return Advice(purpose, measure, text, {way: worst[way][0] for way in ranked})
+
+
+def _ratio(value: float, least: float) -> float:
+    return value / least if least else 1.0 if value == least else np.inf
+
+
+def comparison(known: Sequence[Known], table: Sequence[Mapping[str, Any]]) -> Advice:
+    """What each of the paper's four ways shows, at one order."""
+    rows = {row["method"]: row for row in table if row["order"] == ORDER}
+    peaks = {run.method: run.number("peak") for run in known if run.name == "hertz"}
+    words = []
+    for way, key, noun in (("kts", "too many", "too many constraints"), ("knots", "too few", "too few")):
+        if all(np.isfinite((rows[way][key], peaks.get(way, np.nan)))):
+            words.append(f"{way} for {noun} ({rows[way][key]:g}; largest pressure {peaks[way]:.3g} times Hertz's)")
+    for way in ("greville", MORTAR):
+        both = rows[way]["matching"], rows[way]["other"]
+        if np.isfinite(both).all():
+            words.append(f"{way} for the patch test on meshes that match ({stated(both[0], True)}) and do not ({stated(both[1], True)})")
+    text = f"Show, at order {ORDER}: {'; '.join(words)}." if words else NOT_MEASURED
+    return Advice("Teaching, the paper's comparison", "constraints too many and too few, largest pressure, patch test", text, {})
