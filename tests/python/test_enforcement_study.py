@@ -204,6 +204,13 @@ def test_the_best_everywhere_is_said_to_be_so_and_nothing_is_recommended_without
     assert [entry.text for entry in advice([], [], unknown)] == [NOT_MEASURED] * 7
 
 
+def test_what_fails_the_patch_test_on_matching_meshes_is_not_recommended() -> None:
+    rows = [row | {"matching": 0.1 * row["order"] * (row["method"] == "knots")} for row in ROWS]
+    found = {entry.purpose: entry for entry in advice(made_up(), tractions(), rows)}["Resultants of splines"]
+    assert "knots" not in found.ratios
+    assert "as they fail the patch test on meshes that match: knots (30 %)." in found.text
+
+
 def test_advice_follows_the_runs() -> None:
     found = {entry.purpose: entry for entry in advice(made_up(steps=7), tractions(), ROWS)}
     resultants, speed = found["Resultants of splines"], found["Speed of splines"]

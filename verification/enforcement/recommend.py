@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,8 @@ from isomortar.harness.report import stated
 from isomortar.harness.runs import Computed
 
 NOT_MEASURED = "not measured"
+#: Error of the patch test on meshes that match up to which a method passes it: what fails there does not converge.
+PASSED = 1e-6
 #: Of the sentence about the paper's comparison.
 ORDER = 2
 
@@ -45,26 +48,30 @@ def advice(runs: Sequence[Found], known: Sequence[Known], table: Sequence[Mappin
     for row in table:
         patches.setdefault(row["method"], {})[f"order {row['order']}"] = row["other"]
     tractions = by_way(known, {id(run): run.number("off") for run in known})
+    failing: dict[str, float] = {}
+    for row in table:
+        if row["matching"] > PASSED:
+            failing[row["method"]] = max(row["matching"], failing.get(row["method"], 0.0))
     smooth = [run for run in runs if not run.planned.setup.kinks]
     kinked = [run for run in runs if run.planned.setup.kinks]
     return [
-        *of_scenes(smooth, "of splines"),
-        *of_scenes(kinked, "of a master with kinks"),
+        *of_scenes(smooth, "of splines", failing),
+        *of_scenes(kinked, "of a master with kinks", failing),
         best("Pressures and tractions", "distance of the tractions from those of theory", tractions, percent=True),
         best("Flat interfaces, patch test", "error of the patch test on meshes that do not match", patches, percent=True),
         comparison(known, table),
     ]
 
 
-def of_scenes(runs: Sequence[Found], which: str) -> tuple[Advice, Advice]:
+def of_scenes(runs: Sequence[Found], which: str, failing: Mapping[str, float]) -> tuple[Advice, Advice]:
     """For resultants and for speed, of some of the scenes."""
     references = {run.name: run for run in runs if run.method == REFERENCE}
     others = [run for run in runs if run.method != REFERENCE]
     off = by_way(others, {id(run): run.off(references[run.name]) for run in others})
     cost = by_way(others, {id(run): run.number("cpu_seconds") if run.ending == "measured" else np.nan for run in others})
     return (
-        best(f"Resultants {which}", "distance of the curves from those of finer meshes", off, percent=True),
-        best(f"Speed {which}", "CPU seconds of runs that come to their end", cost, unit=" s"),
+        best(f"Resultants {which}", "distance of the curves from those of finer meshes", off, percent=True, failing=failing),
+        best(f"Speed {which}", "CPU seconds of runs that come to their end", cost, unit=" s", failing=failing),
     )
 
 
@@ -76,13 +83,17 @@ def by_way(runs: Sequence[Computed], values: Mapping[int, float]) -> dict[str, d
     return found
 
 
-def best(purpose: str, measure: str, values: Values, percent: bool = False, unit: str = "") -> Advice:
+def best(
+    purpose: str, measure: str, values: Values, percent: bool = False, unit: str = "", failing: Mapping[str, float] = MappingProxyType({})
+) -> Advice:
     """The way that is nowhere far from the best one: its largest ratio to the best of a scene is the smallest.
 
-    A way that lacks a number of a scene that it has is no candidate; what it has counts where the best of a scene is looked for.
+    `failing`: largest errors of methods that fail the patch test on meshes that match. They, and a way that lacks a number of
+    a scene that it has, are no candidates; what it has counts where the best of a scene is looked for.
     """
     lost = {way: [scene for scene, value in own.items() if not np.isfinite(value)] for way, own in values.items()}
-    whole = {way: own for way, own in values.items() if own and not lost[way]}
+    barred = {way: failing[way.partition(",")[0]] for way in values if way.partition(",")[0] in failing}
+    whole = {way: own for way, own in values.items() if own and not lost[way] and way not in barred}
     if not whole:
         return Advice(purpose, measure, NOT_MEASURED, {})
     scenes = {scene for own in whole.values() for scene in own}
@@ -101,7 +112,10 @@ def best(purpose: str, measure: str, values: Values, percent: bool = False, unit
     text += "; ".join(f"{name} {stated(value, percent)}{unit}" for name, value in whole[first].items()) + "."
     if others := [f"{way} {worst[way][0]:.3g} ({worst[way][1]})" for way in ranked[1:]]:
         text += f" The others at most: {', '.join(others)} times the best."
-    if missing := [f"{way} ({', '.join(lost[way])})" for way in values if lost[way]]:
+    if barred:
+        told = ", ".join(f"{way} ({stated(error, True)})" for way, error in barred.items())
+        text += f" No candidates, as they fail the patch test on meshes that match: {told}."
+    if missing := [f"{way} ({', '.join(lost[way])})" for way in values if lost[way] and way not in barred]:
         text += f" No candidates, as numbers are missing: {', '.join(missing)}."
     return Advice(purpose, measure, text, {way: worst[way][0] for way in ranked})
 
