@@ -98,7 +98,7 @@ def best(
         return Advice(purpose, measure, NOT_MEASURED, {})
     scenes = {scene for own in whole.values() for scene in own}
     least = {scene: float(np.nanmin([own.get(scene, np.nan) for own in values.values()])) for scene in scenes}
-    worst = {way: max((_ratio(own[scene], least[scene]), scene) for scene in own) for way, own in whole.items()}
+    worst = {way: sorted((_ratio(own[scene], least[scene]), scene) for scene in own)[-1] for way, own in whole.items()}
     ranked = sorted(worst, key=lambda way: worst[way][0])
     first = ranked[0]
     ratio, scene = worst[first]
