@@ -21,8 +21,10 @@ MASTER_ELEMENTS = 7
 SUBCELLS = 2
 #: Cuts after which cells over an oblique mesh are compared.
 FEW, MANY = 3, 5
-#: The slave of oblique meshes is turned by so many degrees, about its middle, and is this much smaller than its master.
-TURN, SHARE = 20.0, 0.6
+#: The slave of oblique meshes is turned by so many degrees, about its middle: well across, and so little that cells become slivers.
+TURNS = [20.0, 1.0, 0.01]
+#: It is this much smaller than its master.
+SHARE = 0.6
 
 
 def tier(slave_order: int, master_order: int, tilt: float) -> Tier:
@@ -45,46 +47,49 @@ def uniform_pressure_in_cells(slave_order: int, master_order: int, tilt: float) 
     return {"pressure": errors(replace(given, contacts=(contact,), settings=settings)).field}
 
 
-def rotation() -> FloatArray:
+def rotation(turn: float) -> FloatArray:
     """By which the slave of oblique meshes is turned."""
-    angle = np.deg2rad(TURN)
+    angle = np.deg2rad(turn)
     return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
 
 
-def turned(subcells: int) -> Problem:
+def turned(subcells: int, turn: float) -> Problem:
     """The lower block's upper face as a master of linear elements, and a smaller slave on it, turned."""
     given = problem(1, 1, 0.0, 2, MASTER_ELEMENTS)
     contact = replace(given.contacts[0], subcells=subcells)
     slave = given.body(contact.slave.body)
     points = slave.patch.control_points.copy()
-    points[:, :2] = 0.5 + SHARE * (points[:, :2] - 0.5) @ rotation().T
+    points[:, :2] = 0.5 + SHARE * (points[:, :2] - 0.5) @ rotation(turn).T
     moved = replace(slave, patch=replace(slave.patch, control_points=points))
     return replace(given, bodies=tuple(moved if body is slave else body for body in given.bodies), contacts=(contact,))
 
 
-def crossed(subcells: int) -> tuple[float, float]:
-    """Share of the face in cells that lie over several elements of the master; error of the sum of all areas."""
-    given = turned(subcells)
+def crossed(subcells: int, turn: float) -> tuple[float, float, float]:
+    """Share of the face in cells over several elements of the master; error of the sum of all areas; the least length of a cell."""
+    given = turned(subcells, turn)
     cells = Subcells(SlaveFace(given.contacts[0], given, Numbering(given)))
     line = np.linspace(1e-3, 1.0 - 1e-3, 9)
     at = np.stack(np.meshgrid(line, line), axis=-1).reshape(-1, 2)
-    places = 0.5 + SHARE * (cells.low[:, None] + (cells.high - cells.low)[:, None] * at - 0.5) @ rotation().T
+    places = 0.5 + SHARE * (cells.low[:, None] + (cells.high - cells.low)[:, None] * at - 0.5) @ rotation(turn).T
     below = np.floor(MASTER_ELEMENTS * places)
     several = np.any(below != below[:, :1], axis=(1, 2))
-    areas = np.prod(cells.high - cells.low, axis=1)
-    return float(areas[several].sum()), abs(float(cells.gauss()[3].sum()) / SHARE**2 - 1.0)
+    lengths = cells.high - cells.low
+    share = float(np.prod(lengths, axis=1)[several].sum())
+    return share, abs(float(cells.gauss()[3].sum()) / SHARE**2 - 1.0), float(lengths.min())
 
 
 @case(
-    claim="Over an oblique mesh cells fill the face, and close in on the master's knot lines.",
+    claim="Over an oblique mesh cells fill the face, each inside the one it was cut from, and close in on the master's knot lines.",
+    grid={"turn": TURNS},
     bounds={
+        "shortest": Bound(at_least=1e-7, reason="definition: a cell that reached beyond the one it was cut from has a negative length"),
         "areas": Bound(at_most=1e-13, reason="round-off: cells do not overlap, and leave nothing out"),
         "left": Bound(
             at_most=0.75 ** (MANY - FEW), reason="theory: of the four parts of a cell that a line crosses one at least lies beside it"
         ),
     },
 )
-def cells_over_an_oblique_mesh() -> dict[str, float]:
-    """Error of the sum of areas; what two more cuts leave of the area of cells over several elements of the master."""
-    few, many = crossed(FEW), crossed(MANY)
-    return {"areas": max(few[1], many[1]), "left": many[0] / few[0]}
+def cells_over_an_oblique_mesh(turn: float) -> dict[str, float]:
+    """Error of the sum of areas, the least length; what two more cuts leave of the area of cells over several elements of the master."""
+    few, many = crossed(FEW, turn), crossed(MANY, turn)
+    return {"shortest": many[2], "areas": max(few[1], many[1]), "left": many[0] / few[0]}

@@ -45,10 +45,14 @@ class Subcells:
         return np.ascontiguousarray(nodes[:: len(weights)]), values, slopes, area
 
     def _cut(self, axis: int) -> None:
-        """Cut cells across a direction where the master's element changes along their middle, else along their edges (theory 10.9)."""
+        """Cut cells across a direction where the master's element changes along their middle, else along their edges (theory 10.9).
+
+        Those that two margins fill are left: there is no place between them.
+        """
         at = np.full(len(self.low), np.nan)
+        wide = (self.high - self.low - 2.0 * self._margin)[:, axis] > 0.0
         for line in constants.CELL_LINES:
-            left = np.isnan(at)
+            left = wide & np.isnan(at)
             at[left] = self._crossing(axis, self.low[left] + self._margin[left], self.high[left] - self._margin[left], line)
         here = ~np.isnan(at)
         low, high = self.low[here].copy(), self.high.copy()
