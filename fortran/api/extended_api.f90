@@ -126,6 +126,46 @@ subroutine contact_difference(slave, map, friction, x, along, step, n, xi, eleme
   forces = real(difference(sides(2)%forces, sides(1)%forces, h), c_double)
 end subroutine contact_difference
 
+!> Feet of every slave quadrature point (isomortar_contact_control). `xi` holds starts at first.
+!>
+!> - `slave`, `map`, `x`, `n`, `started`, `nquad`, `element`, `fixed`, `found`, `doubt`, `status`, `place`: as in `project_points`.
+subroutine extended_feet(slave, map, x, n, started, nquad, xi, element, fixed, found, doubt, status, place)
+  use iso_c_binding, only: c_double, c_int, c_int64_t
+  use isomortar_api_descriptors, only: find
+  use isomortar_base_kinds, only: wp
+  use isomortar_contact_control, only: project_points
+  use isomortar_contact_gap_map_map, only: gap_map_t, projections_t
+  use isomortar_contact_slave, only: slave_t
+  implicit none
+  integer(c_int64_t), intent(in) :: slave, map
+  integer(c_int), intent(in) :: n, nquad, started(nquad)
+  real(c_double), intent(in) :: x(3, n)
+  real(c_double), intent(inout) :: xi(2, nquad)
+  integer(c_int), intent(out) :: element(2, nquad), fixed(2, nquad), found(nquad), doubt(nquad), status, place
+  type(slave_t), pointer :: side
+  class(gap_map_t), pointer :: onto
+  type(projections_t) :: projections
+
+  status = 0
+  place = 0
+  call find(slave, side, status)
+  call find(map, onto, status)
+  if (status /= 0) return
+  allocate (projections%place(2, nquad), projections%fixed(2, nquad), projections%found(nquad), projections%doubt(nquad), &
+    projections%slip(2, nquad), projections%slips(nquad))
+  projections%xi = real(xi, wp)
+  projections%place = 0
+  projections%fixed = .false.
+  projections%found = .false.
+  projections%doubt = 0
+  call project_points(side, onto, real(x, wp), started /= 0, real(xi, wp), started /= 0, projections, status, place)
+  xi = real(projections%xi, c_double)
+  element = projections%place - 1
+  fixed = merge(1, 0, projections%fixed)
+  found = merge(1, 0, projections%found)
+  doubt = projections%doubt
+end subroutine extended_feet
+
 !> Hulls of the elements of a face of a patch (isomortar_contact_hulls).
 !>
 !> - `patch`, `axis`, `side`, `x`, `n`, `status`: as in `slave_tables`. `nelements`, `nlocal`: elements, points of each.

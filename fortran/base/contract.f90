@@ -1,5 +1,5 @@
-!> Contracts: what a procedure asks of its arguments and promises of its results. They are checked in debug builds, where
-!> `contract_checked.f90` takes this file's place. Here nothing is left of them: the kernel never stops.
+!> Contracts: what a procedure asks of its arguments and promises of its results. They are checked in debug builds and in the twin,
+!> where `contract_checked.f90` takes this file's place. Here nothing is left of them: the kernel never stops.
 !>
 !> A contract is one line, `if (contracts) call require(condition, "procedure: condition in words")`.
 module isomortar_base_contract

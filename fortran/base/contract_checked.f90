@@ -1,4 +1,4 @@
-!> Contracts of debug builds, in the manner of PRIMA. Takes the place of `contract.f90`.
+!> Contracts of debug builds and of the twin, in the manner of PRIMA. Takes the place of `contract.f90`.
 !>
 !> A broken contract is a fault of the kernel, or of a caller that does not check what it hands over: the process ends there. What
 !> sound calls can meet (a folded element, a lost foot, a pattern without a block) has a status and is no contract.

@@ -15,6 +15,7 @@ from isomortar._bindings import (
     FaceArrays,
     FloatArray,
     FrictionArrays,
+    IntArray,
     Law,
     MasterArrays,
     MaterialArrays,
@@ -138,6 +139,23 @@ def contact_difference(
     )  # fmt: skip
     _check(status, place)
     return ContactChange(*[np.ascontiguousarray(change.T) for change in changes]), switched
+
+
+def project_points(slave: SlaveArrays, master: MasterArrays, positions: FloatArray, origin: FloatArray, had: IntArray) -> Projections:
+    """Project every slave quadrature point as the kernel does, without slips.
+
+    Raises
+    ------
+    KernelError
+        A projection is lost.
+    """
+    xi = origin.copy()
+    element, fixed, found, doubt, status, place = _extended.extended_feet(
+        _DESCRIPTORS.handle("slave", slave, SlaveArrays), _DESCRIPTORS.handle("master", master, PlaneArrays, FaceArrays),
+        positions.T, had, xi.T,
+    )  # fmt: skip
+    _check(status, place)
+    return Projections(xi, element.T, fixed.T, found, doubt, origin, np.zeros_like(xi), np.zeros_like(had))
 
 
 def surface_hulls(master: FaceArrays, positions: FloatArray) -> Hulls:

@@ -31,6 +31,17 @@ stages = [{{ name = "rest", steps = 1 }}]
 """
 
 
+def over_waves(order: int, lift: float) -> tuple[Equilibrium, FloatArray]:
+    """The block at a height over hills and hollows: what computes it, and positions of all control points."""
+    problem = Scene.from_toml(_SCENE.format(order=order, elements=16 // order)).problem()
+    equilibrium = Equilibrium(problem, Ledger())
+    numbers, positions = equilibrium.numbering.points, equilibrium.numbering.reference.copy()
+    top = numbers["plate"][problem.body("plate").patch.face_points("w1")]
+    positions[top, 2] = HEIGHT * np.prod(np.sin(2 * np.pi * WAVES * positions[top, :2]), axis=1)
+    positions[numbers["slave"], 2] += lift
+    return equilibrium, positions
+
+
 @case(
     claim="At gaps below the radius of curvature of a wavy master the foot along averaged normals is the same from any start.",
     tier="gate",
@@ -43,13 +54,9 @@ stages = [{{ name = "rest", steps = 1 }}]
 )
 def from_any_start(order: int, lift: float) -> dict[str, float]:
     """Largest distance of feet from those of no start, for starts anywhere and a part of a wave aside; least share found; distance."""
-    problem = Scene.from_toml(_SCENE.format(order=order, elements=16 // order)).problem()
-    equilibrium = Equilibrium(problem, Ledger())
-    pair, numbers, positions = equilibrium.pairs[0], equilibrium.numbering.points, equilibrium.numbering.reference.copy()
+    equilibrium, positions = over_waves(order, lift)
+    problem, pair, numbers = equilibrium.problem, equilibrium.pairs[0], equilibrium.numbering.points
     plate, block = problem.body("plate").patch, problem.body("slave").patch
-    top = numbers["plate"][plate.face_points("w1")]
-    positions[top, 2] = HEIGHT * np.prod(np.sin(2 * np.pi * WAVES * positions[top, :2]), axis=1)
-    positions[numbers["slave"], 2] += lift
     surface = Surface(replace(plate, control_points=positions[numbers["plate"]]), "w1")
     state = equilibrium.initial_state().contacts[0]
     shape, random = state.projection.shape, np.random.default_rng(order)
