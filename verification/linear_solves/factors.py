@@ -18,6 +18,8 @@ from isomortar.harness import Bound, case
 LENGTH, BORDER = 400, 12
 #: The unknown that nothing holds.
 FREE = 137
+#: Of the levers of a mechanism that with the longest arm.
+LONGEST = 2
 #: Status of a handle that was released (fortran/base/status.f90).
 STALE = 6
 
@@ -99,6 +101,31 @@ def floating(ordering: str) -> dict[str, float]:
         except SingularSystemError as error:
             places.append(error.place)
     return {"refused": len(places) / 20, "place": float(min(places, default=-1))}
+
+
+def mechanism(arms: FloatArray) -> sparse.csr_array:
+    """Levers on one shaft that nothing holds, the arm of one of them much longer: its end moves most, the shaft is eliminated last."""
+    ends = np.where(np.arange(len(arms)) == LONGEST, 1e3, 1.0) * arms
+    shaft = np.array([[np.sum(arms * ends)]])
+    return sparse.csr_array(sparse.block_array([[sparse.eye_array(len(arms)), -ends[:, None]], [-arms[None], shaft]]))
+
+
+@case(
+    claim="Of a mechanism the unknown that moves most is named.",
+    tier="gate",
+    grid={"ordering": ("metis", "amd")},
+    bounds={"named": Bound(at_least=1.0, at_most=1.0, reason=_SAID)},
+)
+def moves_most(ordering: str) -> dict[str, float]:
+    """Share of mechanisms, beside a held system, whose longest lever is named."""
+    places = []
+    for arms in np.random.default_rng(8).uniform(0.1, 1.0, (20, 5)):
+        lu, values = factors(sparse.csr_array(sparse.block_diag([bordered(), mechanism(arms)])), ordering)
+        try:
+            lu.factorise(values)
+        except SingularSystemError as error:
+            places.append(error.place)
+    return {"named": places.count(LENGTH + BORDER + LONGEST) / 20}
 
 
 @case(
