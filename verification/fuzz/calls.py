@@ -28,27 +28,42 @@ ROUTINES = (
     *("friction_radius", "contact_forces", "contact_blocks", "multiplier_rows", "condense_multipliers", "find_places", "add_values"),
     *("analyse", "factorise", "solve"),
 )
-#: A tiny scene that calls them all but `surface_functions`: condensed multipliers are Uzawa's, the paper's slip sum has neighbours.
-SCENE, SETTINGS = (
-    "press",
-    (
-        *("bodies.block.mesh.elements=[2,2,1]", "bodies.block.mesh.order=[2,2,1]", "stages.press.steps=1", "solver.method='uzawa'"),
-        *("stages.press.motions.top.translate=[0.01,0,-0.2]", "solver.slip_sum='paper'"),
-    ),
-)
+#: Tiny scenes that call them all but `surface_functions`, for each kind of master, and slip sums: condensed multipliers are
+#: Uzawa's, the paper's sum has neighbours.
+_SCENE = """
+format = 1
+bodies.upper.geometry = {{ kind = "box", lower = [0.2, 0.2, 0], upper = [0.8, 0.8, 0.5] }}
+bodies.upper.mesh = {{ elements = [2, 2, 1], order = [2, 2, 1] }}
+{lower}
+contacts.interface = {{ slave = "upper.w0", {master}, friction = 0.3 }}
+supports.top.face = "upper.w1"
+stages = [{{ name = "press", steps = 1, motions.top.translate = [0.01, 0.02, -0.05] }}]
+solver = {{ method = "uzawa", slip_sum = "{slip_sum}" }}
+"""
+_LOWER = """
+bodies.lower.geometry = {{ kind = "box", lower = [0, 0, -0.5], upper = [1, 1, 0] }}
+bodies.lower.mesh = {{ elements = [3, 3, 1], family = "{}", order = [{}, {}, 1] }}
+supports.base.face = "lower.w0"
+"""
+MASTERS = {
+    "plane": ("", "plane = { point = [0, 0, 0] }", "paper"),
+    "closest": (_LOWER.format("N", 2, 2), 'master = "lower.w1"', "local"),
+    "averaged": (_LOWER.format("L", 1, 1), 'master = "lower.w1"', "paper"),
+}
 _INTEGERS = (-1, 0, 1, 2, 7, 63, 65, 1000, 2**31 - 1, -(2**31), 2**40)
 _REALS = (0.0, -1.0, 1.0, 1e300, -1e300, 5e-324, float("nan"), float("inf"), float("-inf"))
 _STRANGERS: tuple[Any, ...] = (None, "x", [], (), {}, 2.5, True, 1j, -1, 0, 10**30, float("nan"), float("inf"), 1e300)
 
 
 @functools.cache
-def sound() -> dict[str, tuple[Callable[..., Any], dict[str, Any]]]:
-    """Each routine with arguments as a run gives them, those of its last call."""
+def sound(master: str) -> dict[str, tuple[Callable[..., Any], dict[str, Any]]]:
+    """Each routine with arguments as a run on a kind of master gives them, those of its last call with all of them."""
     heard: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {}
     with ExitStack() as stack:
         for name in ROUTINES[:-3]:
             stack.enter_context(patch.object(_bindings, name, _listener(name, heard)))
-        last = list(Simulation(Scene.load(SCENE, SETTINGS).problem()).run())[-1]
+        lower, place, slip_sum = MASTERS[master]
+        last = list(Simulation(Scene.from_toml(_SCENE.format(lower=lower, master=place, slip_sum=slip_sum)).problem()).run())[-1]
         assert last.contacts[0].active > 0
     face = heard["slave_tables"][1]
     points = np.random.default_rng(1).random((5, 2))
@@ -65,7 +80,9 @@ def _listener(name: str, heard: dict[str, tuple[Callable[..., Any], dict[str, An
     names = routine.__code__.co_varnames[: routine.__code__.co_argcount]
 
     def call(*given: Any) -> Any:
-        heard[name] = routine, copy.deepcopy(dict(zip(names, given, strict=False)))
+        arguments = {name: value for name, value in zip(names, given, strict=False) if value is not None}
+        if name not in heard or len(arguments) >= len(heard[name][1]):  # with a tangent, where there are calls without
+            heard[name] = routine, copy.deepcopy(arguments)
         return routine(*given)
 
     return call
@@ -94,7 +111,8 @@ def _sparse() -> dict[str, tuple[Callable[..., Any], dict[str, Any]]]:
 def called(number: int, _: Path) -> Ending:
     """Call a routine with one of its arguments changed, or a field of one."""
     chance = random.Random(number)
-    routine, arguments = copy.deepcopy(sound()[ROUTINES[number % len(ROUTINES)]])
+    master = list(MASTERS)[number // len(ROUTINES) % len(MASTERS)]
+    routine, arguments = copy.deepcopy(sound(master)[ROUTINES[number % len(ROUTINES)]])
     name = chance.choice(list(arguments))
     place = name
     try:
@@ -164,7 +182,8 @@ def _shuffled(value: Any, chance: random.Random) -> Any:
 
 def endings(first: int, count: int) -> Iterator[tuple[int, Ending]]:
     """How the calls of some numbers end."""
-    sound()
+    for master in MASTERS:
+        sound(master)
     for number in range(first, first + count):
         yield number, tried(functools.partial(called, number))
 
