@@ -59,6 +59,12 @@ def bound_of_curvature(bezier: FloatArray) -> float:
     return float(np.max([f * np.linalg.norm(bend, axis=-1).max(initial=0.0) for f, (_, _, bend) in zip(factors, bends, strict=True)]))
 
 
+def across(bezier: FloatArray) -> FloatArray:
+    """Unit normal of the diagonals of an element's corners."""
+    normal: FloatArray = np.cross(bezier[-1, -1] - bezier[0, 0], bezier[-1, 0] - bezier[0, -1])
+    return normal / np.linalg.norm(normal)
+
+
 def curvature(face: Surface, xi: FloatArray, span: FloatArray) -> float:
     """Most that the derivatives of a surface turn or stretch: |S,ab| / (|a_a| |a_b|) by differences of its tangents."""
     step = 1e-5 * span
@@ -82,6 +88,7 @@ def curvature(face: Surface, xi: FloatArray, span: FloatArray) -> float:
         "sample": Bound(at_most=1e-14, reason="round-off: points of the grid"),
         "sphere": Bound(at_most=1e-14, reason="definition: how far points are outside"),
         "box": Bound(at_most=1e-14, reason="definition: how far points are outside"),
+        "aligned": Bound(at_most=1e-12, reason="definition: sine of the angle between a box's third axis and the normal of the diagonals"),
         "slack": Bound(at_most=1e-8, reason="definition: the box touches the hull but for its margin, the sphere the box"),
         "formula": Bound(at_most=1e-10, reason="round-off: of second differences; (3.17) in NumPy on these points"),
         "exceeded": Bound(at_most=1.0, reason="definition: curvature at points of the surface over its bound"),
@@ -97,7 +104,7 @@ def hulls(master: str) -> dict[str, float]:
     directions = face.patch.face_directions(face.face)
     elements = [(u, v) for v in _spans(directions[1].boundaries) for u in _spans(directions[0].boundaries)]
     shares = np.linspace(0.0, 1.0, SAMPLES)
-    worst = dict.fromkeys(("sample", "sphere", "box", "slack", "formula", "exceeded"), 0.0)
+    worst = dict.fromkeys(("sample", "sphere", "box", "aligned", "slack", "formula", "exceeded"), 0.0)
     for e, element in enumerate(elements):
         low, span = np.array(element)[:, 0], np.diff(element).ravel()
         inside = low + span * np.stack(np.meshgrid(shares, shares), axis=-1).reshape(-1, 2)
@@ -109,6 +116,7 @@ def hulls(master: str) -> dict[str, float]:
             "sample": np.abs(found.sample[e] - face.points(grid)).max() / size,
             "sphere": np.max(np.linalg.norm(points - found.centre[e], axis=1) - found.radius[e]) / size,
             "box": np.max(np.abs(local) - found.half[e]) / size + np.abs(found.frame[e] @ found.frame[e].T - np.eye(3)).max(),
+            "aligned": np.linalg.norm(np.cross(found.frame[e][2], across(expected[e]))),
             "slack": (np.max(found.half[e] - np.abs(corners).max(axis=0)) + abs(found.radius[e] - np.linalg.norm(found.half[e]))) / size,
             "formula": abs(found.curvature[e] - bound) / (bound + 1.0 / size),
             "exceeded": 0.0 if rational else curvature(face, low + 0.9 * (inside - low) + 0.05 * span, span) / (bound + FLAT / size),

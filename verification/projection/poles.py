@@ -9,7 +9,7 @@ from projection.closest_points import Surface
 from projection.nearest import exhaustive
 from shapes import dome
 
-from isomortar.geometry.patch import FloatArray
+from isomortar.geometry.patch import FloatArray, Patch
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
 
@@ -25,6 +25,25 @@ def face(kind: str, side: str = "v1", raised: float = 0.0) -> Surface:
     points = patch.control_points.copy()
     points[patch.face_points("u1"), 2] += raised
     return Surface(replace(patch, control_points=points), side, closed="w")
+
+
+def turned(surface: Surface, way: str) -> Surface:
+    """The same face with its pole at the "high" or "low" end of the "first" or "second" of its directions."""
+    patch, axes = surface.patch, [0, 1, 2]
+    end, _, direction = way.partition(" ")
+    assert surface.closed == "w"
+    values = np.concatenate([patch.control_points, patch.weights[:, None]], axis=1).reshape(*patch.shape[::-1], 4).transpose(2, 1, 0, 3)
+    if end == "low":  # two directions turned round: the patch is no mirror image
+        values = values[::-1, :, ::-1]
+        flipped = [replace(d, knots=(d.knots[0] + d.knots[-1]) - d.knots[::-1]) for d in patch.directions]
+        patch = replace(patch, directions=(flipped[0], patch.directions[1], flipped[2]))
+    if direction == "second":
+        axes = [2, 0, 1]
+        values = values.transpose(*axes, 3)
+    directions = tuple(patch.directions[a] for a in axes)
+    points = values.transpose(2, 1, 0, 3).reshape(-1, 4)
+    side = "uvw"[axes.index("uvw".index(surface.face[0]))] + surface.face[1]
+    return Surface(Patch(directions, points[:, :3], points[:, 3]), side, closed="uvw"[axes.index(2)])  # type: ignore[arg-type]
 
 
 def starts(surface: Surface, count: int, seed: int) -> FloatArray:
@@ -63,6 +82,37 @@ def beside_a_pole(kind: str, side: str, off: float) -> dict[str, float]:
         found.append(projections.found)
         followed.append(projections.followed)
     return {"foot": worst, "found": float(np.mean(found)), "followed": float(np.mean(followed))}
+
+
+@case(
+    claim="A pole is found at either end of either direction: feet beside it are those of the exact sphere, on a cone's vertex those of "
+    "all that is in its cone of normals.",
+    grid={"way": ["high first", "low first", "high second", "low second"], "side": ["v0", "v1"]},
+    bounds={
+        "foot": Bound(at_most=2e-14, reason="round-off: of the surface's points; Newton's method ends below it"),
+        "followed": Bound(at_least=1.0, at_most=1.0, reason="definition: the sphere is smooth at its pole, a foot beside it follows"),
+        "vertex": Bound(at_most=2e-16, reason="round-off: of the vertex, which is the nearest point of all in its cone of normals"),
+    },
+)
+def at_any_end(way: str, side: str) -> dict[str, float]:
+    """Largest distance from the exact foot, share followed, and distance from the vertex of a cone; from any start and from none."""
+    random = np.random.default_rng(8)
+    smooth, cone = (turned(face("N2", side, raised), way) for raised in (0.0, 0.1))
+    radius = INNER if side == "v0" else OUTER
+    angle, off = random.uniform(0.0, 2 * np.pi, 24), 10.0 ** random.uniform(-11.0, -0.5, 24)
+    normals = np.column_stack([np.sin(off) * np.cos(angle), np.sin(off) * np.sin(angle), np.cos(off)])
+    targets = (radius + random.uniform(-0.25, 0.25, (24, 1))) * normals
+    vertex = cone.patch.control_points[cone.patch.face_points(cone.face)][:, 2].max()
+    above = np.array([[0.0, 0.0, vertex + (0.1 if side == "v1" else 0.01)]])
+    worst, followed, apart = 0.0, [], 0.0
+    low, high = smooth.ends
+    for xi in (None, low + random.uniform(0.0, 1.0, (24, 2)) * (high - low)):
+        projections = smooth.project(targets, xi)
+        worst = float(np.maximum(worst, np.linalg.norm(smooth.points(projections.xi) - radius * normals, axis=1).max()))
+        followed.append(projections.followed)
+        there = cone.points(cone.project(above, None if xi is None else xi[:1]).xi)
+        apart = float(np.maximum(apart, np.linalg.norm(there - [0.0, 0.0, vertex], axis=1).max()))
+    return {"foot": worst, "followed": float(np.mean(followed)), "vertex": apart}
 
 
 @case(
