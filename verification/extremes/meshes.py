@@ -77,7 +77,7 @@ def order(order: int) -> dict[str, Any]:
 @case(
     claim="A thin cantilever bends as a beam, or the program says that it can not tell.",
     tier=lambda order, thickness: "gate" if (order, thickness) == (3, 1e-3) else "nightly",
-    grid={"order": (3, 4), "thickness": (1e-2, 1e-3, 3e-4, 1e-4, 1e-5, 1e-6, 1e-8)},
+    grid={"order": (3, 4), "thickness": (1e-2, 1e-3, 7e-4, 5e-4, 4e-4, 3e-4, 2.5e-4, 2e-4, 1e-4, 1e-5, 1e-6, 1e-8)},
     bounds=lambda thickness, **_: endings(thickness >= 1e-3),
 )
 def bending(order: int, thickness: float) -> dict[str, Any]:
