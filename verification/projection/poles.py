@@ -29,21 +29,27 @@ def face(kind: str, side: str = "v1", raised: float = 0.0) -> Surface:
 
 def turned(surface: Surface, way: str) -> Surface:
     """The same face with its pole at the "high" or "low" end of the "first" or "second" of its directions."""
-    patch, axes = surface.patch, [0, 1, 2]
+    patch, side = surface.patch, int(surface.face[1])
     end, _, direction = way.partition(" ")
-    assert surface.closed == "w"
+    assert (surface.face[0], surface.closed) == ("v", "w"), "the second direction of the face ends at the pole"
     values = np.concatenate([patch.control_points, patch.weights[:, None]], axis=1).reshape(*patch.shape[::-1], 4).transpose(2, 1, 0, 3)
-    if end == "low":  # two directions turned round: the patch is no mirror image
-        values = values[::-1, :, ::-1]
-        flipped = [replace(d, knots=(d.knots[0] + d.knots[-1]) - d.knots[::-1]) for d in patch.directions]
-        patch = replace(patch, directions=(flipped[0], patch.directions[1], flipped[2]))
-    if direction == "second":
-        axes = [2, 0, 1]
-        values = values.transpose(*axes, 3)
-    directions = tuple(patch.directions[a] for a in axes)
+    directions = list(patch.directions)
+
+    def turn_round(axis: int) -> None:
+        nonlocal values
+        values = np.flip(values, axis)
+        knots = directions[axis].knots
+        directions[axis] = replace(directions[axis], knots=knots[0] + knots[-1] - knots[::-1])
+
+    if end == "low":  # two at once: the patch is no mirror image
+        turn_round(0)
+        turn_round(2)
+    if direction == "first":
+        turn_round(1)
+        values, directions, side = values.transpose(2, 1, 0, 3), directions[::-1], 1 - side
     points = values.transpose(2, 1, 0, 3).reshape(-1, 4)
-    side = "uvw"[axes.index("uvw".index(surface.face[0]))] + surface.face[1]
-    return Surface(Patch(directions, points[:, :3], points[:, 3]), side, closed="uvw"[axes.index(2)])  # type: ignore[arg-type]
+    closed = "u" if direction == "first" else "w"
+    return Surface(Patch(tuple(directions), points[:, :3], points[:, 3]), f"v{side}", closed)  # type: ignore[arg-type]
 
 
 def starts(surface: Surface, count: int, seed: int) -> FloatArray:
