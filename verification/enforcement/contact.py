@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from enforcement.tables import POINTWISE
-from extremes.discretisation import compliance, equilibrium_of, masses
-from patch_tests.contact import SLAVE_ELEMENTS, default_rule, errors, pressure_limit, problem
+from enforcement.tables import POINTWISE, at_points, duals
+from extremes.discretisation import compliance, equilibrium_of
+from patch_tests.contact import SLAVE_ELEMENTS, default_rule, errors, functions, pressure_limit, problem
 from patch_tests.subcells import SUBCELLS
 from scipy import linalg
 from supports import symmetry
@@ -23,7 +23,7 @@ from isomortar.scene import Scene
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.timing import Ledger
 
-METHODS: tuple[Enforcement, ...] = ("mortar", *POINTWISE)
+METHODS: tuple[Enforcement, ...] = ("mortar", "dual", *POINTWISE)
 #: Of the face of which constraints are counted, by direction.
 ELEMENTS = 4
 
@@ -44,7 +44,7 @@ slave = "slave.w0"
 master = "master.w1"
 projection = "{projection}"
 friction = 0.3
-quadrature = 2
+quadrature = {points}
 enforcement = "{method}"
 
 [supports.top]
@@ -89,7 +89,9 @@ def tangent_bounds(method: Enforcement, master: str) -> dict[str, Bound]:  # noq
 def tangents(method: Enforcement, master: str) -> dict[str, float]:
     """Largest relative error of each part, and of the balances."""
     projection = "averaged" if master == "averaged" else "closest"
-    scene = _SCENE.format(method=method, projection=projection, x=0.33 if master == "over the rim" else 0.03, order=2)
+    scene = _SCENE.format(
+        method=method, projection=projection, x=0.33 if master == "over the rim" else 0.03, order=2, points=3 if method == "dual" else 2
+    )
     given = Scene.from_toml(scene).problem()
     equilibrium = Equilibrium(given, Ledger())
     pair, state = equilibrium.pairs[0], equilibrium.initial_state()
@@ -130,9 +132,9 @@ def patch_bounds(method: str, order: int, meshes: str) -> dict[str, Bound | Show
     """Nothing, where all integrals are exact; what quadrature misses, of averages; more, of points."""
     exact = method != "knots" or order == 1 if meshes == "matching" else method == IN_CELLS
     limit = _UNIFORM if exact else _NOT_UNIFORM
-    if (method, meshes) == ("mortar", "other"):
+    if method in ("mortar", "dual") and meshes == "other":
         points, elements = default_rule(order)
-        missing = pressure_limit(order, order, elements, points)
+        missing = pressure_limit(order, order, elements, points, duals if method == "dual" else functions)
         limit = Bound(at_most=missing, reason="quadrature: error of the master's load, times the norm of the loads' inverse")
     return {"pressure": limit, "position": _UNIFORM if exact else Shown("theory: what pressures that are not uniform make of it")}
 
@@ -165,7 +167,7 @@ def enforcement_of(method: str) -> Enforcement:
 @case(
     claim="With friction, a half or a quarter of a symmetric body is that of the whole body, whatever is constrained.",
     tier=lambda method, part: "gate" if (method, part) == ("greville", "quarter") else "nightly",
-    grid={"method": ("knots", "greville", "demko"), "part": tuple(symmetry.PARTS)},
+    grid={"method": ("dual", "knots", "greville", "demko"), "part": tuple(symmetry.PARTS)},
     bounds={
         "force": Bound(at_most=1e-9, reason="theory: the same equations by symmetry; Newton's method stops at 1e-12"),
         "positions": Bound(at_most=1e-9, reason="theory: the same equations by symmetry; Newton's method stops at 1e-12"),
@@ -192,7 +194,7 @@ def count_bounds(method: Enforcement, order: int) -> dict[str, Bound | Shown]:
 
 
 @case(
-    claim="Mortar, Greville's and Demko's abscissae give as many constraints as there are control points, quadrature points too many, "
+    claim="Mortar, dual functions, Greville's and Demko's abscissae give as many constraints as there are control points, quadrature points too many, "
     "knots above order 1 too few.",
     tier=lambda method, order: "gate" if order == 2 else "nightly",  # noqa: ARG005
     grid={"method": METHODS, "order": (1, 2, 3, 4)},
@@ -206,9 +208,9 @@ def constraints(method: Enforcement, order: int) -> dict[str, float]:
     equilibrium = equilibrium_of(order, (ELEMENTS, ELEMENTS, 2), 1.0)
     contact = replace(equilibrium.problem.contacts[0], enforcement=method, quadrature=(order + 1, order + 1))
     side = slave_side(contact, equilibrium.problem, equilibrium.numbering)
-    mass = masses(order, ELEMENTS, ELEMENTS)
-    matrix = mass if method == "mortar" else side.carriers.toarray() * side.arrays.area[:, None]
-    norm = (mass if method == "mortar" else np.diag(side.arrays.area)) / ELEMENTS
+    shape, test = (at_points(functions) for functions in (side.arrays.shape, side.arrays.test))
+    weighted = side.arrays.area[:, None] * test
+    matrix, norm = weighted.T @ shape, weighted.T @ test / ELEMENTS
     values = linalg.eigh(matrix @ compliance(order, ELEMENTS, 1.0) @ matrix.T, norm, eigvals_only=True)
     there = values > 1e-10 * values.max()
     rank = int(np.count_nonzero(there))

@@ -23,6 +23,8 @@ LOOKS = {
     "mortar, averaged": (style.BLUE, "--", "s"),
     "mortar, swapped": (style.BLUE, ":", "D"),
     IN_CELLS: (style.BLUE, ":", "D"),
+    "dual": ("#B04A7A", "-", "h"),
+    "dual, averaged": ("#B04A7A", "--", "p"),
     "greville": (style.GREEN, "-", "^"),
     "greville, averaged": (style.GREEN, "--", "v"),
     "demko": ("#8C6BB1", "-", "P"),

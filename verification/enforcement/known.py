@@ -24,7 +24,7 @@ from isomortar.model.numbering import Numbering
 from isomortar.solve.record import StepResult
 from isomortar.solve.simulation import Simulation
 
-WAYS: tuple[str, ...] = (MORTAR, "mortar, averaged", IN_CELLS, "greville", "demko", "knots", "kts")
+WAYS: tuple[str, ...] = (MORTAR, "mortar, averaged", IN_CELLS, "dual", "greville", "demko", "knots", "kts")
 SCENES = {
     "hertz": "Hertz: two cylinders, pressed; meshes that do not match",
     "mindlin": "Cattaneo and Mindlin: two cylinders, pressed and sheared; meshes that match",
@@ -82,7 +82,7 @@ class Line:
 def line(given: Problem, values: FloatArray) -> Line:
     """Across the contact, at one end of the cylinder: nothing changes along it. Fields are taken at Greville's abscissae."""
     contact, numbering = given.contacts[0], Numbering(given)
-    averages = contact.enforcement == "mortar"
+    averages = contact.of_averages
     side = slave_side(replace(contact, enforcement="greville", subcells=0) if averages else contact, given, numbering)
     found = side.carriers @ values if averages else values
     places = side.carriers @ numbering.reference[side.arrays.point]

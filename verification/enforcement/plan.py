@@ -15,6 +15,8 @@ WAYS: dict[str, tuple[str, ...]] = {
     "mortar": ("enforcement=mortar", "projection=closest"),
     "mortar, averaged": ("enforcement=mortar", "projection=averaged"),
     "mortar, swapped": ("enforcement=mortar", "projection=closest"),
+    "dual": ("enforcement=dual", "projection=closest"),
+    "dual, averaged": ("enforcement=dual", "projection=averaged"),
     "greville": ("enforcement=greville", "projection=closest"),
     "greville, averaged": ("enforcement=greville", "projection=averaged"),
     "demko": ("enforcement=demko", "projection=closest"),

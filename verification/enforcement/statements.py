@@ -9,7 +9,7 @@ from enforcement.plan import WAYS
 from isomortar.harness.statement import Statement
 
 #: As many constraints as control points, or the mortar method with slave and master exchanged.
-_ENOUGH = ("mortar, averaged", "mortar, swapped", "greville", "greville, averaged", "demko")
+_ENOUGH = ("mortar, averaged", "mortar, swapped", "dual", "dual, averaged", "greville", "greville, averaged", "demko")
 
 STATEMENTS: tuple[Statement[Evidence], ...] = (
     Statement(

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
+from patch_tests.contact import functions
+from patch_tests.subcells import FEW, TURNS, turned
 from scipy.interpolate import BSpline, make_interp_spline
 
+from isomortar._bindings import FunctionArrays
 from isomortar.geometry.patch import Direction, Family, FloatArray
 from isomortar.geometry.primitives import box, ring
 from isomortar.geometry.refinement import mesh
@@ -32,6 +37,32 @@ def plate(family: Family, order: int) -> Body:
     """A box; its lower face has functions of a family and order in both directions."""
     patch = mesh(box((0.0, 0.0, 0.0), (*SIZE, 1.0)), (family, family, "N"), (order, order, 1), (*ELEMENTS, 1))
     return Body("plate", patch, Material(), (2, 2, 2))
+
+
+def at_points(functions: FunctionArrays) -> FloatArray:
+    """Values of all functions at the quadrature points, shape (points, functions)."""
+    found = np.zeros((len(functions.values), functions.count))
+    element = np.repeat(functions.nodes, len(functions.values) // len(functions.nodes), axis=0)
+    np.put_along_axis(found, element.astype(np.int64), functions.values, axis=1)
+    return found
+
+
+def duals(order: int, elements: int, places: FloatArray) -> FloatArray:
+    """Functions along a unit interval whose integrals with SciPy's are, in each element, these's own or zero, shape (places, functions).
+
+    By Legendre's polynomials, which are orthogonal: with coefficients C of the functions the others have its inverse, transposed.
+    """
+    found = np.zeros((len(places), elements + order))
+    element = np.minimum((places * elements).astype(int), elements - 1)
+    points, weights = np.polynomial.legendre.leggauss(order + 1)
+    scale = np.sqrt(2.0 * np.arange(order + 1) + 1.0)
+    for e in range(elements):
+        own = element == e
+        values = functions(order, elements, (e + 0.5 * (1.0 + points)) / elements)[:, e : e + order + 1]
+        coefficients = scale[:, None] * (np.polynomial.legendre.legvander(points, order).T @ (0.5 * weights[:, None] * values))
+        polynomials = scale * np.polynomial.legendre.legvander(2.0 * (places[own] * elements - e) - 1.0, order)
+        found[np.ix_(own, np.arange(e, e + order + 1))] = polynomials @ np.linalg.inv(coefficients).T * (0.5 * weights @ values)
+    return found
 
 
 def integrals(family: Family, order: int, elements: int) -> FloatArray:
@@ -133,6 +164,70 @@ def drawn(method: Enforcement, kind: str) -> dict[str, float]:
         "constant": float(np.abs(side.on_control_points(np.ones(len(area))) - 1.0).max()),
         "resultant": abs(float(area @ shown / (area @ values)) - 1.0),
     }
+
+
+_CONDITION = Bound(at_most=1e-10, reason="round-off: times the condition of an element's functions, up to 1e6 at order 5")
+
+
+def dual_bounds(kind: str) -> dict[str, Bound]:
+    """Of splines on even knots all values are known; in cells functions go on from one to the next."""
+    more = {"N": ("known",), "c": ("spanned",)}.get(kind[0], ())
+    return dict.fromkeys(("own", "unity", *more), _CONDITION)
+
+
+@case(
+    claim="Dual functions see of every function of the face its own area alone, and add up to one.",
+    tier="gate",
+    grid={"kind": ("N1", "N2", "N3", "N5", "L1", "L2", "L4", "ring", "cells")},
+    bounds=dual_bounds,
+)
+def dual(kind: str) -> dict[str, float]:
+    """Errors of integrals over the largest one, and, over the largest value, of the sum, and of values by SciPy's splines.
+
+    `spanned`: how far they are, over several cells of an element, from any function of the element.
+    """
+    side = dual_side(kind)
+    shape, test, area = at_points(side.arrays.shape), at_points(side.arrays.test), side.arrays.area
+    own = area @ shape
+    largest = np.abs(test).max()
+    found = {
+        "own": float(np.abs(test.T @ (area[:, None] * shape) - np.diag(own)).max() / own.max()),
+        "unity": float(np.abs(test.sum(axis=1) - 1.0).max() / largest),
+    }
+    if kind[0] == "N":
+        found["known"] = float(np.abs(test - dual_values(int(kind[1:]))).max() / largest)
+    if kind == "cells":
+        found["spanned"] = beside_span(side.arrays.shape, side.arrays.test)
+    return found
+
+
+def dual_side(kind: str) -> SlaveSide:
+    """Of a plate, of a ring's inner face, which has weights and a seam, or of elements cut into cells."""
+    if kind == "ring":
+        patch = mesh(ring((0.0, 0.0, 0.0), 0.5, 1.0, 0.4), ("N", "N", "N"), (2, 1, 2), (8, 1, 2))
+        return side_of(Body("ring", patch, Material(), (2, 2, 2), closed="u"), "v1", "dual", 8)
+    if kind == "cells":
+        given = turned(FEW, TURNS[0])
+        return slave_side(replace(given.contacts[0], enforcement="dual"), given, Numbering(given))
+    order = int(kind[1:])
+    return side_of(plate("L" if kind[0] == "L" else "N", order), "w0", "dual", order + 1)
+
+
+def dual_values(order: int) -> FloatArray:
+    """Of a plate's dual functions at its quadrature points, shape (points, functions)."""
+    points = 0.5 * (1.0 + np.polynomial.legendre.leggauss(order + 1)[0])
+    first, second = (duals(order, n, ((np.arange(n)[:, None] + points) / n).ravel()).reshape(n, order + 1, -1) for n in ELEMENTS)
+    return np.einsum("fri,eqj->ferqij", second, first).reshape(-1, first.shape[2] * second.shape[2])
+
+
+def beside_span(shape: FunctionArrays, test: FunctionArrays) -> float:
+    """Distance of the second functions from what the first span on an element, over their largest value."""
+    far, size = [], len(shape.values) // len(shape.nodes)
+    for nodes in np.unique(shape.nodes, axis=0):
+        own = np.repeat(np.all(shape.nodes == nodes, axis=1), size)
+        values = shape.values[own]
+        far.append(test.values[own] - values @ np.linalg.lstsq(values, test.values[own], rcond=None)[0])
+    return float(np.abs(np.concatenate(far)).max() / np.abs(test.values).max())
 
 
 _LEVEL = Bound(

@@ -7,6 +7,7 @@ elements and the integrals are not segmented: what is left is the error of that 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -146,6 +147,10 @@ def default_rule(slave_order: int) -> tuple[int, int]:
     return points, SLAVE_ELEMENTS + (2 if points % 2 else 1)
 
 
+#: Functions along a direction by order, elements and places, shape (places, functions).
+Functions = Callable[[int, int, FloatArray], FloatArray]
+
+
 def knots(order: int, elements: int) -> FloatArray:
     """Of a direction of a face, over its length."""
     return np.concatenate([np.zeros(order), np.linspace(0.0, 1.0, elements + 1), np.ones(order)])
@@ -156,11 +161,11 @@ def functions(order: int, elements: int, places: FloatArray) -> FloatArray:
     return np.asarray(BSpline.design_matrix(places, knots(order, elements), order).toarray())
 
 
-def pressure_limit(slave_order: int, master_order: int, elements: int, points: int) -> float:
+def pressure_limit(slave_order: int, master_order: int, elements: int, points: int, tests: Functions = functions) -> float:
     """Largest error of the pressure, from what the load of the master's functions misses in both directions.
 
     The slave's Gauss points do not see the master's knots, so that a uniform pressure does not give every function the exact load. The
-    pressure, in the slave's functions, changes to put that right: by the errors' size times the norm of the loads' inverse.
+    pressure, in the slave's functions or in `tests`, changes to put that right: by the errors' size times the norm of the loads' inverse.
     """
     places, weights = np.polynomial.legendre.leggauss(points)
     where = ((np.arange(SLAVE_ELEMENTS)[:, None] + (places + 1) / 2) / SLAVE_ELEMENTS).ravel()
@@ -168,8 +173,8 @@ def pressure_limit(slave_order: int, master_order: int, elements: int, points: i
     ends = knots(master_order, elements)
     exact = (ends[master_order + 1 :] - ends[: -master_order - 1]) / (master_order + 1)
     missing = float(np.abs(master.sum(axis=0) / exact - 1.0).max())
-    loads = master.T @ functions(slave_order, SLAVE_ELEMENTS, where) / exact[:, None]
-    pressures = functions(slave_order, SLAVE_ELEMENTS, np.linspace(0.0, 1.0, 500)) @ np.linalg.pinv(loads)
+    loads = master.T @ tests(slave_order, SLAVE_ELEMENTS, where) / exact[:, None]
+    pressures = tests(slave_order, SLAVE_ELEMENTS, np.linspace(0.0, 1.0, 500)) @ np.linalg.pinv(loads)
     return 2.0 * missing * float(np.abs(pressures).sum(axis=1).max())
 
 

@@ -29,8 +29,8 @@ def check_contacts(problem: Problem) -> None:
     ------
     InputError
         Faces without an area, that look away from each other, or have passed through each other; the same contact twice; a friction
-        whose numbers contradict each other; averaged normals where there are none; constraints at points, and cells along
-        knot lines, that cannot be.
+        whose numbers contradict each other; averaged normals where there are none; constraints at points, dual functions, and
+        cells along knot lines, that cannot be.
     """
     for contact in problem.contacts:
         _check_sides(problem, contact)
@@ -97,7 +97,8 @@ def _check_projection(problem: Problem, contact: Contact) -> None:
 
 
 def _check_enforcement(problem: Problem, contact: Contact) -> None:
-    """Refuse constraints at points that there are not, that fall together, or are too many for multipliers of their own."""
+    """Refuse constraints at points that there are not, that fall together, or are too many for multipliers of their own; and dual
+    functions that there are not."""
     path, sheet, words = f"contacts.{contact.name}.enforcement", Sheet.of(problem, contact.slave), contact.slave.words
     directions = sheet.directions
     if contact.enforcement == "demko" and any(direction.family == "L" for direction in directions):
@@ -110,6 +111,8 @@ def _check_enforcement(problem: Problem, contact: Contact) -> None:
             'together there; take "mortar" or "kts"',
             path,
         )
+    if contact.enforcement == "dual":
+        _check_dual(problem, contact, path)
     if contact.enforcement == "kts" and problem.settings.method == "monolithic":
         points = np.prod([direction.elements * count for direction, count in zip(directions, contact.quadrature, strict=True)])
         control_points = np.prod([direction.count for direction in directions])
@@ -121,14 +124,32 @@ def _check_enforcement(problem: Problem, contact: Contact) -> None:
             )
 
 
+def _check_dual(problem: Problem, contact: Contact, path: str) -> None:
+    """Refuse dual functions that their element's points do not tell apart, and a slip sum by products of them."""
+    directions = Sheet.of(problem, contact.slave).directions
+    if any(count <= direction.order for direction, count in zip(directions, contact.quadrature, strict=True)):
+        least = [direction.order + 1 for direction in directions]
+        raise InputError(
+            f'is {list(contact.quadrature)}, too few points to tell the functions of an element apart, as enforcement = "dual" has to; '
+            f"allowed: at least {least}",
+            f"contacts.{contact.name}.quadrature",
+        )
+    if problem.settings.slip_sum == "paper" and contact.friction_law.acts:
+        raise InputError(
+            'is "dual", and solver.slip_sum is "paper", whose sum is one of products of functions that are nowhere negative; '
+            'take slip_sum = "local"',
+            path,
+        )
+
+
 def _check_subcells(contact: Contact) -> None:
     """Refuse cells along knot lines that there are not, or of methods that do not integrate."""
     path = f"contacts.{contact.name}.subcells"
     if contact.subcells and not isinstance(contact.master, Face):
         raise InputError(f"is {contact.subcells}, but the master is a rigid plane, which has no knot lines; allowed: 0", path)
-    if contact.subcells and contact.enforcement != "mortar":
+    if contact.subcells and not contact.of_averages:
         raise InputError(
-            f'is {contact.subcells}, but enforcement is "{contact.enforcement}", whose constraints are at points; allowed: 0, or "mortar"',
+            f'is {contact.subcells}, but enforcement is "{contact.enforcement}", whose constraints are at points; allowed: 0, "mortar" or "dual"',
             path,
         )
 

@@ -14,9 +14,9 @@ from isomortar.model.values import TABLE, Count, Point, Positive, Real
 
 #: How a slave point finds its point on a face of its master: the closest one, or along the averaged normal.
 Projection = Literal["closest", "averaged"]
-#: Which functionals of gap and slip are constrained: averages with the slave's functions, or values at quadrature points, at unique
-#: knots, at Greville's or at Demko's abscissae.
-Enforcement = Literal["mortar", "kts", "knots", "greville", "demko"]
+#: Which functionals of gap and slip are constrained: averages with the slave's functions or with functions dual to these, or values at
+#: quadrature points, at unique knots, at Greville's or at Demko's abscissae.
+Enforcement = Literal["mortar", "dual", "kts", "knots", "greville", "demko"]
 
 
 @dataclass(frozen=True)
@@ -142,6 +142,11 @@ class Contact:
     def averaged(self) -> bool:
         """Whether slave points find theirs along the averaged normal of a face."""
         return self.projection == "averaged" and isinstance(self.master, Face)
+
+    @property
+    def of_averages(self) -> bool:
+        """Whether its constraints are averages of gap and slip, one a control point, and not values at points."""
+        return self.enforcement in ("mortar", "dual")
 
     @property
     def friction_law(self) -> FrictionArrays:

@@ -108,5 +108,5 @@ def _master_arrays(contact: Contact, problem: Problem, numbering: Numbering) -> 
         plane = contact.master
         return PlaneArrays(*(np.array(vector, dtype=np.float64) for vector in (plane.point, plane.normal, plane.tangent)))
     kind = AveragedFaceArrays if contact.averaged else FaceArrays
-    brim = 0.0 if contact.enforcement == "mortar" else constants.BRIM
+    brim = 0.0 if contact.of_averages else constants.BRIM
     return kind(*Sheet.of(problem, contact.master).arrays(numbering), brim)

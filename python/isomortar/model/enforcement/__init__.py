@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from isomortar.model.enforcement import demko, greville, knots, kts, mortar
+from isomortar.model.enforcement import demko, dual, greville, knots, kts, mortar
 from isomortar.model.enforcement.face import SlaveFace
 from isomortar.model.enforcement.side import SlaveSide
 from isomortar.model.entities import Contact, Enforcement, Problem
@@ -14,6 +14,7 @@ __all__ = ["METHODS", "SlaveFace", "SlaveSide", "slave_side"]
 
 METHODS: dict[Enforcement, Callable[[SlaveFace], SlaveSide]] = {
     "mortar": mortar.side,
+    "dual": dual.side,
     "kts": kts.side,
     "knots": knots.side,
     "greville": greville.side,
