@@ -95,7 +95,7 @@ def test_every_way_of_every_scene_can_be_built() -> None:
 
 
 def test_a_plane_is_no_slave_nodes_have_no_demko_abscissae_and_slaves_are_swapped() -> None:
-    assert PRESS.ways == (MORTAR, "greville", "demko", "knots", "kts")
+    assert PRESS.ways == (MORTAR, "dual", "greville", "demko", "knots", "kts")
     assert set(WAYS) - set(LINEAR_BLOCK.ways) == {"demko"}
     assert [setup.name for setup in SETUPS if setup.kinks] == [LINEAR_BLOCK.name]
     (contact,), (swapped,) = (TWIST.load(way).problem().contacts for way in (MORTAR, "mortar, swapped"))

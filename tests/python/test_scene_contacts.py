@@ -340,6 +340,24 @@ def test_points_that_cannot_bear_are_refused(text, overrides, sentence):
     assert refused.value.field == "contacts.pair.enforcement"
 
 
+@pytest.mark.parametrize(
+    ("overrides", "field", "sentence"),
+    [
+        (["contacts.pair.quadrature=[3,2]"], "contacts.pair.quadrature", r"at least \[3, 3\]"),
+        (["solver.slip_sum=paper"], "contacts.pair.enforcement", "functions that are nowhere negative"),
+    ],
+)
+def test_dual_functions_that_there_are_not_are_refused(overrides, field, sentence):
+    with pytest.raises(InputError, match=sentence) as refused:
+        Scene.from_toml(PAIR, overrides=["contacts.pair.enforcement=dual", *overrides]).problem()
+    assert refused.value.field == field
+
+
+def test_dual_functions_take_cells_and_the_slip_sum_of_no_slip():
+    Scene.from_toml(PAIR, overrides=["contacts.pair.enforcement=dual", "contacts.pair.quadrature=3", "contacts.pair.subcells=1"]).problem()
+    Scene.from_toml(PAIR, overrides=["contacts.pair.enforcement=dual", "solver.slip_sum=paper", "contacts.pair.friction=0"]).problem()
+
+
 def test_quadrature_points_are_enforced_by_augmentations_or_where_they_are_few():
     Scene.from_toml(PAIR, overrides=["contacts.pair.enforcement=kts", "solver.method=uzawa"]).problem()
     Scene.from_toml(PAIR, overrides=["contacts.pair.enforcement=kts", "contacts.pair.quadrature=2"]).problem()

@@ -194,8 +194,8 @@ def count_bounds(method: Enforcement, order: int) -> dict[str, Bound | Shown]:
 
 
 @case(
-    claim="Mortar, dual functions, Greville's and Demko's abscissae give as many constraints as there are control points, quadrature points too many, "
-    "knots above order 1 too few.",
+    claim="Mortar, dual functions, Greville's and Demko's abscissae give as many constraints as there are control points, "
+    "quadrature points too many, knots above order 1 too few.",
     tier=lambda method, order: "gate" if order == 2 else "nightly",  # noqa: ARG005
     grid={"method": METHODS, "order": (1, 2, 3, 4)},
     bounds=count_bounds,

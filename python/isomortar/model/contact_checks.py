@@ -97,8 +97,7 @@ def _check_projection(problem: Problem, contact: Contact) -> None:
 
 
 def _check_enforcement(problem: Problem, contact: Contact) -> None:
-    """Refuse constraints at points that there are not, that fall together, or are too many for multipliers of their own; and dual
-    functions that there are not."""
+    """Refuse points that there are not, that fall together, or are too many for multipliers of their own; dual functions likewise."""
     path, sheet, words = f"contacts.{contact.name}.enforcement", Sheet.of(problem, contact.slave), contact.slave.words
     directions = sheet.directions
     if contact.enforcement == "demko" and any(direction.family == "L" for direction in directions):
@@ -149,7 +148,8 @@ def _check_subcells(contact: Contact) -> None:
         raise InputError(f"is {contact.subcells}, but the master is a rigid plane, which has no knot lines; allowed: 0", path)
     if contact.subcells and not contact.of_averages:
         raise InputError(
-            f'is {contact.subcells}, but enforcement is "{contact.enforcement}", whose constraints are at points; allowed: 0, "mortar" or "dual"',
+            f'is {contact.subcells}, but enforcement is "{contact.enforcement}", whose constraints are at points; '
+            'allowed: 0, "mortar" or "dual"',
             path,
         )
 

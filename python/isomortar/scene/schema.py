@@ -180,7 +180,7 @@ class ContactTable(Table):
     projection: Projection | None = None
     """How slave points find theirs on a master face: the "closest" one, or along "averaged" normals, which have no kinks on C0 lines."""
     enforcement: Enforcement = "mortar"
-    """What is constrained: averages of gap and slip ("mortar", "dual"), or values at Gauss points ("kts"), "knots", "greville" or "demko"."""
+    """What is constrained: averages of gap and slip ("mortar", "dual"), or values at Gauss points ("kts"), "knots", "greville", "demko"."""
     quadrature: PerSurfaceDirection[GaussPoints] | None = None
     """Gauss points per slave contact element; default by family and order (Table 1 of the paper; above order 5: order + 2)."""
     subcells: Annotated[int, Field(ge=0, le=5)] = 0

@@ -14,7 +14,7 @@ from isomortar.model.enforcement.side import SlaveSide
 
 
 def side(face: SlaveFace) -> SlaveSide:
-    """A constraint a control point: what the mortar method has, but for the functions that constraints are weighted with."""
+    """A constraint a control point: what the mortar method has, but for the functions that weight constraints (theory 10.12)."""
     found = mortar.side(face)
     shape, area = found.arrays.shape, found.arrays.area
     test = FunctionArrays(shape.nodes, _biorthogonal(shape, area), shape.count)
@@ -22,9 +22,10 @@ def side(face: SlaveFace) -> SlaveSide:
 
 
 def _biorthogonal(shape: FunctionArrays, area: FloatArray) -> FloatArray:
-    """Functions whose integrals with those of the face are, element by element, these functions' areas, or zero; shape (points, local).
+    """Functions whose integrals with those of the face are, in each element, these functions' areas, or zero (theory 10.12).
 
-    An element may have several cells: they have its control points in common. Pseudo-inverses, as mass matrices lose twice the digits.
+    Values at the quadrature points, shape (points, local). An element may have several cells: they have its control points in common.
+    Pseudo-inverses, as mass matrices lose twice the digits.
     """
     elements, of_cell = np.unique(shape.nodes, axis=0, return_inverse=True)
     element = np.repeat(of_cell.ravel(), len(area) // len(shape.nodes))
