@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from enforcement.contact import IN_CELLS, MESHES, METHODS, constraints, enforcement_of, patch_test
+from enforcement.mixed import work
+from enforcement.two_rules import mixed_rule
 
 from isomortar.harness.cases import Cell
 from isomortar.harness.runner import Result
@@ -18,9 +20,39 @@ ORDERS = (1, 2, 3)
 COUNTS = ("too many", "too few", "inf-sup", "condition")
 
 
+@dataclass(frozen=True)
+class Refused:
+    """What is no option, and the cells whose numbers say why: by form, those of one order."""
+
+    form: str
+    why: str
+    cells: tuple[Cell, ...]
+    number: str
+
+
+#: Order of what is refused; two numbers of each: of what there is instead, then its own.
+REFUSED_ORDER = 2
+REFUSED = (
+    Refused(
+        "control gaps by the consistent mass matrix, closed by control pressures",
+        "pressures do work on open gaps: its share of force times depth, of a paraboloid on a cube; take dual, whose multipliers do not",
+        tuple(Cell(work, {"form": form, "order": REFUSED_ORDER}) for form in ("dual", "mixed")),
+        "work",
+    ),
+    Refused(
+        "mixed rule: the master's forces by the master's quadrature points",
+        "forces on both bodies are not opposite: their sum over one of them; take subcells, which keep the balance and pass the patch test",
+        tuple(Cell(mixed_rule, {"points": points, "order": REFUSED_ORDER}) for points in ("slave's", "master's")),
+        "forces",
+    ),
+)
+
+
 def cells() -> Iterator[Cell]:
-    """Those of the patch test, and of the constraints up to the same order."""
+    """Those of the patch test, of the constraints up to the same order, and of what is refused."""
     yield from patch_test.cells
+    for entry in REFUSED:
+        yield from entry.cells
     yield from (cell for cell in constraints.cells if cell.settings["order"] in ORDERS)
 
 
@@ -35,8 +67,8 @@ class Exact(Computed):
 
     @property
     def method(self) -> str:
-        """What constrains."""
-        return str(self.result.cell.settings["method"])
+        """What constrains, or is refused."""
+        return str(next(iter(self.result.cell.settings.values())))
 
     @property
     def ending(self) -> str:
@@ -54,6 +86,16 @@ def table(results: Sequence[Result]) -> list[dict[str, Any]]:
     """By method and order: errors of the pressure on both meshes, and what is counted; NaN: not measured."""
     by_name = {result.cell.name: Exact(result) for result in results}
     return [_row(by_name, method, order) for method in ROWS for order in ORDERS]
+
+
+def refused(results: Sequence[Result]) -> list[dict[str, Any]]:
+    """What is no option, why, and the numbers of what there is instead and its own; NaN: not measured."""
+    by_name = {result.cell.name: Exact(result) for result in results}
+    rows = []
+    for entry in REFUSED:
+        instead, own = (by_name[cell.name].number(entry.number) for cell in entry.cells)
+        rows.append({"form": entry.form, "why": entry.why, "instead": instead, "own": own})
+    return rows
 
 
 def _row(by_name: dict[str, Exact], method: str, order: int) -> dict[str, Any]:

@@ -41,9 +41,10 @@ def write(
         "scenes": [section["rows"] for section in sections],
         "known": [scene["rows"] for scene in scenes],
         "exact": table,
+        "refused": exact.refused(cells),
     }
     everything = [*map(exact.Exact, cells), *known, *runs]
-    more = {"exact": table, "exact_figure": drawn(table), "known": scenes, "inside": INSIDE, "advice": advised}
+    more = {"exact": table, "exact_figure": drawn(table), "known": scenes, "inside": INSIDE, "advice": advised, "refused": data["refused"]}
     return written(Path(__file__), folder, everything, judgements, started, (*WAYS, IN_CELLS), sections, data, more)
 
 
