@@ -174,9 +174,11 @@ end subroutine find_climbs
 !> - `forgiving`: 1 to take the current traction for the radial part of the slip derivative (theory 4.14).
 !> - `held`, `bears`: 1 for control points that stick whatever their trial; that supports do not hold along the normal.
 !> - `free`: projection of covariant tractions that leaves nothing along what supports hold.
+!> - `elastic`: 1 for elastic slip: `traction_k` are stretches, L/P, and the tangential penalty is one over the largest elastic
+!>   slip, 1/L.
 subroutine augmented_multipliers(slave, friction, weight, square, gap, control_slip, metric, point_metric, nquad, ntest, summed, &
-    penalties, pressure_k, traction_k, slip_margin, forgiving, held, bears, free, pressure, traction, state, pressure_slope, &
-    traction_slope, field_slip, status)
+    penalties, pressure_k, traction_k, slip_margin, forgiving, held, bears, free, elastic, pressure, traction, state, &
+    pressure_slope, traction_slope, field_slip, status)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: find
   use isomortar_contact_augmentation, only: law_t, respond, response_t
@@ -185,7 +187,7 @@ subroutine augmented_multipliers(slave, friction, weight, square, gap, control_s
   use isomortar_contact_slave, only: slave_t
   implicit none
   integer(c_int64_t), intent(in) :: slave, friction
-  integer(c_int), intent(in) :: nquad, ntest, summed, forgiving, held(ntest), bears(ntest)
+  integer(c_int), intent(in) :: nquad, ntest, summed, forgiving, held(ntest), bears(ntest), elastic
   real(c_double), intent(in) :: weight(ntest), square(ntest), gap(ntest), control_slip(2, ntest), metric(3, ntest)
   real(c_double), intent(in) :: point_metric(3, nquad), penalties(2), pressure_k(ntest), traction_k(2, ntest), slip_margin
   real(c_double), intent(in) :: free(2, 2, ntest)
@@ -218,6 +220,7 @@ subroutine augmented_multipliers(slave, friction, weight, square, gap, control_s
   law%held = held /= 0
   law%bears = bears /= 0
   law%free = free
+  law%elastic = elastic /= 0
   call respond(side, control, law, summed /= 0, response, field_slip)
   pressure = response%multipliers%pressure
   traction = response%multipliers%traction

@@ -11,6 +11,7 @@ module isomortar_contact_augmentation
   use isomortar_base_kinds, only: wp
   use isomortar_base_predicate, only: is_compressed
   use isomortar_contact_control, only: control_t, integrate_slip_sum
+  use isomortar_contact_friction_elastic_slip, only: elastic_return
   use isomortar_contact_friction_law, only: friction_t
   use isomortar_contact_friction_return_map, only: metric_matrix, return_map, state_open, state_stick
   use isomortar_contact_rows, only: row_metric, row_slip, row_slip_sum, rows_of, rows_t
@@ -41,6 +42,9 @@ module isomortar_contact_augmentation
     logical, allocatable :: bears(:)
     !> Projection of covariant tractions that leaves nothing along what supports hold, shape (2, 2, I).
     real(wp), allocatable :: free(:, :, :)
+    !> Slip is elastic (theory 4.15): `traction` are the stretches at the start of the increment, and the tangential penalty is one
+    !> over the largest elastic slip.
+    logical :: elastic = .false.
   end type law_t
 
   !> What the law makes of the control quantities.
@@ -111,8 +115,8 @@ contains
     end do
   end subroutine active_points
 
-  !> Pressures, tractions and states (theory 4.4, 4.9). `slip_sum` is <R^I a_ab zeta^b> for the paper's form (theory 4.5), absent
-  !> for the local one.
+  !> Pressures, tractions and states (theory 4.4, 4.9, 4.15). `slip_sum` is <R^I a_ab zeta^b> for the paper's form (theory 4.5),
+  !> absent for the local one.
   pure subroutine augmented_multipliers(control, law, whole, response, slip_sum)
     type(control_t), intent(in) :: control
     type(law_t), intent(in) :: law
@@ -153,15 +157,17 @@ contains
 
     associate (pressure => response%multipliers%pressure(i), traction => response%multipliers%traction(:, i), &
         slope => response%traction_slope(:, :, i))
-      if (allocated(law%held)) then
-        if (law%held(i)) then
-          traction = trial
-          response%state(i) = state_stick
-          slope = 0.0_wp
-          slope(1, 2) = 1.0_wp
-          slope(2, 3) = 1.0_wp
-          return
-        end if
+      if (law%elastic) then
+        call elastic_return(trial, pressure, law%friction, metric, is_held(law, i), traction, response%state(i), slope)
+        return
+      end if
+      if (is_held(law, i)) then
+        traction = trial
+        response%state(i) = state_stick
+        slope = 0.0_wp
+        slope(1, 2) = 1.0_wp
+        slope(2, 3) = 1.0_wp
+        return
       end if
       if (law%forgiving) then
         call return_map(trial, pressure, law%friction, metric, law%slip_margin, traction, response%state(i), slope, &
@@ -171,6 +177,15 @@ contains
       end if
     end associate
   end subroutine apply_friction
+
+  !> Whether control point `i` sticks whatever its trial.
+  pure logical function is_held(law, i)
+    type(law_t), intent(in) :: law
+    integer, intent(in) :: i
+
+    is_held = .false.
+    if (allocated(law%held)) is_held = law%held(i)
+  end function is_held
 
   !> Rows of the trial traction, "local" slip sum (theory 4.10): e_T (m_ab <R^I dxi^b> / w + dm_ab slip^b); blocks are those of
   !> `pattern`.

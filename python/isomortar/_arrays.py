@@ -308,6 +308,8 @@ class Law:
     others (component, traction) so that nothing is left along it.
     Trials above (1 - `slip_margin`) of what friction bears slip; `held` constraints (1) stick whatever their trial; `forgiving` takes
     the current traction for the radial part of the slip derivative (theory 4.14).
+    With a largest `elastic_slip`, L, tractions are functions of the slips from `stretch`, shape (n, 2), L/P, on (theory 4.15), whatever
+    they were; None: Coulomb's law.
     """
 
     penalties: FloatArray
@@ -320,6 +322,23 @@ class Law:
     held: IntArray
     slip_margin: float = 0.0
     forgiving: bool = False
+    elastic_slip: float = 0.0
+    stretch: FloatArray | None = None
+
+    @property
+    def elastic(self) -> bool:
+        """Whether slip is elastic."""
+        return self.stretch is not None
+
+    @property
+    def base(self) -> FloatArray:
+        """What slips add to in the trial, shape (n, 2): tractions, or stretches."""
+        return self.traction if self.stretch is None else self.stretch
+
+    @property
+    def factors(self) -> FloatArray:
+        """Factors of gap and slip in the trials: the penalties; with elastic slip one over the largest one in place of the second."""
+        return self.penalties if self.stretch is None else np.array([self.penalties[0], 1.0 / self.elastic_slip])
 
 
 @dataclass(frozen=True)

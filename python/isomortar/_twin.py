@@ -111,7 +111,7 @@ def contact_difference(
     Parameters
     ----------
     along, pressure_along, traction_along : ndarray
-        The direction; shapes of positions, pressures and tractions.
+        The direction; shapes of positions, pressures and tractions (with elastic slip: of what these start from, `Law.base`).
     projections : Projections
         Those of the double-precision kernel: where the projections start, and the branch that is asked for.
     origin, had : ndarray
@@ -134,8 +134,8 @@ def contact_difference(
     *changes, switched, status, place = _extended.contact_difference(
         _DESCRIPTORS.handle("slave", slave, SlaveArrays), _DESCRIPTORS.handle("master", master, PlaneArrays, FaceArrays),
         _DESCRIPTORS.handle("law.friction", law.friction, FrictionArrays), positions.T, along.T, STEP, projections.xi.T,
-        projections.element.T, projections.fixed.T, projections.found, origin.T, had, int(law.summed), law.penalties, law.pressure,
-        law.traction.T, law.bears, law.free.T, pressure_along, traction_along.T, held.pressure, held.traction.T, held.state,
+        projections.element.T, projections.fixed.T, projections.found, origin.T, had, int(law.summed), law.factors, law.pressure,
+        law.base.T, law.bears, law.free.T, int(law.elastic), pressure_along, traction_along.T, held.pressure, held.traction.T, held.state,
     )  # fmt: skip
     _check(status, place)
     return ContactChange(*[np.ascontiguousarray(change.T) for change in changes]), switched

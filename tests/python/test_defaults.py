@@ -30,7 +30,7 @@ SOLVER = {
     "measures": ("forgiving", "margin", "reversal", "halving", "keeping"),
     "path_tolerance": None,
 }
-_FRICTION = {"cohesion": 0.0, "traction_max": None}
+_FRICTION = {"cohesion": 0.0, "traction_max": None, "elastic_slip": 0.0}
 #: By entity of a problem; those that are not named have none.
 ENTITIES = {
     "Material": {"young": 10.0, "poisson": 0.3, "law": "neo-hookean"},
@@ -149,7 +149,7 @@ SPOKEN = (
     SILENT.replace("elements = [3, 3, 1] }", 'elements = [3, 3, 1], family = "N", quadrature = [4, 4, 2] }')
     .replace(
         "plane = {}",
-        "friction = 0.3\nquadrature = [6, 6]\nplane = { point = [0, 0, 0], normal = [0, 0, 1], tangent = [1, 0, 0] }",
+        "friction = 0.3\nelastic_slip = 0\nquadrature = [6, 6]\nplane = { point = [0, 0, 0], normal = [0, 0, 1], tangent = [1, 0, 0] }",
     )
     .replace('face = "block.w1"', 'face = "block.w1"\ncomponents = ["x", "y", "z"]\ncentre = [0, 0, 0]\naxis = [0, 0, 1]')
     + """
@@ -186,7 +186,7 @@ def test_who_says_nothing_gets_what_is_documented_to_the_last_bit():
         'solver.method="uzawa"', 'solver.slip_sum="paper"', "solver.newton_tolerance=1e-4", "contacts.floor.friction=0.31",
         "contacts.floor.quadrature=[5,6]", "contacts.floor.plane.normal=[0.01,0,1]", "contacts.floor.plane.point=[0,0,0.001]",
         "bodies.block.mesh.quadrature=[3,4,2]", "materials.m.young=10.1", "materials.m.poisson=0.31", "supports.top.centre=[0.1,0,0]",
-        "supports.top.axis=[0,0.1,1]", 'solver.measures=["forgiving","margin","reversal","halving"]',
+        "supports.top.axis=[0,0.1,1]", "contacts.floor.elastic_slip=1e-3", 'solver.measures=["forgiving","margin","reversal","halving"]',
     ],
 )  # fmt: skip
 def test_each_of_them_counts(other):

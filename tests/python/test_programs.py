@@ -77,6 +77,7 @@ def solid(*overrides: str) -> Problem:
         (("bodies.slave.mesh.family=N", "bodies.slave.mesh.order=[2,2,2]"), "bodies.slave.mesh.family"),
         (("contacts.interface.cohesion=0.1",), "contacts.interface.cohesion"),
         (("contacts.interface.traction_max=0.1",), "contacts.interface.traction_max"),
+        (("contacts.interface.elastic_slip=0.1",), "contacts.interface.elastic_slip"),
     ],
 )
 def test_what_a_program_cannot_express_is_named(program: Program, overrides: tuple[str, ...], field: str) -> None:

@@ -212,6 +212,27 @@ WRONG = {
         "contacts.floor.cohesion",
         "greater than or equal to 0",
     ),
+    "elastic slip without friction": (
+        PRESS,
+        "[supports.top]",
+        "friction = 0\nelastic_slip = 0.1\n[supports.top]",
+        "contacts.floor.elastic_slip",
+        "no friction that could give way",
+    ),
+    "elastic slip of round-off": (
+        PRESS,
+        "[supports.top]",
+        "elastic_slip = 1e-10\n[supports.top]",
+        "contacts.floor.elastic_slip",
+        "next to round-off",
+    ),
+    "elastic slip below zero": (
+        PRESS,
+        "[supports.top]",
+        "elastic_slip = -0.1\n[supports.top]",
+        "contacts.floor.elastic_slip",
+        "greater than or equal to 0",
+    ),
     "largest traction of zero": (
         PRESS,
         "[supports.top]",
@@ -279,6 +300,7 @@ UNUSUAL = {
     "shrink fit": (RINGS, "", ""),
     "cohesion alone": (PRESS, "[supports.top]", "friction = 0\ncohesion = 0.2\n[supports.top]"),
     "cohesion and a largest traction": (PRESS, "[supports.top]", "cohesion = 0.2\ntraction_max = 0.5\n[supports.top]"),
+    "elastic slip": (PRESS, "[supports.top]", "elastic_slip = 0.01\n[supports.top]"),
     "tyre": (TYRE, "", ""),
     "far below a plane that it is turned to": (TYRE, "normal = [0, 0, 1]", "point = [0, 0, -0.4]"),
 }

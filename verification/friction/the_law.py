@@ -24,7 +24,10 @@ NONE = FrictionArrays(0, np.zeros(0))
 #: Imaginary step of the derivatives, which have no error of their own.
 STEP = 1e-30
 #: Quantities, multipliers and options of the law; the first two tractions and slips have a component that is zero.
-VARIANTS = ("plain", "first tractions zero", "second tractions zero", "margin", "held", "forgiving", "supported", "frictionless")
+VARIANTS = (
+    *("plain", "first tractions zero", "second tractions zero", "margin", "held", "forgiving", "supported", "frictionless"),
+    *("elastic", "elastic, held", "elastic, supported"),
+)
 
 #: Real, or complex where a derivative is formed.
 Numbers = NDArray[Any]
@@ -57,32 +60,44 @@ def returned(pressure: Any, trial: Numbers, metric: Numbers, friction: FrictionA
     return radius(pressure, friction) * trial / length(trial, metric)
 
 
+def elastic(pressure: Any, stretch: Numbers, metric: Numbers, friction: FrictionArrays) -> Numbers:
+    """The traction of a stretch."""
+    size = length(stretch, metric)
+    return radius(pressure, friction) * stretch * (2.0 - size if np.real(size) < 1.0 else 1.0 / size)
+
+
 def law_at(trial_pressure: float, trial: FloatArray, metric: FloatArray, law: Law, held: bool) -> Point:
     """What becomes of trials."""
     if trial_pressure <= 0.0:
         return Point(0.0, np.zeros(2), 0)
     if not law.friction.acts:
         return Point(trial_pressure, np.zeros(2), 1)
+    if law.elastic:
+        return Point(trial_pressure, elastic(trial_pressure, trial, metric, law.friction), 1 if length(trial, metric) < 1.0 else 2)
     if held or length(trial, metric) <= radius(trial_pressure, law.friction) * (1.0 - law.slip_margin):
         return Point(trial_pressure, trial, 1)
     return Point(trial_pressure, returned(trial_pressure, trial, metric, law.friction), 2)
 
 
-def slopes_at(point: Point, trial: FloatArray, metric: FloatArray, law: Law, radial: FloatArray) -> FloatArray:
+def slopes_at(point: Point, trial: FloatArray, metric: FloatArray, law: Law, radial: FloatArray, held: bool) -> FloatArray:
     """Derivatives of the traction by pressure, trial (2) and metric (3), shape (6, 2), of the law's branch.
 
-    A forgiving law has `radial`, no longer than the radius, in place of the traction where the trial's length changes.
+    A forgiving law has `radial`, no longer than the radius, in place of the traction where the trial's length changes; an elastic one
+    that is held the slope of no stretch.
     """
     if point.state == 0 or not law.friction.acts:
         return np.zeros((6, 2))
-    if point.state == 1:
+    if point.state == 1 and not law.elastic:
         return np.vstack([np.zeros((1, 2)), np.eye(2), np.zeros((3, 2))])
     at = np.concatenate([[point.pressure], trial, metric])
 
     def change(function: Callable[[Numbers], Any]) -> FloatArray:
         return np.array([np.imag(function(at + step)) / STEP for step in 1j * STEP * np.eye(6)])
 
-    exact = change(lambda v: returned(v[0], v[1:3], v[3:6], law.friction))
+    answer = elastic if law.elastic else returned
+    exact = change(lambda v: answer(v[0], v[1:3], v[3:6], law.friction))
+    if law.elastic and held:
+        return np.vstack([exact[:1], 2.0 * radius(point.pressure, law.friction) * np.eye(2), np.zeros((3, 2))])
     if not law.forgiving:
         return exact
     shortened = radial * min(1.0, radius(point.pressure, law.friction) / length(radial, metric))
@@ -123,13 +138,14 @@ def control_points(variant: str, summed: bool, law: str) -> dict[str, float]:
         traction[:, 0 if variant.startswith("first") else 1] = 0.0
         control.slip[:, 0 if variant.startswith("first") else 1] = 0.0
     bears, free = np.ones(n, dtype=np.int32), np.tile(np.eye(2), (n, 1, 1))
-    if variant == "supported":  # some bear nothing, others have no traction along a direction
+    if "supported" in variant:  # some bear nothing, others have no traction along a direction
         bears[::4] = 0
         free[::2] -= random.standard_normal((len(free[::2]), 2, 1)) @ random.standard_normal((len(free[::2]), 1, 2))
+    slip = 1.0 / PENALTIES[1] if "elastic" in variant else 0.0
     made = Law(
         PENALTIES, NONE if variant == "frictionless" else FRICTION[law], random.uniform(-0.5, 1.5, n), traction, summed, bears, free,
-        (np.arange(n) % 3 == 0).astype(np.int32) * (variant == "held"), slip_margin=0.2 * (variant == "margin"),
-        forgiving=variant == "forgiving",
+        (np.arange(n) % 3 == 0).astype(np.int32) * ("held" in variant), slip_margin=0.2 * (variant == "margin"),
+        forgiving=variant == "forgiving", elastic_slip=slip, stretch=traction.copy() if slip else None,
     )  # fmt: skip
     response = _bindings.augmented_multipliers(pair.slave, control, made)
 
@@ -144,7 +160,7 @@ def control_points(variant: str, summed: bool, law: str) -> dict[str, float]:
     sums = totals if summed else product(metric, control.slip)
     trial = np.einsum("iba,ib->ia", free, traction + PENALTIES[1] * sums / present[:, None])
     found = [law_at(pressure[i], trial[i], metric[i], made, bool(made.held[i])) for i in range(n)]
-    slopes = np.array([slopes_at(found[i], trial[i], metric[i], made, traction[i]) for i in range(n)])
+    slopes = np.array([slopes_at(found[i], trial[i], metric[i], made, traction[i], bool(made.held[i])) for i in range(n)])
     slopes[:, 1:3] = free @ slopes[:, 1:3]
     slope = np.where(np.array([point.state for point in found]) > 0, PENALTIES[0] / present, 0.0)
     limits = _bindings.friction_radius(made.friction, np.append(pressure, np.nan))

@@ -21,6 +21,16 @@ LAWS: Final = {"cohesion": (0.3, 0.1, 0.0), "constant": (0.0, 0.2, 0.0), "cap": 
 #: Those with a largest traction, and trials on either side of where it is reached (see `PLACED`).
 CAPPED: Final = tuple(law for law, (_, _, kink) in LAWS.items() if kink)
 SIDES: Final = {"below": 0.85 * (1.0 - OFF), "above": 0.85 * (1.0 + OFF)}
+#: Elastic slip; and states with it: trial pressures, lengths of stretches, and the state of `PLACED` that has the same parts.
+SLIP = 0.02
+STRETCHED: Final[dict[str, tuple[tuple[float, ...], tuple[float, ...], str]]] = {
+    "none": ((1.0, 0.7), (0.0,), "stick"),
+    "elastic": ((1.0, 0.7, -1.0), (0.1, 0.5, 0.9), "stick"),
+    "sliding": (*PLACED["slip"], "slip"),
+    "mixed": (*PLACED["mixed"], "mixed"),
+    "elastic | sliding: elastic": (*PLACED["stick | slip: stick"], "mixed"),
+    "elastic | sliding: sliding": (*PLACED["stick | slip: slip"], "mixed"),
+}
 _ROUND_OFF = "round-off: products of double precision against differences of a twin in extended precision"
 
 
@@ -30,20 +40,23 @@ def bounds(state: str) -> dict[str, Bound]:
     return {part: Bound(at_most=SYMMETRY_BOUND if part == "symmetry" else 1e-12, reason=_ROUND_OFF) for part in parts}
 
 
-def errors(law: str, pressure: tuple[float, ...], length: tuple[float, ...], short: bool) -> tuple[dict[str, float], FloatArray]:
+def errors(
+    law: str, pressure: tuple[float, ...], length: tuple[float, ...], short: bool, elastic_slip: float = 0.0
+) -> tuple[dict[str, float], FloatArray]:
     """Largest relative error of each part, and the pressures of what slips over that at which the largest traction is reached."""
     problem, equilibrium, visit = scene(0.3)
     coulomb = equilibrium.pairs[0]
     at = coulomb.kinematics(visit.positions, visit.pairs[0].start)
     largest = float(coulomb.respond(at, visit.pairs[0].law).pressure.max())
     friction, cohesion, kink = LAWS[law]
-    contact = replace(problem.contacts[0], friction=friction, cohesion=cohesion * largest)
+    contact = replace(problem.contacts[0], friction=friction, cohesion=cohesion * largest, elastic_slip=elastic_slip)
     if kink:
         contact = replace(contact, traction_max=contact.cohesion + friction * kink * largest)
     problem = replace(problem, contacts=(contact,))
     pair = Equilibrium(replace(problem, settings=replace(problem.settings, method="uzawa")), Ledger()).pairs[0]
     pressures, lengths = (np.resize(np.array(pattern), len(coulomb.pair.slave.point)) for pattern in (pressure, length))
-    start = replace(visit.pairs[0], law=replace(visit.pairs[0].law, friction=pair.friction))
+    stretch = visit.pairs[0].law.traction / largest if elastic_slip else None
+    start = replace(visit.pairs[0], law=replace(visit.pairs[0].law, friction=pair.friction, elastic_slip=elastic_slip, stretch=stretch))
     there = placed(pair, visit.positions, start, largest * pressures, lengths)
     response = pair.respond(pair.kinematics(visit.positions, there.start), there.law)
     report = measure(problem, STEP, [Visit(visit.positions, (there,))], directions=1, length=SHORT if short else 1.0)
@@ -58,6 +71,17 @@ def errors(law: str, pressure: tuple[float, ...], length: tuple[float, ...], sho
 def friction_laws(law: str, state: str) -> dict[str, float]:
     """Largest relative error of each part."""
     return errors(law, *PLACED[state], short="|" in state)[0]
+
+
+@case(
+    claim="With elastic slip, none, some, at the edge of sliding and beyond, the tangent is the derivative.",
+    grid={"law": ("constant", "both"), "state": tuple(STRETCHED)},
+    bounds=lambda law, state: bounds(STRETCHED[state][2]),  # noqa: ARG005
+)
+def elastic_slip(law: str, state: str) -> dict[str, float]:
+    """Largest relative error of each part."""
+    pressure, length, _ = STRETCHED[state]
+    return errors(law, pressure, length, short="|" in state or state == "none", elastic_slip=SLIP)[0]
 
 
 @case(

@@ -25,14 +25,19 @@ def placed(pair: PairMechanics, positions: FloatArray, visit: PairVisit, pressur
     pressure : ndarray, shape (slave control points,)
         Trial control pressures (theory 4.3), force per area.
     length : ndarray, shape (slave control points,)
-        Metric norms of the trial tractions as a share of what friction bears under these pressures; directions stay as they are.
+        Metric norms of the trial tractions as a share of what friction bears under these pressures, of stretches as they are; directions
+        stay.
     """
     kinematics = pair.kinematics(positions, visit.start)
     weight = np.where(kinematics.control.weight > 0, kinematics.control.weight, 1.0)
     law = replace(visit.law, pressure=pressure - visit.law.penalties[0] * kinematics.control.gap / weight)
-    if pair.friction.acts:
+    if pair.friction.acts and not law.elastic:
         trial = pair.respond(kinematics, replace(law, held=np.ones_like(law.held))).traction  # of what sticks that is the traction
         law = replace(law, traction=law.traction + _scaled(pair, kinematics, trial, pair.radius(pressure) * length) - trial)
+    if law.stretch is not None:  # by Coulomb's law its trial is the same
+        plain = replace(law, penalties=law.factors, traction=law.stretch, stretch=None, held=np.ones_like(law.held))
+        trial = pair.respond(kinematics, plain).traction
+        law = replace(law, stretch=law.stretch + _scaled(pair, kinematics, trial, length) - trial)
     return PairVisit(visit.start, law)
 
 

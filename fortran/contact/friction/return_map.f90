@@ -9,7 +9,7 @@ module isomortar_contact_friction_return_map
   implicit none
   private
 
-  public :: metric_norm, metric_matrix, return_map
+  public :: metric_norm, metric_matrix, raise_index, return_map
 
   integer, parameter, public :: state_open = 0
   integer, parameter, public :: state_stick = 1
@@ -25,7 +25,7 @@ contains
     m = reshape([entries(1), entries(2), entries(2), entries(3)], [2, 2])
   end function metric_matrix
 
-  !> Contravariant components of covariant ones.
+  !> Contravariant components of `covariant` (2) ones, in a metric.
   pure function raise_index(covariant, metric) result(contravariant)
     real(wp), intent(in) :: covariant(2), metric(3)
     real(wp) :: contravariant(2)

@@ -27,8 +27,8 @@ def augmented_multipliers(slave: SlaveArrays, control: Control, law: Law) -> Res
     check_law(law, slave)
     pressure, traction, state, pressure_slope, traction_slope, field_slip, status = _kernel.augmented_multipliers(
         handles.slave(slave), handles.friction("law.friction", law.friction), control.weight, control.square, control.gap, control.slip.T,
-        control.metric.T, control.point_metric.T, int(law.summed), law.penalties, law.pressure, law.traction.T, law.slip_margin,
-        int(law.forgiving), law.held, law.bears, law.free.T,
+        control.metric.T, control.point_metric.T, int(law.summed), law.factors, law.pressure, law.base.T, law.slip_margin,
+        int(law.forgiving), law.held, law.bears, law.free.T, int(law.elastic),
     )  # fmt: skip
     if status:
         raise_status(status, -1)
@@ -80,7 +80,7 @@ def multiplier_rows(
     check_pattern("wide", wide, points, columns)
     changes, trial, status, place = _kernel.multiplier_rows(
         handles.slave(slave), control.weight, control.square, control.slip.T, control.metric.T, control.point_metric.T,
-        law.penalties, response.state, response.pressure_slope, response.traction_slope.T,
+        law.factors, response.state, response.pressure_slope, response.traction_slope.T,
         handles.pattern("row_pattern", row_pattern), rows.T,
         handles.pattern("neighbours", neighbours), handles.pattern("wide", wide), len(wide.column),
     )  # fmt: skip

@@ -18,6 +18,8 @@ from isomortar.model.stance import Stance, stance
 LEAST = 1e-12
 #: Faces look the same way where all normals of the slave are within 60 degrees of the master's.
 SAME_WAY = 0.5
+#: Least elastic slip over the extent of the slave's body: the last bits of positions then make 1e-7 of what friction bears.
+LEAST_SLIP = 1e-9
 #: Bodies that overlap by this share of the thinner one have passed through each other.
 PASSED = 0.9
 
@@ -35,6 +37,7 @@ def check_contacts(problem: Problem) -> None:
     for contact in problem.contacts:
         _check_sides(problem, contact)
         _check_friction(contact)
+        _check_elastic_slip(problem, contact)
         _check_projection(problem, contact)
         _check_enforcement(problem, contact)
         _check_subcells(contact)
@@ -76,6 +79,19 @@ def _check_friction(contact: Contact) -> None:
             f"is {contact.traction_max:g}, and the cohesion, {contact.cohesion:g}, is not below it: friction would have no say; give a "
             "larger one, or, for tractions up to a constant, friction = 0 and that constant as the cohesion",
             field,
+        )
+
+
+def _check_elastic_slip(problem: Problem, contact: Contact) -> None:
+    """Refuse elastic slip of what does not rub, and one that is no more than round-off of positions."""
+    path, size = f"contacts.{contact.name}.elastic_slip", problem.body(contact.slave.body).size
+    if contact.elastic_slip and not contact.friction_law.acts:
+        raise InputError(f"is {contact.elastic_slip:g}, but the contact has no friction that could give way; remove it", path)
+    if 0.0 < contact.elastic_slip < LEAST_SLIP * size:
+        raise InputError(
+            f"is {contact.elastic_slip:g}, next to round-off of the positions of {contact.slave.body!r}, which is {size:.3g} large; "
+            f"allowed: {LEAST_SLIP * size:.3g} and more, or 0 for Coulomb's law",
+            path,
         )
 
 

@@ -122,6 +122,7 @@ class Contact:
     `projection`: how a slave point finds its point on a master that is a face: the closest one, or along the averaged normal;
     `by_default`: nobody asked for it, the master's C0 lines do.
     `enforcement`: which functionals of gap and slip are constrained (theory 10).
+    `elastic_slip`: the most that contact slips elastically before it slides (theory 4.15), a length; 0: Coulomb's law.
     `subcells`: how many times over slave elements are cut in each direction where the master's knot lines cross them (theory 10.9).
     """
 
@@ -137,6 +138,7 @@ class Contact:
     by_default: bool = False
     enforcement: Enforcement = "mortar"
     subcells: int = 0
+    elastic_slip: float = 0.0
 
     @property
     def averaged(self) -> bool:

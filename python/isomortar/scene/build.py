@@ -165,6 +165,7 @@ def _contact(name: str, table: ContactTable, problem: Problem) -> Contact:
         by_default=by_default,
         enforcement=table.enforcement,
         subcells=table.subcells,
+        elastic_slip=table.elastic_slip,
     )
 
 

@@ -177,6 +177,8 @@ class ContactTable(Table):
     """Traction, force per area, that friction bears where there is contact besides its coefficient times the pressure; none where open."""
     traction_max: Positive | None = None
     """Largest traction, force per area: friction bears min(cohesion + friction * pressure, traction_max); default: no largest one."""
+    elastic_slip: Annotated[Real, Field(ge=0)] = 0.0
+    """Length that contact slips elastically before it slides, tractions a smooth function of it; 0: it sticks or slides (Coulomb)."""
     projection: Projection | None = None
     """How slave points find theirs on a master face: the "closest" one, or along "averaged" normals, which have no kinks on C0 lines."""
     enforcement: Enforcement = "mortar"

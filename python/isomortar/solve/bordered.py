@@ -70,7 +70,8 @@ class Border:
         own[active, 0, 0] = 0.0
         slope = self.target.traction_slope[active]  # (constraints, pressure | trial | metric, component)
         own[active, 1:, 0] = -slope[:, 0]
-        own[active, 1:, 1:] -= slope[:, 1:3].transpose(0, 2, 1)
+        if not self.pair.elastic:  # else tractions are functions of slips and pressures
+            own[active, 1:, 1:] -= slope[:, 1:3].transpose(0, 2, 1)
         own[:, [0, 1, 2], [0, 1, 2]] += constants.RESISTANCE * (self.loose & active[:, None])
         return own
 

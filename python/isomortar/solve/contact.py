@@ -91,6 +91,8 @@ class PairMechanics:
         n = pair.slave.test.count
         self.diagonal = Pattern(np.arange(n + 1, dtype=np.int32), np.arange(n, dtype=np.int32))
         self.held = nothing_held(pair)
+        self.elastic = pair.contact.elastic_slip > 0.0
+        self._stretch = np.zeros((n, 2)) if self.elastic else None
         theirs = [point for other in others for point in other.slave.point]
         self.shared = pair.some_carriers(np.isin(np.arange(pair.slave.highest + 1), theirs))
         self._ledger = ledger
@@ -102,10 +104,19 @@ class PairMechanics:
         """Area that the penalties are divided by (theory 7.1)."""
         return self.pair.contact.reference_area or self.pair.area
 
-    def begin(self, supports: Supports, start: FloatArray, time: float) -> None:
-        """Begin a load increment from positions `start` to a load time."""
+    def begin(self, supports: Supports, start: FloatArray, begun: ContactState, time: float) -> None:
+        """Begin a load increment from positions `start` with state `begun` to a load time."""
         self.reach.begin()
         self.held = held_by(supports, self.pair, start, time)
+        if self.elastic:
+            self._stretch = self._stretched(self.kinematics(start, begun).control, begun)
+
+    def _stretched(self, control: Control, begun: ContactState) -> FloatArray:
+        """Stretches that make the tractions of a converged state, shape (n, 2) (theory 4.16)."""
+        borne = self.radius(begun.pressure)
+        borne = np.where(borne > 0.0, borne, 1.0)  # open ones have no traction
+        left = np.maximum(1.0 - self.traction_norms(control, begun.traction) / borne, 0.0)
+        return np.ascontiguousarray(begun.traction / (borne * (1.0 + np.sqrt(left)))[:, None])
 
     def initial(self, positions: FloatArray) -> ContactState:
         """State before the first load step: no tractions; slips count from where the reference configuration projects (theory 3.20)."""
@@ -149,7 +160,10 @@ class PairMechanics:
     def law(self, penalties: FloatArray, pressure: FloatArray, traction: FloatArray) -> Law:
         """The augmented law with given penalties (normal, tangential) and multipliers."""
         sticks = np.zeros(len(pressure), dtype=np.int32)
-        return Law(penalties, self.friction, pressure, traction, self.summed, self.held.bears, self.held.free, sticks)
+        return Law(
+            penalties, self.friction, pressure, traction, self.summed, self.held.bears, self.held.free, sticks,
+            elastic_slip=self.pair.contact.elastic_slip, stretch=self._stretch,
+        )  # fmt: skip
 
     def bear(self, kinematics: Kinematics, depth: float) -> bool:
         """Let constraints that supports hold along the normal bear if deeper than `depth` (theory 4.11); whether there are any."""
@@ -166,10 +180,10 @@ class PairMechanics:
     def resting(self, start: ContactState, control: Control, pressure: FloatArray, traction: FloatArray) -> FloatArray:
         """The tractions, where supports keep control points still those of `start` as far as friction bears them (theory 4.12); (n, 2).
 
-        Nothing else tells them there: a pressure that was too low for an iteration would lower them for good.
+        Nothing else tells them there, but elastic slips do: a pressure that was too low for an iteration would lower them for good.
         """
         still = self.held.still > 0
-        if not still.any():
+        if self.elastic or not still.any():
             return traction
         length, borne = self.traction_norms(control, start.traction), self.radius(pressure)
         share = np.divide(borne, length, out=np.ones_like(length), where=length > borne)
@@ -223,6 +237,8 @@ class PairMechanics:
         given = self.shared | self.held.moved
         loose: BoolArray = np.column_stack([self.held.rests, given, given])
         loose[nodes[np.any(projections.found.reshape(len(nodes), -1) == 0, axis=1)]] = True
+        if self.elastic:  # these tractions are told by their slips
+            loose[:, 1:] = False
         return loose
 
     def condensed(self, response: Response, blocks: Blocks) -> tuple[Pattern, FloatArray]:
@@ -283,7 +299,10 @@ class PairMechanics:
         they known better than to `unbalanced`, what forces that are not quite in balance leave open.
         """
         last_bit = float(np.spacing(np.abs(positions[self.pair.slave.point]).max()))
-        normal, tangential = law.penalties * last_bit * np.sqrt(np.count_nonzero(response.state))
+        stiffness = law.penalties.copy()
+        if law.elastic:  # the largest slope of a traction by its slip
+            stiffness[1] = 2.0 * float(self.radius(response.pressure).max()) / law.elastic_slip
+        normal, tangential = stiffness * last_bit * np.sqrt(np.count_nonzero(response.state))
         return max(float(normal), unbalanced), max(float(tangential), unbalanced)
 
     def off_conditions(

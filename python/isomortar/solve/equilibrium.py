@@ -100,8 +100,8 @@ class Equilibrium:
         Scales
             What forces are measured against.
         """
-        for pair in self.pairs:
-            pair.begin(self.supports, start.positions, time)
+        for pair, contact in zip(self.pairs, start.contacts, strict=True):
+            pair.begin(self.supports, start.positions, contact, time)
         with self.ledger.phase("solid"):
             scales = self.measures.scales(start.positions)
         return self.supports.increment(start.positions, time), scales

@@ -150,13 +150,15 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
         return self._evaluate(iterate.balance.positions + share * correction.positions, multipliers)
 
     def _reversals(self, k: int, iterate: _BorderedIterate, correction: Correction) -> np.ndarray:
-        """Slipping constraints whose predicted trial change opposes their traction: t^a Dt_a < 0 (theory 6.5)."""
+        """Slipping constraints whose predicted trial change opposes their traction: t^a Dt_a < 0 (theory 6.5); elastic ones any."""
         target, border = iterate.targets[k], self._borders[k]
         if border is None or not self._equilibrium.pairs[k].friction.acts:
             return np.zeros(len(target.state), dtype=bool)
-        change = correction.tractions[k] + border.trial_change(correction.positions)
+        elastic = self._equilibrium.pairs[k].elastic
+        change = border.trial_change(correction.positions) + (0.0 if elastic else correction.tractions[k])
         raised = self._equilibrium.pairs[k].contravariant(iterate.balance.kinematics[k].control, iterate.laws[k].traction)
-        return (target.state == PointState.SLIP) & (np.einsum("ia,ia->i", raised, change) < 0.0)
+        slipping = target.state > 0 if elastic else target.state == PointState.SLIP
+        return slipping & (np.einsum("ia,ia->i", raised, change) < 0.0)
 
     def _update(self, iterate: _BorderedIterate, correction: Correction, iteration: int) -> tuple[_BorderedIterate, tuple[str, ...]]:
         """The next iterate: the full update, or one halved until it is admissible (theory 6)."""
