@@ -61,7 +61,7 @@ subroutine project_points(slave, map, x, n, started, origin, had, nquad, xi, ele
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: find
   use isomortar_contact_control, only: project => project_points
-  use isomortar_contact_gap_map_map, only: gap_map_t, projections_t
+  use isomortar_contact_gap_map_map, only: gap_map_t, projections_at, projections_t
   use isomortar_contact_slave, only: slave_t
   implicit none
   integer(c_int64_t), intent(in) :: slave, map
@@ -79,13 +79,7 @@ subroutine project_points(slave, map, x, n, started, origin, had, nquad, xi, ele
   call find(slave, side, status)
   call find(map, onto, status)
   if (status /= 0) return
-  allocate (projections%place(2, nquad), projections%fixed(2, nquad), projections%found(nquad), projections%doubt(nquad), &
-    projections%slip(2, nquad), projections%slips(nquad))
-  projections%xi = xi
-  projections%place = 0
-  projections%fixed = .false.
-  projections%found = .false.
-  projections%doubt = 0
+  projections = projections_at(xi)
   call project(side, onto, x, started /= 0, origin, had /= 0, projections, status, place)
   xi = projections%xi
   element = projections%place - 1

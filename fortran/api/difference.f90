@@ -6,7 +6,7 @@ module isomortar_api_difference
   use isomortar_contact_augmentation, only: law_t, respond, response_t
   use isomortar_contact_blocks, only: integrate_forces
   use isomortar_contact_control, only: control_quantities, control_t, project_points
-  use isomortar_contact_gap_map_map, only: gap_map_t, projections_t
+  use isomortar_contact_gap_map_map, only: gap_map_t, projections_at, projections_t
   use isomortar_contact_sample, only: multipliers_t
   use isomortar_contact_slave, only: slave_t
   implicit none
@@ -68,12 +68,9 @@ contains
 
     n = fixed%slave%test%count
     points = size(fixed%slave%area)
-    allocate (quantities%projections%place(2, points), quantities%projections%fixed(2, points), &
-      quantities%projections%found(points), quantities%projections%doubt(points), quantities%projections%slip(2, points), &
-      quantities%projections%slips(points), started(points), field_slip(2, points))
-    quantities%projections%xi = fixed%start
-    quantities%projections%place = 0
-    started = .true.
+    allocate (field_slip(2, points))
+    quantities%projections = projections_at(fixed%start)
+    allocate (started(points), source=.true.)
     call project_points(fixed%slave, fixed%map, positions, started, fixed%origin, fixed%had, quantities%projections, status, &
       place)
     if (status /= status_ok) return

@@ -136,7 +136,7 @@ subroutine extended_feet(slave, map, x, n, started, nquad, xi, element, fixed, f
   use isomortar_api_descriptors, only: find
   use isomortar_base_kinds, only: wp
   use isomortar_contact_control, only: project_points
-  use isomortar_contact_gap_map_map, only: gap_map_t, projections_t
+  use isomortar_contact_gap_map_map, only: gap_map_t, projections_at, projections_t
   use isomortar_contact_slave, only: slave_t
   implicit none
   integer(c_int64_t), intent(in) :: slave, map
@@ -153,13 +153,7 @@ subroutine extended_feet(slave, map, x, n, started, nquad, xi, element, fixed, f
   call find(slave, side, status)
   call find(map, onto, status)
   if (status /= 0) return
-  allocate (projections%place(2, nquad), projections%fixed(2, nquad), projections%found(nquad), projections%doubt(nquad), &
-    projections%slip(2, nquad), projections%slips(nquad))
-  projections%xi = real(xi, wp)
-  projections%place = 0
-  projections%fixed = .false.
-  projections%found = .false.
-  projections%doubt = 0
+  projections = projections_at(real(xi, wp))
   call project_points(side, onto, real(x, wp), started /= 0, real(xi, wp), started /= 0, projections, status, place)
   xi = real(projections%xi, c_double)
   element = projections%place - 1

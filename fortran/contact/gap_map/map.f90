@@ -18,6 +18,8 @@ module isomortar_contact_gap_map_map
   implicit none
   private
 
+  public :: projections_at
+
   !> Components of all short vectors of any map.
   integer, parameter, public :: all_components = 27
 
@@ -193,6 +195,22 @@ module isomortar_contact_gap_map_map
   end interface
 
 contains
+
+  !> Projections that begin at coordinates `start` (2, points), P: there are no feet yet.
+  pure function projections_at(start) result(projections)
+    real(wp), intent(in) :: start(:, :)
+    type(projections_t) :: projections
+
+    associate (n => size(start, 2))
+      allocate (projections%place(2, n), projections%fixed(2, n), projections%found(n), projections%doubt(n))
+      allocate (projections%slip(2, n), projections%slips(n))
+    end associate
+    projections%xi = start
+    projections%place = 0
+    projections%fixed = .false.
+    projections%found = .false.
+    projections%doubt = 0
+  end function projections_at
 
   !> The `normals` of nodes, which bear on points like control points do, and the list of positions of both that all the above
   !> take, `all` (3, control points and nodes): of control points alone.
