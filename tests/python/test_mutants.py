@@ -20,6 +20,7 @@ from isomortar.harness.mutants.gate import Finding, Gate
 from isomortar.harness.mutants.generate import draw
 from isomortar.harness.mutants.layers import LAYERS
 from isomortar.harness.mutants.meaning import meaning
+from isomortar.harness.mutants.reach import statements_at, without_lines
 from isomortar.harness.mutants.score import Classification, Score, Share, read_classified
 from isomortar.harness.mutants.tests.as_cells import cells_of_tests
 
@@ -79,6 +80,10 @@ def cells(tmp_path_factory):
     family.mkdir()
     (family / "mutants_cases.py").write_text(CASES)
     return [cell for case in collect(family.parent) for cell in case.cells]
+
+
+def names(cells) -> set[str]:
+    return {cell.name for cell in cells}
 
 
 def gate(cells) -> Gate:
@@ -152,34 +157,46 @@ def test_a_folder_without_sources_is_an_error(tmp_path):
 
 def test_the_gate_stops_at_the_first_red_cell_and_asks_it_first_next_time(cells):
     red, tried = "mutants_family/cheap[k=2]", gate(cells)
-    first = tried.attack(Oracle(red), FAULTY, "solid", (), math.inf)
+    first = tried.attack(Oracle(red), FAULTY, "solid", names(cells), (), math.inf)
     assert first.killer == red
     assert "not finite" in first.found
     tried.learn("solid", first)
     tried.learn("solid", first)
     bench = Oracle(red)
-    assert tried.attack(bench, FAULTY, "solid", (), math.inf).passed == ()
+    assert tried.attack(bench, FAULTY, "solid", names(cells), (), math.inf).passed == ()
     assert [name for name, _ in bench.asked] == [red]
 
 
 @pytest.mark.parametrize("ending", ["crashed", "timed out", "trouble", "refused", "skipped"])
 def test_whatever_does_not_pass_kills(cells, ending):
-    assert gate(cells).attack(Oracle("mutants_family/dear", ending), FAULTY, "solid", (), math.inf).killer == "mutants_family/dear"
+    assert (
+        gate(cells).attack(Oracle("mutants_family/dear", ending), FAULTY, "solid", names(cells), (), math.inf).killer
+        == "mutants_family/dear"
+    )
 
 
 def test_a_cell_that_crashes_without_a_fault_too_is_no_catch(cells):
     with pytest.raises(IsomortarError, match="dear is red on the sound program too"):
-        gate(cells).attack(Oracle("mutants_family/dear", "crashed", (FAULTY, SOUND)), FAULTY, "solid", (), math.inf)
+        gate(cells).attack(Oracle("mutants_family/dear", "crashed", (FAULTY, SOUND)), FAULTY, "solid", names(cells), (), math.inf)
 
 
 def test_a_survivor_met_the_whole_gate_or_as_much_as_asked_for(cells):
     bench, tried = Oracle(), gate(cells)
-    finding = tried.attack(bench, FAULTY, "solid", (), math.inf)
+    finding = tried.attack(bench, FAULTY, "solid", names(cells), (), math.inf)
     assert finding.killer is None
-    assert tried.is_whole(finding)
+    assert tried.is_whole(finding, names(cells))
     assert [name for name, _ in bench.asked] == ["mutants_family/cheap[k=2]", "mutants_family/cheap[k=1]", "mutants_family/dear"]
     assert [seconds for _, seconds in bench.asked] == [20.0, 20.0, 100.0]
-    assert not tried.is_whole(tried.attack(Oracle(), FAULTY, "solid", (), 0.15))
+    assert not tried.is_whole(tried.attack(Oracle(), FAULTY, "solid", names(cells), (), 0.15), names(cells))
+
+
+def test_a_cell_that_does_not_run_a_faults_statement_is_not_asked(cells):
+    bench, tried, able = Oracle("mutants_family/dear"), gate(cells), {"mutants_family/cheap[k=1]"}
+    finding = tried.attack(bench, FAULTY, "solid", able, (), math.inf)
+    assert [name for name, _ in bench.asked] == sorted(able)
+    assert finding.killer is None
+    assert tried.is_whole(finding, able)
+    assert not tried.is_whole(finding, names(cells))
 
 
 def test_a_file_of_tests_that_passed_says_nothing_of_the_others(cells, tmp_path):
@@ -190,14 +207,14 @@ def test_a_file_of_tests_that_passed_says_nothing_of_the_others(cells, tmp_path)
     dear = next(cell for cell in cells if "dear" in cell.name)
     bench = Oracle()
     Gate({dear.name: 3.0} | {cell.name: 1.0 for cell in files}, [dear, *files], lambda *_: None, SOUND).attack(
-        bench, FAULTY, "solid", (), math.inf
+        bench, FAULTY, "solid", names([dear, *files]), (), math.inf
     )
     assert [name for name, _ in bench.asked][-1] == dear.name
 
 
 def test_cells_passed_before_are_not_asked_again(cells):
     bench = Oracle()
-    gate(cells).attack(bench, FAULTY, "solid", ("mutants_family/dear",), math.inf)
+    gate(cells).attack(bench, FAULTY, "solid", names(cells), ("mutants_family/dear",), math.inf)
     assert "mutants_family/dear" not in dict(bench.asked)
 
 
@@ -276,7 +293,7 @@ def test_a_process_that_died_because_the_run_ended_is_no_catch(cells, tmp_path):
     bench = Bench(tmp_path / "package", tmp_path, tmp_path / "bench")
     bench.__exit__(None, None, None)
     with pytest.raises(IsomortarError, match="given up"):
-        gate(cells).attack(bench, tmp_path / "program", "solid", (), math.inf)
+        gate(cells).attack(bench, tmp_path / "program", "solid", names(cells), (), math.inf)
 
 
 def test_what_is_not_executed_has_no_meaning():
@@ -285,6 +302,87 @@ def test_what_is_not_executed_has_no_meaning():
         assert meaning(text.replace(*same)) == meaning(text)
     for other in (("a + b", "a - b"), ("= 1", "= 2"), ("b: int = 2", "b: int = 3")):
         assert meaning(text.replace(*other)) != meaning(text)
+
+
+STATEMENTS = """LIMIT = (
+    1
+)
+@decorated(
+    2
+)
+def f(a, b=3):
+    if a > (
+        4
+    ):
+        return g(
+            5
+        )
+    return [
+        6 for _ in b
+    ]
+class C:
+    field = 7
+    def method(self):
+        return 8
+"""
+
+
+@pytest.mark.parametrize(
+    ("number", "lines"),
+    [
+        (1, None),
+        (2, range(4, 17)),
+        (3, range(4, 17)),
+        (4, range(8, 14)),
+        (5, range(11, 14)),
+        (6, range(14, 17)),
+        (7, None),
+        (8, range(20, 21)),
+    ],
+)
+def test_a_line_is_of_the_statement_that_runs_it(number, lines):
+    line = 1 + STATEMENTS[: STATEMENTS.index(str(number))].count("\n")
+    assert statements_at(STATEMENTS, [line]) == (None if lines is None else set(lines))
+
+
+def test_lines_are_of_all_their_statements():
+    assert statements_at(STATEMENTS, [9, 15]) == {*range(8, 17)}
+    assert statements_at(STATEMENTS, [1, 15]) is None
+
+
+RUN_CASE = """
+from isomortar.harness import Bound, case
+
+@case(claim="Lines.", bounds={"zero": Bound(at_most=1.0, reason="definition: so")}, grid={"k": [1, 2]})
+def runs(k):
+    from isomortar.geometry.quadrature import which
+
+    for _ in range(3):
+        which(k)
+    return {"zero": 0.0}
+"""
+WHICH = """def which(k):
+    if k == 1:
+        return [
+            k for _ in range(2)
+        ]
+    return -k
+"""
+
+
+def test_lines_that_a_cell_runs(tmp_path):
+    """Each cell's own, also those of a function that another cell had run before, and again after every line of it was run."""
+    (tmp_path / "cases/runs_family").mkdir(parents=True)
+    (tmp_path / "cases/runs_family/runs_cases.py").write_text(RUN_CASE)
+    first, second = (cell for case in collect(tmp_path / "cases") for cell in case.cells)
+    package, frozen = freeze(tmp_path / "cases", tmp_path / "frozen")
+    (package / "geometry/quadrature.py").write_text(WHICH)
+    (tmp_path / "sound").mkdir()
+    with Bench(package, frozen, tmp_path / "bench", "isomortar.harness.mutants.reach") as bench:
+        for cell, expected in ((first, {1, 2, 3, 4}), (second, {1, 2, 6}), (first, {1, 2, 3, 4})):
+            measurement, lines = without_lines(bench.measure(tmp_path / "sound", cell, 60.0))
+            assert measurement.numbers == {"zero": 0.0}
+            assert set(lines["geometry/quadrature.py"]) == expected
 
 
 LAID_CASE = """

@@ -22,7 +22,7 @@ from typing import Any
 from isomortar._process import own_process
 from isomortar.errors import IsomortarError
 from isomortar.harness.cases import TIMEOUTS, Cell
-from isomortar.harness.measurement import Measurement
+from isomortar.harness.measurement import Measurement, measure
 from isomortar.program.process import GRACE, Limits, Process, descendants, end_now
 
 #: What starts a measuring process.
@@ -100,10 +100,9 @@ class Worker:
             process.close()
 
 
-def _serve() -> None:
+def serve(measure: Callable[[Cell], Measurement] = measure) -> None:
     """Measure what comes in, until nobody asks any more."""
     from isomortar.harness.collection import cases_of
-    from isomortar.harness.measurement import measure
     from isomortar.harness.store import sources_hash
 
     own_process()
@@ -128,4 +127,4 @@ def _serve() -> None:
 
 
 if __name__ == "__main__":
-    _serve()
+    serve()

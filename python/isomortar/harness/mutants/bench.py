@@ -24,7 +24,8 @@ import runpy, sys
 sys.dont_write_bytecode = True  # two faults of one second and size would be taken for one
 sys.path.insert(0, {package!r})
 sys.path.extend({installed!r})
-runpy.run_module("isomortar.harness.worker", run_name="__main__")
+sys.argv[1:] = [{package!r} + "/isomortar"]
+runpy.run_module({module!r}, run_name="__main__")
 """
 _PACKAGE = Path(isomortar.__file__).parent.resolve()
 _HIDDEN = shutil.ignore_patterns("__pycache__")
@@ -58,15 +59,17 @@ class Bench:
         What `freeze` made. The package is copied once more, for this bench's programs.
     folder : Path
         Where to work.
+    module : str
+        The measuring program.
     """
 
-    def __init__(self, package: Path, cases: Path, folder: Path) -> None:
+    def __init__(self, package: Path, cases: Path, folder: Path, module: str = "isomortar.harness.worker") -> None:
         self._frozen, self._cases, self._folder = package, cases.resolve(), folder.resolve()
         self._program: Path | None = None
         self._laid: list[Path] = []
         shutil.rmtree(folder, ignore_errors=True)
         shutil.copytree(package, folder / "isomortar")
-        start = _START.format(package=str(self._folder), installed=[path for path in sys.path if path])
+        start = _START.format(package=str(self._folder), installed=[path for path in sys.path if path], module=module)
         self._worker = Worker((sys.executable, "-S", "-c", start), Limits(memory=_MEMORY))
 
     def __enter__(self) -> Bench:

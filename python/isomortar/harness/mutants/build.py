@@ -8,6 +8,7 @@ from __future__ import annotations
 import hashlib
 import shutil
 import tempfile
+from collections.abc import Set
 from pathlib import Path
 from typing import Protocol
 
@@ -15,6 +16,7 @@ from isomortar.errors import IsomortarError
 from isomortar.harness.mutants.faults import Fault
 from isomortar.harness.mutants.layers import Layer
 from isomortar.harness.mutants.meaning import meaning
+from isomortar.harness.mutants.reach import statements_at
 from isomortar.harness.store import kernel_hash, package_hash
 from isomortar.program.process import output_of, tools_first
 
@@ -39,6 +41,9 @@ class Workshop(Protocol):
 
     def identity(self, program: Path) -> str:
         """Hash of what a program does: two faults with one hash are one."""
+
+    def statements(self, fault: Fault, /) -> Set[int] | None:
+        """Lines of the statements that a fault is in: who runs none of them can not see it; None: anybody may."""
 
 
 class KernelWorkshop:
@@ -90,6 +95,10 @@ class KernelWorkshop:
         """Hash of the compiled kernels."""
         return _hash_of_files(program)
 
+    def statements(self, _: Fault, /) -> Set[int] | None:
+        """Nobody follows lines of the kernel."""
+        return None
+
     def _made(self, sources: Path, program: Path) -> Path:
         """Build the kernels of some sources, and put them into a folder."""
         _run(["ninja", "-C", "build", *self._targets], sources)
@@ -137,6 +146,10 @@ class PythonWorkshop:
         changed = {path.relative_to(program).as_posix(): meaning(path.read_text()) for path in sorted(program.rglob("*.py"))}
         parts = [f"{file}\0{text}" for file, text in changed.items() if text != meaning(self._files[file])]
         return hashlib.sha256("\0".join([self.sources, *parts]).encode()).hexdigest()
+
+    def statements(self, fault: Fault, /) -> Set[int] | None:
+        """Lines of the statements that a fault is in; None where importing its file runs it."""
+        return statements_at(self._files[fault.file], fault.lines)
 
 
 def workshop_of(layer: Layer, project: Path, folder: Path) -> Workshop:

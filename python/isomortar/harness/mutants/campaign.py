@@ -20,6 +20,7 @@ from isomortar.harness.mutants.build import content, workshop_of
 from isomortar.harness.mutants.faults import Fault
 from isomortar.harness.mutants.gate import Finding, Gate
 from isomortar.harness.mutants.layers import Layer
+from isomortar.harness.mutants.reach import Lines, without_lines
 from isomortar.harness.report import sentence
 from isomortar.harness.store import cell_key
 
@@ -92,11 +93,14 @@ class Campaign:
         package, frozen = freeze(cases, folder / "frozen")
         self._keys = {cell.name: cell_key(cell, self._workshop.rest)[:20] for cell in cells}
         self._crew = Crew([Bench(package, frozen, folder / f"bench{i + 1}") for i in range(jobs)])
+        self._scouts = Crew([Bench(package, frozen, folder / f"scout{i + 1}", "isomortar.harness.mutants.reach") for i in range(jobs)])
+        self._ran: dict[str, Lines] = {}
 
     def __enter__(self) -> Campaign:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None) -> None:
+        self._scouts.__exit__(kind, value, trace)
         self._crew.__exit__(kind, value, trace)
 
     def run(self, planted: Sequence[Fault], drawn: Iterable[Fault], sample: int, most: float) -> Tally:
@@ -124,23 +128,24 @@ class Campaign:
         return Tally(attacked, dropped, unused, seconds)
 
     def _sound_seconds(self) -> tuple[dict[str, float], tuple[str, ...]]:
-        """CPU seconds of the cells that are green on the sound program, and the others in words."""
+        """CPU seconds of the cells that are green on the sound program, and the others in words; notes which lines of it they run."""
         program = self._workshop.sound
         sound = self._workshop.identity(program)[:20]
 
-        def measured(bench: Bench, cell: Cell) -> tuple[float, str]:
+        def measured(scout: Bench, cell: Cell) -> tuple[float, str]:
             key = f"{self._keys[cell.name]}-{sound}"
             known = self._sound.get(key)
             if known is None:
-                measurement = bench.measure(program, cell, TIMEOUTS[cell.tier])
+                measurement, lines = without_lines(scout.measure(program, cell, TIMEOUTS[cell.tier]))
                 red = [sentence(check) for check in judge(cell, measurement, self._lookup) if check.state != "passed"]
-                known = {"cell": cell.name, "seconds": measurement.cpu_seconds, "red": next(iter(red), "")}
+                known = {"cell": cell.name, "seconds": measurement.cpu_seconds, "red": next(iter(red), ""), "lines": lines}
                 if measurement.lasts:
                     self._sound.put(key, known)
+            self._ran[cell.name] = known["lines"]
             return known["seconds"], known["red"]
 
         seconds, unused = {}, []
-        for i, (cell, (taken, red)) in enumerate(self._crew.each(measured, self._cells)):
+        for i, (cell, (taken, red)) in enumerate(self._scouts.each(measured, self._cells)):
             self._progress("the gate on the sound program", i + 1, len(self._cells))
             if red:
                 unused.append(f"{cell.name}: {red}")
@@ -182,11 +187,12 @@ class Campaign:
         def attack(bench: Bench, item: tuple[Fault, str]) -> Finding:
             fault, program = item
             limit = math.inf if fault.name else most
+            able = self._able(fault)
             finding = self._remembered(program)
-            if finding.killer is None and not gate.is_whole(finding) and gate.cost(finding.passed) < limit:
+            if finding.killer is None and not gate.is_whole(finding, able) and gate.cost(finding.passed) < limit:
                 built = self._workshop.build(fault)
                 assert built is not None
-                finding = gate.attack(bench, built, fault.folder, finding.passed, limit)
+                finding = gate.attack(bench, built, fault.folder, able, finding.passed, limit)
                 self._remember(program, finding)
                 shutil.rmtree(built)
             gate.learn(fault.folder, finding)
@@ -196,7 +202,12 @@ class Campaign:
         for i, ((fault, _), finding) in enumerate(self._crew.each(attack, programs)):
             survivors += finding.killer is None
             self._progress(f"attacking faulty programs, {survivors} survived", i + 1, len(programs))
-            yield Attacked(fault, finding, gate.is_whole(finding))
+            yield Attacked(fault, finding, gate.is_whole(finding, self._able(fault)))
+
+    def _able(self, fault: Fault) -> set[str]:
+        """Cells that may be red on a fault."""
+        lines = self._workshop.statements(fault)
+        return {name for name, ran in self._ran.items() if lines is None or not lines.isdisjoint(ran.get(fault.file, ()))}
 
     def _remember(self, program: str, finding: Finding) -> None:
         entry = {"killer": finding.killer, "found": finding.found, "passed": {name: self._keys[name] for name in finding.passed}}

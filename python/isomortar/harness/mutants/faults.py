@@ -37,6 +37,11 @@ class Fault:
         """File and line."""
         return f"{self.file}:{self.line}"
 
+    @property
+    def lines(self) -> range:
+        """Numbers of the lines that it changes."""
+        return range(self.line, self.line + self.old.count("\n") + 1)
+
     def applied(self, text: str) -> str:
         """The text of its file with the fault in it."""
         return text[: self.position] + self.new + text[self.position + len(self.old) :]

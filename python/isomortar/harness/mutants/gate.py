@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections import Counter
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence, Set
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -78,10 +78,11 @@ class Gate:
                 counts.update((folder, name) for name in names)
                 counts.update((folder, self._case[name]) for name in names)
 
-    def attack(self, bench: Bench, program: Path, folder: str, passed: Collection[str], most: float) -> Finding:
+    def attack(self, bench: Bench, program: Path, folder: str, able: Set[str], passed: Collection[str], most: float) -> Finding:
         """Measure and judge cells until one is red, none is left, or those that passed cost `most`.
 
-        `passed` are cells that the program passed before. `folder` is where in the sources the fault is.
+        `passed` are cells that the program passed before. `folder` is where in the sources the fault is, `able` are cells that it may
+        change.
 
         Raises
         ------
@@ -89,7 +90,7 @@ class Gate:
             A cell ended without numbers, and does so on the sound program too: that is the machine's fault.
         """
         done = [name for name in passed if name in self._cells]
-        while self.cost(done) < most and (left := self._cells.keys() - done):
+        while self.cost(done) < most and (left := self._cells.keys() & able - set(done)):
             name = self._most_promising(left, done, folder)
             measurement, red = self._red(bench, program, name)
             if red:
@@ -106,9 +107,9 @@ class Gate:
         red = [check for check in judge(cell, measurement, self._lookup) if check.state != "passed"]
         return measurement, sentence(red[0]) if red else ""
 
-    def is_whole(self, finding: Finding) -> bool:
+    def is_whole(self, finding: Finding, able: Set[str]) -> bool:
         """Whether no cell is left that could tell more."""
-        return finding.killer is not None or self._cells.keys() <= set(finding.passed)
+        return finding.killer is not None or self._cells.keys() & able <= set(finding.passed)
 
     def cost(self, names: Collection[str]) -> float:
         """CPU seconds of some cells on the sound program."""

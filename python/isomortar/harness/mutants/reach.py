@@ -1,0 +1,114 @@
+"""Which lines of Python a cell runs: a cell that does not run a fault's statement can not be red on it.
+
+As a program (``python -m isomortar.harness.mutants.reach FOLDER``) a measuring process whose measurements also say which lines of the
+sources in a folder were run. Other processes that a cell starts are not seen.
+"""
+
+from __future__ import annotations
+
+import ast
+import sys
+import threading
+from collections.abc import Iterable, Mapping, Set
+from dataclasses import replace
+from pathlib import Path
+from types import CodeType, FrameType
+from typing import Any
+
+from isomortar.harness.cases import Cell
+from isomortar.harness.measurement import Measurement, measure
+from isomortar.harness.worker import serve
+
+#: Under this name among the numbers of a measurement.
+_LINES = "lines run"
+#: Lines that were run, by file below the folder.
+Lines = Mapping[str, list[int]]
+
+
+def without_lines(measurement: Measurement) -> tuple[Measurement, Lines]:
+    """A measurement of such a process as it is elsewhere, and the lines that were run."""
+    numbers = dict(measurement.numbers)
+    lines = numbers.pop(_LINES, {})
+    assert isinstance(lines, dict)
+    return replace(measurement, numbers=numbers), lines
+
+
+def statements_at(text: str, lines: Iterable[int]) -> Set[int] | None:
+    """Lines of the statements of a source that some lines are of; None where importing the file runs one: outside of functions."""
+    statements = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.stmt)]
+    found: set[int] = set()
+    for line in lines:
+        inside = [node for node in statements if line in _lines_of(node)]
+        if not any(isinstance(node, ast.FunctionDef) for node in inside):
+            return None
+        found.update(min((_lines_of(node) for node in inside), key=lambda lines: len(lines)))
+    return found
+
+
+def _lines_of(node: ast.stmt) -> range:
+    """Lines of a statement, decorators included."""
+    first = min((decorator.lineno for decorator in getattr(node, "decorator_list", [])), default=node.lineno)
+    return range(first, (node.end_lineno or first) + 1)
+
+
+class _Tracer:
+    """Notes which lines of the sources below a folder are run; a function whose lines all were costs nothing more."""
+
+    def __init__(self, folder: str) -> None:
+        self._folder = folder
+        self._codes: dict[int, tuple[CodeType, set[int]]] = {}
+        self._left: dict[int, set[int]] = {}
+
+    def begin(self) -> None:
+        """Forget what was run, and note from here on."""
+        self._left = {key: set(lines) for key, (_, lines) in self._codes.items()}
+        threading.settrace(self._called)
+        sys.settrace(self._called)
+
+    def end(self) -> dict[str, list[int]]:
+        """Note nothing any more. The lines that were run since `begin`, by file below the folder."""
+        sys.settrace(None)
+        threading.settrace(None)
+        found: dict[str, set[int]] = {}
+        for key, (code, lines) in self._codes.items():
+            if run := lines - self._left[key]:
+                found.setdefault(code.co_filename.removeprefix(self._folder), set()).update(run)
+        return {file: sorted(run) for file, run in found.items()}
+
+    def _called(self, frame: FrameType, *_: Any) -> Any:
+        """A function is called: follow its lines if some are left."""
+        code = frame.f_code
+        left = self._left.get(id(code))
+        if left is None:
+            left = self._new(code)
+        if not left:
+            return None
+        left.discard(frame.f_lineno)
+        return self._line
+
+    def _new(self, code: CodeType) -> set[int]:
+        within = code.co_filename.startswith(self._folder)
+        lines = {line for *_, line in code.co_lines() if line} if within else set()
+        self._codes[id(code)] = code, lines  # held, so that no other gets its id
+        return self._left.setdefault(id(code), set(lines))
+
+    def _line(self, frame: FrameType, *_: Any) -> Any:
+        left = self._left[id(frame.f_code)]
+        left.discard(frame.f_lineno)
+        frame.f_trace_lines = bool(left)
+        return self._line
+
+
+def _main(folder: str) -> None:
+    tracer = _Tracer(f"{Path(folder).resolve()}/")
+
+    def measure_and_note(cell: Cell) -> Measurement:
+        tracer.begin()
+        measurement = measure(cell)
+        return replace(measurement, numbers=measurement.numbers | {_LINES: tracer.end()})
+
+    serve(measure_and_note)
+
+
+if __name__ == "__main__":
+    _main(sys.argv[1])
