@@ -41,7 +41,8 @@ def statements_at(text: str, lines: Iterable[int]) -> Set[int] | None:
         inside = [node for node in statements if line in _lines_of(node)]
         if not any(isinstance(node, ast.FunctionDef) for node in inside):
             return None
-        found.update(min((_lines_of(node) for node in inside), key=lambda lines: len(lines)))
+        innermost = max(inside, key=lambda node: _lines_of(node).start)
+        found.update(_lines_of(innermost))
     return found
 
 
