@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import replace
 
 import numpy as np
@@ -67,6 +68,13 @@ def load_steps(problem: Problem) -> list[StepResult]:
     return list(Simulation(problem).run())
 
 
+@functools.cache
+def alone(method: str) -> tuple[Problem, list[StepResult]]:
+    """A bowl pressed on a block and turned, and its load steps: what it is compared with beside others."""
+    problem = with_method(bowl("block"), method)
+    return problem, load_steps(problem)
+
+
 def measure(results: list[StepResult], pair: int, supports: slice) -> dict[str, FloatArray]:
     """Forces on some supports, pressures and traction norms of a pair; by load step."""
     return {
@@ -89,10 +97,10 @@ def apart(found: dict[str, FloatArray], right: dict[str, FloatArray]) -> dict[st
 )
 def stiffness(method: str, young: float, does: str) -> dict[str, float]:
     """A bowl pressed on a block and turned, with and without a third body."""
-    problem = with_method(bowl("block"), method)
+    problem, right = alone(method)
     motion = Motion() if does == "rests" else Motion((0.05, 0.0, -0.1))
     supports = slice(0, len(problem.supports))
-    return apart(measure(load_steps(beside(problem, young, motion)), 0, supports), measure(load_steps(problem), 0, supports))
+    return apart(measure(load_steps(beside(problem, young, motion)), 0, supports), measure(right, 0, supports))
 
 
 @case(
@@ -103,11 +111,11 @@ def stiffness(method: str, young: float, does: str) -> dict[str, float]:
 )
 def pairs(method: str, stress: float) -> dict[str, float]:
     """The softer pair hides behind the stiffer one unless each is measured by itself."""
-    length, problem = 0.1, with_method(bowl("block"), method)
+    length, (problem, single) = 0.1, alone(method)
     together, count = load_steps(both(problem, length, stress)), len(problem.supports)
     first = measure(together, 0, slice(0, count))
     second = measure(together, 1, slice(count, 2 * count))
     units = {"forces": stress * length**2, "pressures": stress, "tractions": stress}
-    right = measure(load_steps(problem), 0, slice(0, count))
+    right = measure(single, 0, slice(0, count))
     own, other = apart(first, right), apart({name: value / units[name] for name, value in second.items()}, right)
     return {name: max(own[name], other[name]) for name in own}

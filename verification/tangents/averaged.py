@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from small_scenes import at_few_points
 from tangents.kinks import _SCENE
 from tangents.placed import placed
 
@@ -63,7 +64,7 @@ def posed(master: str, place: str, friction: float) -> Posed:
     """The bowl in an uneven master, slid from where it was."""
     family, order = MASTERS[master]
     scene = _SCENE.format(order=order, elements=3).replace('"L"', f'"{family}"').replace("friction = 0.3", f"friction = {friction}")
-    problem = Scene.from_toml(scene).problem()
+    problem = at_few_points(Scene.from_toml(scene).problem())
     problem = replace(
         problem,
         contacts=(replace(problem.contacts[0], projection="averaged"),),

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Final
 
 import numpy as np
-from small_scenes import bowl
+from small_scenes import at_few_points, bowl
 from tangents.placed import placed
 
 from isomortar.geometry.patch import FloatArray, IntArray
@@ -61,7 +61,7 @@ _ROUND_OFF = "round-off: products of double precision against differences of a t
 @functools.cache
 def scene(friction: float) -> tuple[Problem, Equilibrium, Visit]:
     """The bowl on a deformable block, where the press ends, and the pair in it."""
-    problem = bowl("block", friction)
+    problem = at_few_points(bowl("block", friction))
     condensed = replace(problem, settings=replace(problem.settings, method="uzawa"))
     return problem, Equilibrium(condensed, Ledger()), visited_states(problem, STEP)[-1]
 

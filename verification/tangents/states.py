@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from small_scenes import bowl
+from small_scenes import at_few_points, bowl
 
 from isomortar.harness import Bound, case
 from isomortar.harness.tangents import BOUND, SYMMETRY_BOUND, TangentReport, check_tangent
@@ -52,7 +52,7 @@ def errors(report: TangentReport) -> dict[str, float]:
 )
 def with_friction(master: str, slip_sum: str) -> dict[str, float]:
     """Largest relative error of each part during pressing, where sticking and slipping points are mixed."""
-    problem = bowl(master, slip_sum=slip_sum)
+    problem = at_few_points(bowl(master, slip_sum=slip_sum))
     points = problem.bodies[0].patch.shape[0] * problem.bodies[0].patch.shape[1]
     report = check_tangent(problem, 2, directions=1)
     counts = {"open": points - min(report.active), "sticking": max(report.stick), "slipping": max(report.slip)}
@@ -67,7 +67,7 @@ def with_friction(master: str, slip_sum: str) -> dict[str, float]:
 )
 def without_friction(master: str, order: int) -> dict[str, float]:
     """Largest relative error of each part, and asymmetry."""
-    problem = bowl(master, friction=0.0, order=order)
+    problem = at_few_points(bowl(master, friction=0.0, order=order))
     points = problem.bodies[0].patch.shape[0] * problem.bodies[0].patch.shape[1]
     report = check_tangent(problem, 3, directions=1)
     return errors(report) | {"open": float(points - min(report.active)), "closed": float(max(report.active))}
