@@ -129,6 +129,32 @@ def moves_most(ordering: str) -> dict[str, float]:
 
 
 @case(
+    claim="Indices are narrow where a factorisation is far within the memory that they can address, and wide where it takes more.",
+    tier="gate",
+    grid={"ordering": ("metis", "amd")},
+    bounds={
+        "within": Bound(at_least=1.0, at_most=1.0, reason="definition: narrow where ten times what it takes is allowed"),
+        "beyond": Bound(
+            at_least=0.0, at_most=0.0, reason="definition: narrow where less than what it takes is allowed: the estimate is a bound"
+        ),
+    },
+)
+def narrow_indices(ordering: str) -> dict[str, float]:
+    """Whether indices are narrow, for limits of the memory above and below what the factorisation turns out to take."""
+    matrix = bordered()
+    lu, values = factors(matrix, ordering)
+    taken = lu.factorise(values).statistics
+    assert taken is not None, "it was factorised"
+    pattern = [np.asarray(index, dtype=np.int64) for index in (matrix.indptr, matrix.indices)]
+    found = {}
+    for name, share in (("within", 10.0), ("beyond", 0.999)):
+        handle, narrow, *_ = kernel.sparse_analyse(*pattern, ordering == "metis", share * taken.peak_bytes)
+        kernel.sparse_release(handle)
+        found[name] = float(narrow)
+    return found
+
+
+@case(
     claim="What was released, refused or never made solves nothing.",
     tier="gate",
     bounds={
