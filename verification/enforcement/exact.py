@@ -9,13 +9,13 @@ from typing import Any
 from enforcement.contact import IN_CELLS, MESHES, METHODS, constraints, enforcement_of, patch_test
 from enforcement.mixed import work
 from enforcement.two_rules import mixed_rule
+from patch_tests.contact import ORDERS
 
 from isomortar.harness.cases import Cell
 from isomortar.harness.runner import Result
 from isomortar.harness.runs import Computed
 
 ROWS: tuple[str, ...] = ("mortar", IN_CELLS, *METHODS[1:])
-ORDERS = (1, 2, 3)
 #: Of the constraints; they are those of the mortar method in cells too.
 COUNTS = ("too many", "too few", "inf-sup", "condition")
 
@@ -49,11 +49,11 @@ REFUSED = (
 
 
 def cells() -> Iterator[Cell]:
-    """Those of the patch test, of the constraints up to the same order, and of what is refused."""
+    """Those of the patch test, of the constraints, and of what is refused."""
     yield from patch_test.cells
     for entry in REFUSED:
         yield from entry.cells
-    yield from (cell for cell in constraints.cells if cell.settings["order"] in ORDERS)
+    yield from constraints.cells
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 from analytic.mindlin import CONTACT
 from enforcement.contact import IN_CELLS, MESHES
-from enforcement.exact import ORDERS, ROWS
+from enforcement.exact import ROWS
 from enforcement.found import Found, Known
 from enforcement.plan import REFERENCE
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, NullFormatter
+from patch_tests.contact import ORDERS
 
 from isomortar.harness.figures import page_style, svg_text
 from isomortar.results import style
@@ -22,6 +23,7 @@ LOOKS = {
     "mortar": (style.BLUE, "-", "o"),
     "mortar, averaged": (style.BLUE, "--", "s"),
     "mortar, swapped": (style.BLUE, ":", "D"),
+    "mortar, elastic slip": (style.BLUE, "-.", "P"),
     IN_CELLS: (style.BLUE, ":", "D"),
     "dual": ("#B04A7A", "-", "h"),
     "dual, averaged": ("#B04A7A", "--", "p"),

@@ -8,8 +8,10 @@ from enforcement.plan import WAYS
 
 from isomortar.harness.statement import Statement
 
-#: As many constraints as control points, or the mortar method with slave and master exchanged.
-_ENOUGH = ("mortar, averaged", "mortar, swapped", "dual", "dual, averaged", "greville", "greville, averaged", "demko")
+#: As many constraints as control points, or the mortar method with slave and master exchanged, or a smooth law of slip.
+_ENOUGH = (
+    "mortar, averaged", "mortar, swapped", "mortar, elastic slip", "dual", "dual, averaged", "greville", "greville, averaged", "demko",
+)  # fmt: skip
 
 STATEMENTS: tuple[Statement[Evidence], ...] = (
     Statement(

@@ -1,4 +1,4 @@
-"""The study of enforcement: the paper's four ways of Section 3.2, by both projections, on its scenes."""
+"""The study of enforcement: the paper's ways of Section 3.2 and others, by both projections, on its scenes."""
 
 from __future__ import annotations
 

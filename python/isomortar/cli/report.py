@@ -99,7 +99,7 @@ def enforcement(
     out: Annotated[Path, typer.Option(file_okay=False, help="Folder of the report and its runs.")] = Path("results/enforcement"),
     cases: CasesOption = CASES,
 ) -> None:
-    """The four ways of enforcing contact that the paper names, beside each other: error, roughness and cost.
+    """The ways of enforcing contact, those that the paper names and others, beside each other: error, roughness and cost.
 
     What was run already is not run again. Exit code 1 if a run failed; the others are in the report all the same. Run it in a checkout,
     from its folder: the study stands in verification/enforcement.
