@@ -9,7 +9,7 @@ from projection.closest_points import Surface
 from projection.nearest import exhaustive
 from shapes import dome
 
-from isomortar.geometry.patch import FloatArray, Patch
+from isomortar.geometry.patch import Direction, FloatArray, Patch
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
 
@@ -119,6 +119,38 @@ def at_any_end(way: str, side: str) -> dict[str, float]:
         there = cone.points(cone.project(above, None if xi is None else xi[:1]).xi)
         apart = float(np.maximum(apart, np.linalg.norm(there - [0.0, 0.0, vertex], axis=1).max()))
     return {"foot": worst, "followed": float(np.mean(followed)), "vertex": apart}
+
+
+def disc(order: int, elements: int) -> Surface:
+    """The flat upper face of a plate about the z-axis, which is its pole; so many elements of any width round it."""
+    line, rim = Direction("N", 1, np.array([0.0, 0.0, 1.0, 1.0])), np.linspace(0.0, 1.0, elements + 1)
+    round_it = Direction("N", order, np.pad(rim, order, mode="edge"))
+    angle = 2 * np.pi * (np.arange(round_it.count) % (round_it.count - 1)) / (round_it.count - 1)
+    points = np.zeros((round_it.count, 2, 2, 3))
+    points[:, :, 0, :2] = np.column_stack([np.cos(angle), np.sin(angle)])[:, None]
+    points[:, 0, :, 2] = -0.5
+    return Surface(Patch((line, line, round_it), points.reshape(-1, 3), np.ones(4 * round_it.count)), "v1", closed="w")
+
+
+@case(
+    claim="Feet beside a pole are found all round, however few elements there are round it.",
+    grid={"order": [3, 4], "elements": [1, 2, 3]},
+    bounds={
+        "foot": Bound(at_most=2e-14, reason="round-off: of the surface's points; the face is flat, the foot is below its point"),
+        "followed": Bound(at_least=1.0, at_most=1.0, reason="definition: the face is smooth at its pole, a foot beside it follows"),
+    },
+)
+def few_elements_round(order: int, elements: int) -> dict[str, float]:
+    """Largest distance from the exact foot, share followed; as near the pole as squared distances tell, from any start and from none."""
+    surface, random = disc(order, elements), np.random.default_rng(9)
+    radius, angle = np.repeat([1e-2, 1e-4, 1e-7], 20), random.uniform(0.0, 2 * np.pi, 60)
+    feet = np.column_stack([radius * np.cos(angle), radius * np.sin(angle), np.zeros(60)])
+    targets = feet + random.uniform(-0.25, 0.25, (60, 1)) * np.array([0.0, 0.0, 1.0])
+    found = [surface.project(targets, xi) for xi in (None, starts(surface, 60, 10))]
+    return {
+        "foot": float(np.max([np.linalg.norm(surface.points(one.xi) - feet, axis=1).max() for one in found])),
+        "followed": float(np.mean([one.followed for one in found])),
+    }
 
 
 @case(
