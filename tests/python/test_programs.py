@@ -240,7 +240,7 @@ def test_what_calculix_writes_is_read() -> None:
 def test_what_getfem_answers_is_read() -> None:
     told = LagrangeProblem(solid(), "GetFEM", ENERGIES)
     assert getfem.description(told)["bodies"][0]["gauss"] == (2, 2, 2)
-    answer = '{"solves": 3, "converged": true, "displacements": %s, "forces": %s}\n'
+    answer = '{"solves": 3, "converged": true, "displacements": %s, "forces": %s, "friction": 0.5, "spurious": -0.25}\n'
     line = answer % (np.ones(told.nodes.size).tolist(), np.arange(len(told.prescribed)).tolist())
     stopped = line + '{"solves": 60, "converged": false}\n'
     found = getfem._outcome(told, Finished(End("measured", "", 0), stopped, "", 1.0))
@@ -248,6 +248,7 @@ def test_what_getfem_answers_is_read() -> None:
     np.testing.assert_allclose(found.steps[0].positions, told.nodes + 1.0)
     total = sum(reaction.force.sum() for reaction in found.steps[0].reactions)
     np.testing.assert_allclose(total, len(told.prescribed) * (len(told.prescribed) - 1) / 2)
+    assert found.steps[0].works == (0.5, -0.25)
 
 
 def test_a_program_is_run_to_its_end_with_what_it_says() -> None:

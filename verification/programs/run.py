@@ -25,6 +25,7 @@ FILES = (Path(getfem.__file__).with_name("getfem_job.py"),)
     bounds={
         "missing": Bound(at_most=0, reason="definition: load steps that are not there were not computed"),
         "force": Shown("on the supports, shape (load steps, supports, 3)"),
+        "works": Shown("of friction, and spurious, shape (load steps, 2); not a number where a program does not tell"),
         "words": Shown("of the program, where a load step does not converge"),
         "solves": Shown("linear solves of all load steps, of those that failed too"),
         "cpu_seconds": Shown("of the computation; of the whole process where the program has one of its own"),
@@ -38,6 +39,7 @@ def computed(scene: str, program: str) -> dict[str, Any]:
     return {
         "missing": problem.total_steps - len(found.steps),
         "force": [[reaction.force for reaction in step.reactions] for step in found.steps],
+        "works": [step.works for step in found.steps],
         "words": Words(found.words),
         "solves": found.solves,
         "cpu_seconds": found.cpu_seconds,

@@ -109,3 +109,27 @@ def enforcement(
     from isomortar.harness.study import study_module
 
     conduct(study_module(cases, "enforcement").study([name.strip() for name in scenes.split(",") if name.strip()]), out, jobs)
+
+
+@report.command()
+def masters(
+    quick: Annotated[bool, typer.Option("--quick", help="Coarse meshes, few load steps: it tries the machinery.")] = False,
+    jobs: Annotated[int, typer.Option("-j", "--jobs", min=1, help="Runs at the same time.")] = 1,
+    out: Annotated[
+        Path | None,
+        typer.Option(file_okay=False, help="Folder of the report and its runs.", show_default="results/masters or results/masters-quick"),
+    ] = None,
+    cases: CasesOption = CASES,
+) -> None:
+    """Masters with kinks: closest points and averaged normals on Lagrange elements, beside splines, and GetFEM on the block.
+
+    What was run already is not run again, and a run that was killed goes on from its last load step. A run that stops is shown with the
+    load step and the reason: closest points do on such masters. Exit code 1 if a statement could not be measured. Run it in a checkout,
+    from its folder: the study stands in verification/masters.
+
+    For example: `isomortar report masters --quick`
+    """
+    from isomortar.harness.study import study_module
+
+    folder = out or Path("results") / ("masters-quick" if quick else "masters")
+    conduct(study_module(cases, "masters").study(quick), folder, jobs)

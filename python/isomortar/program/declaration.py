@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
@@ -32,11 +33,14 @@ class LoadStep:
         Of all control points, or nodes, in the order of `Numbering`; NaN where the program has no node.
     reactions : tuple of Reaction
         One a support: what it exerts on its body.
+    works : tuple of float
+        Friction work and spurious work (theory 3.31) of all contacts within the load step; NaN: the program does not tell.
     """
 
     step: int
     positions: FloatArray
     reactions: tuple[Reaction, ...]
+    works: tuple[float, float] = (math.nan, math.nan)
 
 
 @dataclass(frozen=True)

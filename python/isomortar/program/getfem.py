@@ -6,6 +6,7 @@ What it is told and what it answers is JSON; `getfem_job` is read by the interpr
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -139,5 +140,6 @@ def _outcome(told: LagrangeProblem, finished: Finished) -> Outcome:
         forces = np.zeros(told.nodes.size)
         forces[told.prescribed] = found["forces"]
         positions = told.nodes + np.reshape(found["displacements"], (-1, 3))
-        steps.append(load_step(told.problem, len(steps) + 1, positions, forces.reshape(-1, 3)))
+        step = load_step(told.problem, len(steps) + 1, positions, forces.reshape(-1, 3))
+        steps.append(replace(step, works=(found["friction"], found["spurious"])))
     return Outcome(*ended(steps, told.problem, ending, words), tuple(steps), solves, finished.cpu_seconds)

@@ -1,7 +1,7 @@
 """What GetFEM does with a problem: ``python3 -I getfem_job.py PROBLEM.json``, with an interpreter that finds the module getfem.
 
 Needs nothing else but NumPy. Prints a line of JSON a load step: linear solves, whether it converged, and if so displacements of all
-nodes, and the forces that hold the prescribed unknowns in their place.
+nodes, the forces that hold the prescribed unknowns in their place, and the works of contact.
 """
 
 from __future__ import annotations
@@ -91,23 +91,51 @@ class HeldUnknowns:
             forces[self.places] = -self.model.variable(self.multiplier)
 
 
-def add_contact(model: Any, number: int, told: dict[str, Any], contact: dict[str, Any], bodies: list[MeshedBody]) -> list[Any]:
-    """Add contact with friction, its multipliers on the slave face; the model needs what is returned to stay alive."""
-    slave, master = (bodies[side["body"]] for side in contact["sides"])
-    # Regions of one mesh must differ: each side of each contact has a number of its own.
-    faces = [body.region(2 * number + k + 1, side) for k, (body, side) in enumerate(zip((slave, master), contact["sides"], strict=True))]
-    rules = [gf.MeshIm(body.mesh, gauss(side["gauss"])) for body, side in zip((slave, master), contact["sides"], strict=True)]
-    multiplier, friction = f"multiplier_{number}", f"friction_{number}"
-    model.add_filtered_fem_variable(multiplier, slave.field, faces[0])
-    model.add_initialized_data(friction, contact["friction"])
-    model.add_initialized_data(f"r_{number}", told["augmentation"])
-    brick = model.add_integral_large_sliding_contact_brick_raytracing(f"r_{number}", told["release"], friction)
-    ends = (slave.variable, multiplier, f"{slave.variable}_before")
-    model.add_slave_contact_boundary_to_large_sliding_contact_brick(brick, rules[0], faces[0], *ends)
-    model.add_master_contact_boundary_to_large_sliding_contact_brick(
-        brick, rules[1], faces[1], master.variable, f"{master.variable}_before"
-    )
-    return rules
+class TouchingFaces:
+    """Contact with friction of the model, its multipliers on the slave face: forces on the slave by reference area."""
+
+    def __init__(self, model: Any, number: int, told: dict[str, Any], contact: dict[str, Any], bodies: list[MeshedBody]) -> None:
+        slave, master = (bodies[side["body"]] for side in contact["sides"])
+        # Regions of one mesh must differ: each side of each contact has a number of its own.
+        sides = enumerate(zip((slave, master), contact["sides"], strict=True), 2 * number + 1)
+        faces = [body.region(region, side) for region, (body, side) in sides]
+        #: Kept, as the model needs them alive.
+        self.rules = [gf.MeshIm(body.mesh, gauss(side["gauss"])) for body, side in zip((slave, master), contact["sides"], strict=True)]
+        self.model, self.face, self.slave, self.master, self.multiplier = model, faces[0], slave, master, f"multiplier_{number}"
+        friction = f"friction_{number}"
+        model.add_filtered_fem_variable(self.multiplier, slave.field, faces[0])
+        model.add_fem_data(f"{self.multiplier}_before", model.mesh_fem_of_variable(self.multiplier))
+        model.add_initialized_data(friction, contact["friction"])
+        model.add_initialized_data(f"r_{number}", told["augmentation"])
+        brick = model.add_integral_large_sliding_contact_brick_raytracing(f"r_{number}", told["release"], friction)
+        ends = (slave.variable, self.multiplier, f"{slave.variable}_before")
+        model.add_slave_contact_boundary_to_large_sliding_contact_brick(brick, self.rules[0], faces[0], *ends)
+        model.add_master_contact_boundary_to_large_sliding_contact_brick(
+            brick, self.rules[1], faces[1], master.variable, f"{master.variable}_before"
+        )
+        self.rays = model.transformation_name_of_large_sliding_contact_brick(brick)
+
+    def begin(self) -> None:
+        """Begin a load step: multipliers of the last one are those before."""
+        self.model.set_variable(f"{self.multiplier}_before", self.model.variable(self.multiplier))
+
+    def works(self) -> tuple[float, float]:
+        """What friction, and pressures where the slave pressed before, took up in a load step, on the way that faces go past each other.
+
+        Along its normal a slave goes past the master's points where that is not the master's own: the work is spurious (theory 3.31).
+        """
+        slave, master, after = self.slave.variable, self.master.variable, self.multiplier
+        past = f"({slave}-{slave}_before-Interpolate({master},{self.rays})+Interpolate({master}_before,{self.rays}))"
+        normal = f"Normalized(Inv(Id(3)+Grad_{slave}')*Normal)"
+        climb, before = f"({past}.{normal})", f"({after}_before.{normal})"
+        friction = f"({after}.{normal})*{climb}-{after}.{past}"
+        spurious = f"-0.5*({after}.{normal}+{before})*(1-Heaviside({before}))*{climb}"
+        return self._integral(friction), self._integral(spurious)
+
+    def _integral(self, term: str) -> float:
+        """Over the slave's face, where rays meet the master."""
+        text = f"Interpolate_filter({self.rays},{term},1)"
+        return float(gf.asm_generic(self.rules[0], 0, text, self.face, self.model))
 
 
 def main(path: str) -> None:
@@ -118,28 +146,31 @@ def main(path: str) -> None:
     model = gf.Model("real")
     bodies = [MeshedBody(model, number, body, nodes) for number, body in enumerate(told["bodies"])]
     held = [HeldUnknowns(model, body, prescribed) for body in bodies]
-    kept = [add_contact(model, number, told, contact, bodies) for number, contact in enumerate(told["contacts"])]
+    contacts = [TouchingFaces(model, number, told, contact, bodies) for number, contact in enumerate(told["contacts"])]
     solver = "dense_lu" if model.nbdof() < SMALL else "mumps"
     for wanted in np.array(told["displacements"]):
         for body, support in zip(bodies, held, strict=True):
             support.put(wanted)
             model.set_variable(f"{body.variable}_before", model.variable(body.variable))
+        for contact in contacts:
+            contact.begin()
         solves, converged = model.solve("max_res", told["tolerance"], "max_iter", told["iterations"], "lsolver", solver)
-        print(json.dumps({"solves": int(solves), "converged": bool(converged)} | (_found(model, bodies, held, nodes) if converged else {})))
+        found = _found(model, bodies, held, contacts, nodes) if converged else {}
+        print(json.dumps({"solves": int(solves), "converged": bool(converged), **found}))
         if not converged:
             break
-    del kept
 
 
-def _found(model: Any, bodies: list[MeshedBody], held: list[HeldUnknowns], nodes: Any) -> dict[str, Any]:
-    """Displacements of all nodes and the forces of what is prescribed."""
+def _found(model: Any, bodies: list[MeshedBody], held: list[HeldUnknowns], contacts: list[TouchingFaces], nodes: Any) -> dict[str, Any]:
+    """Displacements of all nodes, the forces of what is prescribed, and the works of all contacts."""
     displacements = np.zeros(nodes.size)
     for body in bodies:
         displacements[body.unknowns] = model.variable(body.variable)
     forces = np.zeros(sum(len(support.places) for support in held))
     for support in held:
         support.forces(forces)
-    return {"displacements": displacements.tolist(), "forces": forces.tolist()}
+    friction, spurious = np.sum([contact.works() for contact in contacts], axis=0).tolist() if contacts else (0.0, 0.0)
+    return {"displacements": displacements.tolist(), "forces": forces.tolist(), "friction": friction, "spurious": spurious}
 
 
 if __name__ == "__main__":

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from time import process_time
 
+import numpy as np
+
 from isomortar.errors import ConvergenceError
 from isomortar.model.entities import Problem
 from isomortar.program.declaration import LoadStep, Outcome
@@ -30,7 +32,8 @@ class Isomortar:
         words = ""
         try:
             for result in Simulation(problem).run():
-                steps.append(LoadStep(result.step, result.state.positions, result.reactions))
+                friction, spurious = sum((contact.work for contact in result.contacts), np.zeros(2)).tolist()
+                steps.append(LoadStep(result.step, result.state.positions, result.reactions, (friction, spurious)))
                 solves += result.counters["solves"]
         except ConvergenceError as error:
             ending, words = "not converged", str(error)
