@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -10,7 +11,9 @@ from projection.averaged import uneven
 from isomortar._bindings import Response
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, case
+from isomortar.model.entities import Problem
 from isomortar.scene import Scene
+from isomortar.solve.record import Reaction
 from isomortar.solve.simulation import Simulation
 
 #: Load steps of the loop, and in each the places where forces are asked; how far it goes, over elements of length 0.2.
@@ -67,32 +70,50 @@ BLOCK = (
     *("bodies.master.mesh.elements=[5,5,1]", "stages.press.steps=1", "stages.press.motions.top.translate=[0,0,-0.1]"),
     *(f"stages.slide.steps={A_SIDE}", f"stages.slide.motions.top.translate=[{SIDES[0][0]},{SIDES[0][1]},0]"),
 )
+#: What is claimed of the loop.
+BALANCED = {
+    "apart": Bound(at_most=0.02, reason="discretisation: means of both ends of a load step; falls as h^2"),
+    "closed": Bound(at_most=1e-6, reason="round-off: the last state is the first one, to the tolerance of Newton's method"),
+    "sides": Bound(at_least=1e-5, reason="definition: a loop that takes nothing up on its way tells nothing"),
+}
+
+
+def loop() -> Problem:
+    """The block, pressed and moved once round without friction."""
+    text = Scene.load("block", BLOCK).to_toml()
+    for k, (x, y) in enumerate(SIDES[1:]):
+        text += f'\n[[stages]]\nname = "side{k}"\nsteps = {A_SIDE}\n[stages.motions.top]\ntranslate = [{x}, {y}, 0]\n'
+    return Scene.from_toml(text).problem()
+
+
+def balance(problem: Problem, reactions: Sequence[Sequence[Reaction]], spurious: Sequence[float]) -> dict[str, float]:
+    """Spurious work round the loop less that of the support, over the sum of the load steps' absolute values, which is `sides`.
+
+    Parameters
+    ----------
+    problem : Problem
+    reactions : sequence
+        Of the supports at every load step.
+    spurious : sequence of float
+        Of every load step.
+    """
+    top = [support.name for support in problem.supports].index("top")
+    forces, places = (np.array([getattr(step[top], name) for step in reactions]) for name in ("force", "centre"))
+    done = float(np.sum(0.5 * (forces[1:] + forces[:-1]) * np.diff(places, axis=0)))
+    round_it = np.array(spurious[1:])
+    size = float(np.abs(round_it).sum())
+    closed = float(np.abs(forces[-1] - forces[0]).max() / np.abs(forces[0]).max())
+    return {"apart": abs(float(round_it.sum()) - done) / size, "closed": closed, "sides": size}
 
 
 @case(
     claim="Around a closed loop without friction supports do the work that is recorded as spurious: it is no work of the dent that a slave "
     "takes along.",
-    bounds={
-        "apart": Bound(at_most=0.02, reason="discretisation: means of both ends of a load step; falls as h^2"),
-        "closed": Bound(at_most=1e-6, reason="round-off: the last state is the first one, to the tolerance of Newton's method"),
-        "sides": Bound(at_least=1e-5, reason="definition: a loop that takes nothing up on its way tells nothing"),
-    },
+    bounds=BALANCED,
     scene="block",
 )
 def around_in_a_run() -> dict[str, float]:
-    """Recorded work less that of the support, over the sum of the load steps' absolute values, which is `sides`; change of the force."""
-    text = Scene.load("block", BLOCK).to_toml()
-    for k, (x, y) in enumerate(SIDES[1:]):
-        text += f'\n[[stages]]\nname = "side{k}"\nsteps = {A_SIDE}\n[stages.motions.top]\ntranslate = [{x}, {y}, 0]\n'
-    problem = Scene.from_toml(text).problem()
+    """Apart, change of the force, and size."""
+    problem = loop()
     steps = list(Simulation(problem).run())
-    top = [support.name for support in problem.supports].index("top")
-    forces, places = (np.array([getattr(step.reactions[top], name) for step in steps]) for name in ("force", "centre"))
-    done = float(np.sum(0.5 * (forces[1:] + forces[:-1]) * np.diff(places, axis=0)))
-    spurious = np.array([step.contacts[0].spurious_work for step in steps[1:]])
-    size = float(np.abs(spurious).sum())
-    return {
-        "apart": abs(float(spurious.sum()) - done) / size,
-        "closed": float(np.abs(forces[-1] - forces[0]).max() / np.abs(forces[0]).max()),
-        "sides": size,
-    }
+    return balance(problem, [step.reactions for step in steps], [step.contacts[0].spurious_work for step in steps])

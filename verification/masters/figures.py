@@ -1,4 +1,4 @@
-"""Curves, spurious work and solves of a scene by way, and what refinement makes of the first two, as SVG text."""
+"""Curves, spurious work and tangents of a scene by way, and what refinement makes of the first two, as SVG text."""
 
 from __future__ import annotations
 
@@ -27,22 +27,22 @@ def curves(runs: Sequence[Found], reference: Found, title: str) -> str:
 
 
 def costs(runs: Sequence[Found], name: str) -> str:
-    """Spurious over friction work up to each load step, along averaged normals, and linear solves of each, of all."""
+    """Spurious over friction work up to each load step, along averaged normals, and tangents of each, of all runs."""
     with page_style():
         figure = Figure(figsize=(10.6, 3.3), layout="constrained")
-        work, solves = figure.subplots(1, 2)
+        work, tangents = figure.subplots(1, 2)
         for run in runs:
             steps = run.by_step("step")
             looks = _look(run)
             if run.method == "averaged":
                 work.plot(steps, 100.0 * run.shares, **looks)
-            solves.plot(steps, run.by_step("solves"), label=_label(run), **looks)
+            tangents.plot(steps, run.by_step("factorisations"), label=_label(run), **looks)
         work.set(ylabel=_WORK)
-        solves.set(ylabel="linear solves", ylim=(0.0, None))
-        for axes in (work, solves):
+        tangents.set(ylabel="tangents", ylim=(0.0, None))
+        for axes in (work, tangents):
             axes.set_xlabel("load step")
             axes.xaxis.set_major_locator(MaxNLocator(integer=True))
-        figure.legend(*solves.get_legend_handles_labels(), loc="outside upper left", ncols=6, handlelength=2.6)
+        figure.legend(*tangents.get_legend_handles_labels(), loc="outside upper left", ncols=6, handlelength=2.6)
         return svg_text(figure, f"{name}-costs")
 
 
@@ -53,10 +53,9 @@ def refinement(pairs: Sequence[tuple[Found, Found]]) -> str:
         elements = [kinks.planned.variant.elements[0] for kinks, _ in pairs]
         found = {_WORK: [abs(kinks.share) for kinks, _ in pairs], "distance from N2, %": [kinks.off(smooth) for kinks, smooth in pairs]}
         for axes, (label, values) in zip(figure.subplots(1, 2), found.items(), strict=True):
-            axes.loglog(elements, 100.0 * np.array(values), **look("L1"))
-            axes.set(xlabel="elements of the master along the drag", ylabel=label, xticks=elements, xticklabels=elements)
+            axes.semilogx(elements, 100.0 * np.array(values), **look("L1"))
+            axes.set(xlabel="elements of the master along the drag", ylabel=label, xticks=elements, xticklabels=elements, ylim=(0.0, None))
             axes.xaxis.set_minor_formatter(NullFormatter())
-            axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
         return svg_text(figure, "refinement")
 
 

@@ -32,14 +32,19 @@ def _section(runs: Sequence[Found]) -> dict[str, Any]:
     first = [run for run in runs if not run.planned.finer]
     averaged, smooth = ([run for run in runs if run.method == way] for way in ("averaged", "smooth"))
     pairs = refinement(averaged, smooth)
+    refined = [_finer(pairs), figures.refinement(pairs)] if pairs else []
     return {
         "setup": section,
-        "figures": [figures.curves(first, smooth[0], f"{section.scene}-masters"), figures.costs(first, section.scene)],
-        "refined": [figures.curves([run for pair in pairs for run in pair], pairs[-1][1], "Refined"), figures.refinement(pairs)]
-        if pairs
-        else [],
+        "figures": [figures.curves(first, smooth[0], f"{section.scene}: {section.quantity.name}"), figures.costs(first, section.scene)],
+        "refined": refined,
         "rows": [_row(run) for run in runs],
     }
+
+
+def _finer(pairs: Sequence[tuple[Found, Found]]) -> str:
+    """Curves on masters that are refined, beside the finest smooth one."""
+    finest = pairs[-1][1]
+    return figures.curves([run for pair in pairs for run in pair], finest, f"{finest.planned.section.scene}: finer masters")
 
 
 def _row(run: Found) -> dict[str, Any]:

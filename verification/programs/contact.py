@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from friction.spurious_work import BALANCED, balance, loop
 from programs.run import FILES, PROGRAMS
 from programs.solids import reactions, run
 
@@ -36,3 +37,18 @@ def pressed(program: str) -> dict[str, FloatArray]:
     problem = Scene.load("block", PRESS).problem()
     own, other = (reactions(run(PROGRAMS[name], problem))[0][:, 0] for name in (OWN, program))
     return {"force": np.abs(own - other).max(axis=1) / np.abs(own).max()}
+
+
+@case(
+    claim="Around a closed loop without friction supports do the work that GetFEM's contact is said to take up.",
+    tier="nightly",
+    bounds={**BALANCED, "friction": Bound(at_most=0.01, reason="definition: there is none, but for multipliers between nodes")},
+    files=FILES,
+)
+def spurious_in_getfem() -> dict[str, float]:
+    """As by `friction/around_in_a_run`; largest friction work of a load step, over the size of the spurious work."""
+    problem = loop()
+    steps = run(PROGRAMS["GetFEM"], problem).steps
+    friction, spurious = np.array([step.works for step in steps]).T
+    found = balance(problem, [step.reactions for step in steps], spurious.tolist())
+    return {**found, "friction": float(np.abs(friction).max()) / found["sides"]}

@@ -120,17 +120,29 @@ class TouchingFaces:
         self.model.set_variable(f"{self.multiplier}_before", self.model.variable(self.multiplier))
 
     def works(self) -> tuple[float, float]:
-        """What friction, and pressures where the slave pressed before, took up in a load step, on the way that faces go past each other.
+        """Friction work of a load step, and spurious work of points that press at both ends of it (theory 3.31).
 
-        Along its normal a slave goes past the master's points where that is not the master's own: the work is spurious (theory 3.31).
+        A slave point goes past the master's along its own normal, too, where that is not the master's: with rays of the end it climbs on
+        the faces as they were, with those of the start on the faces as they are now. Of both together the slave's own dent makes none.
         """
-        slave, master, after = self.slave.variable, self.master.variable, self.multiplier
+        slave, master, force = self.slave.variable, self.master.variable, self.multiplier
         past = f"({slave}-{slave}_before-Interpolate({master},{self.rays})+Interpolate({master}_before,{self.rays}))"
         normal = f"Normalized(Inv(Id(3)+Grad_{slave}')*Normal)"
-        climb, before = f"({past}.{normal})", f"({after}_before.{normal})"
-        friction = f"({after}.{normal})*{climb}-{after}.{past}"
-        spurious = f"-0.5*({after}.{normal}+{before})*(1-Heaviside({before}))*{climb}"
-        return self._integral(friction), self._integral(spurious)
+        climb, after, before = (f"({vector}.{normal})" for vector in (past, force, f"{force}_before"))
+        pressing = f"(1-Heaviside({after}))*(1-Heaviside({before}))"
+        mean = f"-0.25*({after}+{before})*{pressing}*{climb}"
+        friction, spurious = self._integral(f"{after}*{climb}-{force}.{past}"), self._integral(mean)
+        self._exchange()
+        spurious -= self._integral(mean)
+        self._exchange()
+        return friction, spurious
+
+    def _exchange(self) -> None:
+        """Exchange the start and the end of the load step."""
+        for name in (self.slave.variable, self.master.variable, self.multiplier):
+            after, before = (self.model.variable(f"{name}{end}").copy() for end in ("", "_before"))
+            self.model.set_variable(name, before)
+            self.model.set_variable(f"{name}_before", after)
 
     def _integral(self, term: str) -> float:
         """Over the slave's face, where rays meet the master."""
