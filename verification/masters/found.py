@@ -11,6 +11,7 @@ import numpy as np
 from masters.plan import INSTANTS, Planned
 from paper import measures
 from paper.outcome import Outcome, outcome
+from paper.statements import quotient
 
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness.runs import ByMethod, Computed
@@ -162,7 +163,10 @@ class Evidence(ByMethod[Found]):
         """Difference of the works of pushing the block, over the spurious works of both programs."""
         (other,) = (run.slid for run in ByMethod(self.getfem, GetFEM.name).by(GetFEM.name))
         own = {run.name: run.slid for run in self._linear_block}
-        return {name: abs(s["pushed"] - other["pushed"]) / (abs(s["spurious"]) + abs(other["spurious"])) for name, s in own.items()}
+        return {
+            name: quotient(abs(found["pushed"] - other["pushed"]), abs(found["spurious"]) + abs(other["spurious"]))
+            for name, found in own.items()
+        }
 
     @property
     def _linear_block(self) -> list[Found]:
@@ -170,7 +174,7 @@ class Evidence(ByMethod[Found]):
 
     def _refined(self, measure: Callable[[Found, Found], float]) -> Values:
         pairs = refinement(self.by(self.method), self.by("smooth"))
-        return {f"{fine[0].name} / {coarse[0].name}": measure(*fine) / measure(*coarse) for coarse, fine in pairwise(pairs)}
+        return {f"{fine[0].name} / {coarse[0].name}": quotient(measure(*fine), measure(*coarse)) for coarse, fine in pairwise(pairs)}
 
 
 def refinement(runs: Sequence[Found], smooth: Sequence[Found]) -> list[tuple[Found, Found]]:

@@ -96,12 +96,12 @@ class Statement(statement.Statement[Evidence]):
 def successive(runs: list[Outcome], measure: Callable[[Outcome], float]) -> dict[str, float]:
     """A measure of each run over that of the one before it in the series."""
     found = [(run.variant.name, measure(run)) for run in runs]
-    return {f"{b} / {a}": _ratio(y, x) for (a, x), (b, y) in pairwise(found)}
+    return {f"{b} / {a}": quotient(y, x) for (a, x), (b, y) in pairwise(found)}
 
 
 def ratio(run: Outcome, other: Outcome, measure: Callable[[Outcome], float]) -> dict[str, float]:
     """A measure of a run over that of another."""
-    return {f"{run.variant.name} / {other.variant.name}": _ratio(measure(run), measure(other))}
+    return {f"{run.variant.name} / {other.variant.name}": quotient(measure(run), measure(other))}
 
 
 def each(runs: list[Outcome], measure: Callable[[Outcome], float]) -> dict[str, float]:
@@ -109,7 +109,8 @@ def each(runs: list[Outcome], measure: Callable[[Outcome], float]) -> dict[str, 
     return {run.variant.name: measure(run) for run in runs}
 
 
-def _ratio(value: float, other: float) -> float:
+def quotient(value: float, other: float) -> float:
+    """A value over another; not a number where both are nothing."""
     return value / other if other else math.inf if value else math.nan
 
 
