@@ -199,3 +199,83 @@ subroutine surface_hulls(patch, axis, side, x, n, nelements, nlocal, centre, rad
   sample = real(hulls%sample, c_double)
   curvature = real(min(hulls%curvature, real(huge(1.0_c_double), wp)), c_double)
 end subroutine surface_hulls
+
+!> Points of a face of a patch with their derivatives, as the search for feet evaluates them (isomortar_nurbs_surface).
+!>
+!> - `patch`, `axis`, `side`, `x`, `n`, `status`: as in `slave_tables`. `xi`, `m`: coordinates of points, P, and their number.
+!> - `derivatives`: S, S,1, S,2, S,11, S,12, S,22, L/P^order.
+subroutine surface_points(patch, axis, side, x, n, xi, m, derivatives, status)
+  use iso_c_binding, only: c_double, c_int, c_int64_t
+  use isomortar_api_descriptors, only: find
+  use isomortar_base_kinds, only: wp
+  use isomortar_nurbs_direction, only: element_at
+  use isomortar_nurbs_patch, only: patch_t
+  use isomortar_nurbs_surface, only: face_of, homogeneous_net, surface_point, surface_t
+  implicit none
+  integer(c_int64_t), intent(in) :: patch
+  integer(c_int), intent(in) :: n, m, axis, side
+  real(c_double), intent(in) :: x(3, n), xi(2, m)
+  real(c_double), intent(out) :: derivatives(3, 6, m)
+  integer(c_int), intent(out) :: status
+  type(patch_t), pointer :: body
+  type(surface_t) :: surface
+  real(wp), allocatable :: net(:, :, :)
+  real(wp) :: s(3, 6)
+  integer :: k, place(2)
+
+  derivatives = 0.0_c_double
+  status = 0
+  call find(patch, body, status)
+  if (status /= 0) return
+  surface = face_of(body, axis, side)
+  allocate (net(4, surface%direction(1)%order + 1, surface%direction(2)%order + 1))
+  do k = 1, m
+    place = [element_at(surface%direction(1), real(xi(1, k), wp)), element_at(surface%direction(2), real(xi(2, k), wp))]
+    call homogeneous_net(surface, real(x, wp), place, net)
+    call surface_point(surface, place, net, real(xi(:, k), wp), s)
+    derivatives(:, :, k) = real(s, c_double)
+  end do
+end subroutine surface_points
+
+!> What the search of a whole face learns of each element before it is searched (isomortar_contact_hulls).
+!>
+!> - `patch`, `axis`, `side`, `x`, `n`, `status`: as in `slave_tables`. `nelements`: of the face.
+!> - `targets`, `ways`, `m`: points, L, the ways from these to some place of the face, L, and their number.
+!> - `xi`: coordinates of the sample of the element that is nearest to the point, P.
+!> - `farther`: 1 where the element is found to be farther than that place.
+subroutine surface_prospects(patch, axis, side, x, n, targets, ways, m, nelements, xi, farther, status)
+  use iso_c_binding, only: c_double, c_int, c_int64_t
+  use isomortar_api_descriptors, only: find
+  use isomortar_base_kinds, only: wp
+  use isomortar_contact_hulls, only: enclose, hulls_t, is_farther, nearest_sample
+  use isomortar_nurbs_patch, only: patch_t
+  use isomortar_nurbs_surface, only: face_of, surface_t
+  implicit none
+  integer(c_int64_t), intent(in) :: patch
+  integer(c_int), intent(in) :: n, m, nelements, axis, side
+  real(c_double), intent(in) :: x(3, n), targets(3, m), ways(3, m)
+  real(c_double), intent(out) :: xi(2, nelements, m)
+  integer(c_int), intent(out) :: farther(nelements, m), status
+  type(patch_t), pointer :: body
+  type(surface_t) :: surface
+  type(hulls_t) :: hulls
+  real(wp) :: sample(2), square, target(3), way(3)
+  integer :: e, k
+
+  xi = 0.0_c_double
+  farther = 0
+  status = 0
+  call find(patch, body, status)
+  if (status /= 0) return
+  surface = face_of(body, axis, side)
+  call enclose(surface, real(x, wp), hulls)
+  do k = 1, m
+    target = real(targets(:, k), wp)
+    way = real(ways(:, k), wp)
+    do e = 1, nelements
+      call nearest_sample(surface, hulls, e, target, sample, square)
+      xi(:, e, k) = real(sample, c_double)
+      farther(e, k) = merge(1, 0, is_farther(hulls, e, target, way, norm2(way)))
+    end do
+  end do
+end subroutine surface_prospects

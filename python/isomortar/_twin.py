@@ -169,6 +169,31 @@ def surface_hulls(master: FaceArrays, positions: FloatArray) -> Hulls:
     return Hulls(centre, radius, frame.T.transpose(0, 2, 1), half.T, corner.T, sample.T, curvature)
 
 
+def surface_points(master: FaceArrays, positions: FloatArray, xi: FloatArray) -> FloatArray:
+    """Points of a master's face as the search evaluates them: S, S,1, S,2, S,11, S,12, S,22, shape (points, 6, 3)."""
+    handle = _DESCRIPTORS.handle("patch", master.patch, PatchArrays)
+    derivatives, status = _extended.surface_points(handle, master.axis, master.side, positions.T, xi.T)
+    _check(status, 0)
+    return np.ascontiguousarray(derivatives.T)
+
+
+def surface_prospects(master: FaceArrays, positions: FloatArray, targets: FloatArray, ways: FloatArray) -> tuple[FloatArray, IntArray]:
+    """What the search learns of each element of a master's face first, for points with ways from them to some place of the face.
+
+    Returns
+    -------
+    xi : ndarray, shape (points, elements, 2)
+        Coordinates of the nearest sample of each element.
+    farther : ndarray of int32, shape (points, elements)
+        1 where an element is found to be farther from the point than that place.
+    """
+    handle = _DESCRIPTORS.handle("patch", master.patch, PatchArrays)
+    count = int(np.prod(master.elements))
+    xi, farther, status = _extended.surface_prospects(handle, master.axis, master.side, positions.T, targets.T, ways.T, count)
+    _check(status, 0)
+    return xi.T, farther.T
+
+
 def _check(status: int, place: int) -> None:
     if status:
         raise KernelError(f"the extended-precision twin returned status {status} at {place - 1}", place - 1)
