@@ -18,6 +18,7 @@ from isomortar.harness.collection import collect
 from isomortar.harness.references import finder
 from isomortar.harness.runner import dask_cluster, run, select, start
 from isomortar.harness.store import Store
+from isomortar.harness.worker import Worker, task_of
 
 
 def test_a_run_that_is_killed_leaves_no_green_page(root, monkeypatch):
@@ -50,6 +51,15 @@ def test_killed_and_resumed(root):
         for time_of in ("seconds", "cpu_seconds", "peak_memory"):
             del cell["measurement"][time_of]
     assert report["cells"] == whole["cells"]
+
+
+def test_a_case_that_puts_something_in_the_place_of_its_input_ends_no_process(root):
+    """As tests do that run inside of one; what is asked next is answered all the same, and a case reads no task."""
+    change = "    import os, sys\n    read = sys.stdin.read()\n    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)\n    assert read == ''\n    return {"
+    next(root.glob("family_*")).joinpath("good.py").write_text(GOOD.replace("    return {", change))
+    first, second, *_ = (cell for case in collect(root) for cell in case.cells)
+    with Worker() as worker:
+        assert [worker.measure(task_of(cell)).ending for cell in (first, second, first)] == ["measured"] * 3
 
 
 def cluster(**options):

@@ -108,10 +108,13 @@ def serve(measure: Callable[[Cell], Measurement] = measure) -> None:
     own_process()
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a case prints must not get among the answers
+    asked = os.fdopen(os.dup(0))
+    with open(os.devnull) as nothing:
+        os.dup2(nothing.fileno(), 0)  # nor must it read the tasks, or end this process by putting an end in their place
     tasks: queue.SimpleQueue[str] = queue.SimpleQueue()
 
     def read() -> None:
-        for line in sys.stdin:
+        for line in asked:
             tasks.put(line)
         end_now(descendants(os.getpid()))  # the run that asked is gone: drop what is being measured, other programs too
         os._exit(0)
