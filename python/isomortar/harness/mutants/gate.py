@@ -94,8 +94,10 @@ class Gate:
             name = self._most_promising(left, done, folder)
             measurement, red = self._red(bench, program, name)
             if red:
-                if measurement.ending != "measured" and self._red(bench, self._sound, name)[1]:
-                    raise IsomortarError(f"{name} is red on the sound program too, which it was not before: this machine is in trouble")
+                if measurement.ending != "measured" and (too := self._red(bench, self._sound, name)[1]):
+                    raise IsomortarError(
+                        f"{name} is red on the sound program too, which it was not before: this machine is in trouble, or busy ({too})"
+                    )
                 return Finding(name, red, tuple(done))
             done.append(name)
         return Finding(None, "", tuple(done))
