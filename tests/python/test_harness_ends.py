@@ -55,7 +55,8 @@ def test_killed_and_resumed(root):
 
 def test_a_case_that_puts_something_in_the_place_of_its_input_ends_no_process(root):
     """As tests do that run inside of one; what is asked next is answered all the same, and a case reads no task."""
-    change = "    import os, sys\n    read = sys.stdin.read()\n    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)\n    assert read == ''\n    return {"
+    reads = "    import os, sys\n    assert sys.stdin.read() == ''\n"
+    change = reads + "    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)\n    return {"
     next(root.glob("family_*")).joinpath("good.py").write_text(GOOD.replace("    return {", change))
     first, second, *_ = (cell for case in collect(root) for cell in case.cells)
     with Worker() as worker:

@@ -109,7 +109,7 @@ def serve(measure: Callable[[Cell], Measurement] = measure) -> None:
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a case prints must not get among the answers
     asked = os.fdopen(os.dup(0))
-    with open(os.devnull) as nothing:
+    with Path(os.devnull).open() as nothing:
         os.dup2(nothing.fileno(), 0)  # nor must it read the tasks, or end this process by putting an end in their place
     tasks: queue.SimpleQueue[str] = queue.SimpleQueue()
 
