@@ -134,6 +134,16 @@ def test_cuts_of_the_refinement_are_its_own() -> None:
     assert found["cuts", "averaged"][1] == {"all": 0.0}
 
 
+def test_a_smooth_master_that_stops_is_compared_as_far_as_it_came() -> None:
+    short = {name: np.array(result(IRON, "N2-8x4").measurement.numbers[name])[:6] for name in ("step", "time", "stage", "share", "force")}
+    runs = made_up(IRON, **{"N2-8x4": short})
+    evidence = Evidence(runs, "averaged")
+    assert evidence.apart() == {"iron L1 8 x 4 / iron L1 5 x 2": pytest.approx(1.0)}
+    assert evidence.without == "iron N2 8 x 4 (smooth) after load step 6"
+    at_once = {name: values[:3] for name, values in short.items()}
+    assert np.isnan(list(Evidence(made_up(IRON, **{"N2-8x4": at_once}), "averaged").apart().values())).all()
+
+
 def stopped(run: Found, reason: str) -> Found:
     """The run, of which no load step is left."""
     return replace(

@@ -47,11 +47,11 @@ def costs(runs: Sequence[Found], name: str) -> str:
 
 
 def refinement(pairs: Sequence[tuple[Found, Found]]) -> str:
-    """Shares of spurious work, and distances from the curve of a smooth master of the same elements, over elements along the drag."""
+    """Shares of spurious work, and how far means are off those of a smooth master of the same elements, over elements along the drag."""
     with page_style():
         figure = Figure(figsize=(7.2, 3.3), layout="constrained")
         elements = [kinks.planned.variant.elements[0] for kinks, _ in pairs]
-        found = {_WORK: [abs(kinks.share) for kinks, _ in pairs], "distance from N2, %": [kinks.off(smooth) for kinks, smooth in pairs]}
+        found = {_WORK: [abs(kinks.share) for kinks, _ in pairs], "mean off that of N2, %": [kinks.off(smooth) for kinks, smooth in pairs]}
         for axes, (label, values) in zip(figure.subplots(1, 2), found.items(), strict=True):
             axes.semilogx(elements, 100.0 * np.array(values), **look("L1"))
             axes.set(xlabel="elements of the master along the drag", ylabel=label, xticks=elements, xticklabels=elements, ylim=(0.0, None))

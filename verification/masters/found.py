@@ -97,8 +97,11 @@ class Found(Computed):
         return slide(self.planned, self.by_step("force").reshape(-1, 3), works)
 
     def off(self, other: Found) -> float:
-        """Distance of the curve from another's over the norm of that; NaN where one of them stopped."""
-        return np.nan if self.words or other.words else measures.deviation(self.outcome, other.outcome)
+        """How far the mean is off another's, both over the load steps of the window that both have; NaN: there is none."""
+        curves = [run.outcome.curve[run.outcome.window] if run.outcome.steps else np.zeros(0) for run in (self, other)]
+        common = min(map(len, curves))
+        own, theirs = (float(curve[:common].mean()) if common else np.nan for curve in curves)
+        return abs(own / theirs - 1.0)
 
 
 @dataclass(frozen=True)
@@ -156,7 +159,10 @@ class Evidence(ByMethod[Found]):
         return self._refined(lambda kinks, _: abs(kinks.share))
 
     def apart(self) -> Values:
-        """Distance from the curve on a smooth master of the same elements, over that on the next coarser ones."""
+        """How far the mean is off that on a smooth master of the same elements, over the same on the next coarser ones."""
+        pairs = refinement(self.by(self.method), self.by("smooth"))
+        stopped = [run for pair in pairs for run in pair if run.missing]
+        self.left_out.extend(f"{run.name} ({run.method}) after load step {run.outcome.steps}" for run in stopped)
         return self._refined(Found.off)
 
     def beside_getfem(self) -> Values:

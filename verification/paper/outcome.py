@@ -75,11 +75,11 @@ class Outcome:
 
     @property
     def window(self) -> slice:
-        """The recorded load steps within the section's window."""
+        """The recorded load steps within the section's window; empty where the run did not come there."""
         last = self.array("stage") == len(self.section.load(self.variant, self.method).tables.stages) - 1
         share, (begin, end) = self.array("share"), self.section.window
         within = np.flatnonzero(last & (share >= begin - 1e-9) & (share <= end + 1e-9))
-        return slice(int(within[0]), int(within[-1]) + 1)
+        return slice(int(within[0]), int(within[-1]) + 1) if len(within) else slice(0, 0)
 
     @contextmanager
     def results(self) -> Iterator[Results]:
