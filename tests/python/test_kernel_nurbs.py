@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from fractions import Fraction
 from itertools import pairwise
 
@@ -35,7 +36,8 @@ DIRECTIONS = {
 }
 
 
-def bspline(knots: list[mpmath.mpf], i: int, p: int, u: mpmath.mpf) -> mpmath.mpf:
+@functools.cache
+def bspline(knots: tuple[mpmath.mpf, ...], i: int, p: int, u: mpmath.mpf) -> mpmath.mpf:
     """Cox-de Boor by its definition."""
     if p == 0:
         return mpmath.mpf(knots[i] <= u < knots[i + 1])
@@ -47,7 +49,7 @@ def bspline(knots: list[mpmath.mpf], i: int, p: int, u: mpmath.mpf) -> mpmath.mp
     return total
 
 
-def lagrange(boundaries: list[mpmath.mpf], order: int, i: int, u: mpmath.mpf) -> mpmath.mpf:
+def lagrange(boundaries: tuple[mpmath.mpf, ...], order: int, i: int, u: mpmath.mpf) -> mpmath.mpf:
     """The nodal function of node i by its product."""
     for element, (low, high) in enumerate(pairwise(boundaries)):
         own = i - element * order
@@ -61,7 +63,7 @@ def lagrange(boundaries: list[mpmath.mpf], order: int, i: int, u: mpmath.mpf) ->
 
 def exact_line(direction: Direction, u: float) -> list[list[mpmath.mpf]]:
     """All functions of a direction at u with their derivatives to order three, from the polynomial through nearby values."""
-    knots = [mpmath.mpf(float(k)) for k in direction.knots]
+    knots = tuple(mpmath.mpf(float(k)) for k in direction.knots)
     if direction.family == "N":
         functions = [lambda x, i=i: bspline(knots, i, direction.order, x) for i in range(direction.count)]
     else:

@@ -383,7 +383,7 @@ def test_memory_stays_bounded_over_many_cycles():
 
 
 def test_threads_work_on_their_own_factorisations_at_the_same_time():
-    matrix = held(block_of_elements(6, 6, 6), np.arange(3 * 49))
+    matrix = held(block_of_elements(4, 4, 4), np.arange(3 * 25))
     indptr, indices, values = compressed(matrix)
     b = np.random.default_rng(9).standard_normal(len(indptr) - 1)
     expected = SparseLU(indptr, indices).factorise(values).solve(b)

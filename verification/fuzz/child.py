@@ -8,6 +8,7 @@ from try to try would be as quick, but a limit of time or memory is of a process
 from __future__ import annotations
 
 import contextlib
+import functools
 import importlib
 import json
 import os
@@ -24,10 +25,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from isomortar.cli import main
-
-#: What the program loads when it needs it: here once, and not in every child.
-for name in ("cli.commands", "cli.progress", "driver", "results.pictures", "results.paraview"):
-    importlib.import_module(f"isomortar.{name}")
 
 #: Endings that are none of the program's mistakes.
 FINE = ("right", "refused", "stopped")
@@ -47,8 +44,16 @@ class Wrong(Exception):  # noqa: N818 (what was seen, not a mistake of this prog
     """Something was seen that must never be."""
 
 
+@functools.cache
+def load() -> None:
+    """Load what the program loads when it needs it: here once, and not in every child."""
+    for name in ("cli.commands", "cli.progress", "driver", "results.pictures", "results.paraview"):
+        importlib.import_module(f"isomortar.{name}")
+
+
 def tried(action: Callable[[Path], Ending]) -> Ending:
     """The ending of an action in a child process; the action is given a folder of its own."""
+    load()
     with tempfile.TemporaryDirectory(prefix="fuzz-") as folder:
         reader, writer = os.pipe()
         child = os.fork()

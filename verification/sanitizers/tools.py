@@ -111,10 +111,8 @@ def watched(tool: Tool, kernel: Path, package: Path, work: Path, words: Sequence
 
 
 def _words_of(text: str) -> str:
-    """The last lines without gfortran's warnings of copies of arrays, and without Python's list of modules."""
-    return "\n".join(
-        [line for line in text.splitlines() if not re.match(r"At line|Fortran runtime warning|Extension modules|$", line)][-30:]
-    )
+    """The last lines, without Python's list of modules."""
+    return "\n".join([line for line in text.splitlines() if not re.match(r"Extension modules|$", line)][-30:])
 
 
 def _preloaded(libraries: str) -> str:
