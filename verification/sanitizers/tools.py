@@ -122,7 +122,9 @@ def _preloaded(libraries: str) -> str:
 def _of_kernel(path: Path) -> list[str]:
     """What memcheck found with the kernel at work: its own frames, or what it called."""
     reports = []
-    for error in Xml.parse(path).getroot().iter("error"):
+    for _, error in Xml.iterparse(path):  # of the interpreter's leaks there are hundreds of megabytes: each is forgotten once it is read
+        if error.tag != "error":
+            continue
         frames = list(error.find("stack").iter("frame"))  # type: ignore[union-attr]
         if any(Path(frame.findtext("obj", "")).name == _KERNEL for frame in frames) and not _is_another_s(
             error.findtext("kind", ""), frames
@@ -131,6 +133,7 @@ def _of_kernel(path: Path) -> list[str]:
                 f"{frame.findtext('fn', '?')} ({frame.findtext('file', '?')}:{frame.findtext('line', '?')})" for frame in frames[:6]
             )
             reports.append(f"{error.findtext('kind')}: {where}")
+        error.clear()
     return reports
 
 
