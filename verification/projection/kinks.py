@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from shapes import roof
 
 from isomortar import _bindings
 from isomortar._bindings import FaceArrays, Projections, Response, SlaveArrays
-from isomortar.geometry.patch import FloatArray
+from isomortar.geometry.patch import FloatArray, Patch
+from isomortar.geometry.primitives import box
+from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
 from isomortar.model.numbering import patch_arrays
 
@@ -24,7 +28,11 @@ def feet(
     bend: str, order: int, targets: FloatArray, starts: FloatArray | None, across: int = 0
 ) -> tuple[Projections, FloatArray, FloatArray]:
     """Projections of points onto the upper face of a roof, their gaps, and the normals there (the forces of unit pressures)."""
-    patch = roof(order, SLOPE if bend == "valley" else -SLOPE, across)
+    return feet_on(roof(order, SLOPE if bend == "valley" else -SLOPE, across), targets, starts)
+
+
+def feet_on(patch: Patch, targets: FloatArray, starts: FloatArray | None) -> tuple[Projections, FloatArray, FloatArray]:
+    """The same on face w1 of a patch."""
     own, n = len(patch.weights), len(targets)
     arrays = patch_arrays(patch, np.arange(own, dtype=np.int32))
     master = FaceArrays(arrays, 3, 1)
@@ -102,3 +110,55 @@ def near(bend: str, across: int) -> dict[str, float]:
         errors["fixed"].append(np.abs(projections.fixed[:, across] - (np.abs(angle) < alpha)).max())
         errors["slip"].append(np.abs(projections.xi[:, 1 - across] - along).max())
     return {name: float(np.max(values)) for name, values in errors.items()}
+
+
+#: Half lengths of a body with a ridge along either of its sides, and how its upper face falls off before and behind each of them.
+SIDES = {"first": (40.0, 1.0), "second": (1.0, 40.0)}
+FALLS = np.array([[0.2, 0.8], [0.3, 0.5]])
+#: Where feet are: behind or before a ridge, as shares of the half lengths; at 0 on it.
+PLACES = np.array([[0.0, 0.3], [0.0, -0.3], [0.3, 0.0], [-0.3, 0.0], [0.0, 0.0]])
+
+
+def ridges(halves: FloatArray) -> Patch:
+    """Two by two flat elements that fall off from x = 0 and from y = 0, each otherwise, on a body that is deep enough."""
+    patch = mesh(box((-halves[0], -halves[1], -80.0), (halves[0], halves[1], 0.0)), ("L", "L", "L"), (1, 1, 1), (2, 2, 1))
+    points = patch.control_points.copy()
+    top = points[:, 2] > -0.5
+    falls = [np.where(points[top, a] > 0.0, FALLS[a, 1], FALLS[a, 0]) for a in (0, 1)]
+    points[top, 2] = -sum(fall * np.abs(points[top, a]) for a, fall in enumerate(falls))
+    return replace(patch, control_points=points)
+
+
+def _faces(place: FloatArray) -> FloatArray:
+    """Unit normals of the faces that meet at a place, in the order of their elements."""
+    behind = [(0, 1) if place[a] == 0.0 else (int(place[a] > 0.0),) for a in (0, 1)]
+    normals = np.array([[(2 * i - 1) * FALLS[0, i], (2 * j - 1) * FALLS[1, j], 1.0] for j in behind[1] for i in behind[0]])
+    return normals / np.linalg.norm(normals, axis=1)[:, None]
+
+
+@case(
+    claim="On a line, or where lines cross, the normal is the way to a point, and the faces' mean one nearer than 1e-10 of the element.",
+    grid={"longer": list(SIDES)},
+    bounds={
+        "mean": Bound(at_most=1e-14, reason="round-off: of unit normals, just below the distance of theory 3.14"),
+        "way": Bound(at_most=1e-4, reason="round-off: of positions up to 40 over a distance of 1e-8, just above it"),
+        "gap": Bound(at_most=1e-4, reason="round-off: the same, of gaps by share of the distance"),
+        "apart": Bound(at_least=0.02, at_most=1.0, reason="definition: the least by which the mean differs from the way"),
+    },
+)
+def at_no_distance(longer: str) -> dict[str, float]:
+    """Largest errors of normals and gaps, over places on lines, at half and at twice the least distance that has a direction."""
+    halves, errors = np.array(SIDES[longer]), {name: [0.0] for name in ("mean", "way", "gap")}
+    patch, apart = ridges(halves), []
+    for place in PLACES:
+        normals = _faces(place)
+        mean, way = (n / np.linalg.norm(n) for n in (normals.sum(axis=0), np.linspace(1.0, 3.0, len(normals)) @ normals))
+        falls = np.where(place > 0.0, FALLS[:, 1], FALLS[:, 0])  # of the lower element
+        least = 1e-10 * float(np.max(halves * np.sqrt(1.0 + falls**2)))
+        foot = np.append(halves * place, -np.sum(falls * np.abs(halves * place)))
+        for share, name, normal in ((0.5, "mean", mean), (2.0, "way", way)):
+            _, gap, found = feet_on(patch, (foot + share * least * way)[None], None)
+            errors[name].append(np.abs(found[0] - normal).max())
+            errors["gap"].append(abs(gap[0] / (share * least) + way @ normal))
+        apart.append(np.linalg.norm(mean - way))
+    return {name: float(np.max(values)) for name, values in errors.items()} | {"apart": float(np.min(apart))}
