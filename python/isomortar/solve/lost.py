@@ -49,8 +49,9 @@ class LostDigits:
     def _left(self, balance: Balance, own: slice, size: float) -> float:
         """The largest sum of a body's unbalanced forces, where it is and moved as it stands: one alone may be small by chance."""
         free = ~self._equilibrium.supports.held[own]
-        moved = [self._equilibrium.solid.forces(balance.positions + k * size * np.array(APART)) for k in range(THROWS)]
-        return float(np.max([np.linalg.norm(((balance.total - balance.internal + forces)[own] * free).sum(axis=0)) for forces in moved]))
+        moved = (self._equilibrium.solid.forces(balance.positions + k * size * np.array(APART)) for k in range(1, THROWS))
+        thrown = [balance.total, *(balance.total - balance.internal + forces for forces in moved)]
+        return float(np.max([np.linalg.norm((forces[own] * free).sum(axis=0)) for forces in thrown]))
 
     def _borne(self, bodies: set[str], size: float, result: StepResult) -> float:
         """The largest force of a support or contact on bodies that are one, or moment of a support over their size."""
