@@ -7,15 +7,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from isomortar.errors import ResultsError
 from isomortar.geometry.patch import Direction
 from isomortar.model.numbering import Numbering
-from isomortar.results import Results, ResultsWriter
+from isomortar.results import Results, ResultsWriter, bodies
 from isomortar.results.bodies import draw_bodies
 from isomortar.results.curves import draw_curve, draw_reactions
+from isomortar.results.fields import contact_surfaces
 from isomortar.results.maps import draw_map
 from isomortar.results.pictures import plot
 from isomortar.results.rendering import Camera, Canvas
@@ -93,6 +95,36 @@ def test_places_of_control_points() -> None:
 def test_bodies_are_drawn_with_the_pressure_in_colour() -> None:
     figure = draw_bodies(problem(), quiet(3), 0)
     assert [axes.get_title(loc="left") for axes in figure.axes[:2]] == ["rolling, load step 3 (press)", "tyre from the master's side"]
+
+
+def parts(axes: Axes) -> int:
+    """Quadrilaterals that are drawn."""
+    return sum(len(collection.get_facecolors()) for collection in axes.collections)
+
+
+def test_both_pictures_of_bodies_show_the_contact_face(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Less is drawn in either where contact faces have next to no quadrilaterals."""
+    shown = [parts(axes) for axes in draw_bodies(problem(), quiet(3), 0).axes[:2]]
+    monkeypatch.setattr(bodies, "_FINENESS_OF_CONTACT", (1, 1))
+    left = [parts(axes) for axes in draw_bodies(problem(), quiet(3), 0).axes[:2]]
+    assert np.all(np.subtract(shown, left) > 1000)
+
+
+def test_the_longer_side_of_a_face_runs_to_the_right_with_all_that_is_drawn_on_it() -> None:
+    """Knot lines, control points, samples and letters are turned alike: each lies within the face as it is drawn."""
+    made, step = problem(), step_result(1)
+    surface = contact_surfaces(made, step)[0]
+    assert surface.lengths[0] < surface.lengths[1]  # so it has to be turned
+    right, up = surface.directions[::-1]
+    axes = draw_map(made, step, 0).axes[0]
+    assert (axes.get_xlabel()[-1], axes.get_ylabel()[-1]) == surface.letters[::-1]
+    upright, level = (np.array(lines.get_segments()) for lines in axes.collections[1:3])
+    assert np.array_equal(upright[:, 0, 0], right.boundaries)
+    assert np.array_equal(upright[0, :, 1], up.boundaries[[0, -1]])
+    assert np.array_equal(level[:, 0, 1], up.boundaries)
+    assert np.array_equal(level[0, :, 0], right.boundaries[[0, -1]])
+    ratio = surface.lengths[0] / np.ptp(up.boundaries) / (surface.lengths[1] / np.ptp(right.boundaries))
+    assert axes.get_aspect() == pytest.approx(ratio)
 
 
 def square(height: float, size: float) -> np.ndarray:

@@ -101,3 +101,11 @@ def test_a_side_that_pushes_along_the_plane_leaves_friction():
     pushing, _ = held(cube((0,), Motion(), Motion((0.3, 0.0, 0.0))), 3.0)
     np.testing.assert_array_equal(pushing.free, np.tile(np.eye(2), (4, 1, 1)))
     np.testing.assert_array_equal(pushing.pushed[on_side], [[1.0, 0.0], [1.0, 0.0]])
+
+
+@pytest.mark.parametrize(
+    ("motion", "moves"),
+    [(Motion(), False), (Motion((0.0, 0.0, -0.1)), True), (Motion(rotate=30.0), True), (Motion((0.1, 0.0, 0.0), -30.0), True)],
+)
+def test_a_motion_is_a_translation_or_a_turn(motion: Motion, moves: bool) -> None:
+    assert motion.moves is moves
