@@ -327,27 +327,26 @@ class C:
 """
 
 
+#: Of its functions.
+BODIES = [*range(8, 17), 20]
+
+
 @pytest.mark.parametrize(
     ("number", "lines"),
     [
-        (1, None),
-        (2, range(4, 17)),
-        (3, range(4, 17)),
-        (4, range(8, 14)),
-        (5, range(11, 14)),
-        (6, range(14, 17)),
-        (7, None),
+        (1, BODIES), (2, range(4, 17)), (3, range(4, 17)), (4, range(8, 14)), (5, range(11, 14)), (6, range(14, 17)), (7, BODIES),
         (8, range(20, 21)),
     ],
-)
+)  # fmt: skip
 def test_a_line_is_of_the_statement_that_runs_it(number, lines):
     line = 1 + STATEMENTS[: STATEMENTS.index(str(number))].count("\n")
-    assert statements_at(STATEMENTS, [line]) == (None if lines is None else set(lines))
+    assert statements_at(STATEMENTS, [line]) == set(lines)
 
 
 def test_lines_are_of_all_their_statements():
     assert statements_at(STATEMENTS, [9, 15]) == {*range(8, 17)}
-    assert statements_at(STATEMENTS, [1, 15]) is None
+    assert statements_at(STATEMENTS, [15, 1]) == set(BODIES)
+    assert statements_at(STATEMENTS[: STATEMENTS.index("@")], [2]) is None
 
 
 RUN_CASE = """
