@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-import isomortar
 from isomortar import cli
 from isomortar.cli.progress import Progress
 from isomortar.errors import InputError
@@ -285,26 +284,26 @@ RUNS = {
 def test_what_is_doubtful_of_a_run_is_told_once(case: str) -> None:
     """Contact that pulls, that opens for good, or whose slave goes past its master; and nothing of a sound run."""
     text, words = RUNS[case]
-    observer = Listens()
+    observer = Warned()
     list(Simulation(Scene.from_toml(text).problem(), observer).run())
     before = ("in each load step", "at the start", "nothing will happen")  # what is doubtful already before the first load step
     said = [warning for warning in observer.said if not any(word in warning for word in before)]
     assert [word in warning for word, warning in zip(words, said, strict=True)] == [True] * len(words), said
 
 
-class Listens(isomortar.Observer):
-    """Keeps the warnings."""
-
-    def __init__(self) -> None:
-        self.said: list[str] = []
-
-    def warned(self, message: str) -> None:
-        self.said.append(message)
+def test_a_run_tells_its_doubts_before_the_first_load_step_and_not_when_it_goes_on() -> None:
+    scene, old, new, words = DOUBTFUL["motion of what is not held"]
+    problem = Scene.from_toml(scene.replace(old, new)).problem()
+    begun, resumed = Warned(), Warned()
+    first = next(Simulation(problem, begun).run())
+    list(Simulation(problem, resumed, resume_from=first).run())
+    assert [words in said for said in begun.said] == [True]
+    assert not any(words in said for said in resumed.said)
 
 
 @pytest.mark.parametrize(("motion", "never"), [("[0, 0, -0.1]", False), ("[0, 0, 0.1]", True)])
 def test_a_contact_that_never_closes_is_told_at_the_end(motion: str, never: bool) -> None:
-    observer = Listens()
+    observer = Warned()
     scene = PRESS.replace("[0, 0, -0.1]", motion).replace("steps = 1", "steps = 2")
     for _ in Simulation(Scene.from_toml(scene).problem(), observer).run():
         assert observer.said == []
