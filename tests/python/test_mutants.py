@@ -157,42 +157,42 @@ def test_a_folder_without_sources_is_an_error(tmp_path):
 
 def test_the_gate_stops_at_the_first_red_cell_and_asks_it_first_next_time(cells):
     red, tried = "mutants_family/cheap[k=2]", gate(cells)
-    first = tried.attack(Oracle(red), FAULTY, "solid", names(cells), (), math.inf)
+    first = tried.attack(Oracle(red), FAULTY, "solid/a.f90", names(cells), (), math.inf)
     assert first.killer == red
     assert "not finite" in first.found
     tried.learn("solid", first)
     tried.learn("solid", first)
     bench = Oracle(red)
-    assert tried.attack(bench, FAULTY, "solid", names(cells), (), math.inf).passed == ()
+    assert tried.attack(bench, FAULTY, "solid/a.f90", names(cells), (), math.inf).passed == ()
     assert [name for name, _ in bench.asked] == [red]
 
 
 @pytest.mark.parametrize("ending", ["crashed", "timed out", "trouble", "refused", "skipped"])
 def test_whatever_does_not_pass_kills(cells, ending):
     assert (
-        gate(cells).attack(Oracle("mutants_family/dear", ending), FAULTY, "solid", names(cells), (), math.inf).killer
+        gate(cells).attack(Oracle("mutants_family/dear", ending), FAULTY, "solid/a.f90", names(cells), (), math.inf).killer
         == "mutants_family/dear"
     )
 
 
 def test_a_cell_that_crashes_without_a_fault_too_is_no_catch(cells):
     with pytest.raises(IsomortarError, match=r"dear is red on the sound program too.*\(zero: crashed"):
-        gate(cells).attack(Oracle("mutants_family/dear", "crashed", (FAULTY, SOUND)), FAULTY, "solid", names(cells), (), math.inf)
+        gate(cells).attack(Oracle("mutants_family/dear", "crashed", (FAULTY, SOUND)), FAULTY, "solid/a.f90", names(cells), (), math.inf)
 
 
 def test_a_survivor_met_the_whole_gate_or_as_much_as_asked_for(cells):
     bench, tried = Oracle(), gate(cells)
-    finding = tried.attack(bench, FAULTY, "solid", names(cells), (), math.inf)
+    finding = tried.attack(bench, FAULTY, "solid/a.f90", names(cells), (), math.inf)
     assert finding.killer is None
     assert tried.is_whole(finding, names(cells))
     assert [name for name, _ in bench.asked] == ["mutants_family/cheap[k=2]", "mutants_family/cheap[k=1]", "mutants_family/dear"]
     assert [seconds for _, seconds in bench.asked] == [20.0, 20.0, 100.0]
-    assert not tried.is_whole(tried.attack(Oracle(), FAULTY, "solid", names(cells), (), 0.15), names(cells))
+    assert not tried.is_whole(tried.attack(Oracle(), FAULTY, "solid/a.f90", names(cells), (), 0.15), names(cells))
 
 
 def test_a_cell_that_does_not_run_a_faults_statement_is_not_asked(cells):
     bench, tried, able = Oracle("mutants_family/dear"), gate(cells), {"mutants_family/cheap[k=1]"}
-    finding = tried.attack(bench, FAULTY, "solid", able, (), math.inf)
+    finding = tried.attack(bench, FAULTY, "solid/a.f90", able, (), math.inf)
     assert [name for name, _ in bench.asked] == sorted(able)
     assert finding.killer is None
     assert tried.is_whole(finding, able)
@@ -207,14 +207,24 @@ def test_a_file_of_tests_that_passed_says_nothing_of_the_others(cells, tmp_path)
     dear = next(cell for cell in cells if "dear" in cell.name)
     bench = Oracle()
     Gate({dear.name: 3.0} | {cell.name: 1.0 for cell in files}, [dear, *files], lambda *_: None, SOUND).attack(
-        bench, FAULTY, "solid", names([dear, *files]), (), math.inf
+        bench, FAULTY, "solid/a.f90", names([dear, *files]), (), math.inf
     )
     assert [name for name, _ in bench.asked][-1] == dear.name
 
 
+def test_cells_that_are_named_like_the_faulty_file_come_first(tmp_path):
+    for name in ("test_one", "test_scene_errors", "test_zero"):
+        (tmp_path / f"{name}.py").write_text("")
+    files, bench = cells_of_tests(tmp_path), Oracle()
+    Gate({cell.name: 1.0 for cell in files}, files, lambda *_: None, SOUND).attack(
+        bench, FAULTY, "scene/schema.py", names(files), (), math.inf
+    )
+    assert "test_scene_errors" in bench.asked[0][0]
+
+
 def test_cells_passed_before_are_not_asked_again(cells):
     bench = Oracle()
-    gate(cells).attack(bench, FAULTY, "solid", names(cells), ("mutants_family/dear",), math.inf)
+    gate(cells).attack(bench, FAULTY, "solid/a.f90", names(cells), ("mutants_family/dear",), math.inf)
     assert "mutants_family/dear" not in dict(bench.asked)
 
 
@@ -293,7 +303,7 @@ def test_a_process_that_died_because_the_run_ended_is_no_catch(cells, tmp_path):
     bench = Bench(tmp_path / "package", tmp_path, tmp_path / "bench")
     bench.__exit__(None, None, None)
     with pytest.raises(IsomortarError, match="given up"):
-        gate(cells).attack(bench, tmp_path / "program", "solid", names(cells), (), math.inf)
+        gate(cells).attack(bench, tmp_path / "program", "solid/a.f90", names(cells), (), math.inf)
 
 
 def test_what_is_not_executed_has_no_meaning():

@@ -192,7 +192,7 @@ class Campaign:
             if finding.killer is None and not gate.is_whole(finding, able) and gate.cost(finding.passed) < limit:
                 built = self._workshop.build(fault)
                 assert built is not None
-                finding = gate.attack(bench, built, fault.folder, able, finding.passed, limit)
+                finding = gate.attack(bench, built, fault.file, able, finding.passed, limit)
                 self._remember(program, finding)
                 shutil.rmtree(built)
             gate.learn(fault.folder, finding)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import threading
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence, Set
@@ -21,6 +22,8 @@ _PATIENCE, _LEAST_SECONDS = 20, 20.0
 _OVERHEAD = 0.02
 #: A cell of a case that has just passed with other settings promises this much less.
 _ALIKE = 0.5
+#: A cell promises so many times more for each word that its name shares with the path of the faulty file.
+_NAMED = 3.0
 
 
 @dataclass(frozen=True)
@@ -61,6 +64,7 @@ class Gate:
         self._cells = {cell.name: cell for cell in cells if cell.name in seconds}
         # A file of tests is a case for itself: they have little in common.
         self._case = {name: f"{cell.case.name} {cell.case.files}, any settings" for name, cell in self._cells.items()}
+        self._words = {name: _words(name) for name in self._cells}
         self._seconds = seconds
         self._lookup = lookup
         self._sound = sound
@@ -78,10 +82,10 @@ class Gate:
                 counts.update((folder, name) for name in names)
                 counts.update((folder, self._case[name]) for name in names)
 
-    def attack(self, bench: Bench, program: Path, folder: str, able: Set[str], passed: Collection[str], most: float) -> Finding:
+    def attack(self, bench: Bench, program: Path, file: str, able: Set[str], passed: Collection[str], most: float) -> Finding:
         """Measure and judge cells until one is red, none is left, or those that passed cost `most`.
 
-        `passed` are cells that the program passed before. `folder` is where in the sources the fault is, `able` are cells that it may
+        `passed` are cells that the program passed before. `file` is where in the sources the fault is, `able` are cells that it may
         change.
 
         Raises
@@ -91,7 +95,7 @@ class Gate:
         """
         done = [name for name in passed if name in self._cells]
         while self.cost(done) < most and (left := self._cells.keys() & able - set(done)):
-            name = self._most_promising(left, done, folder)
+            name = self._most_promising(left, done, file)
             measurement, red = self._red(bench, program, name)
             if red:
                 if measurement.ending != "measured" and (too := self._red(bench, self._sound, name)[1]):
@@ -117,14 +121,20 @@ class Gate:
         """CPU seconds of some cells on the sound program."""
         return sum(self._seconds.get(name, 0.0) for name in names)
 
-    def _most_promising(self, left: Collection[str], done: Sequence[str], folder: str) -> str:
+    def _most_promising(self, left: Collection[str], done: Sequence[str], file: str) -> str:
         alike = Counter(self._case[name] for name in done)
+        folder, words = file.partition("/")[0], _words(file)
 
         def promise(name: str) -> tuple[float, str]:
             case = self._case[name]
             of_case = (self._kills[folder, case] + 1) / (self._tries[folder, case] + 2)
             share = (self._kills[folder, name] + of_case) / (self._tries[folder, name] + 1)
-            return share * _ALIKE ** alike[case] / (self._seconds[name] + _OVERHEAD), name
+            named = _NAMED ** len(words & self._words[name])
+            return named * share * _ALIKE ** alike[case] / (self._seconds[name] + _OVERHEAD), name
 
         with self._lock:
             return max(left, key=promise)
+
+
+def _words(name: str) -> set[str]:
+    return set(re.split(r"[^a-z]+", name)) - {"", "py", "f"}
