@@ -243,33 +243,41 @@ contains
     if (contracts) call require(all(is_index(list(:count), size(hulls%radius))), "within_reach: elements are those with hulls")
   end subroutine within_reach
 
-  !> Whether no point of element e is nearer to x than `distance`: by its sphere, by its box, then by planes across the way to
-  !> its hull (Gilbert's method), the first one across the way to a foot at x + `toward`.
+  !> Whether no point of element e is nearer to x than `distance`: by its sphere, by its box, then by planes, the first one across
+  !> the way to a foot at x + `toward`.
   pure logical function is_farther(hulls, e, x, toward, distance) result(farther)
     type(hulls_t), intent(in) :: hulls
     integer, intent(in) :: e
     real(wp), intent(in) :: x(3), toward(3), distance
-    real(wp) :: d(3), beyond(3), way(3), depth(size(hulls%corner, 2))
-    integer :: attempt
+    real(wp) :: d(3), beyond(3)
 
     d = x - hulls%centre(e, :)
     farther = dot_product(d, d) >= (distance + hulls%radius(e))**2
     if (farther) return
     beyond = max(abs(matmul(hulls%frame(:, :, e), d)) - hulls%half(:, e), 0.0_wp)
     farther = dot_product(beyond, beyond) >= distance**2
-    if (farther) return
+    if (.not. farther) farther = is_behind_plane(hulls%corner(:, :, e), x, toward, distance)
+  end function is_farther
+
+  !> Whether a plane across some way from x, at least so far away, has all corners of a hull behind it (Gilbert's method).
+  pure logical function is_behind_plane(corner, x, toward, distance) result(behind)
+    real(wp), intent(in) :: corner(:, :), x(3), toward(3), distance
+    real(wp) :: d(3), way(3), depth(size(corner, 2))
+    integer :: attempt
+
+    behind = .false.
     way = toward
     do attempt = 1, 6
       if (.not. dot_product(way, way) > 0.0_wp) return
-      depth = matmul(way / norm2(way), hulls%corner(:, :, e)) - dot_product(way / norm2(way), x)
-      farther = minval(depth) >= distance
-      if (farther) return
-      d = hulls%corner(:, minloc(depth, 1), e) - x
+      depth = matmul(way / norm2(way), corner) - dot_product(way / norm2(way), x)
+      behind = minval(depth) >= distance
+      if (behind) return
+      d = corner(:, minloc(depth, 1)) - x
       if (attempt > 1) d = nearest_on_way(way, d)
       way = d
       if (dot_product(way, way) < distance**2) return
     end do
-  end function is_farther
+  end function is_behind_plane
 
   !> The point nearest to the origin on the way from a to b.
   pure function nearest_on_way(a, b) result(nearest)

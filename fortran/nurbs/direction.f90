@@ -122,59 +122,60 @@ contains
     real(wp), intent(in) :: u
     integer, intent(in) :: derivatives
     real(wp), intent(out) :: values(0:self%order, 0:derivatives)
-    real(wp) :: lower(0:max_order), raised(0:max_order)
-    integer :: k, q
+    integer :: highest, k, q
 
-    lower(0) = 1.0_wp
-    values = 0.0_wp
-    do q = 0, self%order
-      k = self%order - q
-      if (k <= derivatives) call differentiate_up(self, span, q, lower, values(:, k))
-      if (q == self%order) exit
-      call raise(self, span, q + 1, lower, u, raised)
-      lower(0:q + 1) = raised(0:q + 1)
+    highest = min(derivatives, self%order)
+    values(:, highest + 1:) = 0.0_wp
+    values(0, highest) = 1.0_wp
+    do q = 1, self%order - highest
+      call raise(self, span, q, u, values(:, highest))
+    end do
+    do k = highest, 1, -1
+      q = self%order - k
+      values(0:q, k - 1) = values(0:q, k)
+      call raise(self, span, q + 1, u, values(:, k - 1))
+      call differentiate_up(self, span, q, values(:, k))
     end do
   end subroutine bspline_basis
 
-  !> Values of order q from those of order q - 1 on the same span (theory 2.1).
-  pure subroutine raise(self, span, q, lower, u, raised)
+  !> From values of order q - 1 to those of order q on the same span, in their place (theory 2.1).
+  pure subroutine raise(self, span, q, u, values)
     type(direction_t), intent(in) :: self
     integer, intent(in) :: span, q
-    real(wp), intent(in) :: lower(0:), u
-    real(wp), intent(out) :: raised(0:)
-    real(wp) :: share
+    real(wp), intent(in) :: u
+    real(wp), intent(inout), contiguous :: values(0:)
+    real(wp) :: carried, share
     integer :: j, left, right
 
-    raised(0:q) = 0.0_wp
+    carried = 0.0_wp
     do j = 0, q - 1
       left = span - q + 1 + j
       right = left + q
-      share = lower(j) / (self%knots(right) - self%knots(left))
-      raised(j) = raised(j) + (self%knots(right) - u) * share
-      raised(j + 1) = raised(j + 1) + (u - self%knots(left)) * share
+      share = values(j) / (self%knots(right) - self%knots(left))
+      values(j) = carried + (self%knots(right) - u) * share
+      carried = (u - self%knots(left)) * share
     end do
+    values(q) = carried
   end subroutine raise
 
-  !> Derivative number order - q of the functions of full order, from the values of order q (theory 2.2).
-  pure subroutine differentiate_up(self, span, q, lower, derivative)
+  !> From values of order q to derivative number order - q of the functions of full order, in their place (theory 2.2).
+  pure subroutine differentiate_up(self, span, q, values)
     type(direction_t), intent(in) :: self
     integer, intent(in) :: span, q
-    real(wp), intent(in) :: lower(0:)
-    real(wp), intent(out) :: derivative(0:)
-    real(wp) :: raised(0:max_order), share
+    real(wp), intent(inout), contiguous :: values(0:)
+    real(wp) :: carried, share
     integer :: j, left, order, right
 
-    derivative(0:q) = lower(0:q)
     do order = q + 1, self%order
-      raised(0:order) = 0.0_wp
+      carried = 0.0_wp
       do j = 0, order - 1
         left = span - order + 1 + j
         right = left + order
-        share = real(order, wp) * derivative(j) / (self%knots(right) - self%knots(left))
-        raised(j) = raised(j) - share
-        raised(j + 1) = raised(j + 1) + share
+        share = real(order, wp) * values(j) / (self%knots(right) - self%knots(left))
+        values(j) = carried - share
+        carried = share
       end do
-      derivative(0:order) = raised(0:order)
+      values(order) = carried
     end do
   end subroutine differentiate_up
 
