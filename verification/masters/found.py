@@ -159,11 +159,14 @@ class Evidence(ByMethod[Found]):
         return self._refined(lambda kinks, _: abs(kinks.share))
 
     def apart(self) -> Values:
-        """How far the mean is off that on a smooth master of the same elements, over the same on the next coarser ones."""
+        """How far the mean is off that on a smooth master of the same elements, over the same on the next coarser ones.
+
+        Runs that stopped count as far as they came; before the window there is nothing to compare.
+        """
         pairs = refinement(self.by(self.method), self.by("smooth"))
         stopped = [run for pair in pairs for run in pair if run.missing]
         self.left_out.extend(f"{run.name} ({run.method}) after load step {run.outcome.steps}" for run in stopped)
-        return self._refined(Found.off)
+        return {name: value for name, value in self._refined(Found.off).items() if not (stopped and np.isnan(value))}
 
     def beside_getfem(self) -> Values:
         """Difference of the works of pushing the block, over the spurious works of both programs."""
