@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from masters.found import Beside, Evidence, Found, refinement, slide
-from masters.plan import FULL, QUICK, beside, by_getfem, planned
+from masters.plan import FULL, QUICK, WAYS, beside, by_getfem, planned
 from masters.statements import STATEMENTS
 from masters.study import _written, study
 from paper.sections import Section
@@ -33,7 +33,7 @@ def result(section: Section, name: str, **changed: np.ndarray) -> Result:
     entry = next(entry for entry in planned((section,)) if entry.variant.name == name)
     stages = section.load(entry.variant, "monolithic").problem().stages
     count = sum(stage.steps for stage in stages)
-    curve = (1.0 if entry.way == "smooth" else 1.1) * np.tile(np.arange(1.0, count + 1), (3, 1)).T
+    curve = (1.0 if "smooth" in entry.way else 1.1) * np.tile(np.arange(1.0, count + 1), (3, 1)).T
     numbers = {
         "step": np.arange(1, count + 1),
         "time": np.arange(1.0, count + 1),
@@ -76,11 +76,11 @@ def _scenes_go_to_a_folder_of_the_test(tmp_path: Path, monkeypatch: pytest.Monke
 def test_every_run_builds_and_finds_feet_as_it_says(sections: tuple[Section, ...]) -> None:
     for entry in planned(sections):
         (contact,) = entry.section.load(entry.variant, "monolithic").problem().contacts
-        assert contact.averaged == (entry.way == "averaged")
-        assert (entry.way == "smooth") == (entry.variant.kind in ("N2", "N3"))
+        assert contact.averaged == ("averaged" in entry.way)
+        assert ("smooth" in entry.way) == (entry.variant.kind in ("N2", "N3"))
     names = [(entry.name, entry.way) for entry in planned(sections)]
     assert len(set(names)) == len(names)
-    assert {way for _, way in names} == {"closest", "averaged", "smooth"}
+    assert {way for _, way in names} == set(WAYS)
 
 
 def test_scenes_are_those_that_are_bundled() -> None:
@@ -90,8 +90,10 @@ def test_scenes_are_those_that_are_bundled() -> None:
     assert meshes[0] == meshes[1]
     assert linear.contacts == bundled.contacts
     assert [section.load(section.variant("N2"), "monolithic").problem().total_steps for section in (block, twist, iron)] == [15, 50, 50]
-    finer = [(entry.variant.kind, entry.variant.elements) for entry in planned((iron,)) if entry.finer]
-    assert finer == [("L1", (20, 10, 3)), ("N2", (20, 10, 3)), ("L1", (40, 20, 3)), ("N2", (40, 20, 3))]
+    refined = [(entry.name, entry.way) for entry in planned((iron,)) if entry.finer]
+    assert refined[0] == ("iron N2 10 x 5", "smooth, averaged")
+    finer = [("L1", "averaged"), ("N2", "smooth"), ("N2", "smooth, averaged")]
+    assert refined[1:] == [(f"iron {kind} {mesh}", way) for mesh in ("20 x 10", "40 x 20") for kind, way in finer]
 
 
 def test_runs_that_go_well_hold() -> None:
@@ -135,14 +137,17 @@ def test_cuts_of_the_refinement_are_its_own() -> None:
 
 
 def test_a_smooth_master_that_stops_is_compared_as_far_as_it_came() -> None:
-    short = {name: np.array(result(IRON, "N2-8x4").measurement.numbers[name])[:6] for name in ("step", "time", "stage", "share", "force")}
-    runs = made_up(IRON, **{"N2-8x4": short})
+    short = {
+        name: np.array(result(IRON, "N2-averaged-8x4").measurement.numbers[name])[:6]
+        for name in ("step", "time", "stage", "share", "force")
+    }
+    runs = made_up(IRON, **{"N2-averaged-8x4": short})
     evidence = Evidence(runs, "averaged")
     assert evidence.apart() == {"iron L1 8 x 4 / iron L1 5 x 2": pytest.approx(1.0)}
-    assert evidence.without == "iron N2 8 x 4 (smooth) after load step 6"
+    assert evidence.without == "iron N2 8 x 4 (smooth, averaged) after load step 6"
     at_once = {name: values[:3] for name, values in short.items()}
-    before = Evidence(made_up(IRON, **{"N2-8x4": at_once}), "averaged")
-    assert (before.apart(), before.without) == ({}, "iron N2 8 x 4 (smooth) after load step 3")
+    before = Evidence(made_up(IRON, **{"N2-averaged-8x4": at_once}), "averaged")
+    assert (before.apart(), before.without) == ({}, "iron N2 8 x 4 (smooth, averaged) after load step 3")
 
 
 def stopped(run: Found, reason: str) -> Found:
@@ -183,13 +188,13 @@ def test_the_page_has_figures_and_forces_of_both_programs(tmp_path: Path) -> Non
 
 
 def test_refined_masters_stand_beside_smooth_ones_of_the_same_elements() -> None:
-    runs = made_up(IRON)
-    pairs = refinement([run for run in runs if run.method == "averaged"], [run for run in runs if run.method == "smooth"])
+    pairs = refinement(made_up(IRON))
     assert [(kinks.name, smooth.name) for kinks, smooth in pairs] == [
         ("iron L1 5 x 2", "iron N2 5 x 2"),
         ("iron L1 8 x 4", "iron N2 8 x 4"),
     ]
-    assert refinement(made_up(TWIST), []) == []
+    assert {(kinks.method, smooth.method) for kinks, smooth in pairs} == {("averaged", "smooth, averaged")}
+    assert refinement(made_up(TWIST)) == []
 
 
 def test_a_block_that_stopped_on_its_way_has_the_force_that_it_came_to() -> None:
@@ -207,5 +212,5 @@ def test_curves_are_told_by_their_mean_roughness_and_share_of_spurious_work() ->
 
 
 def test_all_runs_are_planned() -> None:
-    assert len(study().runs) == 3 * 6 + 4 + 1
-    assert len(study(quick=True).runs) == 3 * 6 + 2 + 1
+    assert len(study().runs) == 3 * 6 + 7 + 1
+    assert len(study(quick=True).runs) == 3 * 6 + 4 + 1

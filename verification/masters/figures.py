@@ -27,7 +27,7 @@ def curves(runs: Sequence[Found], reference: Found, title: str) -> str:
 
 
 def costs(runs: Sequence[Found], name: str) -> str:
-    """Spurious over friction work up to each load step, along averaged normals, and tangents of each, of all runs."""
+    """Spurious work up to each load step over all friction work, along averaged normals, and tangents of each, of all runs."""
     with page_style():
         figure = Figure(figsize=(10.6, 3.3), layout="constrained")
         work, tangents = figure.subplots(1, 2)
@@ -53,6 +53,7 @@ def refinement(pairs: Sequence[tuple[Found, Found]]) -> str:
         elements = [kinks.planned.variant.elements[0] for kinks, _ in pairs]
         found = {_WORK: [abs(kinks.share) for kinks, _ in pairs], "mean off that of N2, %": [kinks.off(smooth) for kinks, smooth in pairs]}
         for axes, (label, values) in zip(figure.subplots(1, 2), found.items(), strict=True):
+            axes.margins(y=0.1)
             axes.semilogx(elements, 100.0 * np.array(values), **look("L1"))
             axes.set(xlabel="elements of the master along the drag", ylabel=label, xticks=elements, xticklabels=elements, ylim=(0.0, None))
             axes.xaxis.set_minor_formatter(NullFormatter())
@@ -61,7 +62,8 @@ def refinement(pairs: Sequence[tuple[Found, Found]]) -> str:
 
 def _label(run: Found) -> str:
     u, v, _ = run.planned.variant.elements
-    return f"{run.planned.variant.kind}{'' if run.method == 'smooth' else ', ' + run.method}, {u} x {v}"
+    feet = run.method.removeprefix("smooth").removeprefix(", ")
+    return ", ".join(filter(None, (run.planned.variant.kind, feet, f"{u} x {v}")))
 
 
 def _look(run: Found) -> dict[str, Any]:

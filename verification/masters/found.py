@@ -81,9 +81,9 @@ class Found(Computed):
 
     @property
     def shares(self) -> FloatArray:
-        """Spurious work over friction work, both up to a load step; NaN before there is friction."""
-        friction, spurious = (np.cumsum(self.by_step(name)) for name in ("friction_work", "spurious_work"))
-        return np.divide(spurious, friction, out=np.full(len(friction), np.nan), where=friction > 0.0)
+        """Spurious work up to a load step over the friction work of all; NaN without friction, shape (load steps that converged,)."""
+        friction, spurious = self.by_step("friction_work").sum(), np.cumsum(self.by_step("spurious_work"))
+        return spurious / friction if friction > 0.0 else np.full(len(spurious), np.nan)
 
     @property
     def share(self) -> float:
@@ -163,8 +163,7 @@ class Evidence(ByMethod[Found]):
 
         Runs that stopped count as far as they came; before the window there is nothing to compare.
         """
-        pairs = refinement(self.by(self.method), self.by("smooth"))
-        stopped = [run for pair in pairs for run in pair if run.missing]
+        stopped = [run for pair in refinement(self.runs) for run in pair if run.missing]
         self.left_out.extend(f"{run.name} ({run.method}) after load step {run.outcome.steps}" for run in stopped)
         return {name: value for name, value in self._refined(Found.off).items() if not (stopped and np.isnan(value))}
 
@@ -182,18 +181,16 @@ class Evidence(ByMethod[Found]):
         return [run for run in self.by(self.method) if (run.planned.section.scene, run.planned.variant.kind) == ("block", "L1")]
 
     def _refined(self, measure: Callable[[Found, Found], float]) -> Values:
-        pairs = refinement(self.by(self.method), self.by("smooth"))
+        pairs = refinement([*self.by(self.method), *self.by("smooth, averaged")])
         return {f"{fine[0].name} / {coarse[0].name}": quotient(measure(*fine), measure(*coarse)) for coarse, fine in pairwise(pairs)}
 
 
-def refinement(runs: Sequence[Found], smooth: Sequence[Found]) -> list[tuple[Found, Found]]:
-    """Runs on L1 masters of the scene that is refined, each with that on N2 of the same elements, coarsest first."""
-    scenes = {run.planned.section.scene for run in smooth if run.planned.finer}
-    linear, quadratic = (
-        {run.planned.variant.elements: run for run in group if run.planned.section.scene in scenes and run.planned.variant.kind == kind}
-        for group, kind in ((runs, "L1"), (smooth, "N2"))
-    )
-    return [(run, quadratic[elements]) for elements, run in linear.items()]
+def refinement(runs: Sequence[Found]) -> list[tuple[Found, Found]]:
+    """Of masters that are refined, runs along averaged normals on L1 and on N2 of the same elements, coarsest first."""
+    smooth = {run.planned.variant.elements: run for run in runs if run.method == "smooth, averaged"}
+    scenes = {run.planned.section.scene for run in smooth.values()}
+    kinks = [run for run in runs if run.method == "averaged" and run.planned.variant.kind == "L1" and run.planned.section.scene in scenes]
+    return [(run, smooth[run.planned.variant.elements]) for run in kinks]
 
 
 def slide(planned: Planned, force: FloatArray, works: FloatArray) -> dict[str, float]:

@@ -30,20 +30,21 @@ def _section(runs: Sequence[Found]) -> dict[str, Any]:
     """What the page shows of a scene."""
     section = runs[0].planned.section
     first = [run for run in runs if not run.planned.finer]
-    averaged, smooth = ([run for run in runs if run.method == way] for way in ("averaged", "smooth"))
-    pairs = refinement(averaged, smooth)
+    smooth = next(run for run in first if run.method == "smooth")
+    pairs = refinement(runs)
     refined = [_finer(pairs), figures.refinement(pairs)] if pairs else []
     return {
         "setup": section,
-        "figures": [figures.curves(first, smooth[0], f"{section.scene}: {section.quantity.name}"), figures.costs(first, section.scene)],
+        "figures": [figures.curves(first, smooth, f"{section.scene}: {section.quantity.name}"), figures.costs(first, section.scene)],
         "refined": refined,
         "rows": [_row(run) for run in runs],
     }
 
 
 def _finer(pairs: Sequence[tuple[Found, Found]]) -> str:
-    """Curves on masters that are refined, beside the finest smooth one."""
-    finest = pairs[-1][1]
+    """Curves on masters that are refined, beside the finest smooth one; beside that with kinks where it stopped."""
+    kinks, smooth = pairs[-1]
+    finest = kinks if smooth.words else smooth
     return figures.curves([run for pair in pairs for run in pair], finest, f"{finest.planned.section.scene}: finer masters")
 
 

@@ -16,8 +16,8 @@ from isomortar.harness.discretisations import Elements
 from isomortar.harness.study import Run
 from isomortar.program.getfem import GetFEM
 
-#: How feet are found: by closest points on masters with kinks, along averaged normals on them, by closest points on smooth ones.
-Way = Literal["closest", "averaged", "smooth"]
+#: How feet are found: by closest points on masters with kinks, along averaged normals on them, and both on smooth ones.
+Way = Literal["closest", "averaged", "smooth", "smooth, averaged"]
 WAYS: tuple[Way, ...] = get_args(Way)
 #: Load steps after which the forces of the block are told: pressed, and slid.
 INSTANTS = (5, 15)
@@ -36,9 +36,10 @@ def _closest(order: int, elements: Elements) -> Variant:
 
 
 def _refined(*meshes: Elements) -> Iterator[Variant]:
-    """L1 along averaged normals and N2 on finer masters."""
-    for mesh in meshes:
-        for variant in (averaged(1, mesh), *nurbs(mesh, 2)):
+    """L1 along averaged normals, and N2 along these too, on finer and finer masters; N2 by closest points, whose curvature jumps."""
+    for number, mesh in enumerate(meshes):
+        along = replace(averaged(1, mesh), name="N2-averaged", kind="N2", title="N2 along averaged normals")
+        for variant in (averaged(1, mesh), *nurbs(mesh, 2), along)[0 if number else 2 :]:
             yield replace(variant, name=f"{variant.name}-{mesh[0]}x{mesh[1]}")
 
 
@@ -56,13 +57,13 @@ _BLOCK = Section(
 FULL = (
     _section(_BLOCK, (8, 8, 4), (4, 4, 4)),
     _section(plans.TWIST, (5, 5, 3), (3, 3, 3)),
-    _section(plans.IRON, (10, 5, 3), (5, 5, 3), *_refined((20, 10, 3), (40, 20, 3))),
+    _section(plans.IRON, (10, 5, 3), (5, 5, 3), *_refined((10, 5, 3), (20, 10, 3), (40, 20, 3))),
 )
 #: They try the machinery.
 QUICK = (
     _section(_BLOCK, (4, 4, 1), (2, 2, 1), changes=("bodies.slave.mesh.elements=[2,2,1]", "stages.slide.motions.top.translate=[0.2,0,0]")),
     _section(quick.TWIST, (3, 3, 1), (2, 2, 1)),
-    _section(quick.IRON, (5, 2, 2), (3, 2, 2), *_refined((8, 4, 2))),
+    _section(quick.IRON, (5, 2, 2), (3, 2, 2), *_refined((5, 2, 2), (8, 4, 2))),
 )
 
 
@@ -82,13 +83,14 @@ class Planned:
     @property
     def way(self) -> Way:
         """How feet are found."""
-        if not self.variant.lagrange:
-            return "smooth"
-        return "averaged" if set(AVERAGED) <= set(self.variant.changes) else "closest"
+        along_averaged = set(AVERAGED) <= set(self.variant.changes)
+        if self.variant.lagrange:
+            return "averaged" if along_averaged else "closest"
+        return "smooth, averaged" if along_averaged else "smooth"
 
     @property
     def finer(self) -> bool:
-        """Whether its master is a finer one, of the refinement alone."""
+        """Whether it is of the refinement alone."""
         return self.variant.name.endswith("x".join(map(str, self.variant.elements[:2])))
 
     @property

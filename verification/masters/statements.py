@@ -75,7 +75,7 @@ STATEMENTS: tuple[Statement[Evidence], ...] = (
         "The mean drag comes nearer to that of a smooth master refined likewise.",
         (),
         Evidence.apart,
-        "how far the mean is off that of N2 on the same elements, over the same on the next coarser ones",
+        "how far the mean is off that of N2 along averaged normals on the same elements, over the same on the next coarser ones",
         at_most=1.0,
         reason="theory: both converge to the same solution",
         methods=("averaged",),
