@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -10,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from rich.console import Console
+from transforms import scaled
 
 from isomortar import cli
 from isomortar.cli.progress import Progress
@@ -289,6 +291,17 @@ def test_what_is_doubtful_of_a_run_is_told_once(case: str) -> None:
     before = ("in each load step", "at the start", "nothing will happen")  # what is doubtful already before the first load step
     said = [warning for warning in observer.said if not any(word in warning for word in before)]
     assert [word in warning for word, warning in zip(words, said, strict=True)] == [True] * len(words), said
+
+
+@pytest.mark.parametrize("case", ["pressed", "turned over and pushed through", "far side of the master", "outside of a ring", "shrink fit"])
+def test_what_is_doubtful_of_a_run_is_so_in_any_unit(case: str) -> None:
+    """By the same warnings, but for their numbers."""
+    problem = Scene.from_toml(RUNS[case][0]).problem()
+    heard = [Warned() for _ in range(3)]
+    for observer, unit in zip(heard, (1.0, 2.0**-13, 2.0**13), strict=True):
+        list(Simulation(scaled(problem, unit, 1.0 / unit), observer).run())
+    words = [[re.sub(r"[-\d.e+]+", "", warning) for warning in observer.said] for observer in heard]
+    assert words[0] == words[1] == words[2]
 
 
 def test_a_run_tells_its_doubts_before_the_first_load_step_and_not_when_it_goes_on() -> None:
