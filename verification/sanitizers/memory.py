@@ -36,7 +36,7 @@ _FILE, _SOUND, _FAULT = (
     },
 )
 def memory(tool: str) -> dict[str, float]:
-    """Build for the tool, run the work, plant a fault and run the scenes once more."""
+    """Build for the tool, run the work, plant a fault and run a scene once more."""
     lacking = tools.is_missing(tool)
     if lacking:
         skip(f"{lacking} is not installed")

@@ -1,6 +1,6 @@
 """What is done under a watching tool, as a program: ``work.py VERIFICATION TESTS COUNTS [all]``.
 
-Two short scenes; with ``all`` the kernel's tests and fuzzed calls as well. What was done is written to COUNTS.
+A short scene; with ``all`` a second one, the kernel's tests and fuzzed calls as well. What was done is written to COUNTS.
 """
 
 from __future__ import annotations
@@ -44,9 +44,9 @@ class Counter:
         self.passed += getattr(report, "when", "") == "call" and getattr(report, "passed", False)
 
 
-def steps() -> int:
-    """Load steps of the short scenes."""
-    return sum(len(list(islice(Simulation(Scene.load(name, settings).problem()).run(), STEPS))) for name, settings in SCENES)
+def steps(scenes: int) -> int:
+    """Load steps of the first of the short scenes, as many as are asked for."""
+    return sum(len(list(islice(Simulation(Scene.load(name, settings).problem()).run(), STEPS))) for name, settings in SCENES[:scenes])
 
 
 def tests(folder: Path) -> int:
@@ -77,7 +77,7 @@ def calls() -> int:
 def main() -> None:
     """Do the work and write down how much it was."""
     cases, folder, counts, *more = sys.argv[1:]
-    done = {"steps": steps()}
+    done = {"steps": steps(len(SCENES) if more == ["all"] else 1)}
     if more == ["all"]:
         sys.path.insert(0, cases)
         done |= {"calls": calls(), "tests": tests(Path(folder))}
