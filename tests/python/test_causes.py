@@ -156,6 +156,14 @@ def test_few_points_are_warned_of_under_a_stiffer_slave_only() -> None:
         assert len(list(few_points(problem, problem.contacts[0]))) == count
 
 
+@pytest.mark.parametrize(("slave", "master"), [(1, 8), (3, 20), (3, 22)])
+def test_points_that_are_advised_are_two_in_each_element_of_the_master_and_no_more(slave: int, master: int) -> None:
+    problem = scene(SLAVE=slave, MASTER=master).problem
+    (said,) = few_points(problem, problem.contacts[0])
+    needed = -(-2 * master // slave)
+    assert said.endswith(f"quadrature = [{needed}, {needed}]")
+
+
 @pytest.mark.parametrize("axis", [0, 1, 2])
 def test_elements_are_as_long_as_their_spans_of_a_straight_box(axis: int) -> None:
     knots = np.array([0.0, 0.0, 0.0, 0.0, 0.1, 0.5, 0.5, 2.0, 2.0, 2.0, 2.0])
