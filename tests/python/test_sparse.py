@@ -141,8 +141,9 @@ def test_several_right_hand_sides_are_solved_one_by_one():
 
 
 @pytest.mark.parametrize("ordering", ORDERINGS)
-@pytest.mark.parametrize("refine", [0, 2])
-def test_bordered_system_with_zero_diagonal(ordering, refine):
+@pytest.mark.parametrize(("refine", "least"), [(0, 4e-15), (2, 1e-15)])
+def test_bordered_system_with_zero_diagonal(ordering, refine, least):
+    """To round-off; without refinement to some times that, how many depends on the order of sums: on the threads of BLAS too."""
     rng = np.random.default_rng(2)
     stiffness = held(block_of_elements(6, 6, 4), np.arange(3 * 35))
     n = stiffness.shape[0]
@@ -151,7 +152,7 @@ def test_bordered_system_with_zero_diagonal(ordering, refine):
     b = rng.standard_normal(n + 60)
     x = factorised(matrix, ordering=ordering).solve(b, refine=refine)
     residual = np.abs(matrix @ x - b).max() / (abs(matrix).sum(axis=1).max() * np.abs(x).max())
-    assert residual < 1e-15
+    assert residual < least
     expected = spl.spsolve(sp.csc_array(matrix), b)
     np.testing.assert_allclose(x, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
 
