@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from isomortar.errors import ResultsError
 from isomortar.geometry.patch import Direction
 from isomortar.model.numbering import Numbering
-from isomortar.results import Results, ResultsWriter, bodies
+from isomortar.results import Results, ResultsWriter, bodies, maps
 from isomortar.results.bodies import draw_bodies
 from isomortar.results.curves import draw_curve, draw_reactions
 from isomortar.results.fields import contact_surfaces
@@ -125,6 +125,27 @@ def test_the_longer_side_of_a_face_runs_to_the_right_with_all_that_is_drawn_on_i
     assert np.array_equal(level[0, :, 0], right.boundaries[[0, -1]])
     ratio = surface.lengths[0] / np.ptp(up.boundaries) / (surface.lengths[1] / np.ptp(right.boundaries))
     assert axes.get_aspect() == pytest.approx(ratio)
+
+
+@pytest.mark.parametrize(
+    ("active", "low", "high"),
+    [([], 0.0, 10.0), ([4.2, 5.0], 3.0, 7.0), ([4.0, 5.5], 2.0, 8.0), ([0.0, 10.0], 0.0, 10.0), ([0.5], 0.0, 3.0), ([9.5], 8.0, 10.0)],
+)
+def test_a_map_looks_at_the_contact_and_two_elements_round_it(active: list[float], low: float, high: float) -> None:
+    ten = Direction("N", 1, [0.0, *range(11), 10.0])
+    margin = 0.03 * (high - low)
+    assert maps._limits(ten, np.array(active)) == pytest.approx((low - margin, high + margin))
+
+
+def test_a_map_looks_at_contact_along_both_of_its_coordinates() -> None:
+    made, step = problem(), step_result(1)
+    surface = contact_surfaces(made, step)[0]
+    axes = draw_map(made, step, 0).axes[0]
+    marks = np.concatenate([np.column_stack(line.get_data()) for line in axes.lines if line.get_label() != "open"])
+    right, up = surface.directions[::-1]
+    assert axes.get_xlim() == pytest.approx(maps._limits(right, marks[:, 0]))
+    assert axes.get_ylim() == pytest.approx(maps._limits(up, marks[:, 1]))
+    assert axes.get_xlim() != axes.get_ylim()
 
 
 def square(height: float, size: float) -> np.ndarray:
