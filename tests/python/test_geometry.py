@@ -187,3 +187,9 @@ def test_default_gauss_points_are_those_of_table_1() -> None:
             knots = np.repeat([0.0, 1.0], order + 1) if family == "N" else np.array([0.0, 1.0])
             direction = Direction(family, order, knots)
             assert (volume_points(direction), contact_points(direction)) == (volume_count, contact_count)
+
+
+@pytest.mark.parametrize("boundaries", [[], [0.0], [0.0, 0.0], [0.0, 1.0, 0.5], [0.0, float("nan")]])
+def test_elements_of_a_lagrange_direction_need_two_ends_in_order(boundaries: list[float]) -> None:
+    with pytest.raises(InputError, match=r"knots: (element boundaries|must be one list of finite numbers)"):
+        Direction("L", 2, np.array(boundaries))

@@ -11,6 +11,8 @@ import pytest
 
 import isomortar
 from isomortar.errors import ConvergenceError, InputError
+from isomortar.geometry import net
+from isomortar.geometry.patch import Direction
 from isomortar.model.numbering import Numbering
 from isomortar.program.getfem import GetFEM
 from isomortar.results import bodies
@@ -175,3 +177,12 @@ def test_other_programs_are_not_told_of_glue() -> None:
     with pytest.raises(InputError, match="is not told of glued bodies") as error:
         GetFEM().run(Scene.from_toml(lagrange).problem())
     assert error.value.field == "glue"
+
+
+def test_differing_knots_are_told_with_the_letters_of_either_body() -> None:
+    """Those of two bodies need not be alike: what runs along v in one may run along w in the other."""
+    even, uneven = Direction("N", 1, [0.0, 0.0, 0.5, 1.0, 1.0]), Direction("N", 1, [0.0, 0.0, 0.4, 1.0, 1.0])
+    said = net._of_directions(even, uneven, ("a", "b"), ("v", "w"), 1e-9)
+    assert said == "knots of a along v and those of b along w differ by up to 0.1 of their range"
+    said = net._of_directions(even, Direction("N", 1, [0.0, 0.0, 1.0, 1.0]), ("a", "b"), ("v", "w"), 1e-9)
+    assert said == "a has 2 elements along v, b 1 elements along w"
