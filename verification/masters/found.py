@@ -20,8 +20,8 @@ from isomortar.program.getfem import GetFEM
 
 
 @dataclass(frozen=True)
-class Found(Computed):
-    """A run by isomortar."""
+class _OfPlan(Computed):
+    """A run that is planned, by whatever program."""
 
     planned: Planned
 
@@ -29,6 +29,11 @@ class Found(Computed):
     def name(self) -> str:
         """Its scene and its master."""
         return self.planned.name
+
+
+@dataclass(frozen=True)
+class Found(_OfPlan):
+    """A run by isomortar."""
 
     @property
     def method(self) -> str:
@@ -105,15 +110,8 @@ class Found(Computed):
 
 
 @dataclass(frozen=True)
-class Beside(Computed):
+class Beside(_OfPlan):
     """The block by another program."""
-
-    planned: Planned
-
-    @property
-    def name(self) -> str:
-        """Its scene and its master."""
-        return self.planned.name
 
     @property
     def method(self) -> str:

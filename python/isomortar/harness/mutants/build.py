@@ -35,6 +35,8 @@ class Workshop(Protocol):
     rest: str
     #: The program without a fault.
     sound: Path
+    #: Measures cells on it, and notes what lines they run where `statements` asks for these.
+    scout: str
 
     def build(self, fault: Fault) -> Path | None:
         """The program with a fault, a folder; None where the compiler rejects it."""
@@ -59,6 +61,8 @@ class KernelWorkshop:
     folder : Path
         Where to work.
     """
+
+    scout = "isomortar.harness.worker"
 
     def __init__(self, project: Path, folder: Path) -> None:
         self._programs = folder / "programs"
@@ -122,6 +126,8 @@ class PythonWorkshop:
         Where the sources stand.
     """
 
+    scout = "isomortar.harness.mutants.reach"
+
     def __init__(self, project: Path, folder: Path, layer: Layer) -> None:
         self._programs, self._package = folder / "programs", project / layer.folder
         self._files = layer.read(project)
@@ -148,7 +154,7 @@ class PythonWorkshop:
         return hashlib.sha256("\0".join([self.sources, *parts]).encode()).hexdigest()
 
     def statements(self, fault: Fault, /) -> Set[int] | None:
-        """Lines of the statements that a fault is in; None where importing its file runs it."""
+        """Lines of the statements that a fault is in, or of the file's functions where it stands outside of them."""
         return statements_at(self._files[fault.file], fault.lines)
 
 

@@ -93,7 +93,7 @@ class Campaign:
         package, frozen = freeze(cases, folder / "frozen")
         self._keys = {cell.name: cell_key(cell, self._workshop.rest)[:20] for cell in cells}
         self._crew = Crew([Bench(package, frozen, folder / f"bench{i + 1}") for i in range(jobs)])
-        self._scouts = Crew([Bench(package, frozen, folder / f"scout{i + 1}", "isomortar.harness.mutants.reach") for i in range(jobs)])
+        self._scouts = Crew([Bench(package, frozen, folder / f"scout{i + 1}", self._workshop.scout) for i in range(jobs)])
         self._ran: dict[str, Lines] = {}
 
     def __enter__(self) -> Campaign:

@@ -1,0 +1,88 @@
+"""Which lines of Python a cell runs, and of which statement a line is."""
+
+from __future__ import annotations
+
+import pytest
+
+from isomortar.harness.collection import collect
+from isomortar.harness.mutants.bench import Bench, freeze
+from isomortar.harness.mutants.reach import statements_at, without_lines
+
+STATEMENTS = """LIMIT = (
+    1
+)
+@decorated(
+    2
+)
+def f(a, b=3):
+    if a > (
+        4
+    ):
+        return g(
+            5
+        )
+    return [
+        6 for _ in b
+    ]
+class C:
+    field = 7
+    def method(self):
+        return 8
+"""
+
+
+#: Of its functions.
+BODIES = [*range(8, 17), 20]
+
+
+@pytest.mark.parametrize(
+    ("number", "lines"),
+    [
+        (1, BODIES), (2, range(4, 17)), (3, range(4, 17)), (4, range(8, 14)), (5, range(11, 14)), (6, range(14, 17)), (7, BODIES),
+        (8, range(20, 21)),
+    ],
+)  # fmt: skip
+def test_a_line_is_of_the_statement_that_runs_it(number, lines):
+    line = 1 + STATEMENTS[: STATEMENTS.index(str(number))].count("\n")
+    assert statements_at(STATEMENTS, [line]) == set(lines)
+
+
+def test_lines_are_of_all_their_statements():
+    assert statements_at(STATEMENTS, [9, 15]) == {*range(8, 17)}
+    assert statements_at(STATEMENTS, [15, 1]) == set(BODIES)
+    assert statements_at(STATEMENTS[: STATEMENTS.index("@")], [2]) is None
+
+
+RUN_CASE = """
+from isomortar.harness import Bound, case
+
+@case(claim="Lines.", bounds={"zero": Bound(at_most=1.0, reason="definition: so")}, grid={"k": [1, 2]})
+def runs(k):
+    from isomortar.geometry.quadrature import which
+
+    for _ in range(3):
+        which(k)
+    return {"zero": 0.0}
+"""
+WHICH = """def which(k):
+    if k == 1:
+        return [
+            k for _ in range(2)
+        ]
+    return -k
+"""
+
+
+def test_lines_that_a_cell_runs(tmp_path):
+    """Each cell's own, also those of a function that another cell had run before, and again after every line of it was run."""
+    (tmp_path / "cases/runs_family").mkdir(parents=True)
+    (tmp_path / "cases/runs_family/runs_cases.py").write_text(RUN_CASE)
+    first, second = (cell for case in collect(tmp_path / "cases") for cell in case.cells)
+    package, frozen = freeze(tmp_path / "cases", tmp_path / "frozen")
+    (package / "geometry/quadrature.py").write_text(WHICH)
+    (tmp_path / "sound").mkdir()
+    with Bench(package, frozen, tmp_path / "bench", "isomortar.harness.mutants.reach") as bench:
+        for cell, expected in ((first, {1, 2, 3, 4}), (second, {1, 2, 6}), (first, {1, 2, 3, 4})):
+            measurement, lines = without_lines(bench.measure(tmp_path / "sound", cell, 60.0))
+            assert measurement.numbers == {"zero": 0.0}
+            assert set(lines["geometry/quadrature.py"]) == expected
