@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import runpy
 from dataclasses import dataclass
@@ -15,7 +16,9 @@ from isomortar.harness.collection import cases_of
 from isomortar.harness.compare import judge
 from isomortar.harness.measurement import measure
 from isomortar.harness.references import finder
+from isomortar.program import getfem
 from isomortar.program.getfem import GetFEM
+from isomortar.program.process import End, Finished
 from isomortar.scene import Scene
 
 VERIFICATION = Path(__file__).parents[2] / "verification"
@@ -41,6 +44,21 @@ def test_a_problem_at_rest_has_no_load_step() -> None:
 def test_a_program_that_is_not_there_is_a_note() -> None:
     row = block["other_run"](GetFEM("/no/such/python"), Scene.load("block", block["COARSE"]), 1, "aside")
     assert row == {"note": "GetFEM is not installed: apt-get install python3-getfem"}
+
+
+def test_getfem_is_not_charged_with_works_that_it_integrates_for_us(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = []
+
+    def run(command: list[str]) -> Finished:
+        asked.append(json.loads(Path(command[-1]).read_text())["works"])
+        return Finished(End("crashed", "", 1), "", "", 1.0)
+
+    monkeypatch.setattr(getfem, "has_module", lambda *_: True)
+    monkeypatch.setattr(getfem, "run", run)
+    assert next(block["block"].function(True))["program"] == "GetFEM"
+    assert asked == [False, False], "the run, and its start-up"
+    GetFEM().run(Scene.load("block", block["COARSE"]).problem())
+    assert asked[-1], "studies do show them"
 
 
 def test_time_is_compared_only_where_both_came_to_the_end() -> None:

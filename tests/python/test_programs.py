@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import json
 import re
+import runpy
 import sys
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -249,6 +251,22 @@ def test_what_getfem_answers_is_read() -> None:
     total = sum(reaction.force.sum() for reaction in found.steps[0].reactions)
     np.testing.assert_allclose(total, len(told.prescribed) * (len(told.prescribed) - 1) / 2)
     assert found.steps[0].works == (0.5, -0.25)
+    untold = getfem._outcome(told, Finished(End("measured", "", 0), line.replace(', "friction": 0.5, "spurious": -0.25', ""), "", 1.0))
+    np.testing.assert_array_equal(untold.steps[0].works, [np.nan, np.nan])
+
+
+@pytest.mark.parametrize("works", [True, False])
+def test_getfem_integrates_works_only_where_it_is_asked(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], works: bool
+) -> None:
+    model = SimpleNamespace(nbdof=lambda: 0, solve=lambda *_: (1, 1))
+    monkeypatch.setitem(sys.modules, "getfem", SimpleNamespace(Model=lambda _: model, util_trace_level=lambda _: None))
+    nothing: dict[str, object] = {key: [] for key in ("bodies", "contacts", "nodes", "prescribed")}
+    told = tmp_path / "problem.json"
+    told.write_text(json.dumps({**nothing, "displacements": [[], []], "tolerance": 1e-9, "iterations": 5, "works": works}))
+    runpy.run_path(str(Path(getfem.__file__).with_name("getfem_job.py")))["main"](str(told))
+    steps = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    assert ["friction" in step and "spurious" in step for step in steps] == [works, works]
 
 
 def test_a_program_is_run_to_its_end_with_what_it_says() -> None:

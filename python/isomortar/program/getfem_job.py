@@ -1,7 +1,7 @@
 """What GetFEM does with a problem: ``python3 -I getfem_job.py PROBLEM.json``, with an interpreter that finds the module getfem.
 
 Needs nothing else but NumPy. Prints a line of JSON a load step: linear solves, whether it converged, and if so displacements of all
-nodes, the forces that hold the prescribed unknowns in their place, and the works of contact.
+nodes, the forces that hold the prescribed unknowns in their place, and where they are asked for the works of contact.
 """
 
 from __future__ import annotations
@@ -167,22 +167,29 @@ def main(path: str) -> None:
         for contact in contacts:
             contact.begin()
         solves, converged = model.solve("max_res", told["tolerance"], "max_iter", told["iterations"], "lsolver", solver)
-        found = _found(model, bodies, held, contacts, nodes) if converged else {}
+        found = _found(model, bodies, held, nodes) if converged else {}
+        if converged and told["works"]:
+            found |= _works(contacts)
         print(json.dumps({"solves": int(solves), "converged": bool(converged), **found}))
         if not converged:
             break
 
 
-def _found(model: Any, bodies: list[MeshedBody], held: list[HeldUnknowns], contacts: list[TouchingFaces], nodes: Any) -> dict[str, Any]:
-    """Displacements of all nodes, the forces of what is prescribed, and the works of all contacts."""
+def _found(model: Any, bodies: list[MeshedBody], held: list[HeldUnknowns], nodes: Any) -> dict[str, Any]:
+    """Displacements of all nodes, and the forces of what is prescribed."""
     displacements = np.zeros(nodes.size)
     for body in bodies:
         displacements[body.unknowns] = model.variable(body.variable)
     forces = np.zeros(sum(len(support.places) for support in held))
     for support in held:
         support.forces(forces)
+    return {"displacements": displacements.tolist(), "forces": forces.tolist()}
+
+
+def _works(contacts: list[TouchingFaces]) -> dict[str, float]:
+    """The works of all contacts."""
     friction, spurious = np.sum([contact.works() for contact in contacts], axis=0).tolist() if contacts else (0.0, 0.0)
-    return {"displacements": displacements.tolist(), "forces": forces.tolist(), "friction": friction, "spurious": spurious}
+    return {"friction": friction, "spurious": spurious}
 
 
 if __name__ == "__main__":
