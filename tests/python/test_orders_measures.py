@@ -4,7 +4,11 @@ import math
 
 import numpy as np
 import pytest
-from measures import (
+
+from isomortar.errors import InputError
+from isomortar.geometry.primitives import bowl, box, ring
+from isomortar.geometry.refinement import mesh
+from isomortar.harness.measures import (
     curve_error,
     expected_order,
     on_common_times,
@@ -12,11 +16,7 @@ from measures import (
     relative_error,
     roughness,
 )
-from sampling import body_grid, face_grid, values_at
-
-from isomortar.errors import InputError
-from isomortar.geometry.primitives import bowl, box, ring
-from isomortar.geometry.refinement import mesh
+from isomortar.harness.sampling import body_grid, face_grid, values_at
 from isomortar.results.bezier import functions_at
 
 

@@ -9,9 +9,9 @@ from functools import cached_property
 import numpy as np
 from enforcement.known import STRIPS
 from enforcement.plan import MORTAR, REFERENCE, Planned
-from measures import roughness
 
 from isomortar.geometry.patch import FloatArray
+from isomortar.harness.measures import roughness
 from isomortar.harness.runs import ByMethod, Computed
 
 

@@ -11,13 +11,13 @@ import numpy as np
 from analytic.mindlin import CONTACT, FINE, FRICTION, SETTINGS, Theory, cap, sheared, theory
 from enforcement.contact import IN_CELLS, enforcement_of
 from enforcement.plan import AUGMENTED, MORTAR
-from measures import relative_error, roughness
 from numpy.typing import NDArray
 from patch_tests.subcells import SUBCELLS
 
 from isomortar.errors import ConvergenceError
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness.cases import Bound, Cell, Shown, Words, measured
+from isomortar.harness.measures import relative_error, roughness
 from isomortar.model.enforcement import slave_side
 from isomortar.model.entities import Contact, Problem, Stage
 from isomortar.model.numbering import Numbering

@@ -9,12 +9,12 @@ from functools import cached_property
 from itertools import count
 
 from orders import run
-from sampling import Grid, slave_grid
 
 from isomortar.errors import InputError
 from isomortar.harness.cases import LAGRANGE, NURBS
 from isomortar.harness.discretisations import Discretisation, Sweep, discretisation, lowest_order, overrides, parse_kind, refined, sweep_of
 from isomortar.harness.orders import SMALLEST_RATIO, WINDOW
+from isomortar.harness.sampling import Grid, slave_grid
 from isomortar.model.entities import Problem
 from isomortar.scene.scene import Scene
 

@@ -6,11 +6,11 @@ import time
 from typing import Any
 
 import numpy as np
-from sampling import Grid, body_grid, slave_grid, values_at
 
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness.cases import Bound, Shown, measured
 from isomortar.harness.discretisations import coarse_geometry
+from isomortar.harness.sampling import Grid, body_grid, slave_grid, values_at
 from isomortar.model.entities import Problem
 from isomortar.results.fields import body_points, contact_surfaces
 from isomortar.scene.scene import Scene

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from measures import curve_error, relative_error, roughness
 from numpy.typing import ArrayLike
 from paper.outcome import Outcome
 
 from isomortar.geometry.patch import FloatArray
+from isomortar.harness.measures import curve_error, relative_error, roughness
 
 
 def rms_second_difference(outcome: Outcome) -> float:

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from measures import curve_error
 from paper.outcome import Outcome
 
 from isomortar.geometry.patch import FloatArray
+from isomortar.harness.measures import curve_error
 from isomortar.harness.references import Reference
 
 #: Folder below the references, and the dataset of a section there (``verification/paper_curves``).
