@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
 from enforcement.tables import POINTWISE, at_points, duals
 from extremes.discretisation import compliance, equilibrium_of
-from patch_tests.contact import ORDERS, SLAVE_ELEMENTS, default_rule, errors, functions, pressure_limit, problem
+from patch_tests.contact import ORDERS, SLAVE_ELEMENTS, STRETCH, default_rule, errors, functions, pressure_limit, problem
 from patch_tests.subcells import SUBCELLS
 from scipy import linalg
 from supports import symmetry
@@ -127,7 +128,7 @@ _UNIFORM = Bound(
 )
 _NOT_UNIFORM = Bound(at_least=1e3 * _EXACTLY, reason="theory: forces of a uniform pressure are inexact; far above the solver's tolerance")
 
-_LARGE = "round-off: of multipliers, times the sum of the dual functions' sizes at a place, or the solver's tolerance"
+_LARGE = "round-off: of a strain that sums of order + 1 positions tell, times the sizes of the dual functions at a place, or the tolerance"
 
 
 def size_of_duals(order: int) -> float:
@@ -140,7 +141,8 @@ def patch_bounds(method: str, order: int, meshes: str) -> dict[str, Bound | Show
     exact = method != "knots" or order == 1 if meshes == "matching" else method == IN_CELLS
     limit = _UNIFORM if exact else _NOT_UNIFORM
     if method == "dual" and exact:
-        limit = Bound(at_most=max(_EXACTLY, 8.0 * size_of_duals(order) * np.finfo(float).eps), reason=_LARGE)
+        lost = (order + 1) * float(np.finfo(float).eps) / abs(math.log(STRETCH))
+        limit = Bound(at_most=max(_EXACTLY, lost * size_of_duals(order)), reason=_LARGE)
     if method in ("mortar", "dual") and meshes == "other":
         points, elements = default_rule(order)
         missing = pressure_limit(order, order, elements, points, duals if method == "dual" else functions)

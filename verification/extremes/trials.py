@@ -17,7 +17,7 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.program.process import ONE_THREAD, Limits, Process
 
 #: What one run may take: seconds of the processor (of the clock a few times that, as the machine may be busy), bytes of address space.
-SECONDS, PATIENCE, MEMORY = 30, 10, 4 << 30
+SECONDS, PATIENCE, MEMORY = 60, 10, 4 << 30
 #: Whatever kernel this process has found, the program that it starts finds too.
 _START = "import sys; sys.path[:] = {path!r}; sys.argv[0] = 'isomortar'; from isomortar.cli import main; main()"
 
