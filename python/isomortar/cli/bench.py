@@ -8,8 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.console import Console
-from rich.table import Table
 
 from isomortar.cli.verification import CASES, FAILED
 
@@ -40,6 +38,8 @@ def bench(
     - `isomortar bench factorisation solid_assembly`
     - `isomortar bench --quick --out results/tried`
     """
+    from rich.console import Console
+
     from isomortar.harness.bench import collection, machine, page, processes, record
 
     benchmarks = collection.select(collection.collect(cases), names or [])
@@ -73,6 +73,9 @@ def _line(row: Row) -> str:
 
 def _print(answer: Answer) -> None:
     """The table of a benchmark, and how its limits stand."""
+    from rich.console import Console
+    from rich.table import Table
+
     from isomortar.harness.bench.declaration import NOTE
     from isomortar.harness.bench.page import headings, text
     from isomortar.harness.bench.standings import standings

@@ -7,9 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
-from rich.table import Table
 
 from isomortar.cli.verification import CASES, CORES, FAILED, REFERENCES, CasesOption, ReferencesOption
 
@@ -49,6 +46,9 @@ def mutants(
     - `isomortar mutants --sample 300 -j 2`
     - `isomortar mutants --layer python --sample 200`
     """
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
     from isomortar.harness.collection import collect
     from isomortar.harness.mutants import report
     from isomortar.harness.mutants.campaign import Campaign
@@ -89,6 +89,9 @@ def mutants(
 
 def _print(score: Score) -> None:
     """The tally on the terminal."""
+    from rich.console import Console
+    from rich.table import Table
+
     console = Console(highlight=False)
     table = Table("caught first by", *score.folders, "all")
     for family, counts in score.catches.items():

@@ -12,11 +12,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
-from rich.table import Table
 
 if TYPE_CHECKING:
+    from rich.table import Table
+
     from isomortar.harness import blessing
     from isomortar.harness.cases import Cell, Tier
     from isomortar.harness.compare import Lookup
@@ -116,6 +115,8 @@ def bless(
 
     For example: `isomortar bless patch_tests/uniform_pressure --reason "More quadrature points by default"`
     """
+    from rich.console import Console
+
     from isomortar.errors import InputError
     from isomortar.harness import blessing
     from isomortar.harness.collection import find
@@ -171,6 +172,9 @@ def measure_all(
     cells: Sequence[Cell], folder: Path, lookup: Lookup, submitter: AbstractContextManager[Submit], fresh: bool
 ) -> list[Result]:
     """Measure with a progress bar on stderr, under which whatever does not pass is told of at once."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
     from isomortar.harness.report import sentence
     from isomortar.harness.runner import run, start
     from isomortar.harness.store import Store
@@ -207,6 +211,8 @@ def conduct(study: Study, folder: Path, jobs: int) -> None:
 
 def _table(found: Sequence[blessing.Change]) -> Table:
     """What a blessing changes, as numbers."""
+    from rich.table import Table
+
     table = Table()
     for heading in ("cell", "number", "values", "largest, old", "largest, new", "difference", "old uncertainty"):
         table.add_column(heading, overflow="fold")

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import KDTree
 
 from isomortar.geometry.faces import Cells, cells
 from isomortar.geometry.patch import FloatArray
@@ -73,6 +72,8 @@ def _on_plane(points: FloatArray, slave: Cells, plane: RigidPlane) -> Stance:
 
 
 def _on_face(slave: Cells, master: Cells) -> Stance:
+    from scipy.spatial import KDTree
+
     distances, nearest = KDTree(master.centres).query(slave.centres)
     normals, arms = master.normals[nearest], slave.centres - master.centres[nearest]
     cosines = np.einsum("ij,ij->i", slave.normals, normals)

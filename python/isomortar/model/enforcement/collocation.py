@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse.linalg import splu
 
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.enforcement.face import SlaveFace, grid
@@ -15,6 +14,8 @@ from isomortar.model.enforcement.side import SlaveSide, functions_at, open_ends,
 
 def collocated(face: SlaveFace, abscissae: Sequence[FloatArray]) -> SlaveSide:
     """Constraints at the grid of some abscissae, with areas for which a uniform pressure's forces are exact (theory 10.5)."""
+    from scipy.sparse.linalg import splu
+
     first, second = (open_ends(a, closed) for a, closed in zip(abscissae, face.closed, strict=True))
     coordinates = grid(first, second)
     nodes, values, _, area = face.gauss()

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from itertools import pairwise
 from math import factorial
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import BSpline, PPoly, make_interp_spline
 
 from isomortar.geometry.patch import Direction, FloatArray
 from isomortar.model import constants
 from isomortar.model.enforcement.collocation import collocated
 from isomortar.model.enforcement.face import SlaveFace
 from isomortar.model.enforcement.side import SlaveSide
+
+if TYPE_CHECKING:
+    from scipy.interpolate import BSpline, PPoly
 
 
 def side(face: SlaveFace) -> SlaveSide:
@@ -25,6 +28,8 @@ def abscissae(direction: Direction) -> FloatArray:
 
     By Remez' exchange from Greville's abscissae. A direction of Lagrange elements has none (it is refused before).
     """
+    from scipy.interpolate import make_interp_spline  # within, as in the other methods: no other method waits for it
+
     places = direction.greville
     signs = (-1.0) ** np.arange(direction.count)
     for _ in range(constants.CHEBYSHEV_STEPS):
@@ -48,6 +53,8 @@ def _extrema(spline: BSpline, places: FloatArray, knots: FloatArray) -> FloatArr
 
 def _pieces(spline: BSpline, knots: FloatArray) -> PPoly:
     """The polynomials between distinct knots; SciPy's own conversion ends the process above order 7."""
+    from scipy.interpolate import PPoly
+
     return PPoly(np.array([spline(knots[:-1], nu=j) / factorial(j) for j in range(spline.k, -1, -1)]), knots)
 
 

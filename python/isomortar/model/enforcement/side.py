@@ -8,7 +8,6 @@ from functools import cached_property
 
 import numpy as np
 from scipy import sparse
-from scipy.spatial import cKDTree
 
 from isomortar._bindings import FunctionArrays, SlaveArrays
 from isomortar.errors import InputError
@@ -71,6 +70,8 @@ class PointSide(SlaveSide):
     @cached_property
     def nearest(self) -> IntArray:
         """The constraint that is nearest to where each control point belongs, by the face's coordinates, shape (n,)."""
+        from scipy.spatial import cKDTree
+
         return np.asarray(cKDTree(self.places).query(self.control_places)[1], dtype=np.int32)
 
 

@@ -1,0 +1,67 @@
+"""What a command does not use it does not load: whoever waits for a small scene waits for its imports most of all."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+#: Runs a command, and writes the names of all modules that are loaded at its end.
+COMMAND = """
+import sys
+from pathlib import Path
+from isomortar.cli import main
+names, *sys.argv[1:] = sys.argv[1:]
+try:
+    main()
+finally:
+    Path(names).write_text("\\n".join(sys.modules))
+"""
+#: For pictures, pages, verification, other programs and clusters.
+ASIDE = {"matplotlib", "jinja2", "vtk", "distributed", "isomortar.harness", "isomortar.program", "isomortar._twin", "isomortar._extended"}
+#: Parts of SciPy that some method of enforcement, or some other solver, needs.
+SPECIAL = {"scipy.interpolate", "scipy.optimize", "scipy.special", "scipy.stats", "scipy.integrate"}
+PRESS = ("press", "--set", "stages.press.steps=1", "--set", "bodies.block.mesh.elements=[1,1,1]")
+BLOCK = (
+    "block",
+    *("--set", "bodies.slave.mesh.elements=[2,2,1]", "--set", "bodies.master.mesh.elements=[3,3,2]"),
+    *("--set", 'stages=[{name="press", steps=1, motions.top.translate=[0,0,-0.02]}]'),
+)
+DEMKO = ("--set", 'contacts.floor.enforcement="demko"')
+
+
+def loaded(folder: Path, *arguments: str) -> set[str]:
+    """Names of the modules that a command has loaded in a process of its own, those that they stand in included."""
+    subprocess.run([sys.executable, "-c", COMMAND, "names", *arguments], check=True, cwd=folder, stdout=subprocess.DEVNULL)
+    return set((folder / "names").read_text().splitlines())
+
+
+def test_the_package_alone_loads_nothing() -> None:
+    code = "import isomortar, sys; print(*sys.modules)"
+    names = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout.split()
+    assert "isomortar" in names
+    assert not {"numpy", "scipy", "pydantic", "isomortar.scene"} & set(names)
+
+
+def test_the_version_needs_nothing_of_what_computes(tmp_path: Path) -> None:
+    assert not {"numpy", "pydantic", "rich", "h5py", "splinepy", "isomortar.scene"} & loaded(tmp_path, "--version")
+
+
+@pytest.mark.parametrize(
+    ("scene", "not_needed"),
+    [
+        (PRESS, {*SPECIAL, "scipy.spatial"}),
+        (BLOCK, SPECIAL - {"scipy.special"}),  # which comes with SciPy's search for neighbours
+    ],
+    ids=["plane", "bodies"],
+)
+def test_a_run_loads_what_it_needs(tmp_path: Path, scene: tuple[str, ...], not_needed: set[str]) -> None:
+    names = loaded(tmp_path, "run", *scene, "--output", "scene.h5")
+    assert {"numpy", "h5py", "isomortar._kernel"} <= names
+    assert not (ASIDE | not_needed) & names
+
+
+def test_what_a_method_needs_comes_with_it(tmp_path: Path) -> None:
+    assert "scipy.interpolate" in loaded(tmp_path, "run", *PRESS, *DEMKO, "--output", "scene.h5")
