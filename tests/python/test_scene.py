@@ -59,7 +59,7 @@ def test_numbers_of_control_points_of_the_iron(overrides: list[str], count: int)
 
 
 def test_bundled_scenes_are_there_and_converge_on_their_own_text() -> None:
-    assert bundled_scenes() == ("block", "iron", "press", "reversal", "tire", "twist", "twist-sharp")
+    assert bundled_scenes() == ("block", "iron", "iron-round", "press", "reversal", "tire", "twist", "twist-sharp")
     for name in bundled_scenes():
         scene = Scene.load(name)
         assert (scene.name, bool(scene.title)) == (name, True)
@@ -82,9 +82,27 @@ def test_load_history_and_friction_of_the_bundled_scenes() -> None:
     assert (roll[0], roll[2]) == (90, 270)
     assert roll[1] == pytest.approx((0.47 * math.radians(270), 0, 0), rel=1e-15)
     friction = {name: Scene.load(name).problem().contacts[0].friction for name in bundled_scenes()}
-    assert friction == {"block": 0.3, "press": 0.3, "reversal": 0.3, "twist": 0.3, "twist-sharp": 0.3, "iron": 0.1, "tire": 0.1}
+    assert friction == {
+        "block": 0.3,
+        "press": 0.3,
+        "reversal": 0.3,
+        "twist": 0.3,
+        "twist-sharp": 0.3,
+        "iron": 0.1,
+        "iron-round": 0.1,
+        "tire": 0.1,
+    }
     areas = {name: Scene.load(name).problem().contacts[0].reference_area for name in bundled_scenes()}
-    assert areas == {"block": None, "press": 1.0, "reversal": None, "twist": 1.0, "twist-sharp": 1.0, "iron": 1.0, "tire": 1.0}
+    assert areas == {
+        "block": None,
+        "press": 1.0,
+        "reversal": None,
+        "twist": 1.0,
+        "twist-sharp": 1.0,
+        "iron": 1.0,
+        "iron-round": None,
+        "tire": 1.0,
+    }
 
 
 def test_places_of_the_bundled_scenes() -> None:

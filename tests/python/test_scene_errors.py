@@ -269,7 +269,7 @@ def test_several_faults_are_told_at_once() -> None:
 
 
 def test_sources_that_are_no_scene(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"there is no scene file 'irn', and the bundled scenes are: iron, block, press"):
+    with pytest.raises(InputError, match=r"there is no scene file 'irn', and the bundled scenes are: iron, block, iron-round, press"):
         Scene.load("irn")
     (tmp_path / "a.toml").write_text("format = = 1")
     with pytest.raises(InputError, match=r"a is not valid TOML: .*line 1"):

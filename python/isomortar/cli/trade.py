@@ -1,0 +1,98 @@
+"""``isomortar trade``."""
+
+from __future__ import annotations
+
+import re
+from datetime import datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.console import Console
+
+from isomortar.cli.endings import FAILED
+
+if TYPE_CHECKING:
+    from isomortar.harness.trade.laboratory import Tried
+
+
+def trade(
+    scene: Annotated[str, typer.Argument(metavar="SCENE", help="A scene file (.toml), or a bundled scene by its name.")],
+    want: Annotated[
+        list[str],
+        typer.Option(
+            metavar="WHAT",
+            help="What is wanted: force.SUPPORT.x, moment.SUPPORT.norm, area.CONTACT (curves; @STAGE of one stage, :end, :peak), "
+            "pressure.CONTACT, traction.CONTACT (fields at the end); may be repeated.",
+        ),
+    ],
+    within: Annotated[list[str], typer.Option(metavar="ERROR", help="Largest error, 1% or 0.01; may be repeated.")],
+    overrides: Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change one value of the scene.")] = None,
+    budget: Annotated[float, typer.Option(min=0.1, metavar="MINUTES", help="Minutes of the processor for all runs.")] = 60.0,
+    jobs: Annotated[int, typer.Option("-j", "--jobs", min=1, help="Runs at the same time; several disturb each other's cost.")] = 1,
+    out: Annotated[
+        Path | None, typer.Option(file_okay=False, help="Folder of the page and its runs.", show_default="results/trade-NAME")
+    ] = None,
+) -> None:
+    """The cheapest settings of a scene for an accuracy, and what every knob costs and spoils.
+
+    Two over-refined runs tell the truth and how well it is known; every knob (orders, elements, quadrature, load steps, tolerances, ways of
+    enforcing contact, ...) is turned alone; from that the cheapest combination is forecast, run, and corrected until none is cheaper. What
+    is recommended is run afresh. A target that the truth does not resolve is refused, with what would be needed.
+
+    What was run already is not run again: a search that was killed goes on to the same answer. Exit code 1 if a target has no answer.
+
+    For example:
+
+    - `isomortar trade press --want force.top.z --within 1%`
+    - `isomortar trade iron-round --want force.top.x@drag --within 5% --within 1% --budget 120 -j 2`
+    - `isomortar trade my_scene.toml --want pressure.floor --want area.floor:end --within 2%`
+    """
+    from isomortar.harness.runner import local_processes
+    from isomortar.harness.trade import page
+    from isomortar.harness.trade.knobs import dials_of
+    from isomortar.harness.trade.laboratory import Laboratory
+    from isomortar.harness.trade.search import Search
+    from isomortar.harness.trade.want import wanted
+    from isomortar.scene import Scene
+
+    targets = sorted((_share(text) for text in within), reverse=True)
+    loaded = Scene.load(scene, overrides or ())
+    wants = [wanted(text, loaded.problem()) for text in want]
+    started, dials = datetime.now().astimezone(), dials_of(loaded)
+    folder = out or Path("results") / f"trade-{loaded.name}"
+    with local_processes(jobs) as submit:
+        search = Search(Laboratory(loaded, dials, folder, submit, _tell), dials, wants, 60.0 * budget)
+        search.screen()
+        search.find_truth(targets[-1])
+        answers = [search.answer(target) for target in targets]
+    path = page.write(folder, loaded, search, answers, started)
+    print("\n".join([*(page.sentence(search, answer) for answer in answers), str(path)]))
+    if not all(answer.best for answer in answers):
+        raise typer.Exit(FAILED)
+
+
+def _tell(outcome: Tried) -> None:
+    """One line a run, on stderr."""
+    line = f"{outcome.cost:8.2f} s  {outcome.name}" + (f": failed: {outcome.failure}" if outcome.failure else "")
+    Console(stderr=True, highlight=False).print(line, markup=False, soft_wrap=True)
+
+
+def _share(text: str) -> float:
+    """A share as people write it.
+
+    Raises
+    ------
+    InputError
+        Not a number between 0 and 1, or 0 % and 100 %.
+    """
+    from isomortar.errors import InputError
+
+    found = re.fullmatch(r"\s*([\d.]+(?:[eE]-?\d+)?)\s*(%?)\s*", text)
+    try:
+        value = float(found[1]) * (0.01 if found[2] else 1.0) if found else 0.0
+    except ValueError:
+        value = 0.0
+    if not 0.0 < value < 1.0:
+        raise InputError(f"is {text!r}; allowed: more than 0 and less than 1, or per cent, e.g. 0.01 or 1%", "within")
+    return value

@@ -1,0 +1,306 @@
+"""The knobs of a scene as data: what is varied, from cheap to dear, and what it can spoil. A new one is one entry of `KNOBS`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from isomortar.errors import InputError
+from isomortar.geometry.patch import MAX_ORDER, Direction
+from isomortar.geometry.quadrature import contact_points, volume_points
+from isomortar.harness.discretisations import coarse_geometry, lowest_order
+from isomortar.model.entities import Body, Contact, Face, Projection, RigidPlane
+from isomortar.scene.scene import Scene
+
+#: Numbers of elements over the scene's own, and of load steps.
+MESHES, STEPS = (1 / 3, 1 / 2, 2 / 3, 1.0, 4 / 3, 5 / 3, 2.0, 2.5, 3.0), (1 / 8, 1 / 4, 1 / 2, 1.0, 2.0, 3.0, 4.0)
+#: Tolerances of Newton's method over the scene's own; those of the contact conditions go along.
+TOLERANCES, LOOSEST = (1e5, 1e3, 1.0, 1e-2), 1e-3
+#: Elastic slip over the size of the slave body.
+SLIPS = (1e-2, 1e-3)
+#: Orders that a search goes through.
+HIGHEST = 5
+
+#: Changes (`isomortar.scene.source.apply_overrides`) of a scene that may have been changed by other knobs.
+Changes = Callable[[Scene], Sequence[str]]
+
+
+@dataclass(frozen=True)
+class Setting:
+    """One value of a dial, and the overrides that give it to a scene; none for the scene's own."""
+
+    label: str
+    overrides: Changes | None = None
+
+
+@dataclass(frozen=True)
+class Dial:
+    """A knob at one place of a scene.
+
+    Parameters
+    ----------
+    name : str
+        For people: ``elements of block along u``.
+    settings : tuple of Setting
+        From cheap to dear; of choices in any order.
+    own : int
+        Which of them is the scene's own.
+    spoils : str
+        What it can spoil.
+    refines : bool
+        Whether dearer settings come nearer to the truth; else they are choices, of which none is.
+    part : {"", "order", "elements"}
+        Of the discretisation: what over-refined runs differ in.
+    """
+
+    name: str
+    settings: tuple[Setting, ...]
+    own: int
+    spoils: str
+    refines: bool = True
+    part: Literal["", "order", "elements"] = ""
+
+
+@dataclass(frozen=True)
+class Knob:
+    """What can be varied of scenes: its name, what it can spoil, and its dials in a scene."""
+
+    name: str
+    spoils: str
+    dials: Callable[[Scene, str], Iterator[Dial]]
+
+
+def dials_of(scene: Scene, knobs: Sequence[Knob] | None = None) -> tuple[Dial, ...]:
+    """All dials of a scene that have more than one setting the scene can have.
+
+    Parameters
+    ----------
+    scene : Scene
+    knobs : sequence of Knob, optional
+        Default: `KNOBS`.
+    """
+    found = [dial for knob in (KNOBS if knobs is None else knobs) for dial in knob.dials(scene, knob.spoils)]
+    possible = [_possible(scene, dial) for dial in found]
+    return tuple(dial for dial in possible if len(dial.settings) > 1)
+
+
+def changed(scene: Scene, settings: Sequence[Setting]) -> Scene:
+    """The scene with some settings, applied in their order."""
+    for setting in settings:
+        if setting.overrides:
+            scene = Scene.from_toml(scene.to_toml(), overrides=setting.overrides(scene))
+    return scene
+
+
+def _possible(scene: Scene, dial: Dial) -> Dial:
+    """The dial without settings that the scene can not have: two bodies that are glued share a mesh, say."""
+    kept = []
+    for number, setting in enumerate(dial.settings):
+        try:
+            changed(scene, [setting]).problem()
+        except InputError:
+            continue
+        kept.append(number)
+    return Dial(dial.name, tuple(dial.settings[n] for n in kept), kept.index(dial.own), dial.spoils, dial.refines, dial.part)
+
+
+def _orders(scene: Scene, spoils: str) -> Iterator[Dial]:
+    """Order of each body along its faces in contact."""
+    for name, letters in _faces(scene).items():
+        body = scene.problem().body(name)
+        own = max(d.order for axis, d in _directions(body) if axis in letters)
+        families = {d.family for axis, d in _directions(body) if axis in letters}
+        highest = min(HIGHEST, *(MAX_ORDER[family] for family in families))
+        orders = sorted({own, *range(max(2, lowest_order(scene, name, letters)), highest + 1)})
+        settings = [Setting(str(order), None if order == own else _order(name, letters, order)) for order in orders]
+        yield Dial(f"order of {name}", tuple(settings), orders.index(own), spoils, part="order")
+
+
+def _order(name: str, letters: str, order: int) -> Changes:
+    def overrides(scene: Scene) -> list[str]:
+        body = scene.problem().body(name)
+        orders = [order if axis in letters else d.order for axis, d in _directions(body)]
+        return [f"bodies.{name}.mesh.order={orders}", *_stated(body, ("family", "elements"))]
+
+    return overrides
+
+
+def _elements(scene: Scene, spoils: str) -> Iterator[Dial]:
+    """Elements of each body by direction."""
+    for body in scene.problem().bodies:
+        spans = {axis: d.elements for axis, d in zip("uvw", coarse_geometry(scene, body.name).directions, strict=True)}
+        for axis, direction in _directions(body):
+            own, span = direction.elements, spans[axis]
+            counts = sorted({own, *(span * max(1, round(own * factor / span)) for factor in MESHES)})
+            settings = [Setting(str(count), None if count == own else _element(body.name, axis, count)) for count in counts]
+            yield Dial(f"elements of {body.name} along {axis}", tuple(settings), counts.index(own), spoils, part="elements")
+
+
+def _element(name: str, letter: str, count: int) -> Changes:
+    def overrides(scene: Scene) -> list[str]:
+        body = scene.problem().body(name)
+        counts = [count if axis == letter else d.elements for axis, d in _directions(body)]
+        return [f"bodies.{name}.mesh.elements={counts}", *_stated(body, ("family", "order"))]
+
+    return overrides
+
+
+def _volume_points(scene: Scene, spoils: str) -> Iterator[Dial]:
+    """Quadrature points of each body's elements, fewer or more than its own."""
+    for body in scene.problem().bodies:
+        yield Dial(f"quadrature of {body.name}", _more_or_fewer(body.name, -1, 0, 1), 1, spoils)
+
+
+def _more_or_fewer(name: str, *changes: int) -> tuple[Setting, ...]:
+    def overrides(change: int) -> Changes:
+        def of(scene: Scene) -> list[str]:
+            given = scene.tables.bodies[name].mesh.quadrature
+            own = given or [volume_points(d) for _, d in _directions(scene.problem().body(name))]
+            return [f"bodies.{name}.mesh.quadrature={[max(1, n + change) for n in own]}"]
+
+        return of
+
+    return tuple(Setting(f"{change:+d}" if change else "own", overrides(change) if change else None) for change in changes)
+
+
+def _contact_points(scene: Scene, spoils: str) -> Iterator[Dial]:
+    """Quadrature points of each contact's elements, fewer or more than its own."""
+    for contact in scene.problem().contacts:
+        settings = [Setting(f"{more:+d}" if more else "own", _points(contact.name, more) if more else None) for more in (-1, 0, 2, 4)]
+        yield Dial(f"quadrature of {contact.name}", tuple(settings), 1, spoils)
+
+
+def _points(name: str, change: int) -> Changes:
+    def overrides(scene: Scene) -> list[str]:
+        contact = _contact(scene, name)
+        given = scene.tables.contacts[name].quadrature
+        body = scene.problem().body(contact.slave.body)
+        own = given or [contact_points(d) for d in body.patch.face_directions(contact.slave.face)]
+        return [f"contacts.{name}.quadrature={[max(1, n + change) for n in own]}"]
+
+    return overrides
+
+
+def _cells(scene: Scene, spoils: str) -> Iterator[Dial]:
+    """Contact elements cut along the master's knot lines."""
+    for contact in scene.problem().contacts:
+        if isinstance(contact.master, Face):
+            values = sorted({0, 1, 2, contact.subcells})
+            key, name = f"contacts.{contact.name}.subcells", f"subcells of {contact.name}"
+            yield _values(key, name, values, spoils, contact.subcells, refines=True)
+
+
+def _load_steps(scene: Scene, spoils: str) -> Iterator[Dial]:
+    """Load steps of all stages alike."""
+    own = [stage.steps for stage in scene.problem().stages]
+    counts = sorted({tuple(max(1, round(n * factor)) for n in own) for factor in STEPS}, key=sum)
+
+    def overrides(steps: Sequence[int]) -> Changes:
+        return lambda _: [f"stages.{number}.steps={count}" for number, count in enumerate(steps)]
+
+    settings = [Setting(" + ".join(map(str, steps)), None if list(steps) == own else overrides(steps)) for steps in counts]
+    yield Dial("load steps", tuple(settings), counts.index(tuple(own)), spoils)
+
+
+def _tolerances(scene: Scene, spoils: str) -> Iterator[Dial]:
+    """How far a load step is iterated."""
+    solver = scene.problem().settings
+
+    def setting(factor: float) -> Setting:
+        keys = {"newton_tolerance": solver.newton_tolerance, "complementarity_tolerance": solver.complementarity_tolerance}
+        values = [f"solver.{key}={min(LOOSEST, factor * own):g}" for key, own in keys.items()]
+        return Setting(f"{min(LOOSEST, factor * solver.newton_tolerance):.0e}", None if factor == 1.0 else lambda _: values)
+
+    yield Dial("tolerance", tuple(setting(factor) for factor in TOLERANCES), TOLERANCES.index(1.0), spoils)
+
+
+def _methods(scene: Scene, spoils: str) -> Iterator[Dial]:
+    """Multipliers as unknowns, or augmentations."""
+    yield _values("solver.method", "method", ["monolithic", "uzawa"], spoils, scene.problem().settings.method)
+
+
+def _slip_sums(scene: Scene, spoils: str) -> Iterator[Dial]:
+    """Trial tractions by control point or summed."""
+    if any(contact.friction_law.parameters.size for contact in scene.problem().contacts):
+        yield _values("solver.slip_sum", "slip sum", ["local", "paper"], spoils, scene.problem().settings.slip_sum)
+
+
+def _enforcements(scene: Scene, spoils: str) -> Iterator[Dial]:
+    """What is constrained."""
+    for contact in scene.problem().contacts:
+        ways = list(dict.fromkeys([contact.enforcement, "mortar", "dual", "greville"]))
+        yield _values(f"contacts.{contact.name}.enforcement", f"enforcement of {contact.name}", ways, spoils, contact.enforcement)
+
+
+def _projections(scene: Scene, spoils: str) -> Iterator[Dial]:
+    """How slave points find theirs."""
+    ways: list[Projection] = ["closest", "averaged"]
+    for contact in scene.problem().contacts:
+        if not isinstance(contact.master, RigidPlane):
+            yield _values(f"contacts.{contact.name}.projection", f"projection of {contact.name}", ways, spoils, contact.projection)
+
+
+def _elastic_slips(scene: Scene, spoils: str) -> Iterator[Dial]:
+    """A length of elastic slip in place of sticking."""
+    for contact in scene.problem().contacts:
+        if contact.friction_law.parameters.size:
+            size = scene.problem().body(contact.slave.body).size
+            lengths = sorted({contact.elastic_slip, *(float(f"{share * size:.1g}") for share in SLIPS)}, reverse=True)
+            yield _values(f"contacts.{contact.name}.elastic_slip", f"elastic slip of {contact.name}", lengths, spoils, contact.elastic_slip)
+
+
+def _values(key: str, name: str, values: Sequence[object], spoils: str, own: object, refines: bool = False) -> Dial:
+    """The values of one key of a scene file."""
+
+    def overrides(value: object) -> Changes:
+        return lambda _: [f"{key}={value}"]
+
+    settings = tuple(Setting(str(value), None if value == own else overrides(value)) for value in values)
+    return Dial(name, settings, list(values).index(own), spoils, refines)
+
+
+def _faces(scene: Scene) -> dict[str, str]:
+    """Directions along the faces in contact, by body."""
+    letters: dict[str, set[str]] = {}
+    for contact in scene.problem().contacts:
+        for side in (contact.slave, contact.master):
+            if isinstance(side, Face):
+                for face in side.faces:
+                    letters.setdefault(face.body, set()).update("uvw".replace(face.face[0], ""))
+    return {name: "".join(sorted(found)) for name, found in letters.items()}
+
+
+def _contact(scene: Scene, name: str) -> Contact:
+    return next(contact for contact in scene.problem().contacts if contact.name == name)
+
+
+def _directions(body: Body) -> list[tuple[str, Direction]]:
+    return list(zip("uvw", body.patch.directions, strict=True))
+
+
+def _stated(body: Body, keys: Sequence[str]) -> list[str]:
+    """A body's mesh as it is, stated: defaults of some keys follow from others that are given."""
+    values = {
+        "family": [d.family for d in body.patch.directions],
+        "order": [d.order for d in body.patch.directions],
+        "elements": [d.elements for d in body.patch.directions],
+    }
+    return [f"bodies.{body.name}.mesh.{key}={values[key]}".replace("'", '"') for key in keys]
+
+
+#: Every knob, in the order in which settings are applied.
+KNOBS: tuple[Knob, ...] = (
+    Knob("order", "everything that is smooth", _orders),
+    Knob("elements", "everything; along a face the contact's edge first", _elements),
+    Knob("volume quadrature", "the bodies' stiffness", _volume_points),
+    Knob("contact quadrature", "the transfer of pressure between meshes that do not match", _contact_points),
+    Knob("subcells", "the transfer of pressure between meshes that do not match", _cells),
+    Knob("load steps", "what depends on the path: friction, and the shape of curves", _load_steps),
+    Knob("tolerance", "the last digits", _tolerances),
+    Knob("method", "contact conditions, to the tolerance of augmentations", _methods),
+    Knob("slip sum", "tractions between sticking and slipping", _slip_sums),
+    Knob("enforcement", "pressures and tractions", _enforcements),
+    Knob("projection", "gaps where the master is curved", _projections),
+    Knob("elastic slip", "tractions where contact sticks", _elastic_slips),
+)

@@ -1,0 +1,82 @@
+"""One run of a trade: a scene file computed to its end, what users look at, and what it cost."""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from typing import Any
+
+import numpy as np
+
+from isomortar.geometry.patch import FloatArray
+from isomortar.harness.cases import Bound, Shown, measured
+from isomortar.harness.sampling import Grid, slave_grid, values_at
+from isomortar.model.entities import Problem
+from isomortar.results.fields import contact_surfaces
+from isomortar.scene.scene import Scene
+from isomortar.solve.record import StepResult
+from isomortar.solve.simulation import Simulation
+from isomortar.solve.timing import PHASES
+
+
+@measured(
+    claim="The scene is computed to its end.",
+    bounds={
+        "time": Shown("of the load steps; every stage has length one"),
+        "force": Shown("of the supports, shape (supports, steps, 3)"),
+        "moment": Shown("of the supports, shape (supports, steps, 3)"),
+        "area": Shown("where there is pressure, in the reference configuration, shape (contacts, steps)"),
+        "pressure": Shown("at the end on the cells of all slave faces"),
+        "traction": Shown("its magnitude, likewise"),
+        "cells": Shown("areas of these cells"),
+        "counts": Shown("cells of each contact"),
+        "unknowns": Bound(at_least=1, reason="definition: three a control point"),
+        "solves": Bound(at_least=1, reason="definition: linear solves of all load steps"),
+        "cuts": Shown("load increments that were cut"),
+        "phases": Shown("CPU seconds of solid, projection, contact, factors, solves"),
+        "cpu_seconds": Shown("of the computation alone"),
+    },
+)
+def traded(scene: str) -> dict[str, Any]:
+    """Curves and last fields of a scene file, and what they cost."""
+    loaded = Scene.load(scene)
+    problem = loaded.problem()
+    start = time.process_time()
+    steps = list(Simulation(problem).run())
+    seconds = time.process_time() - start
+    grids = [slave_grid(loaded, problem, n) if len(c.slave.faces) == 1 else None for n, c in enumerate(problem.contacts)]
+    fields = [_fields(problem, step, grids) for step in steps]
+    phases: Counter[str] = Counter()
+    for step in steps:
+        phases.update({name: step.timings[name] for name in PHASES})
+    return {
+        "time": stage_times(problem),
+        "force": [[step.reactions[n].force for step in steps] for n in range(len(problem.supports))],
+        "moment": [[step.reactions[n].moment for step in steps] for n in range(len(problem.supports))],
+        "area": np.array([[float(g.weights @ (p > 0)) if g else np.nan for g, p in zip(grids, f[0], strict=True)] for f in fields]).T,
+        "pressure": np.concatenate([np.zeros(0), *fields[-1][0]]),
+        "traction": np.concatenate([np.zeros(0), *fields[-1][1]]),
+        "cells": np.concatenate([np.zeros(0), *(g.weights for g in grids if g)]),
+        "counts": [len(g.weights) if g else 0 for g in grids],
+        "unknowns": 3 * len(steps[-1].state.positions),
+        "solves": sum(step.counters["solves"] for step in steps),
+        "cuts": sum(step.cuts for step in steps),
+        "phases": [phases[name] for name in PHASES],
+        "cpu_seconds": seconds,
+    }
+
+
+def stage_times(problem: Problem) -> FloatArray:
+    """Times of all load steps where each stage takes one, however many steps it has."""
+    return np.concatenate([number + np.arange(1, stage.steps + 1) / stage.steps for number, stage in enumerate(problem.stages)])
+
+
+def _fields(problem: Problem, step: StepResult, grids: list[Grid | None]) -> tuple[list[FloatArray], list[FloatArray]]:
+    """Pressure and magnitude of the traction on the cells of each slave face."""
+    found: tuple[list[FloatArray], list[FloatArray]] = ([], [])
+    for surface, grid in zip(contact_surfaces(problem, step), grids, strict=True):
+        both = np.column_stack([surface.pressure, surface.traction])
+        values = values_at(surface.directions, surface.weights, both, grid) if grid else np.zeros((0, 2))
+        for of_one, column in zip(found, values.T, strict=True):
+            of_one.append(column)
+    return found

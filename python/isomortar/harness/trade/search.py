@@ -1,0 +1,254 @@
+"""The search of a trade: truth, screening of single settings, and the cheapest combination for a target, verified by runs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from isomortar.errors import IsomortarError
+from isomortar.harness.trade.knobs import Dial
+from isomortar.harness.trade.laboratory import Choice, Laboratory, Tried
+from isomortar.harness.trade.model import Model, Yardstick
+from isomortar.harness.trade.want import Want
+
+#: A target is told from the truth's own error where it is this many times as large.
+RESOLVED = 3.0
+#: Forecasts aim at this share of the target; what is measured may take all of it.
+AIM = 0.9
+#: Another combination is tried where it should cost less than this share of the best one so far.
+WORTH = 0.9
+#: Combinations that are tried for one target.
+TRIES = 12
+#: Share of the budget that over-refined runs may take.
+TRUTH = 0.5
+#: Unknowns and their cost with element size: what an answer without enough truth estimates the need by.
+RATE, COST = 1.5, 5.0
+
+
+@dataclass(frozen=True)
+class Recommendation:
+    """What came of a target.
+
+    Parameters
+    ----------
+    target : float
+    best : Tried or None
+        The cheapest run within the target, run afresh.
+    error : float
+        Its error: the largest of those wanted.
+    why : str
+        Why there is none; empty where there is.
+    binding : str
+        The dial whose next dearer setting would lower the error most.
+    by_order : dict of int to Tried or None
+        The cheapest run within the target by order of all bodies.
+    """
+
+    target: float
+    best: Tried | None
+    error: float
+    why: str = ""
+    binding: str = ""
+    by_order: Mapping[int, Tried | None] = field(default_factory=dict)
+
+
+class Search:
+    """The cheapest settings of a scene for what is wanted.
+
+    Parameters
+    ----------
+    laboratory : Laboratory
+    dials : sequence of Dial
+    wants : sequence of Want
+    budget : float
+        CPU seconds that all runs may take; a run that has begun is ended.
+    """
+
+    def __init__(self, laboratory: Laboratory, dials: Sequence[Dial], wants: Sequence[Want], budget: float) -> None:
+        self.laboratory, self.dials, self.wants, self.budget = laboratory, dials, wants, budget
+        self.truth: Tried | None = None
+        self.rival: Tried | None = None
+
+    @cached_property
+    def own(self) -> Tried:
+        """The scene as it is.
+
+        Raises
+        ------
+        IsomortarError
+            It does not come to its end.
+        """
+        (own,) = self.laboratory.run([self.laboratory.own])
+        if own.failure:
+            raise IsomortarError(f"the scene as it is does not come to its end, so that there is nothing to trade: {own.failure}")
+        return own
+
+    @property
+    def yardsticks(self) -> list[Yardstick]:
+        """How far from the truth, by what is wanted."""
+        assert self.truth
+        assert self.rival
+        return [Yardstick(want, self.truth, self.rival) for want in self.wants]
+
+    @property
+    def model(self) -> Model:
+        """Forecasts from all runs so far."""
+        return Model(self.dials, self.laboratory.own, self.laboratory.outcomes, self.yardsticks)
+
+    @property
+    def uncertainty(self) -> float:
+        """The truth's own error: the largest of what is wanted."""
+        return max(yardstick.uncertainty for yardstick in self.yardsticks)
+
+    def error(self, outcome: Tried) -> float:
+        """Distance from the truth: the largest of what is wanted; infinite where the run failed."""
+        return max(yardstick.error(outcome) for yardstick in self.yardsticks)
+
+    def screen(self) -> None:
+        """Run every dial one setting cheaper and one dearer, and every choice."""
+        singles = []
+        for number, dial in enumerate(self.dials):
+            near = (dial.own - 1, dial.own + 1) if dial.refines else range(len(dial.settings))
+            singles += [self.single(number, setting) for setting in near if 0 <= setting < len(dial.settings)]
+        self.laboratory.run([self.own.choice, *singles])
+
+    def find_truth(self, target: float) -> None:
+        """Two over-refined runs of other orders and other meshes, refined until they tell the target or half of the budget is spent.
+
+        Raises
+        ------
+        IsomortarError
+            Such a run does not come to its end.
+        """
+        for level in range(1, 1 + max(len(dial.settings) for dial in self.dials)):
+            pair = self._refined(1, level, 1), self._refined(2, max(0, level - 1), 2)
+            if self.truth and (pair[0] == self.truth.choice or self.laboratory.spent + sum(map(self._cost, pair)) > TRUTH * self.budget):
+                return
+            truth, rival = self.laboratory.run(pair)
+            failed = [outcome for outcome in (truth, rival) if outcome.failure]
+            if failed and self.truth:
+                return
+            if failed:
+                raise IsomortarError(f"an over-refined run, which tells the truth, does not come to its end: {failed[0].failure}")
+            self.truth, self.rival = truth, rival
+            if RESOLVED * self.uncertainty <= target:
+                return
+
+    def answer(self, target: float) -> Recommendation:
+        """The cheapest settings for a target, as a whole and by order."""
+        if RESOLVED * self.uncertainty > target:
+            return Recommendation(target, None, math.nan, self._needed(target))
+        by_order = {order: self._hunted(target, kept) for order, kept in self._orders()}
+        best = self._hunted(target, {})
+        if best is None:
+            why = "no combination was found within the budget" if self._over else "no combination of settings that was tried comes so near"
+            return Recommendation(target, None, math.nan, why, "", by_order)
+        (afresh,) = self.laboratory.run([best.choice], fresh=True)
+        return Recommendation(target, afresh, self.error(afresh), "", self._binding(afresh.choice), by_order)
+
+    def order(self, choice: Choice) -> int:
+        """The order that all bodies in contact have; 0 where they differ."""
+        orders = {int(d.settings[s].label) for d, s in zip(self.dials, choice, strict=True) if d.part == "order"}
+        return orders.pop() if len(orders) == 1 else 0
+
+    def single(self, number: int, setting: int) -> Choice:
+        """The scene's own settings but for one."""
+        return tuple(setting if n == number else s for n, s in enumerate(self.laboratory.own))
+
+    @property
+    def _over(self) -> bool:
+        return self.laboratory.spent > self.budget
+
+    def _refined(self, orders: int, meshes: int, last: int) -> Choice:
+        """Orders and meshes so many settings dearer than the scene's own; of all else that refines the dearest setting, or the last but."""
+        finer = {"order": orders, "elements": meshes}
+        wanted = [d.own + finer[d.part] if d.part else max(d.own, len(d.settings) - last) if d.refines else d.own for d in self.dials]
+        return tuple(min(len(d.settings) - 1, n) for d, n in zip(self.dials, wanted, strict=True))
+
+    def _cost(self, choice: Choice) -> float:
+        """CPU seconds that an over-refined run will take about, by what one setting took."""
+        known = self.laboratory.outcomes
+        if choice in known:
+            return 0.0
+        cost = self.own.cost
+        for number, (dial, setting) in enumerate(zip(self.dials, choice, strict=True)):
+            if setting > dial.own:
+                next_one = known.get(self.single(number, dial.own + 1))
+                growth = max(1.0, next_one.cost / self.own.cost) if next_one else 2.0
+                cost *= growth ** _times(dial, setting)
+        return cost
+
+    def _needed(self, target: float) -> str:
+        """Why a target is refused, and what it would take."""
+        finer = (RESOLVED * self.uncertainty / target) ** (1.0 / RATE)
+        assert self.truth
+        assert self.rival
+        minutes = (self.truth.cost + self.rival.cost) / 60 * finer**COST
+        return (
+            f"two over-refined runs differ by {self.uncertainty:.2g} in what is wanted, and {target:g} is less than {RESOLVED:g} times "
+            f"that: nobody could tell whether it is reached. Meshes about {finer:.1f} times finer would tell, some {minutes:.0f} minutes "
+            f"of the processor for the two (--budget is for all runs, {TRUTH:.0%} of it for these)"
+        )
+
+    def _orders(self) -> Iterator[tuple[int, dict[int, int]]]:
+        """Orders that all bodies in contact can have, and the settings that are kept for each."""
+        numbers = [number for number, dial in enumerate(self.dials) if dial.part == "order"]
+        labels = [[setting.label for setting in self.dials[number].settings] for number in numbers]
+        tried = self.model
+        for label in sorted(set(labels[0]).intersection(*labels[1:]), key=int) if labels else ():
+            kept = {number: found.index(label) for number, found in zip(numbers, labels, strict=True)}
+            if all(setting in tried.settings(number) for number, setting in kept.items()):
+                yield int(label), kept
+
+    def _hunted(self, target: float, kept: Mapping[int, int]) -> Tried | None:
+        """The cheapest run within a target; what is forecast is run, and corrects the forecasts."""
+        truths = (self.truth, self.rival)
+        alike = [o for o in self.laboratory.outcomes.values() if o not in truths and all(o.choice[n] == s for n, s in kept.items())]
+        best = min((o for o in alike if self.error(o) <= target), key=lambda o: o.cost, default=None)
+        for _ in range(TRIES):
+            if self._over:
+                break
+            model = self.model
+            choice = model.cheapest(AIM * target, kept) or model.cheapest(target, kept)
+            further = self._further(model, choice, target)
+            if further:
+                self.laboratory.run(further)
+                continue
+            if choice is None or (best and model.forecast(choice).cost > WORTH * best.cost):
+                break
+            (outcome,) = self.laboratory.run([choice])
+            if self.error(outcome) <= target and (best is None or outcome.cost < best.cost):
+                best = outcome
+        return best
+
+    def _further(self, model: Model, choice: Choice | None, target: float) -> list[Choice]:
+        """Single settings to try: cheaper ones than the cheapest tried that the choice takes, dearer ones where there is no choice."""
+        found = []
+        for number, dial in enumerate(self.dials):
+            tried = list(model.settings(number))
+            end = min(tried) - 1 if choice else max(tried) + 1
+            wanted = choice is None or (choice[number] == min(tried) and model.effect(number, min(tried)) < 0.5 * target)
+            single = self.single(number, end)
+            possible = dial.refines and 0 <= end < len(dial.settings) and single not in self.laboratory.outcomes
+            if possible and wanted and (choice or dial.part):
+                found.append(single)
+        return found
+
+    def _binding(self, choice: Choice) -> str:
+        """The dial of which the next dearer setting that was tried changes most."""
+        model, changes = self.model, {}
+        for number, dial in enumerate(self.dials):
+            dearer = [setting for setting in model.settings(number) if setting > choice[number]]
+            if dial.refines and dearer:
+                changes[dial.name] = abs(model.effect(number, choice[number]) - model.effect(number, min(dearer)))
+        return max(changes, key=lambda name: changes[name], default="")
+
+
+def _times(dial: Dial, setting: int) -> float:
+    """How many times a setting is dearer than the scene's own by as much as the next one: of elements on the scale of their number."""
+    if dial.part != "elements":
+        return float(setting - dial.own)
+    own, following, wanted = (math.log(int(dial.settings[n].label)) for n in (dial.own, dial.own + 1, setting))
+    return (wanted - own) / (following - own)

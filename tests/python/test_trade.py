@@ -1,0 +1,297 @@
+"""The trade of accuracy for cost: wants, knobs, forecasts, and a search that comes to the cheapest of all combinations."""
+
+import itertools
+import json
+import math
+from datetime import datetime
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from isomortar.errors import InputError, IsomortarError
+from isomortar.harness.runner import local_processes
+from isomortar.harness.trade import page
+from isomortar.harness.trade.knobs import KNOBS, Dial, Knob, Setting, changed, dials_of
+from isomortar.harness.trade.laboratory import Laboratory, Tried
+from isomortar.harness.trade.search import Search
+from isomortar.harness.trade.want import wanted, wishes
+from isomortar.scene import Scene
+
+TINY = """
+format = 1
+name = "tiny"
+bodies.block.geometry = { kind = "bowl", half_width = 0.5, bottom = 0.0, rise = 0.2, top = 0.8 }
+bodies.block.mesh = { order = [2, 2, 2], elements = [2, 2, 1] }
+contacts.floor = { slave = "block.w0", plane = { normal = [0, 0, 1] }, friction = 0.3 }
+supports.top = { face = "block.w1" }
+stages = [{ name = "press", steps = 2, motions.top.translate = [0, 0, -0.2] },
+          { name = "drag", steps = 2, motions.top.translate = [0.05, 0, 0] }]
+"""
+
+
+@pytest.fixture
+def scene():
+    return Scene.from_toml(TINY)
+
+
+def numbers(force=((1.0, 0.0, 0.0),) * 4, cpu=1.0, **more):
+    """What a run returns, of the tiny scene's four load steps."""
+    return {
+        "time": [0.5, 1.0, 1.5, 2.0],
+        "force": [[list(f) for f in force]],
+        "moment": [[[0.0, 0.0, 0.0]] * 4],
+        "area": [[0.1, 0.2, 0.2, 0.3]],
+        "pressure": [1.0, 3.0],
+        "traction": [0.0, 0.0],
+        "cells": [0.25, 0.75],
+        "counts": [2],
+        "unknowns": 27.0,
+        "solves": 4.0,
+        "cuts": 0.0,
+        "phases": [0.0] * 5,
+        "cpu_seconds": cpu,
+    } | more
+
+
+# What is wanted
+
+
+def test_a_curve_begins_at_rest_and_is_linear_between_load_steps(scene):
+    run = numbers([(1.0, 0, 0), (2.0, 0, 0), (2.0, 0, 0), (4.0, 3.0, 0)])
+    whole = wanted("force.top.x", scene.problem())
+    assert whole.values(run).mean() == pytest.approx((0.25 + 0.75 + 1.0 + 1.5) / 2, rel=1e-3)
+    assert whole.weights(run).sum() == pytest.approx(1.0)
+    assert wanted("force.top.x@press", scene.problem()).values(run).max() < 2.0
+    assert wanted("force.top.x@press:end", scene.problem()).values(run) == [2.0]
+    assert wanted("force.top:peak", scene.problem()).values(run) == [5.0]  # the norm, where no component is named
+    assert wanted("area.floor:end", scene.problem()).values(run) == [0.3]
+
+
+def test_a_field_counts_by_area(scene):
+    pressure = wanted("pressure.floor", scene.problem())
+    values, weights = pressure.values(numbers()), pressure.weights(numbers())
+    assert pressure.size(values, weights) == pytest.approx(math.sqrt(0.25 * 1 + 0.75 * 9))
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("force", "of the form QUANTITY.NAME"),
+        ("force.bottom.x", "no such support; allowed: top"),
+        ("force.top.u", "no such component; allowed: x, y, z, norm"),
+        ("strain.top", "no such quantity; allowed: "),
+        ("force.top.x@turn", "no stage 'turn'; allowed: press, drag"),
+        ("force.top.x:mean", "no such part; allowed: curve, end, peak"),
+        ("pressure.wall", "no contact 'wall'; allowed: floor"),
+        ("pressure.floor:peak", "a field is that at the end"),
+        ("area.floor.x", "has no components"),
+    ],
+)
+def test_what_a_scene_does_not_have_is_named(scene, text, said):
+    with pytest.raises(InputError, match=said):
+        wanted(text, scene.problem())
+
+
+def test_wishes_are_wants(scene):
+    assert [wanted(text, scene.problem()).text for text in wishes(scene.problem())] == [
+        "force.top", "moment.top", "area.floor", "pressure.floor", "traction.floor",
+    ]  # fmt: skip
+
+
+# Knobs
+
+
+def test_every_setting_makes_the_scene_that_it_names(scene):
+    for dial in dials_of(scene):
+        made = [changed(scene, [setting]) for setting in dial.settings]
+        assert len({one.to_toml() for one in made}) == len(made), dial.name
+        assert made[dial.own].to_toml() == scene.to_toml(), dial.name
+
+
+def test_settings_of_a_body_go_on_from_each_other(scene):
+    dials = {dial.name: dial for dial in dials_of(scene)}
+    picked = [dials[name].settings[-1] for name in ("order of block", "elements of block along u", "quadrature of floor")]
+    body = changed(scene, picked).problem().body("block")
+    u, v, w = body.patch.directions
+    assert (u.order, v.order, w.order) == (5, 5, 2)
+    assert (u.elements, v.elements, w.elements) == (6, 2, 1)
+    assert changed(scene, picked).problem().contacts[0].quadrature == (11, 11)  # 7 for order 5, and 4 more
+
+
+def test_a_dial_leaves_out_what_the_scene_can_not_have(scene):
+    knob = Knob(
+        "half", "nothing", lambda *_: iter([Dial("half", (Setting("own"), Setting("odd", lambda _: ["stages.press.steps=0"])), 0, "")])
+    )
+    assert dials_of(scene, [knob]) == ()
+
+
+# The search: a laboratory whose runs are formulas
+
+
+class Formula(Laboratory):
+    """Errors and costs that are known: of elements with order two, of load steps with order one, and a choice that only spoils."""
+
+    def __init__(self, scene, dials, exact=1.0, **_):
+        super().__init__(scene, dials, Path("unused"), None, lambda _: None)
+        self.exact, self.calls = exact, 0
+
+    def run(self, choices, fresh=False):
+        for choice in choices:
+            if fresh or choice not in self.outcomes:
+                self.calls += 1
+                error, cost, failure = self.of(choice)
+                made = numbers([(self.exact + error, 0, 0)] * 4, cost)
+                self.outcomes[choice] = Tried(choice, self.name(choice), {} if failure else made, failure, cost, 1e6)
+        return [self.outcomes[choice] for choice in choices]
+
+    def of(self, choice):
+        error, cost = 0.0, 1.0
+        for dial, number in zip(self._dials, choice, strict=True):
+            more_error, factor = effect(dial, number)
+            error += more_error
+            cost *= factor
+        return error, cost, ""
+
+
+def effect(dial, number):
+    """Error that a setting leaves, and what it multiplies the cost by."""
+    label = dial.settings[number].label
+    if dial.part == "elements":
+        return 0.02 * (4 / int(label)) ** 2, (int(label) / 4) ** 2.0
+    if dial.part == "order":
+        return 0.0, 1.2 ** (int(label) - 2)
+    if dial.name == "load steps":
+        return 0.01 * 8 / int(label), int(label) / 8
+    return (0.03, 0.9) if label == "lazy" else (0.0, 1.0)
+
+
+def synthetic():
+    own = {"elements": ["2", "3", "4", "6", "8", "12", "16"], "load steps": ["2", "4", "8", "16", "32", "64"], "order": ["2", "3", "4"]}
+    dials = [Dial("order of block", tuple(map(Setting, own["order"])), 0, "", part="order")]
+    dials += [Dial(f"elements of block along {a}", tuple(map(Setting, own["elements"])), 2, "", part="elements") for a in "uv"]
+    dials += [Dial("load steps", tuple(map(Setting, own["load steps"])), 2, "")]
+    dials += [Dial("way", (Setting("own"), Setting("lazy")), 0, "", refines=False)]
+    return tuple(dials)
+
+
+def searched(scene, target, laboratory=None, wants=("force.top.x",)):
+    dials = synthetic()
+    laboratory = laboratory or Formula(scene, dials)
+    search = Search(laboratory, dials, [wanted(text, scene.problem()) for text in wants], 1e6)
+    search.screen()
+    search.find_truth(target)
+    return search, search.answer(target)
+
+
+@pytest.mark.parametrize("target", [0.05, 0.03, 0.015])
+def test_the_search_comes_to_the_cheapest_of_all_combinations(scene, target):
+    search, answer = searched(scene, target)
+    truth, best = 1.0 + search.laboratory.of(search.truth.choice)[0], math.inf
+    for choice in itertools.product(*(range(len(dial.settings)) for dial in search.dials)):
+        error, cost, _ = search.laboratory.of(choice)
+        best = min(best, cost) if abs(1.0 + error - truth) <= target * truth else best
+    assert answer.error <= target
+    assert answer.best.cost <= 1.25 * best  # a forecast counts on no luck: it may leave a setting out
+    assert search.laboratory.calls < 80
+
+
+def test_the_answer_says_what_binds_and_what_other_orders_need(scene):
+    search, answer = searched(scene, 0.03)
+    assert set(answer.by_order) == {2, 3}
+    assert answer.by_order[3].cost == pytest.approx(1.2 * answer.by_order[2].cost, rel=0.15)
+    assert answer.binding in [dial.name for dial in search.dials]
+    said = page.sentence(search, answer)
+    assert "±" in said
+    assert "order 3 needs" in said
+
+
+def test_a_target_below_the_truth_is_refused_with_what_it_needs(scene):
+    search, answer = searched(scene, 1e-6)
+    assert answer.best is None
+    assert "less than 3 times that" in answer.why
+    assert "times finer would tell" in answer.why
+    assert search.uncertainty > 1e-6 / 3
+
+
+def test_a_scene_that_stops_has_nothing_to_trade(scene):
+    class Stopping(Formula):
+        def of(self, choice):
+            return 0.0, 1.0, "does not converge" if choice == self.own else ""
+
+    dials = synthetic()
+    with pytest.raises(IsomortarError, match=r"as it is does not come to its end.*does not converge"):
+        Search(Stopping(scene, dials), dials, [], 1.0).screen()
+
+
+def test_runs_that_fail_are_shown_and_never_recommended(scene, tmp_path):
+    class Brittle(Formula):
+        def of(self, choice):
+            error, cost, _ = super().of(choice)
+            return error, cost, "folded" if choice[3] == 1 else ""  # four load steps
+
+    dials = synthetic()
+    search, answer = searched(scene, 0.03, Brittle(scene, dials))
+    failed = [outcome for outcome in search.laboratory.outcomes.values() if outcome.failure]
+    assert failed
+    assert answer.best.choice[3] != 1
+    assert page.write(tmp_path, scene, search, [answer], datetime.now().astimezone()).read_text().count("folded") == len(failed)
+
+
+def test_a_knob_is_one_entry(scene, tmp_path):
+    """It is screened, searched, and shown."""
+
+    def dials(_, spoils):
+        yield Dial("friction of floor", (Setting("none", lambda _: ["contacts.floor.friction=0"]), Setting("own")), 1, spoils)
+
+    knobs = (*[knob for knob in KNOBS if knob.name == "load steps"], Knob("friction", "everything that slides", dials))
+    made = dials_of(scene, knobs)
+
+    class Frictionless(Formula):
+        def of(self, choice):
+            return 0.001 * (choice[1] == 0), 0.5 if choice[1] == 0 else 1.0, ""
+
+    search = Search(Frictionless(scene, made), made, [wanted("force.top.x", scene.problem())], 1e6)
+    search.screen()
+    search.find_truth(0.1)
+    answer = search.answer(0.1)
+    assert "friction of floor: none" in answer.best.name
+    shown = page.write(tmp_path, scene, search, [answer], datetime.now().astimezone()).read_text()
+    assert "everything that slides" in shown
+    assert "friction of floor" in shown
+    assert Scene.load(tmp_path / "within-10-percent.toml").problem().contacts[0].friction == 0.0
+
+
+# The whole, on a tiny scene
+
+
+def test_a_search_that_was_killed_goes_on_to_the_same_answer(scene, tmp_path):
+    knobs = [knob for knob in KNOBS if knob.name in ("elements", "load steps")]
+    dials = dials_of(scene, knobs)
+    wants = [wanted("force.top.z", scene.problem())]
+
+    def conducted(stop):
+        told = []
+
+        def tell(outcome):
+            told.append(outcome)
+            if len(told) == stop:
+                raise KeyboardInterrupt
+
+        with local_processes(1) as submit:
+            search = Search(Laboratory(scene, dials, tmp_path, submit, tell), dials, wants, 1e4)
+            search.screen()
+            search.find_truth(0.5)
+            return search, search.answer(0.5)
+
+    with pytest.raises(KeyboardInterrupt):
+        conducted(5)
+    first = conducted(-1)
+    begun = {path: path.stat().st_mtime_ns for path in (tmp_path / "cells").rglob("*.json")}
+    second = conducted(-1)
+    assert first[1].best.choice == second[1].best.choice
+    changed_cells = [path for path, at in begun.items() if path.stat().st_mtime_ns != at]
+    assert len(changed_cells) == 1  # what is recommended is run afresh
+    data = json.loads(page.write(tmp_path, scene, *(second[0], [second[1]]), datetime.now().astimezone()).with_suffix(".json").read_text())
+    assert data["answers"][0]["error"] <= 0.5
+    assert np.isfinite(data["uncertainty"])
