@@ -34,7 +34,7 @@ _FRICTION = {"cohesion": 0.0, "traction_max": None, "elastic_slip": 0.0}
 #: By entity of a problem; those that are not named have none.
 ENTITIES = {
     "Material": {"young": 10.0, "poisson": 0.3, "law": "neo-hookean"},
-    "Body": {"closed": None},
+    "Body": {"closed": None, "rigid": False},
     "Contact": {"reference_area": None, **_FRICTION, "projection": "closest", "by_default": False, "enforcement": "mortar", "subcells": 0},
     "Motion": {"translate": (0.0, 0.0, 0.0), "rotate": 0.0},
     "Support": {"components": (0, 1, 2), "centre": (0.0, 0.0, 0.0), "axis": (0.0, 0.0, 1.0)},
@@ -49,7 +49,7 @@ TABLES = {
     "RingTable": {"centre": (0.0, 0.0, 0.0)},
     "PatchTable": {"family": ("N", "N", "N"), "weights": None},
     "MeshTable": _MESH,
-    "BodyTable": {"material": None, "geometry": None, "file": None, "patch": None, "mesh": _MESH, "closed": None},
+    "BodyTable": {"material": None, "geometry": None, "file": None, "patch": None, "mesh": _MESH, "closed": None, "rigid": False},
     "PlaneTable": {"point": (0.0, 0.0, 0.0), "normal": (0.0, 0.0, 1.0), "tangent": None},
     "ContactTable": {
         "master": None,

@@ -25,6 +25,8 @@ from results_samples import problem, step_result
 from test_advice import DOUBTFUL, PLATE, PRESS, Warned, _of_weights, material, rational, warnings
 from test_causes import said, scene
 from test_glue import WRONG as UNGLUED
+from test_rigid import GOOD as DIE
+from test_rigid import WRONG as UNBENDING
 from test_scene_contacts import WRONG
 from test_scene_errors import CASES, GOOD
 from test_sides import GOOD as SIDES
@@ -65,6 +67,12 @@ def bad_joints(_: pytest.MonkeyPatch) -> Told:
     """Refused for faces that cannot be glued."""
     for name, (text, *_) in UNGLUED.items():
         yield name, refused(text)
+
+
+def bad_rigid_bodies(_: pytest.MonkeyPatch) -> Told:
+    """Refused for rigid bodies that cannot be."""
+    for name, (old, new, *_) in UNBENDING.items():
+        yield name, refused(DIE.replace(old, new))
 
 
 def bad_sides(_: pytest.MonkeyPatch) -> Told:
@@ -222,7 +230,19 @@ def _general(part: str) -> str:
     return "NUMBER" if part.isdigit() else names.get(part, part)
 
 
-KINDS = (bad_scenes, bad_contacts, bad_joints, bad_sides, bad_words, doubtful, along_the_way, given_up, of_results, in_results)
+KINDS = (
+    bad_scenes,
+    bad_contacts,
+    bad_joints,
+    bad_rigid_bodies,
+    bad_sides,
+    bad_words,
+    doubtful,
+    along_the_way,
+    given_up,
+    of_results,
+    in_results,
+)
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.__name__)

@@ -332,7 +332,7 @@ def solid_twin(equilibrium: Equilibrium, positions: FloatArray, along: FloatArra
                 along,
                 numbering.reference,
             )
-            for body in equilibrium.problem.bodies
+            for body in equilibrium.problem.deformable
         ),
         np.zeros_like(positions),
     )

@@ -40,18 +40,21 @@ def check(problem: Problem) -> None:
     ------
     InputError
         Settings of the solver that are not allowed; units that no number holds; more memory than there is; glue of faces that do not
-        conform; a support that turns too often in a load step; a body that nothing holds; supports that contradict each other; contacts
-        that cannot be meant; too few Gauss points for a body's weights.
+        conform; a support that turns too often in a load step; a rigid body that supports contradict each other on, or leave
+        components to; a body that nothing holds; supports that contradict each other; contacts that cannot be meant; too few Gauss points
+        for a body's weights.
     """
     _check_settings(problem.settings)
     for body in problem.bodies:
         _check_units(body)
         check_closed(body)
+    for body in problem.deformable:
         _check_weights(body)
     _check_memory(problem)
     check_glue(problem)
     check_contacts(problem)
     _check_turns(problem)
+    _check_carried(problem)
     _check_held(problem)
     numbering = Numbering(problem)
     for one, other in combinations(problem.supports, 2):
@@ -80,7 +83,7 @@ def _check_units(body: Body) -> None:
             f"body {body.name!r} is {size:.3g} long; allowed: {SIZES[0]:g} to {SIZES[1]:g}; take another unit of length",
             f"bodies.{body.name}",
         )
-    for product, words in ((young * size * size, "times the square of"), (young / size, "over")):
+    for product, words in () if body.rigid else ((young * size * size, "times the square of"), (young / size, "over")):
         if not FORCES[0] <= product <= FORCES[1]:
             raise InputError(
                 f"body {body.name!r}: young = {young:.3g} {words} its size, {size:.3g}, is {product:.3g}; "
@@ -108,7 +111,7 @@ def _check_memory(problem: Problem) -> None:
     """The estimate is good within a factor of two: refused is what cannot fit even then."""
     needed, there = memory_needed(problem), memory_of_machine()
     if needed > 2.0 * there:
-        largest = max(problem.bodies, key=lambda body: memory_needed(replace(problem, bodies=(body,))))
+        largest = max(problem.deformable, key=lambda body: memory_needed(replace(problem, bodies=(body,))))
         raise InputError(
             f"tangent and factors would take about {needed / 1e9:.3g} GB of memory, and there are {there / 1e9:.3g} GB; "
             "take fewer elements or a lower order",
@@ -129,10 +132,33 @@ def _check_turns(problem: Problem) -> None:
                 )
 
 
+def _check_carried(problem: Problem) -> None:
+    """A rigid body, with what is glued to it, goes as a whole with one support, or stands still."""
+    carried: dict[str, str] = {}
+    whole = {body.name: piece for piece in pieces(problem) for body in piece}
+    for support in problem.supports:
+        name = support.place.body
+        if not problem.body(name).rigid:
+            continue
+        if name in carried:
+            raise InputError(
+                f"is on {named(whole[name], name)}, which is rigid and goes as a whole with support {carried[name]!r}; remove one",
+                f"supports.{support.name}.face",
+            )
+        if len(support.components) < 3:
+            held = ", ".join("xyz"[k] for k in support.components)
+            raise InputError(
+                f"are {held}, but body {name!r} is rigid, and goes with its support along all of x, y, z; allowed: all three",
+                f"supports.{support.name}.components",
+            )
+        carried |= {body.name: support.name for body in whole[name]}
+
+
 def _check_held(problem: Problem) -> None:
     """Every body needs a support, or must be glued to or touch a held body from the start."""
     whole = {body.name: piece for piece in pieces(problem) for body in piece}
     held = {body.name for support in problem.supports for body in whole[support.place.body]}
+    held |= {body.name for body in problem.bodies if body.rigid}
     touching = [c for c in problem.contacts if _touch(problem, c)]
     for _ in problem.bodies:
         for contact in touching:
@@ -142,7 +168,7 @@ def _check_held(problem: Problem) -> None:
                 held |= pair
     touched = [face.body for c in problem.contacts for side in (c.slave, c.master) if isinstance(side, Face) for face in side.faces]
     in_contact = {body.name for name in touched for body in whole[name]}
-    for body in problem.bodies:
+    for body in problem.deformable:
         if body.name not in held:
             raise InputError(
                 f"{named(whole[body.name], body.name)} is free: it has no support and touches no held body at the start; "
@@ -158,7 +184,7 @@ def _check_held(problem: Problem) -> None:
 
 
 def _touch(problem: Problem, contact: Contact) -> bool:
-    """Whether two deformable faces may touch in the reference configuration: their bounding boxes meet."""
+    """Whether two faces may touch in the reference configuration: their bounding boxes meet."""
     if not isinstance(contact.master, Face):
         return False
     slave, master = (

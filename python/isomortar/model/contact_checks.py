@@ -53,12 +53,18 @@ def check_contacts(problem: Problem) -> None:
 
 
 def _check_sides(problem: Problem, contact: Contact) -> None:
-    """Refuse sides of several faces that do not join to one, and faces that are on both sides."""
+    """Refuse sides of several faces that do not join to one, faces that are on both sides, and sides that are both rigid."""
     for side, place in (("slave", contact.slave), ("master", contact.master)):
         if isinstance(place, Face):
             with located(f"contacts.{contact.name}.{side}"):
                 Sheet.of(problem, place)
     both = set(contact.slave.faces) & set(contact.master.faces) if isinstance(contact.master, Face) else set()
+    rigid_master = isinstance(contact.master, RigidPlane) or problem.body(contact.master.body).rigid
+    if rigid_master and problem.body(contact.slave.body).rigid:
+        raise InputError(
+            f"is {contact.slave.words}, of a rigid body, and its master is rigid too: nothing gives way; let one of the two deform",
+            f"contacts.{contact.name}.slave",
+        )
     if both:
         raise InputError(f"has {both.pop().words} in common with the slave; allowed: other faces", f"contacts.{contact.name}.master")
 

@@ -55,10 +55,11 @@ class Material:
 
 @dataclass(frozen=True)
 class Body:
-    """A deformable body: one volume patch with its material.
+    """A body: one volume patch with its material.
 
     `quadrature` are Gauss points per element and direction. `closed` names the direction ("u", "v", "w")
     whose last row of control points is the same unknown as the first (a ring), or is None.
+    A `rigid` one does not deform: all of its control points go where its support does, or stand still; it needs no material.
     """
 
     name: str
@@ -66,6 +67,12 @@ class Body:
     material: Material
     quadrature: tuple[int, int, int]
     closed: Literal["u", "v", "w"] | None = None
+    rigid: bool = False
+
+    @property
+    def modulus(self) -> float:
+        """Stiffness without lateral strain, theory 5.7; that of a rigid body is infinite."""
+        return np.inf if self.rigid else self.material.modulus
 
     @property
     def size(self) -> float:
@@ -279,6 +286,11 @@ class Problem:
     def body(self, name: str) -> Body:
         """The body of that name."""
         return next(b for b in self.bodies if b.name == name)
+
+    @property
+    def deformable(self) -> tuple[Body, ...]:
+        """Its bodies but for the rigid ones."""
+        return tuple(body for body in self.bodies if not body.rigid)
 
     @property
     def total_steps(self) -> int:

@@ -33,7 +33,7 @@ def check_glue(problem: Problem) -> None:
     Raises
     ------
     InputError
-        A face is glued to its own body or twice, or is in a contact; two faces do not conform.
+        A face is glued to its own body or twice, is in a contact, or joins a rigid body to one that deforms; two faces do not conform.
     """
     glued: dict[Face, Face] = {}
     for number, joint in enumerate(problem.glue):
@@ -44,6 +44,11 @@ def check_glue(problem: Problem) -> None:
             if face in glued:
                 raise InputError(f"joins {face.words} to {mate.words}, and it is glued to {glued[face].words} already", path)
             glued[face] = mate
+            if problem.body(face.body).rigid and not problem.body(mate.body).rigid:
+                raise InputError(
+                    f"joins {mate.words} to {face.words} of a rigid body; to have a face go with that body, put a support on it",
+                    path,
+                )
         shared_points(problem, number)
     for contact in problem.contacts:
         for side, place in (("slave", contact.slave), ("master", contact.master)):

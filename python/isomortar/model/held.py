@@ -4,8 +4,8 @@ On a rigid plane there are as many multipliers as components of what its constra
 redundant: the support takes its force. It is the pressure where the normal is held, else the traction along what is held. A support that
 has moved along the plane is another matter: there slip is prescribed, and the traction is that of sliding.
 
-A master that deforms keeps its multipliers, but where it is held like the slave: on a symmetry plane of both, and in plane strain. There
-the traction across the edge of the master's face is zero.
+A master's face keeps its multipliers, but where it is held like the slave: on a symmetry plane of both, and in plane strain. There
+the traction across the edge of the master's face is zero. Beside a rigid body what is held at all may repeat other conditions.
 """
 
 from __future__ import annotations
@@ -35,13 +35,14 @@ class Held:
     pushed : ndarray, shape (test functions, 2)
         Directions in which supports push along the plane in this increment: unit vectors, or zero.
     rests : ndarray of bool, shape (test functions,)
-        Where supports that hold the normal have them just touch a rigid plane: if they bear, their conditions follow from the others'.
+        Where supports that hold the normal have them just touch a rigid plane, or hold anything beside a rigid body: if they bear, their
+        conditions may follow from the others'.
     still : ndarray of int32, shape (test functions,)
         1 where supports that have moved prescribe every direction along a rigid plane, here and round about, and move none of it in this
         increment: slips and balance tell nothing of the traction, which stays as it is, as far as friction bears it.
     moved : ndarray of bool, shape (test functions,)
-        Where a component along the plane is prescribed, and by now has moved: slips there are given, so that they tell nothing of the
-        traction along it while that sticks, nor of the one across while it slips.
+        Where a component along the plane is prescribed, and by now has moved, or any beside a rigid body: slips there are given, so that
+        they tell nothing of the traction along it while that sticks, nor of the one across while it slips.
     """
 
     bears: IntArray
@@ -66,6 +67,8 @@ def held_by(supports: Supports, pair: Pair, start: FloatArray, time: float) -> H
         _beside_plane(held, supports, pair, start, time)
     else:
         _beside_surface(held, pair, start, supports.held & ~supports.moved(time))
+        if pair.rigid_master:  # which way its normals go is known where feet are found: whatever is held may be what they press along
+            held.rests[:] = held.moved[:] = pair.all_carriers(supports.held).any(axis=1)
     return held
 
 
@@ -93,7 +96,7 @@ def _beside_plane(held: Held, supports: Supports, pair: Pair, start: FloatArray,
 
 
 def _beside_surface(held: Held, pair: Pair, start: FloatArray, still: BoolArray) -> None:
-    """A master that deforms: what is held is the coordinate across an edge in whose plane, or slice, supports hold both sides."""
+    """A master's face: what is held is the coordinate across an edge in whose plane, or slice, supports hold both sides."""
     size = np.ptp(start, axis=0).max()
     own, places = pair.all_carriers(still), pair.at_tests(start)
     slice_ = np.all(still[pair.master_face], axis=0)

@@ -17,9 +17,10 @@ def has_kinks(sheet: Sheet) -> bool:
     """Whether the face of a sheet has kinks between its edges, or where it meets itself.
 
     Elements of Lagrange's or of order 1 are the mesh of something else, and every line between them becomes a kink as they deform. A
-    C0 line of a higher order is one where the tangent planes of its sides differ as they are given: arcs that meet smoothly have none.
+    C0 line of a higher order, or of a rigid body, is one where the tangent planes of its sides differ as they are given: arcs that meet
+    smoothly have none.
     """
-    if any(d.kinks and (d.family == "L" or d.order == 1) for d in sheet.directions):
+    if not sheet.rigid and any(d.kinks and (d.family == "L" or d.order == 1) for d in sheet.directions):
         return True
     return any(_turn(sheet.patch, sheet.face, axis, closed) > constants.KINK_ANGLE for axis, closed in enumerate(sheet.closed))
 

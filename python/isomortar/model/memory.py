@@ -23,8 +23,8 @@ _LIMIT = re.compile(r"(?:MemAvailable: +|^)([0-9]+)")
 
 
 def memory_needed(problem: Problem) -> float:
-    """Bytes that tangents and factors of the bodies will take, within a factor of two; contact comes on top (theory 9.3)."""
-    return sum(BLOCK_BYTES * blocks(body.patch) + FACTOR_BYTES * factor_entries(body.patch) for body in problem.bodies)
+    """Bytes that tangents and factors of deformable bodies will take, within a factor of two; contact comes on top (theory 9.3)."""
+    return sum(BLOCK_BYTES * blocks(body.patch) + FACTOR_BYTES * factor_entries(body.patch) for body in problem.deformable)
 
 
 def memory_of_machine() -> float:

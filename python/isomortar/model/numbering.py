@@ -64,6 +64,11 @@ class Numbering:
         """Name of a body of a global control point; with what it is glued to, the first one there."""
         return next(body.name for body in self.pieces[self.piece_of(point)] if point in self.points[body.name])
 
+    def whole(self, body: Body) -> IntArray:
+        """Global numbers of the control points of a body with all that is glued to it."""
+        own = self.piece_points(self.piece_of(int(self.points[body.name][0])))
+        return np.arange(own.start, own.stop, dtype=np.int32)
+
     def face_points(self, body: Body, face: str) -> IntArray:
         """Global numbers of the control points of a face, in the order of its net, shape (n2 * n1,)."""
         return self.points[body.name][body.patch.face_points(face)]

@@ -38,6 +38,8 @@ class Pair:
         Bounds of the master's elements by direction; none of a rigid plane.
     master_face : ndarray of int
         Control points of the master's face; none of a rigid plane.
+    rigid_master : bool
+        Whether the master is a face of a rigid body.
     master_edges : list of (int, ndarray of int)
         For each edge of that face the surface coordinate that runs across it, and its control points.
     neighbours : Pattern
@@ -57,7 +59,7 @@ class Pair:
         members = incidence(self.slave.test.nodes, self.slave.test.count)
         self.elements_of_point = sparse.csr_array(members.T)
         self.slave_reach = incidence(self.slave.point[self.slave.shape.nodes], numbering.count)
-        self.master_reach = None
+        self.master_reach, self.rigid_master = None, False
         self.master_face: IntArray = np.zeros(0, dtype=np.int32)
         self.master_edges: list[tuple[int, IntArray]] = []
         self.master_elements = (0, 0)
@@ -73,14 +75,16 @@ class Pair:
             self.master_elements = (directions[0].elements, directions[1].elements)
             grid = points[patch.face_points(face)].reshape(directions[1].count, -1)
             self.master_face = grid.ravel()
+            self.rigid_master = sheet.rigid
             self.master_edges = [(0, grid[:, 0]), (0, grid[:, -1]), (1, grid[0]), (1, grid[-1])]
         self.neighbour_matrix = sparse.csr_array(self.elements_of_point @ self.elements_of_point.T)
         self.neighbours: Pattern = pattern_of(self.neighbour_matrix)
         names = {face.body for side in (contact.slave, contact.master) if isinstance(side, Face) for face in side.faces}
+        names &= {body.name for body in problem.deformable}
         meeting = [k for k, piece in enumerate(numbering.pieces) if any(body.name in names for body in piece)]
         self.pieces: IntArray = np.array(meeting, dtype=np.int32)
-        stiffest = np.array([max(body.material.modulus for body in numbering.pieces[k]) for k in meeting])
-        self.softest: FloatArray = min(problem.body(name).material.modulus for name in names) / stiffest
+        stiffest = np.array([max(body.modulus for body in numbering.pieces[k]) for k in meeting])
+        self.softest: FloatArray = min(problem.body(name).modulus for name in names) / stiffest
 
     def field(self, control_values: FloatArray) -> FloatArray:
         """A field at the quadrature points from its control values, shape (points, ...)."""

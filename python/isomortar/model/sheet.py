@@ -75,6 +75,11 @@ class Sheet:
         return max(body.size for body in self.bodies)
 
     @property
+    def rigid(self) -> bool:
+        """Whether its bodies are rigid: those that are glued are all, or none of them."""
+        return self.bodies[0].rigid
+
+    @property
     def outward(self) -> int:
         """Sign of the product of the tangents that points out of the bodies."""
         return 1 if self.face[1] == "1" else -1

@@ -6,9 +6,10 @@ import numpy as np
 from scipy import sparse
 
 from isomortar import _bindings
+from isomortar._bindings import PatchArrays
 from isomortar.errors import FoldedElementError, InputError
 from isomortar.geometry.patch import FloatArray
-from isomortar.model.entities import Problem
+from isomortar.model.entities import Body, Problem
 from isomortar.model.numbering import Numbering
 from isomortar.model.pattern import element_points, incidence, pattern_of
 
@@ -19,7 +20,7 @@ class Solid:
     Attributes
     ----------
     pattern : Pattern
-        Blocks of the tangent, on global control points; fixed for a whole computation.
+        Blocks of the tangent, on global control points; fixed for a whole computation. Rigid bodies have those of the diagonal alone, zero.
     diagonal : ndarray of int
         The blocks on its diagonal, one a control point.
 
@@ -30,10 +31,9 @@ class Solid:
     """
 
     def __init__(self, problem: Problem, numbering: Numbering) -> None:
-        self._bodies = problem.bodies
         self._numbering = numbering
-        self._patches = [numbering.patch_arrays(body) for body in self._bodies]
-        total = sparse.csr_array((numbering.count, numbering.count), dtype=np.int32)
+        self._bodies = problem.deformable
+        total = sparse.eye_array(numbering.count, dtype=np.int32, format="csr")
         for body in self._bodies:
             elements = incidence(element_points(body.patch, numbering.points[body.name]), numbering.count)
             total = total + elements.T @ elements
@@ -41,15 +41,17 @@ class Solid:
         rows = np.repeat(np.arange(numbering.count), np.diff(self.pattern.start))
         self._last: tuple[FloatArray, FloatArray, FloatArray] | None = None
         self.diagonal = np.flatnonzero(rows == self.pattern.column)
+        self._patches = [numbering.patch_arrays(body) for body in self._bodies]
         try:
-            self.forces(numbering.reference)
+            for body in problem.bodies:
+                self._add_body(body, numbering.patch_arrays(body), np.zeros_like(numbering.reference), numbering.reference, None)
         except FoldedElementError as error:
             raise InputError(
                 f"{error}; check the geometry, the order of its control points, their weights, and the face it is seen from"
             ) from error
 
     def smallest_jacobians(self, positions: FloatArray) -> list[float]:
-        """The smallest J = det F at a quadrature point of each body; see `forces`."""
+        """The smallest J = det F at a quadrature point of each deformable body; see `forces`."""
         return self._add(np.zeros_like(positions), positions, None)
 
     def forces(self, positions: FloatArray) -> FloatArray:
@@ -76,23 +78,16 @@ class Solid:
         return self._last[1], self._last[2]
 
     def _add(self, forces: FloatArray, positions: FloatArray, tangent: FloatArray | None) -> list[float]:
-        """Add forces and tangent; the smallest J of each body."""
-        smallest = []
-        for body, patch in zip(self._bodies, self._patches, strict=True):
-            try:
-                jacobian = _bindings.add_body(
-                    patch,
-                    body.quadrature,
-                    body.material.arrays,
-                    positions,
-                    self._numbering.reference,
-                    forces,
-                    self.pattern if tangent is not None else None,
-                    tangent,
-                )
-                smallest.append(jacobian)
-            except FoldedElementError as error:
-                where = np.unravel_index(error.place, [d.elements for d in body.patch.directions], order="F")
-                place = ", ".join(str(int(i)) for i in where)
-                raise FoldedElementError(f"body {body.name!r}: {error} (element {place} along u, v, w)", error.place) from error
-        return smallest
+        """Add forces and tangent; the smallest J of each deformable body."""
+        pairs = zip(self._bodies, self._patches, strict=True)
+        return [self._add_body(body, patch, forces, positions, tangent) for body, patch in pairs]
+
+    def _add_body(self, body: Body, patch: PatchArrays, forces: FloatArray, positions: FloatArray, tangent: FloatArray | None) -> float:
+        """Add forces and tangent of a body; its smallest J."""
+        pattern, reference = self.pattern if tangent is not None else None, self._numbering.reference
+        try:
+            return _bindings.add_body(patch, body.quadrature, body.material.arrays, positions, reference, forces, pattern, tangent)
+        except FoldedElementError as error:
+            where = np.unravel_index(error.place, [d.elements for d in body.patch.directions], order="F")
+            place = ", ".join(str(int(i)) for i in where)
+            raise FoldedElementError(f"body {body.name!r}: {error} (element {place} along u, v, w)", error.place) from error

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model import constants
-from isomortar.model.entities import Problem, Stage, Support, unit
+from isomortar.model.entities import Body, Problem, Stage, Support, unit
 from isomortar.model.numbering import Numbering
 
 BoolArray = NDArray[np.bool_]
@@ -28,13 +28,20 @@ def rotation(axis: FloatArray, angle: float) -> FloatArray:
     return np.eye(3) + np.sin(angle) * across + 2.0 * np.sin(0.5 * angle) ** 2 * across @ across
 
 
+def _carried(body: Body, face: str, numbering: Numbering) -> IntArray:
+    """Control points that a support on a face of a body prescribes."""
+    if body.rigid:
+        return numbering.whole(body)
+    return np.unique(numbering.face_points(body, face))
+
+
 class Supports:
     """All supports of a problem.
 
     Attributes
     ----------
     prescribed : ndarray of int, shape (m,)
-        Prescribed unknowns (3 * control point + component), sorted.
+        Prescribed unknowns (3 * control point + component), sorted; those of rigid bodies are, with or without a support.
     free : ndarray of int, shape (u,)
         The others.
     equation : ndarray of int32, shape (3 * control points,)
@@ -42,7 +49,7 @@ class Supports:
     held : ndarray of bool, shape (control points, 3)
         Components that are prescribed.
     points : list of ndarray of int
-        Control points of each support.
+        Control points of each support: those of its face, or of the whole of a rigid body with all that is glued to it.
     shares : list of ndarray, shapes (control points of the support, 3)
         What each support bears of the forces at its control points: nothing of a component that it leaves free, equal parts of one that
         several supports prescribe.
@@ -51,12 +58,13 @@ class Supports:
     def __init__(self, problem: Problem, numbering: Numbering) -> None:
         self._problem = problem
         self._numbering = numbering
-        self.points: list[IntArray] = [np.unique(numbering.face_points(problem.body(s.place.body), s.place.face)) for s in problem.supports]
+        self.points: list[IntArray] = [_carried(problem.body(s.place.body), s.place.face, numbering) for s in problem.supports]
         unknowns = [self._unknowns(k) for k in range(len(problem.supports))]
-        self.prescribed = np.unique(np.concatenate(unknowns)) if unknowns else np.zeros(0, dtype=np.int64)
         holders = np.zeros(3 * numbering.count)
         for of_support in unknowns:
             holders[of_support] += 1.0
+        rigid = [3 * numbering.points[body.name].astype(np.int64)[:, None] + np.arange(3) for body in problem.bodies if body.rigid]
+        self.prescribed = np.unique(np.concatenate([np.zeros(0, dtype=np.int64), *unknowns, *map(np.ravel, rigid)]))
         self.shares: list[FloatArray] = [
             np.isin(range(3), s.components) / np.maximum(holders.reshape(-1, 3)[points], 1.0)
             for s, points in zip(problem.supports, self.points, strict=True)

@@ -38,7 +38,7 @@ class LagrangeProblem:
     ------
     InputError
         No program of Lagrange elements has this, or not this one: NURBS, weights, elements of which an edge is a point, another law of
-        material, glue, rigid planes, friction other than Coulomb's.
+        material, glue, rigid bodies and planes, friction other than Coulomb's.
     """
 
     def __init__(self, problem: Problem, program: str, laws: Collection[str]) -> None:
@@ -88,6 +88,8 @@ class LagrangeProblem:
 
     def _check_body(self, body: Body, laws: Collection[str]) -> None:
         place = f"bodies.{body.name}"
+        if body.rigid:
+            raise self.refuse("is not told of rigid bodies; take a deformable one with supports", f"{place}.rigid")
         if any(direction.family != "L" for direction in body.patch.directions):
             raise self.refuse('has no NURBS; take Lagrange elements: mesh.family = "L"', f"{place}.mesh.family")
         if np.ptp(body.patch.weights) != 0.0:

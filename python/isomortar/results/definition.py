@@ -26,8 +26,14 @@ _PLAIN: dict[str, Any] = {
     "glue": tuple[tuple[Face, Face], ...],
 }
 #: What earlier files of the same format do not hold, and had not.
-_LATER = ("glue",)
-_BODY: dict[str, Any] = {"name": str, "material": Material, "quadrature": tuple[int, int, int], "closed": Literal["u", "v", "w"] | None}
+_LATER = ("glue", "rigid")
+_BODY: dict[str, Any] = {
+    "name": str,
+    "material": Material,
+    "quadrature": tuple[int, int, int],
+    "closed": Literal["u", "v", "w"] | None,
+    "rigid": bool,
+}
 
 
 def write_problem(group: h5py.Group, problem: Problem) -> None:
@@ -46,8 +52,7 @@ def read_problem(group: h5py.Group) -> Problem:
     ValueError
         Bodies are missing.
     """
-    there = {name: kind for name, kind in _PLAIN.items() if name in group.attrs or name not in _LATER}
-    plain: dict[str, Any] = {name: TypeAdapter(kind).validate_json(bytes(group.attrs[name])) for name, kind in there.items()}
+    plain = _read_plain(group, _PLAIN)
     bodies = tuple(_read_body(group[f"bodies/{number}"]) for number in range(len(group["bodies"])))
     problem = Problem(name=json.loads(group.attrs["name"]), bodies=bodies, **plain)
     named = {support.place.body for support in problem.supports} | {contact.slave.body for contact in problem.contacts}
@@ -79,8 +84,13 @@ def _read_body(group: h5py.Group) -> Body:
     knots = [group[f"knots_{axis}"] for axis in _AXES]
     u, v, w = (Direction(json.loads(k.attrs["family"]), int(k.attrs["order"]), k[()]) for k in knots)
     patch = Patch((u, v, w), group["control_points"][()], group["weights"][()])
-    plain: dict[str, Any] = {name: TypeAdapter(kind).validate_json(bytes(group.attrs[name])) for name, kind in _BODY.items()}
+    plain = _read_plain(group, _BODY)
     return Body(patch=patch, **plain)
+
+
+def _read_plain(group: h5py.Group, kinds: dict[str, Any]) -> dict[str, Any]:
+    there = {name: kind for name, kind in kinds.items() if name in group.attrs or name not in _LATER}
+    return {name: TypeAdapter(kind).validate_json(bytes(group.attrs[name])) for name, kind in there.items()}
 
 
 def _dataset(group: h5py.Group, name: str, quantity: Quantity, data: Any) -> h5py.Dataset:

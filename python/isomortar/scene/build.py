@@ -109,11 +109,13 @@ def _body(name: str, table: BodyTable, coarse: Patch, plan: _MeshPlan, material:
     u, v, w = patch.directions
     quadrature = table.mesh.quadrature or (volume_points(u), volume_points(v), volume_points(w))
     closed = table.closed or (table.geometry.closed if table.geometry else None)
-    return Body(name, patch, material, quadrature, closed)
+    return Body(name, patch, material, quadrature, closed, table.rigid)
 
 
 def _material(scene: SceneTable, body: str) -> Material:
     names, wanted, field = list(scene.materials), scene.bodies[body].material, f"bodies.{body}.material"
+    if scene.bodies[body].rigid:
+        return Material()
     if wanted is None and len(names) > 1:
         raise InputError(f"is missing, but must be given where there are several; allowed: {', '.join(names)}", field)
     if wanted is not None and wanted not in names:

@@ -9,7 +9,7 @@ from textwrap import dedent
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import Field, TypeAdapter, field_validator, model_validator
+from pydantic import Field, StrictBool, TypeAdapter, field_validator, model_validator
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import PydanticCustomError, core_schema
 
@@ -126,7 +126,7 @@ class MeshTable(Table):
 
 
 class BodyTable(Table):
-    """A deformable body: one of geometry, file, patch."""
+    """A body: one of geometry, file, patch."""
 
     material: str | None = None
     """Name of a material; default: the only one there is, or the paper's."""
@@ -140,6 +140,17 @@ class BodyTable(Table):
     """Discretisation."""
     closed: Axis | None = None
     """Direction whose last row of control points is the first one again; a ring is closed by itself."""
+    rigid: StrictBool = False
+    """Does not deform: goes as a whole with the support on one of its faces, or stands still; has no material and no unknowns."""
+
+    @model_validator(mode="after")
+    def _rigid_without_solid(self) -> BodyTable:
+        given = [key for key, value in (("material", self.material), ("mesh.quadrature", self.mesh.quadrature)) if value is not None]
+        if self.rigid and given:
+            raise PydanticCustomError(
+                "rigid", "is rigid and does not deform, but has {given}; remove that, or rigid", {"given": " and ".join(given)}
+            )
+        return self
 
     @model_validator(mode="after")
     def _one_geometry(self) -> BodyTable:
@@ -168,7 +179,7 @@ class ContactTable(Table):
     slave: Side
     """BODY.FACE (u0, u1, v0, v1, w0, w1: first and last parametric value of each direction), or a list of faces, edge to edge."""
     master: Side | None = None
-    """BODY.FACE of the deformable master, or a list of faces, edge to edge."""
+    """BODY.FACE of the master, or a list of faces, edge to edge."""
     plane: PlaneTable | None = None
     """Rigid master plane, instead of master."""
     friction: Annotated[Real, Field(ge=0, le=1e100)] = 0.3

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from isomortar.model.contrasts import element_lengths
-from isomortar.model.entities import Contact, Face, Material, Problem, RigidPlane
+from isomortar.model.entities import Contact, Face, Problem, RigidPlane
 from isomortar.model.sheet import Sheet
 from isomortar.solve.contact import PairMechanics
 from isomortar.solve.record import ContactResult, ContactState
@@ -28,13 +28,14 @@ def advice_on_problem(problem: Problem, pairs: Sequence[PairMechanics]) -> Itera
         if isinstance(contact.master, RigidPlane):
             continue
         slave, master = Sheet.of(problem, contact.slave), Sheet.of(problem, contact.master)
-        stiffer = _softest(slave).young / max(body.material.young for body in master.bodies)
+        stiffer = _softest(slave) / max(body.modulus for body in master.bodies)
         elements = np.prod(pair.pair.master_elements)
         master_area = _area(master.patch.control_points[master.patch.face_points(master.face)])
         finer = (master_area / elements) / (pair.pair.area / pair.pair.slave.elements)
         if stiffer > STIFFER and finer > 1.0:
+            how = "rigid" if slave.rigid else f"{stiffer:.0f} times stiffer"
             yield (
-                f"contact {contact.name!r}: the slave {contact.slave.body!r} is {stiffer:.0f} times stiffer and its elements "
+                f"contact {contact.name!r}: the slave {contact.slave.body!r} is {how} and its elements "
                 f"are {finer:.1f} times smaller than the master's; control pressures may be far off. Swap slave and master, or refine the "
                 "master"
             )
@@ -60,7 +61,7 @@ def few_points(problem: Problem, contact: Contact) -> Iterator[str]:
     slave, master = Sheet.of(problem, contact.slave), Sheet.of(problem, contact.master)
     apart = _element_size(slave) / np.sqrt(np.prod(contact.quadrature))
     share = float(_element_size(master) / apart)
-    if share < ENOUGH and max(body.material.modulus for body in slave.bodies) >= _softest(master).modulus:
+    if share < ENOUGH and max(body.modulus for body in slave.bodies) >= _softest(master):
         needed = [int(np.ceil(2.0 * points / share)) for points in contact.quadrature]
         yield (
             f"contact {contact.name!r}: quadrature points of the slave are {1.0 / share:.1f} elements of its softer or equal master apart, "
@@ -68,9 +69,9 @@ def few_points(problem: Problem, contact: Contact) -> Iterator[str]:
         )
 
 
-def _softest(sheet: Sheet) -> Material:
-    """The softest material of a sheet's bodies."""
-    return min((body.material for body in sheet.bodies), key=lambda material: material.modulus)
+def _softest(sheet: Sheet) -> float:
+    """Modulus of the softest of a sheet's bodies."""
+    return min(body.modulus for body in sheet.bodies)
 
 
 def _element_size(sheet: Sheet) -> float:

@@ -42,8 +42,8 @@ def causes(equilibrium: Equilibrium, positions: FloatArray, error: Exception) ->
         Why the next one did not.
     """
     problem = equilibrium.problem
-    yield from _flat(problem.bodies, equilibrium.solid.smallest_jacobians(positions))
-    for body in problem.bodies:
+    yield from _flat(problem.deformable, equilibrium.solid.smallest_jacobians(positions))
+    for body in problem.deformable:
         yield from _lengths(body, LENGTHS_BENT if isinstance(error, SingularSystemError) else LENGTHS)
         yield from _incompressible(body)
     yield from _moduli(problem)
@@ -92,13 +92,13 @@ def _incompressible(body: Body) -> Iterator[str]:
 
 
 def _moduli(problem: Problem) -> Iterator[str]:
-    for one, other in combinations(problem.bodies, 2):
-        softer, stiffer = sorted((one, other), key=lambda body: body.material.modulus)
-        ratio = stiffer.material.modulus / softer.material.modulus
+    for one, other in combinations(problem.deformable, 2):
+        softer, stiffer = sorted((one, other), key=lambda body: body.modulus)
+        ratio = stiffer.modulus / softer.modulus
         if ratio > MODULI:
             yield (
                 f"body {stiffer.name!r} is {ratio:.1e} times as stiff as {softer.name!r}, too different for double precision: take it less "
-                "stiff, or a rigid plane for it"
+                f"stiff, or rigid: bodies.{stiffer.name}.rigid = true"
             )
 
 

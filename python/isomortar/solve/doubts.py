@@ -50,7 +50,7 @@ def doubts(problem: Problem, state: State) -> Iterator[str]:
     needed, there = memory_needed(problem), memory_of_machine()
     if needed > NEAR * there:
         yield f"tangent and factors may take {needed / 1e9:.2g} GB of memory, within a factor of two, and there are {there / 1e9:.2g} GB"
-    for body in problem.bodies:
+    for body in problem.deformable:
         yield from _locking(body)
         yield from _spans(body)
         yield from _seam(body)
@@ -232,5 +232,7 @@ def _holder(problem: Problem, place: Face | RigidPlane) -> str:
     """What prescribes all components of just that face, as words; empty: nothing."""
     if isinstance(place, RigidPlane):
         return "a rigid plane"
+    if problem.body(place.body).rigid:
+        return f"of the rigid body {place.body!r}"
     holders = [next((s.name for s in problem.supports if s.place == face and len(s.components) == 3), "") for face in place.faces]
     return " and ".join(f"support {name!r}" for name in holders) if all(holders) else ""

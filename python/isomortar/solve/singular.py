@@ -102,7 +102,7 @@ def _repeated(
     )
     if 2 * there < total:
         reason = beside
-    elif prescribed:
+    elif 0 < prescribed < len(among):
         reason = (
             f"repeat what supports prescribe: {prescribed} of them constrain control points that supports hold, and the others cannot make "
             "good what is prescribed there. Keep supports off the edge of the contact face, hold fewer components, or do not move the edge "
