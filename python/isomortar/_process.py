@@ -15,10 +15,12 @@ def own_process() -> None:
     One thread for the linear algebra library: more do not make the solves faster, and get in the way of the assembly's. Threads of the
     assembly sleep when they wait: two runs on the same cores would hold each other up tenfold. And memory that is freed stays with the
     process: factors and matrices come and go, and pages that the system has to find and clear anew each time are up to a quarter of a
-    factorisation (where the C library is glibc). The process grows by some per cent for it.
+    factorisation (where the C library is glibc). The process grows by some per cent for it. Pydantic does not look through all that is
+    installed for plugins of its own, which would have nothing to do here.
     """
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     os.environ.setdefault("OMP_WAIT_POLICY", "passive")
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     library = ctypes.CDLL(None)
     if hasattr(library, "mallopt"):
         for variable, (parameter, value) in _KEPT.items():

@@ -8,6 +8,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from isomortar.errors import InputError, ResultsError
+from isomortar.model.entities import Problem
 from isomortar.results.files import claimed, is_marked
 from isomortar.results.reader import Results
 from isomortar.results.writer import ResultsWriter
@@ -49,14 +50,18 @@ def run(
         Another run is writing the results file; or what is there is damaged, no results file, belongs to another scene, or cannot be
         written.
     """
-    path, problem = Path(output), scene.problem()
+    return compute(scene, scene.problem(), Path(output), observer or Observer(), resume, overwrite)
+
+
+def compute(scene: Scene, problem: Problem, path: Path, observer: Observer, resume: bool, overwrite: bool) -> Results:
+    """The same as `run`, where the scene's problem is known already."""
     with claimed(path):
         last = _last_step(path, resume, overwrite)
 
         def open_writer() -> ResultsWriter:
             return ResultsWriter(path, problem, scene.to_toml(), version("isomortar"), scene.record.states, resume, not resume)
 
-        for _ in Simulation(problem, _Recorder(open_writer, observer or Observer()), last).run():
+        for _ in Simulation(problem, _Recorder(open_writer, observer), last).run():
             pass
     return Results(path)
 

@@ -187,7 +187,7 @@ def test_live_progress_shows_where_the_run_is() -> None:
     text = io.StringIO()
     console = Console(file=text, width=80)
     problem = isomortar.Scene.load("iron").problem()
-    progress = LiveProgress(problem, console)
+    progress = LiveProgress(problem, console.print)
     progress.started(50, 12)
     progress.iteration(12, 11.5, 2, IterationRecord(3, 1.5e-7, 9, 4, 5))
     console.print(progress)

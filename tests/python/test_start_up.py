@@ -7,6 +7,11 @@ import sys
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
+
+from isomortar.cli.commands import app
+from isomortar.scene import scene
+from isomortar.scene.build import build
 
 #: Runs a command, and writes the names of all modules that are loaded at its end.
 COMMAND = """
@@ -50,17 +55,32 @@ def test_the_version_needs_nothing_of_what_computes(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("scene", "not_needed"),
+    ("words", "not_needed"),
     [
         (PRESS, {*SPECIAL, "scipy.spatial"}),
         (BLOCK, SPECIAL - {"scipy.special"}),  # which comes with SciPy's search for neighbours
     ],
     ids=["plane", "bodies"],
 )
-def test_a_run_loads_what_it_needs(tmp_path: Path, scene: tuple[str, ...], not_needed: set[str]) -> None:
-    names = loaded(tmp_path, "run", *scene, "--output", "scene.h5")
+def test_a_run_loads_what_it_needs(tmp_path: Path, words: tuple[str, ...], not_needed: set[str]) -> None:
+    names = loaded(tmp_path, "run", *words, "--output", "scene.h5")
     assert {"numpy", "h5py", "isomortar._kernel"} <= names
     assert not (ASIDE | not_needed) & names
+
+
+def test_a_quiet_run_loads_nothing_for_progress(tmp_path: Path) -> None:
+    assert "rich" not in loaded(tmp_path, "run", *PRESS, "--quiet", "--output", "scene.h5")
+
+
+def test_a_run_builds_its_problem_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    built = []
+    monkeypatch.setattr(scene, "build", lambda *arguments: built.append(arguments) or build(*arguments))
+    result = CliRunner().invoke(app, ["run", *PRESS, "--quiet", "--output", str(tmp_path / "scene.h5")])
+    assert (result.exit_code, len(built)) == (0, 1)
+
+
+def test_scenes_are_listed_without_what_writes(tmp_path: Path) -> None:
+    assert not {"h5py", "tomlkit", "isomortar.solve.simulation"} & loaded(tmp_path, "scenes")
 
 
 def test_what_a_method_needs_comes_with_it(tmp_path: Path) -> None:

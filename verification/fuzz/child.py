@@ -49,6 +49,8 @@ def load() -> None:
     """Load what the program loads when it needs it: here once, and not in every child."""
     for name in ("cli.commands", "cli.progress", "driver", "results.pictures", "results.paraview"):
         importlib.import_module(f"isomortar.{name}")
+    for name in ("rich.console", "scipy.interpolate", "scipy.sparse.linalg", "scipy.spatial", "splinepy", "tomlkit"):
+        importlib.import_module(name)
 
 
 def tried(action: Callable[[Path], Ending]) -> Ending:

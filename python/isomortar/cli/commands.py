@@ -80,14 +80,16 @@ def run(
     Progress goes to stderr, the name of the results file to stdout.
     """
     from isomortar.cli.progress import progress
+    from isomortar.driver import compute
 
     if resume and overwrite:
         raise InputError("--resume and --overwrite exclude each other: go on with the results file, or begin anew")
     chosen = isomortar.Scene.load(scene, overrides or ())
     path = output or Path("results") / f"{chosen.name}.h5"
-    with progress(chosen.problem(), quiet) as observer:
+    problem = chosen.problem()
+    with progress(problem, quiet) as observer:
         try:
-            isomortar.run(chosen, path, observer, resume=resume, overwrite=overwrite).close()
+            compute(chosen, problem, path, observer, resume, overwrite).close()
         except BaseException as error:  # Ctrl-C and want of memory too
             observer.stopped(path, interrupted=isinstance(error, KeyboardInterrupt))
             raise

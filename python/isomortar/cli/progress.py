@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import sys
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from time import monotonic
+from typing import TYPE_CHECKING
 
 import numpy as np
-from rich.console import Console
-from rich.live import Live
-from rich.progress_bar import ProgressBar
-from rich.table import Table
-from rich.text import Text
 
 from isomortar.model.entities import Problem
 from isomortar.solve.record import IterationRecord, Observer, StepResult
+
+if TYPE_CHECKING:
+    from rich.table import Table
 
 
 class Progress(Observer):
@@ -24,13 +25,14 @@ class Progress(Observer):
     Parameters
     ----------
     problem : Problem
-    console : Console
+    tell : callable
+        Prints a line.
     quiet : bool
         Warnings only.
     """
 
-    def __init__(self, problem: Problem, console: Console, quiet: bool) -> None:
-        self._problem, self._console, self._quiet = problem, console, quiet
+    def __init__(self, problem: Problem, tell: Callable[[str], None], quiet: bool) -> None:
+        self._problem, self._tell, self._quiet = problem, tell, quiet
         self._stages = [stage.name for stage in problem.stages for _ in range(stage.steps)]
         self._total, self._first, self._done = problem.total_steps, 1, 0
         self._begin: float | None = None
@@ -63,7 +65,7 @@ class Progress(Observer):
         """Pass it on, once, also when quiet."""
         if message not in self._warnings:
             self._warnings.add(message)
-            self._print(f"warning: {message}")
+            self._tell(f"warning: {message}")
 
     def _count(self, result: StepResult) -> None:
         self._done = result.step
@@ -77,7 +79,7 @@ class Progress(Observer):
         count = len(self._warnings)
         line = f"{self._total} load steps done, {count} warning{'' if count == 1 else 's'}"
         if count:
-            self._print(f"{line}: read {'it' if count == 1 else 'them'}")
+            self._tell(f"{line}: read {'it' if count == 1 else 'them'}")
         else:
             self._say(line)
 
@@ -85,16 +87,13 @@ class Progress(Observer):
         """Say what is left of a run that came to no end."""
         if self._begin is not None:
             advice = "; to go on, repeat the command with --resume" if interrupted else ""
-            self._print(f"stopped with {self._done} of {self._total} load steps done; they are in {path}{advice}")
+            self._tell(f"stopped with {self._done} of {self._total} load steps done; they are in {path}{advice}")
         elif interrupted:
-            self._print("stopped before the first load step")
-
-    def _print(self, line: str) -> None:
-        self._console.print(line, markup=False, highlight=False, soft_wrap=True)
+            self._tell("stopped before the first load step")
 
     def _say(self, line: str) -> None:
         if not self._quiet:
-            self._print(line)
+            self._tell(line)
 
     def _step_line(self, result: StepResult) -> str:
         iterations = [iteration for record in result.augmentations for iteration in record.iterations]
@@ -118,8 +117,8 @@ class Progress(Observer):
 class LiveProgress(Progress):
     """On a terminal: a bar and the newest iteration, redrawn in place."""
 
-    def __init__(self, problem: Problem, console: Console) -> None:
-        super().__init__(problem, console, quiet=False)
+    def __init__(self, problem: Problem, tell: Callable[[str], None]) -> None:
+        super().__init__(problem, tell, quiet=False)
         self._now = ("", "")
 
     def iteration(self, step: int, time: float, augmentation: int, record: IterationRecord) -> None:
@@ -135,6 +134,10 @@ class LiveProgress(Progress):
         self._count(result)
 
     def __rich__(self) -> Table:
+        from rich.progress_bar import ProgressBar
+        from rich.table import Table
+        from rich.text import Text
+
         table = Table.grid(padding=(0, 1))
         bar = Table.grid(padding=(0, 1))
         bar.add_row(self._problem.name, ProgressBar(self._total, self._done, width=40), f"{self._done}/{self._total}", self._clock())
@@ -154,10 +157,18 @@ def _minutes(seconds: float) -> str:
 @contextmanager
 def progress(problem: Problem, quiet: bool) -> Iterator[Progress]:
     """The observer that suits where stderr goes."""
-    console = Console(stderr=True)
-    if quiet or not console.is_terminal:
-        yield Progress(problem, console, quiet)
+    if quiet:
+        yield Progress(problem, partial(print, file=sys.stderr), quiet)
         return
-    observer = LiveProgress(problem, console)
+    from rich.console import Console
+
+    console = Console(stderr=True)
+    tell = partial(console.print, markup=False, highlight=False, soft_wrap=True)
+    if not console.is_terminal:
+        yield Progress(problem, tell, quiet)
+        return
+    from rich.live import Live
+
+    observer = LiveProgress(problem, tell)
     with Live(observer, console=console, refresh_per_second=5):
         yield observer

@@ -9,8 +9,6 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-import tomlkit
-
 from isomortar.errors import InputError
 from isomortar.scene.text import read_text
 from isomortar.scene.types import listed
@@ -53,6 +51,8 @@ def parse(text: str, name: str) -> dict[str, Any]:
 
 def dump(data: dict[str, Any]) -> str:
     """A dictionary as TOML text."""
+    import tomlkit
+
     return tomlkit.dumps(data)
 
 
