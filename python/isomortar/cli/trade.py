@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.console import Console
 
 from isomortar.cli.endings import FAILED
 
@@ -74,6 +73,8 @@ def trade(
 
 def _tell(outcome: Tried) -> None:
     """One line a run, on stderr."""
+    from rich.console import Console
+
     line = f"{outcome.cost:8.2f} s  {outcome.name}" + (f": failed: {outcome.failure}" if outcome.failure else "")
     Console(stderr=True, highlight=False).print(line, markup=False, soft_wrap=True)
 
