@@ -12,6 +12,7 @@ import pytest
 from isomortar.errors import InputError, IsomortarError
 from isomortar.harness.runner import local_processes
 from isomortar.harness.trade import page
+from isomortar.harness.trade.advice import Advice, cheaper_dials
 from isomortar.harness.trade.knobs import KNOBS, Dial, Knob, Setting, changed, dials_of
 from isomortar.harness.trade.laboratory import Laboratory, Tried
 from isomortar.harness.trade.search import Search
@@ -295,3 +296,52 @@ def test_a_search_that_was_killed_goes_on_to_the_same_answer(scene, tmp_path):
     data = json.loads(page.write(tmp_path, scene, *(second[0], [second[1]]), datetime.now().astimezone()).with_suffix(".json").read_text())
     assert data["answers"][0]["error"] <= 0.5
     assert np.isfinite(data["uncertainty"])
+
+
+# Advice: the scene as it is is the truth
+
+
+TWO = """
+format = 1
+name = "two"
+bodies.block.geometry = { kind = "bowl", half_width = 0.3, bottom = 0.0, rise = 0.1, top = 0.5 }
+bodies.block.mesh = { order = [2, 2, 2], elements = [2, 2, 1] }
+bodies.base.geometry = { kind = "box", lower = [-0.5, -0.5, -0.4], upper = [0.5, 0.5, 0.0] }
+bodies.base.mesh = { order = [2, 2, 2], elements = [2, 2, 1] }
+contacts.floor = { slave = "block.w0", master = "base.w1", friction = 0.3 }
+supports.top = { face = "block.w1" }
+supports.under = { face = "base.w0" }
+stages = [{ name = "press", steps = 2, motions.top.translate = [0, 0, -0.1] }]
+"""
+
+
+def test_what_a_scene_may_do_without_is_named_and_makes_a_scene():
+    scene = Scene.from_toml(TWO)
+    dials = {dial.name: dial for dial in cheaper_dials(scene)}
+    assert changed(scene, [dials["base rigid"].settings[0]]).problem().body("base").rigid
+    assert "block rigid" not in dials  # a slave's pressures want its own unknowns
+    assert changed(scene, [dials["friction of floor"].settings[0]]).problem().contacts[0].friction == 0.0
+    thin = changed(scene, [dials["order of base across"].settings[0]]).problem().body("base").patch
+    assert [d.order for d in thin.directions] == [2, 2, 1]
+    both = changed(scene, [dials["base rigid"].settings[0], dials["quadrature of base"].settings[0]])
+    assert both.problem().body("base").rigid  # which has no quadrature to change
+    assert all(dial.own == len(dial.settings) - 1 for dial in dials.values() if dial.refines)
+
+
+def test_advice_is_what_loses_least_of_the_scene_as_it_is(scene, tmp_path):
+    own = ["1", "2", "4"]
+    dials = (
+        Dial("elements of block along u", tuple(map(Setting, own)), 2, "", part="elements"),
+        Dial("way", (Setting("lazy"), Setting("own")), 1, "", refines=False),
+    )
+    laboratory = Formula(scene, dials)
+    advice = Advice(laboratory, dials, [wanted("force.top.x", scene.problem())], 1e6)
+    advice.screen()
+    advice.find_truth(0.1)
+    assert advice.error(advice.own) == 0.0
+    answer = advice.answer(0.07)
+    assert laboratory.name(answer.best.choice) == "elements of block along u: 2"  # 0.06 more; with the lazy way 0.09
+    assert 0.0 < answer.error <= 0.07
+    assert "times less than as it is" in page.sentence(advice, answer)
+    assert "what it could do without" in page.write(tmp_path, scene, advice, [answer], datetime.now().astimezone()).read_text()
+    assert advice.answer(1e-4).best is None

@@ -14,7 +14,7 @@ from isomortar.cli.endings import FAILED
 from isomortar.cli.mutants import mutants
 from isomortar.cli.paper import paper
 from isomortar.cli.report import report
-from isomortar.cli.trade import trade
+from isomortar.cli.trade import advise, trade
 from isomortar.cli.verification import bless, verify
 from isomortar.errors import InputError
 
@@ -176,6 +176,7 @@ app.command()(verify)
 app.command()(bless)
 app.add_typer(report, name="report")
 app.command()(trade)
+app.command()(advise)
 app.command()(paper)
 app.command()(bench)
 app.command()(mutants)

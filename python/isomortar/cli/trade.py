@@ -1,4 +1,4 @@
-"""``isomortar trade``."""
+"""``isomortar trade`` and ``isomortar advise``."""
 
 from __future__ import annotations
 
@@ -12,23 +12,36 @@ import typer
 from isomortar.cli.endings import FAILED
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from isomortar.harness.trade.knobs import Dial
     from isomortar.harness.trade.laboratory import Tried
+    from isomortar.harness.trade.search import Search
+    from isomortar.scene import Scene
+
+
+SceneArgument = Annotated[str, typer.Argument(metavar="SCENE", help="A scene file (.toml), or a bundled scene by its name.")]
+WantOption = Annotated[
+    list[str],
+    typer.Option(
+        metavar="WHAT",
+        help="What is wanted: force.SUPPORT.x, moment.SUPPORT.norm, area.CONTACT (curves; @STAGE of one stage, :end, :peak), "
+        "pressure.CONTACT, traction.CONTACT (fields at the end); may be repeated.",
+    ),
+]
+WithinOption = Annotated[list[str], typer.Option(metavar="ERROR", help="Largest error, 1% or 0.01; may be repeated.")]
+OverridesOption = Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change one value of the scene.")]
+BudgetOption = Annotated[float, typer.Option(min=0.1, metavar="MINUTES", help="Minutes of the processor for all runs.")]
+JobsOption = Annotated[int, typer.Option("-j", "--jobs", min=1, help="Runs at the same time; several disturb each other's cost.")]
 
 
 def trade(
-    scene: Annotated[str, typer.Argument(metavar="SCENE", help="A scene file (.toml), or a bundled scene by its name.")],
-    want: Annotated[
-        list[str],
-        typer.Option(
-            metavar="WHAT",
-            help="What is wanted: force.SUPPORT.x, moment.SUPPORT.norm, area.CONTACT (curves; @STAGE of one stage, :end, :peak), "
-            "pressure.CONTACT, traction.CONTACT (fields at the end); may be repeated.",
-        ),
-    ],
-    within: Annotated[list[str], typer.Option(metavar="ERROR", help="Largest error, 1% or 0.01; may be repeated.")],
-    overrides: Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change one value of the scene.")] = None,
-    budget: Annotated[float, typer.Option(min=0.1, metavar="MINUTES", help="Minutes of the processor for all runs.")] = 60.0,
-    jobs: Annotated[int, typer.Option("-j", "--jobs", min=1, help="Runs at the same time; several disturb each other's cost.")] = 1,
+    scene: SceneArgument,
+    want: WantOption,
+    within: WithinOption,
+    overrides: OverridesOption = None,
+    budget: BudgetOption = 60.0,
+    jobs: JobsOption = 1,
     out: Annotated[
         Path | None, typer.Option(file_okay=False, help="Folder of the page and its runs.", show_default="results/trade-NAME")
     ] = None,
@@ -47,25 +60,60 @@ def trade(
     - `isomortar trade iron-round --want force.top.x@drag --within 5% --within 1% --budget 120 -j 2`
     - `isomortar trade my_scene.toml --want pressure.floor --want area.floor:end --within 2%`
     """
-    from isomortar.harness.runner import local_processes
-    from isomortar.harness.trade import page
     from isomortar.harness.trade.knobs import dials_of
-    from isomortar.harness.trade.laboratory import Laboratory
     from isomortar.harness.trade.search import Search
-    from isomortar.harness.trade.want import wanted
     from isomortar.scene import Scene
 
-    targets = sorted((_share(text) for text in within), reverse=True)
     loaded = Scene.load(scene, overrides or ())
-    wants = [wanted(text, loaded.problem()) for text in want]
-    started, dials = datetime.now().astimezone(), dials_of(loaded)
-    folder = out or Path("results") / f"trade-{loaded.name}"
+    _conduct(Search, loaded, dials_of(loaded), want, within, budget, jobs, out or Path("results") / f"trade-{loaded.name}")
+
+
+def advise(
+    scene: SceneArgument,
+    want: WantOption,
+    within: WithinOption,
+    overrides: OverridesOption = None,
+    budget: BudgetOption = 60.0,
+    jobs: JobsOption = 1,
+    out: Annotated[
+        Path | None, typer.Option(file_okay=False, help="Folder of the page and its runs.", show_default="results/advice-NAME")
+    ] = None,
+) -> None:
+    """What a scene could do without: the cheapest variant within a loss of what is wanted, each variant with what it loses.
+
+    Masters that do not deform, no friction, lower orders in depth, fewer elements, quadrature points and load steps, looser tolerances are
+    tried one at a time, and the cheapest combination is forecast, run, and corrected until none is cheaper. Losses are against the scene
+    as it is, right or not: how right that is tells `isomortar trade`. Exit code 1 if nothing is cheaper.
+
+    For example:
+
+    - `isomortar advise iron-round --want force.top.x@drag --within 1%`
+    """
+    from isomortar.harness.trade.advice import Advice, cheaper_dials
+    from isomortar.scene import Scene
+
+    loaded = Scene.load(scene, overrides or ())
+    _conduct(Advice, loaded, cheaper_dials(loaded), want, within, budget, jobs, out or Path("results") / f"advice-{loaded.name}")
+
+
+def _conduct(
+    kind: type[Search], scene: Scene, dials: Sequence[Dial], want: list[str], within: list[str], budget: float, jobs: int, folder: Path
+) -> None:
+    """Search, write the page, say the answers."""
+    from isomortar.harness.runner import local_processes
+    from isomortar.harness.trade import page
+    from isomortar.harness.trade.laboratory import Laboratory
+    from isomortar.harness.trade.want import wanted
+
+    targets = sorted((_share(text) for text in within), reverse=True)
+    wants = [wanted(text, scene.problem()) for text in want]
+    started = datetime.now().astimezone()
     with local_processes(jobs) as submit:
-        search = Search(Laboratory(loaded, dials, folder, submit, _tell), dials, wants, 60.0 * budget)
+        search = kind(Laboratory(scene, dials, folder, submit, _tell), dials, wants, 60.0 * budget)
         search.screen()
         search.find_truth(targets[-1])
         answers = [search.answer(target) for target in targets]
-    path = page.write(folder, loaded, search, answers, started)
+    path = page.write(folder, scene, search, answers, started)
     print("\n".join([*(page.sentence(search, answer) for answer in answers), str(path)]))
     if not all(answer.best for answer in answers):
         raise typer.Exit(FAILED)

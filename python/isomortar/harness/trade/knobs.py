@@ -107,10 +107,10 @@ def _possible(scene: Scene, dial: Dial) -> Dial:
 
 def _orders(scene: Scene, spoils: str) -> Iterator[Dial]:
     """Order of each body along its faces in contact."""
-    for name, letters in _faces(scene).items():
+    for name, letters in faces_in_contact(scene).items():
         body = scene.problem().body(name)
-        own = max(d.order for axis, d in _directions(body) if axis in letters)
-        families = {d.family for axis, d in _directions(body) if axis in letters}
+        own = max(d.order for axis, d in directions(body) if axis in letters)
+        families = {d.family for axis, d in directions(body) if axis in letters}
         highest = min(HIGHEST, *(MAX_ORDER[family] for family in families))
         orders = sorted({own, *range(max(2, lowest_order(scene, name, letters)), highest + 1)})
         settings = [Setting(str(order), None if order == own else _order(name, letters, order)) for order in orders]
@@ -120,8 +120,8 @@ def _orders(scene: Scene, spoils: str) -> Iterator[Dial]:
 def _order(name: str, letters: str, order: int) -> Changes:
     def overrides(scene: Scene) -> list[str]:
         body = scene.problem().body(name)
-        orders = [order if axis in letters else d.order for axis, d in _directions(body)]
-        return [f"bodies.{name}.mesh.order={orders}", *_stated(body, ("family", "elements"))]
+        orders = [order if axis in letters else d.order for axis, d in directions(body)]
+        return [f"bodies.{name}.mesh.order={orders}", *stated(body, ("family", "elements"))]
 
     return overrides
 
@@ -130,7 +130,7 @@ def _elements(scene: Scene, spoils: str) -> Iterator[Dial]:
     """Elements of each body by direction."""
     for body in scene.problem().bodies:
         spans = {axis: d.elements for axis, d in zip("uvw", coarse_geometry(scene, body.name).directions, strict=True)}
-        for axis, direction in _directions(body):
+        for axis, direction in directions(body):
             own, span = direction.elements, spans[axis]
             counts = sorted({own, *(span * max(1, round(own * factor / span)) for factor in MESHES)})
             settings = [Setting(str(count), None if count == own else _element(body.name, axis, count)) for count in counts]
@@ -140,8 +140,8 @@ def _elements(scene: Scene, spoils: str) -> Iterator[Dial]:
 def _element(name: str, letter: str, count: int) -> Changes:
     def overrides(scene: Scene) -> list[str]:
         body = scene.problem().body(name)
-        counts = [count if axis == letter else d.elements for axis, d in _directions(body)]
-        return [f"bodies.{name}.mesh.elements={counts}", *_stated(body, ("family", "order"))]
+        counts = [count if axis == letter else d.elements for axis, d in directions(body)]
+        return [f"bodies.{name}.mesh.elements={counts}", *stated(body, ("family", "order"))]
 
     return overrides
 
@@ -156,7 +156,9 @@ def _more_or_fewer(name: str, *changes: int) -> tuple[Setting, ...]:
     def overrides(change: int) -> Changes:
         def of(scene: Scene) -> list[str]:
             given = scene.tables.bodies[name].mesh.quadrature
-            own = given or [volume_points(d) for _, d in _directions(scene.problem().body(name))]
+            if scene.problem().body(name).rigid:  # made so by another knob: nothing is integrated
+                return []
+            own = given or [volume_points(d) for _, d in directions(scene.problem().body(name))]
             return [f"bodies.{name}.mesh.quadrature={[max(1, n + change) for n in own]}"]
 
         return of
@@ -197,7 +199,7 @@ def _load_steps(scene: Scene, spoils: str) -> Iterator[Dial]:
     counts = sorted({tuple(max(1, round(n * factor)) for n in own) for factor in STEPS}, key=sum)
 
     def overrides(steps: Sequence[int]) -> Changes:
-        return lambda _: [f"stages.{number}.steps={count}" for number, count in enumerate(steps)]
+        return given([f"stages.{number}.steps={count}" for number, count in enumerate(steps)])
 
     settings = [Setting(" + ".join(map(str, steps)), None if list(steps) == own else overrides(steps)) for steps in counts]
     yield Dial("load steps", tuple(settings), counts.index(tuple(own)), spoils)
@@ -210,7 +212,7 @@ def _tolerances(scene: Scene, spoils: str) -> Iterator[Dial]:
     def setting(factor: float) -> Setting:
         keys = {"newton_tolerance": solver.newton_tolerance, "complementarity_tolerance": solver.complementarity_tolerance}
         values = [f"solver.{key}={min(LOOSEST, factor * own):g}" for key, own in keys.items()]
-        return Setting(f"{min(LOOSEST, factor * solver.newton_tolerance):.0e}", None if factor == 1.0 else lambda _: values)
+        return Setting(f"{min(LOOSEST, factor * solver.newton_tolerance):.0e}", None if factor == 1.0 else given(values))
 
     yield Dial("tolerance", tuple(setting(factor) for factor in TOLERANCES), TOLERANCES.index(1.0), spoils)
 
@@ -252,15 +254,11 @@ def _elastic_slips(scene: Scene, spoils: str) -> Iterator[Dial]:
 
 def _values(key: str, name: str, values: Sequence[object], spoils: str, own: object, refines: bool = False) -> Dial:
     """The values of one key of a scene file."""
-
-    def overrides(value: object) -> Changes:
-        return lambda _: [f"{key}={value}"]
-
-    settings = tuple(Setting(str(value), None if value == own else overrides(value)) for value in values)
+    settings = tuple(Setting(str(value), None if value == own else given([f"{key}={value}"])) for value in values)
     return Dial(name, settings, list(values).index(own), spoils, refines)
 
 
-def _faces(scene: Scene) -> dict[str, str]:
+def faces_in_contact(scene: Scene) -> dict[str, str]:
     """Directions along the faces in contact, by body."""
     letters: dict[str, set[str]] = {}
     for contact in scene.problem().contacts:
@@ -275,11 +273,17 @@ def _contact(scene: Scene, name: str) -> Contact:
     return next(contact for contact in scene.problem().contacts if contact.name == name)
 
 
-def _directions(body: Body) -> list[tuple[str, Direction]]:
+def given(overrides: Sequence[str]) -> Changes:
+    """Overrides that are the same whatever other knobs have changed."""
+    return lambda _: overrides
+
+
+def directions(body: Body) -> list[tuple[str, Direction]]:
+    """Its directions by letter."""
     return list(zip("uvw", body.patch.directions, strict=True))
 
 
-def _stated(body: Body, keys: Sequence[str]) -> list[str]:
+def stated(body: Body, keys: Sequence[str]) -> list[str]:
     """A body's mesh as it is, stated: defaults of some keys follow from others that are given."""
     values = {
         "family": [d.family for d in body.patch.directions],

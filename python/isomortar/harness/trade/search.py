@@ -143,7 +143,7 @@ class Search:
         by_order = {order: self._hunted(target, kept) for order, kept in self._orders()}
         best = self._hunted(target, {})
         if best is None:
-            why = "no combination was found within the budget" if self._over else "no combination of settings that was tried comes so near"
+            why = "no combination was found within the budget" if self._over else "no combination that was tried comes so near for less"
             return Recommendation(target, None, math.nan, why, "", by_order)
         (afresh,) = self.laboratory.run([best.choice], fresh=True)
         return Recommendation(target, afresh, self.error(afresh), "", self._binding(afresh.choice), by_order)

@@ -1,0 +1,83 @@
+"""What a scene could do without: cheaper variants of it, each with what it loses against the scene as it is."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from isomortar.harness.trade.knobs import KNOBS, Changes, Dial, Knob, Setting, dials_of, directions, faces_in_contact, given, stated
+from isomortar.harness.trade.search import Recommendation, Search
+from isomortar.model.entities import RigidPlane
+from isomortar.scene.scene import Scene
+
+
+class Advice(Search):
+    """The cheapest variant of a scene within a loss of what is wanted; the scene as it is is the truth."""
+
+    def find_truth(self, target: float) -> None:  # noqa: ARG002
+        """The scene as it is."""
+        self.truth = self.rival = self.own
+
+    def answer(self, target: float) -> Recommendation:
+        """The cheapest variant that loses no more than a target."""
+        found = super().answer(target)
+        if found.best and found.best.choice == self.own.choice:
+            return Recommendation(target, None, math.nan, "no variant that was tried loses so little for less")
+        return found
+
+    def _orders(self) -> Iterator[tuple[int, dict[int, int]]]:
+        """Not asked for: what order elevation pays is the trade's to tell."""
+        return iter(())
+
+
+def cheaper_dials(scene: Scene) -> tuple[Dial, ...]:
+    """Dials of what a scene may do without; of those that refine, settings up to the scene's own."""
+    found = dials_of(scene, (*VARIANTS, *KNOBS))
+    cut = [Dial(d.name, d.settings[: d.own + 1], d.own, d.spoils, d.refines, d.part) if d.refines else d for d in found]
+    return tuple(dial for dial in cut if len(dial.settings) > 1)
+
+
+def _rigid(scene: Scene, spoils: str) -> Iterator[Dial]:
+    """Masters that do not deform."""
+    problem = scene.problem()
+    slaves = {face.body for contact in problem.contacts for face in contact.slave.faces}
+    masters = [face.body for contact in problem.contacts if not isinstance(contact.master, RigidPlane) for face in contact.master.faces]
+    for name in dict.fromkeys(masters):
+        if name not in slaves and not problem.body(name).rigid:
+            yield Dial(f"{name} rigid", (Setting("yes", given([f"bodies.{name}.rigid=true"])), Setting("no")), 1, spoils, refines=False)
+
+
+def _frictionless(scene: Scene, spoils: str) -> Iterator[Dial]:
+    """Contacts without friction."""
+    for name, contact in scene.tables.contacts.items():
+        if contact.friction > 0.0 or contact.cohesion > 0.0:
+            keys = [f"contacts.{name}.{key}=0.0" for key in ("friction", "cohesion")]
+            yield Dial(f"friction of {name}", (Setting("none", given(keys)), Setting("as it is")), 1, spoils, refines=False)
+
+
+def _orders_across(scene: Scene, spoils: str) -> Iterator[Dial]:
+    """Lower orders of bodies away from their faces in contact."""
+    for name, letters in faces_in_contact(scene).items():
+        across = [axis for axis in "uvw" if axis not in letters]
+        own = {axis: d.order for axis, d in directions(scene.problem().body(name)) if axis in across}
+        if across and max(own.values()) > 1:
+            highest = max(own.values())
+            settings = tuple(Setting(str(p), None if p == highest else _across(name, across, p)) for p in range(1, highest + 1))
+            yield Dial(f"order of {name} across", settings, highest - 1, spoils)
+
+
+def _across(name: str, axes: list[str], order: int) -> Changes:
+    def changes(scene: Scene) -> list[str]:
+        body = scene.problem().body(name)
+        orders = [min(order, d.order) if axis in axes else d.order for axis, d in directions(body)]
+        return [f"bodies.{name}.mesh.order={orders}", *stated(body, ("family", "elements"))]
+
+    return changes
+
+
+#: What a model may leave out; how it is computed are the knobs of the trade.
+VARIANTS: tuple[Knob, ...] = (
+    Knob("rigid", "all that the master gives way", _rigid),
+    Knob("friction", "drag and torque, and what sticks", _frictionless),
+    Knob("order across", "what bends or varies in depth", _orders_across),
+)
