@@ -12,7 +12,7 @@ import pytest
 from isomortar.errors import InputError, IsomortarError
 from isomortar.harness.runner import local_processes
 from isomortar.harness.trade import page
-from isomortar.harness.trade.advice import Advice, cheaper_dials
+from isomortar.harness.trade.advice import CheaperSearch, cheaper_dials
 from isomortar.harness.trade.knobs import KNOBS, Dial, Knob, Setting, changed, dials_of
 from isomortar.harness.trade.laboratory import Laboratory, Tried
 from isomortar.harness.trade.search import Search
@@ -298,7 +298,7 @@ def test_a_search_that_was_killed_goes_on_to_the_same_answer(scene, tmp_path):
     assert np.isfinite(data["uncertainty"])
 
 
-# Advice: the scene as it is is the truth
+# CheaperSearch: the scene as it is is the truth
 
 
 TWO = """
@@ -335,7 +335,7 @@ def test_advice_is_what_loses_least_of_the_scene_as_it_is(scene, tmp_path):
         Dial("way", (Setting("lazy"), Setting("own")), 1, "", refines=False),
     )
     laboratory = Formula(scene, dials)
-    advice = Advice(laboratory, dials, [wanted("force.top.x", scene.problem())], 1e6)
+    advice = CheaperSearch(laboratory, dials, [wanted("force.top.x", scene.problem())], 1e6)
     advice.screen()
     advice.find_truth(0.1)
     assert advice.error(advice.own) == 0.0

@@ -89,11 +89,11 @@ def advise(
 
     - `isomortar advise iron-round --want force.top.x@drag --within 1%`
     """
-    from isomortar.harness.trade.advice import Advice, cheaper_dials
+    from isomortar.harness.trade.advice import CheaperSearch, cheaper_dials
     from isomortar.scene import Scene
 
     loaded = Scene.load(scene, overrides or ())
-    _conduct(Advice, loaded, cheaper_dials(loaded), want, within, budget, jobs, out or Path("results") / f"advice-{loaded.name}")
+    _conduct(CheaperSearch, loaded, cheaper_dials(loaded), want, within, budget, jobs, out or Path("results") / f"advice-{loaded.name}")
 
 
 def _conduct(

@@ -11,7 +11,7 @@ from isomortar.model.entities import RigidPlane
 from isomortar.scene.scene import Scene
 
 
-class Advice(Search):
+class CheaperSearch(Search):
     """The cheapest variant of a scene within a loss of what is wanted; the scene as it is is the truth."""
 
     def find_truth(self, target: float) -> None:  # noqa: ARG002

@@ -12,7 +12,7 @@ from typing import Any
 from isomortar.harness.report import percent, plain, template
 from isomortar.harness.store import identity, write_whole
 from isomortar.harness.trade import figures
-from isomortar.harness.trade.advice import Advice
+from isomortar.harness.trade.advice import CheaperSearch
 from isomortar.harness.trade.laboratory import Tried
 from isomortar.harness.trade.model import Yardstick
 from isomortar.harness.trade.search import Recommendation, Search
@@ -25,7 +25,7 @@ def sentence(search: Search, answer: Recommendation) -> str:
     """The answer in words, with its numbers."""
     if answer.best is None:
         return f"Within {percent(answer.target)}: nothing is recommended; {answer.why}."
-    if isinstance(search, Advice):
+    if isinstance(search, CheaperSearch):
         times = search.own.cost / answer.best.cost
         return f"{answer.best.name}: loses {percent(answer.error)} for {_seconds(answer.best.cost)}, {times:.2g} times less than as it is."
     parts = [f"{answer.best.name}: {percent(answer.error)} ± {percent(search.uncertainty)} for {_seconds(answer.best.cost)}"]
@@ -61,7 +61,7 @@ def _page(scene: Scene, search: Search, answers: Sequence[Recommendation], files
     shown = [("as it is", search.own), *((f"within {percent(a.target)}", a.best) for a in answers if a.best)]
     return template("page.html", Path(__file__)).render(
         scene=scene,
-        advised=isinstance(search, Advice),
+        advised=isinstance(search, CheaperSearch),
         started=started,
         wants=search.wants,
         own=search.own,
