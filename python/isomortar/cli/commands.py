@@ -12,6 +12,7 @@ import isomortar
 from isomortar.cli.bench import bench
 from isomortar.cli.endings import FAILED
 from isomortar.cli.mutants import mutants
+from isomortar.cli.options import Overrides, SceneArgument
 from isomortar.cli.paper import paper
 from isomortar.cli.report import report
 from isomortar.cli.trade import advise, trade
@@ -26,8 +27,6 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-SceneArgument = Annotated[str, typer.Argument(metavar="SCENE", help="A scene file (.toml), or a bundled scene by its name.")]
-Overrides = Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change one value of the scene; may be repeated.")]
 ResultsArgument = Annotated[Path, typer.Argument(metavar="RESULTS", help="Results file of `isomortar run`.")]
 
 

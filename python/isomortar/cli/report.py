@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from isomortar.cli.options import RunsOption, SceneArgument
 from isomortar.cli.verification import CASES, CORES, RESULTS, CasesOption, JobsOption, TierOption, conduct, tier_of
 
 report = typer.Typer(no_args_is_help=True, rich_markup_mode="markdown", help="Reports that take many runs of a scene.")
@@ -19,13 +20,13 @@ def report_command() -> None:
 
 @report.command()
 def orders(
-    scene: Annotated[str, typer.Argument(metavar="SCENE", help="A scene file (.toml), or a bundled scene by its name.")],
+    scene: SceneArgument,
     quick: Annotated[bool, typer.Option("--quick", help="Half the elements, and N1, N2, N3, L1, L2 only.")] = False,
     kinds: Annotated[
         str, typer.Option("--orders", metavar="N1,N2,..", help="Kinds of discretisation.", show_default="N1 to N5 and L1 to L4")
     ] = "",
     body: Annotated[str | None, typer.Option(help="The body to vary.", show_default="slave of the first contact")] = None,
-    jobs: Annotated[int, typer.Option("-j", "--jobs", min=1, help="Runs at the same time; several disturb each other's cost.")] = 1,
+    jobs: RunsOption = 1,
     out: Annotated[
         Path | None, typer.Option(file_okay=False, help="Folder of the report and its runs.", show_default="results/orders-NAME")
     ] = None,
@@ -76,7 +77,7 @@ def extremes(
 
 @report.command()
 def programs(
-    jobs: Annotated[int, typer.Option("-j", "--jobs", min=1, help="Runs at the same time; several disturb each other's cost.")] = 1,
+    jobs: RunsOption = 1,
     out: Annotated[Path, typer.Option(file_okay=False, help="Folder of the report and its runs.")] = Path("results/programs"),
     cases: CasesOption = CASES,
 ) -> None:
@@ -95,7 +96,7 @@ def programs(
 @report.command()
 def enforcement(
     scenes: Annotated[str, typer.Option(metavar="hertz,twist,..", help="Scenes of the study.", show_default="all")] = "",
-    jobs: Annotated[int, typer.Option("-j", "--jobs", min=1, help="Runs at the same time; several disturb each other's cost.")] = 1,
+    jobs: RunsOption = 1,
     out: Annotated[Path, typer.Option(file_okay=False, help="Folder of the report and its runs.")] = Path("results/enforcement"),
     cases: CasesOption = CASES,
 ) -> None:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from isomortar.cli.endings import FAILED
+from isomortar.cli.options import Overrides, RunsOption, SceneArgument
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
     from isomortar.scene import Scene
 
 
-SceneArgument = Annotated[str, typer.Argument(metavar="SCENE", help="A scene file (.toml), or a bundled scene by its name.")]
 WantOption = Annotated[
     list[str],
     typer.Option(
@@ -30,18 +30,16 @@ WantOption = Annotated[
     ),
 ]
 WithinOption = Annotated[list[str], typer.Option(metavar="ERROR", help="Largest error, 1% or 0.01; may be repeated.")]
-OverridesOption = Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change one value of the scene.")]
 BudgetOption = Annotated[float, typer.Option(min=0.1, metavar="MINUTES", help="Minutes of the processor for all runs.")]
-JobsOption = Annotated[int, typer.Option("-j", "--jobs", min=1, help="Runs at the same time; several disturb each other's cost.")]
 
 
 def trade(
     scene: SceneArgument,
     want: WantOption,
     within: WithinOption,
-    overrides: OverridesOption = None,
+    overrides: Overrides = None,
     budget: BudgetOption = 60.0,
-    jobs: JobsOption = 1,
+    jobs: RunsOption = 1,
     out: Annotated[
         Path | None, typer.Option(file_okay=False, help="Folder of the page and its runs.", show_default="results/trade-NAME")
     ] = None,
@@ -72,9 +70,9 @@ def advise(
     scene: SceneArgument,
     want: WantOption,
     within: WithinOption,
-    overrides: OverridesOption = None,
+    overrides: Overrides = None,
     budget: BudgetOption = 60.0,
-    jobs: JobsOption = 1,
+    jobs: RunsOption = 1,
     out: Annotated[
         Path | None, typer.Option(file_okay=False, help="Folder of the page and its runs.", show_default="results/advice-NAME")
     ] = None,
