@@ -26,6 +26,8 @@ finally:
 """
 #: For pictures, pages, verification, other programs and clusters.
 ASIDE = {"matplotlib", "jinja2", "vtk", "distributed", "isomortar.harness", "isomortar.program", "isomortar._twin", "isomortar._extended"}
+#: For geometry files: the package around the compiled splines.
+AROUND = {"splinepy", "gustaf", "scipy.sparse.linalg"}
 #: Parts of SciPy that some method of enforcement, or some other solver, needs.
 SPECIAL = {"scipy.interpolate", "scipy.optimize", "scipy.special", "scipy.stats", "scipy.integrate"}
 PRESS = ("press", "--set", "stages.press.steps=1", "--set", "bodies.block.mesh.elements=[1,1,1]")
@@ -57,15 +59,15 @@ def test_the_version_needs_nothing_of_what_computes(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "not_needed"),
     [
-        (PRESS, {*SPECIAL, "scipy.spatial"}),
+        (PRESS, {*SPECIAL, "scipy.spatial", "scipy.linalg"}),
         (BLOCK, SPECIAL - {"scipy.special"}),  # which comes with SciPy's search for neighbours
     ],
     ids=["plane", "bodies"],
 )
 def test_a_run_loads_what_it_needs(tmp_path: Path, words: tuple[str, ...], not_needed: set[str]) -> None:
     names = loaded(tmp_path, "run", *words, "--output", "scene.h5")
-    assert {"numpy", "h5py", "isomortar._kernel"} <= names
-    assert not (ASIDE | not_needed) & names
+    assert {"numpy", "h5py", "isomortar._kernel", "splinepy.splinepy_core"} <= names
+    assert not (ASIDE | AROUND | not_needed) & names
 
 
 def test_a_quiet_run_loads_nothing_for_progress(tmp_path: Path) -> None:
@@ -81,6 +83,25 @@ def test_a_run_builds_its_problem_once(tmp_path: Path, monkeypatch: pytest.Monke
 
 def test_scenes_are_listed_without_what_writes(tmp_path: Path) -> None:
     assert not {"h5py", "tomlkit", "isomortar.solve.simulation"} & loaded(tmp_path, "scenes")
+
+
+def test_splines_are_loaded_once_where_files_are_read_as_well(tmp_path: Path) -> None:
+    """With its types registered twice, the compiled module would not load."""
+    code = """
+from isomortar.geometry.primitives import ring
+from isomortar.geometry.refinement import mesh
+one = mesh(ring((0, 0, 0), 1, 2, 1), "NNN", (3, 2, 2), (8, 1, 1))
+import sys
+assert "splinepy" not in sys.modules
+import splinepy
+splinepy.io.export("ring.json", [splinepy.NURBS([3, 2, 2], [d.knots for d in one.directions], one.control_points, one.weights)])
+from pathlib import Path
+from isomortar.geometry.files import read_spline
+two = mesh(read_spline(Path("ring.json")), "NNN", (3, 2, 2), (8, 1, 1))
+assert splinepy.splinepy_core is sys.modules["splinepy.splinepy_core"]
+assert abs(one.control_points - two.control_points).max() < 1e-14
+"""
+    subprocess.run([sys.executable, "-c", code], check=True, cwd=tmp_path)
 
 
 def test_what_a_method_needs_comes_with_it(tmp_path: Path) -> None:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import splinepy
 
 from isomortar.geometry.patch import FloatArray, Patch, opposite
+from isomortar.geometry.splines import Spline
 
 #: Cells in a direction, at least: round a ring they then are off it by a five-hundredth of its radius.
 CELLS = 48
@@ -55,9 +55,6 @@ def _grid(patch: Patch, face: str) -> FloatArray:
     points, weights = patch.control_points[numbers], patch.weights[numbers]
     if "L" in (first.family, second.family):  # Lagrange nodes lie on the face, and so nearly do control points beside them
         return points.reshape(first.count, second.count, 3, order="F")
-    surface = splinepy.NURBS(
-        degrees=[first.order, second.order], knot_vectors=[first.knots, second.knots], control_points=points, weights=weights
-    )
     u, v = (direction.subdivided(-(-CELLS // direction.elements)) for direction in (first, second))  # elements, and these in parts
     queries = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
-    return np.asarray(surface.evaluate(queries)).reshape(len(u), len(v), 3)
+    return Spline([first, second], points, weights).evaluate(queries).reshape(len(u), len(v), 3)

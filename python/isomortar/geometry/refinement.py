@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import splinepy
 
 from isomortar.errors import InputError
 from isomortar.geometry.patch import MAX_ORDER, Direction, Family, FloatArray, Patch
+from isomortar.geometry.splines import Spline
 
 
 def mesh(patch: Patch, families: Sequence[Family], orders: Sequence[int], elements: Sequence[int]) -> Patch:
@@ -62,7 +62,7 @@ def mesh(patch: Patch, families: Sequence[Family], orders: Sequence[int], elemen
 def _evaluated(direction: Direction, grid: FloatArray, axis: int, parameters: FloatArray) -> FloatArray:
     """Values of B-splines along an axis of a grid of control values: parameters take the place of control points."""
     control = np.moveaxis(grid, axis, 0)
-    line = splinepy.BSpline(degrees=[direction.order], knot_vectors=[direction.knots], control_points=control.reshape(len(control), -1))
+    line = Spline([direction], control.reshape(len(control), -1))
     return np.moveaxis(line.evaluate(parameters[:, None]).reshape(len(parameters), *control.shape[1:]), 0, axis)
 
 
@@ -85,29 +85,20 @@ def _check(patch: Patch, families: Sequence[Family], orders: Sequence[int], elem
 
 
 def _k_refined(patch: Patch, orders: Sequence[int], elements: Sequence[int]) -> Patch:
-    """Order elevation, then knot insertion, by splinepy."""
-    properties = {"degrees": [d.order for d in patch.directions], "knot_vectors": [d.knots for d in patch.directions]}
-    if np.all(patch.weights == 1.0):  # plain B-splines keep their weights of exactly 1
-        spline = splinepy.BSpline(**properties, control_points=patch.control_points)
-    else:
-        spline = splinepy.NURBS(**properties, control_points=patch.control_points, weights=patch.weights)
+    """Order elevation, then knot insertion; a patch that needs neither stays as it is."""
     raises = [axis for axis, own in enumerate(patch.directions) for _ in range(orders[axis] - own.order)]
+    fresh = [np.setdiff1d(d.subdivided(n // d.elements), d.boundaries) for d, n in zip(patch.directions, elements, strict=True)]
+    if not raises and not any(map(len, fresh)):
+        return patch
+    plain = np.all(patch.weights == 1.0)  # plain B-splines keep their weights of exactly 1
+    spline = Spline(patch.directions, patch.control_points, None if plain else patch.weights)
     if raises:
-        spline.elevate_degrees(raises)
-    for axis, own in enumerate(patch.directions):
-        fresh = np.setdiff1d(own.subdivided(elements[axis] // own.elements), own.boundaries)
-        if len(fresh):
-            spline.insert_knots(axis, fresh)
-    return from_splinepy(spline)
-
-
-def from_splinepy(spline: splinepy.Spline) -> Patch:
-    """The patch of a splinepy volume spline of any kind."""
-    knots = spline.nurbs.knot_vectors
-    directions = tuple(Direction("N", int(p), np.array(k)) for p, k in zip(spline.degrees, knots, strict=True))
-    points = np.array(spline.control_points)
-    weights = np.array(spline.weights).ravel() if spline.is_rational else np.ones(len(points))
-    return Patch((directions[0], directions[1], directions[2]), points, weights)
+        spline.elevate(raises)
+    for axis, knots in enumerate(fresh):
+        if len(knots):
+            spline.insert(axis, knots)
+    u, v, w = (Direction("N", order, knots) for order, knots in zip(orders, spline.knots, strict=True))
+    return Patch((u, v, w), spline.control_points, spline.weights)
 
 
 def _homogeneous(patch: Patch) -> FloatArray:
