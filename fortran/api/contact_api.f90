@@ -21,6 +21,8 @@
 ! - `nrows`, `nblocks`, `nwide`: blocks of these patterns. `nkinds`: kinds of rows (isomortar_contact_rows).
 ! - `rows`, `tangent`: constraint rows (component, kind, block), and the tangent, F/L, (column component, row component, block).
 ! - `changes`: derivatives of p, t_1, t_2 by positions: (component, multiplier, block).
+! - `with_friction`: 1 where tractions may act.
+! - `counts`: of what is done (isomortar_contact_work), to which those of the call are added; there are `ncounts`.
 ! - `status`, `place`: how it ended (isomortar_base_status), and where on failure, from 1; 0: nowhere.
 
 !> Functions, their derivatives and reference areas at the quadrature points of a face of a patch, by the axis across it (1..3) and
@@ -56,16 +58,18 @@ end subroutine slave_tables
 !>
 !> - `started`, `had`: 1 where `xi` is a start; where there was a foot at the last converged load step.
 !> - `doubt`: of points with a foot that does not follow them: the status that says why; else 0.
-subroutine project_points(slave, map, x, n, started, origin, had, nquad, xi, element, fixed, found, doubt, slip, slips, status, &
-    place)
+subroutine project_points(slave, map, x, n, started, origin, had, nquad, with_friction, counts, ncounts, xi, element, fixed, &
+    found, doubt, slip, slips, status, place)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: find
   use isomortar_contact_control, only: project => project_points
   use isomortar_contact_gap_map_map, only: gap_map_t, projections_at, projections_t
   use isomortar_contact_slave, only: slave_t
+  use isomortar_contact_work, only: add_work, work_t
   implicit none
   integer(c_int64_t), intent(in) :: slave, map
-  integer(c_int), intent(in) :: n, nquad, started(nquad), had(nquad)
+  integer(c_int), intent(in) :: n, nquad, started(nquad), had(nquad), with_friction, ncounts
+  integer(c_int64_t), intent(inout) :: counts(ncounts)
   real(c_double), intent(in) :: x(3, n), origin(2, nquad)
   real(c_double), intent(inout) :: xi(2, nquad)
   integer(c_int), intent(out) :: element(2, nquad), fixed(2, nquad), found(nquad), doubt(nquad), slips(nquad), status, place
@@ -73,6 +77,7 @@ subroutine project_points(slave, map, x, n, started, origin, had, nquad, xi, ele
   type(slave_t), pointer :: side
   class(gap_map_t), pointer :: onto
   type(projections_t) :: projections
+  type(work_t) :: work
 
   status = 0
   place = 0
@@ -80,7 +85,8 @@ subroutine project_points(slave, map, x, n, started, origin, had, nquad, xi, ele
   call find(map, onto, status)
   if (status /= 0) return
   projections = projections_at(xi)
-  call project(side, onto, x, started /= 0, origin, had /= 0, projections, status, place)
+  call project(side, onto, x, started /= 0, origin, had /= 0, with_friction /= 0, projections, status, place, work)
+  call add_work(work, counts)
   xi = projections%xi
   element = projections%place - 1
   fixed = merge(1, 0, projections%fixed)
@@ -94,16 +100,18 @@ subroutine project_points(slave, map, x, n, started, origin, had, nquad, xi, ele
 end subroutine project_points
 
 !> Control quantities from projections (isomortar_contact_control).
-subroutine control_quantities(slave, map, x, n, xi, element, fixed, found, slip, nquad, ntest, weight, square, gap, &
-    control_slip, metric, point_metric, status)
+subroutine control_quantities(slave, map, x, n, xi, element, fixed, found, slip, nquad, ntest, with_friction, counts, ncounts, &
+    weight, square, gap, control_slip, metric, point_metric, status)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: find
   use isomortar_contact_control, only: control_t, integrate => control_quantities
   use isomortar_contact_gap_map_map, only: gap_map_t, projections_t
   use isomortar_contact_slave, only: slave_t
+  use isomortar_contact_work, only: add_work, work_t
   implicit none
   integer(c_int64_t), intent(in) :: slave, map
-  integer(c_int), intent(in) :: n, nquad, ntest, element(2, nquad), fixed(2, nquad), found(nquad)
+  integer(c_int), intent(in) :: n, nquad, ntest, element(2, nquad), fixed(2, nquad), found(nquad), with_friction, ncounts
+  integer(c_int64_t), intent(inout) :: counts(ncounts)
   real(c_double), intent(in) :: x(3, n), xi(2, nquad), slip(2, nquad)
   real(c_double), intent(out) :: weight(ntest), square(ntest), gap(ntest), control_slip(2, ntest), metric(3, ntest)
   real(c_double), intent(out) :: point_metric(3, nquad)
@@ -112,6 +120,7 @@ subroutine control_quantities(slave, map, x, n, xi, element, fixed, found, slip,
   class(gap_map_t), pointer :: onto
   type(projections_t) :: projections
   type(control_t) :: control
+  type(work_t) :: work
 
   status = 0
   call find(slave, side, status)
@@ -124,7 +133,8 @@ subroutine control_quantities(slave, map, x, n, xi, element, fixed, found, slip,
   projections%slip = slip
   allocate (control%weight(ntest), control%square(ntest), control%gap(ntest), control%slip(2, ntest), control%metric(3, ntest), &
     control%point_metric(3, nquad))
-  call integrate(side, onto, x, projections, control)
+  call integrate(side, onto, x, projections, with_friction /= 0, control, work)
+  call add_work(work, counts)
   weight = control%weight
   square = control%square
   gap = control%gap
@@ -136,19 +146,22 @@ end subroutine control_quantities
 !> How far the foot of every slave quadrature point has climbed since the last converged load step (isomortar_contact_control).
 !>
 !> - `climbs`: these distances, L; 0 where the slip does not count.
-subroutine find_climbs(map, x, n, xi, origin, slips, nquad, climbs, status)
+subroutine find_climbs(map, x, n, xi, origin, slips, nquad, counts, ncounts, climbs, status)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: find
   use isomortar_contact_control, only: climb => find_climbs
   use isomortar_contact_gap_map_map, only: gap_map_t, projections_t
+  use isomortar_contact_work, only: add_work, work_t
   implicit none
   integer(c_int64_t), intent(in) :: map
-  integer(c_int), intent(in) :: n, nquad, slips(nquad)
+  integer(c_int), intent(in) :: n, nquad, slips(nquad), ncounts
+  integer(c_int64_t), intent(inout) :: counts(ncounts)
   real(c_double), intent(in) :: x(3, n), xi(2, nquad), origin(2, nquad)
   real(c_double), intent(out) :: climbs(nquad)
   integer(c_int), intent(out) :: status
   class(gap_map_t), pointer :: onto
   type(projections_t) :: projections
+  type(work_t) :: work
 
   climbs = 0.0_c_double
   status = 0
@@ -157,7 +170,8 @@ subroutine find_climbs(map, x, n, xi, origin, slips, nquad, climbs, status)
   projections%xi = xi
   projections%origin = origin
   projections%slips = slips /= 0
-  call climb(onto, x, projections, climbs)
+  call climb(onto, x, projections, climbs, work)
+  call add_work(work, counts)
 end subroutine find_climbs
 
 !> Control pressures, tractions, states and their slopes of the augmented law (isomortar_contact_augmentation).
@@ -252,23 +266,27 @@ end subroutine friction_radius
 !> Add contact forces on slave and master control points (isomortar_contact_blocks).
 !>
 !> - `forces`: on all control points, F.
-subroutine contact_forces(slave, map, x, n, xi, element, fixed, found, nquad, pressure, traction, state, ntest, forces, &
-    status)
+subroutine contact_forces(slave, map, x, n, xi, element, fixed, found, nquad, with_friction, pressure, traction, state, ntest, &
+    counts, ncounts, forces, status)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: find
   use isomortar_contact_blocks, only: integrate_forces
   use isomortar_contact_gap_map_map, only: gap_map_t, projections_t
   use isomortar_contact_sample, only: multipliers_t
   use isomortar_contact_slave, only: slave_t
+  use isomortar_contact_work, only: add_work, work_t
   implicit none
   integer(c_int64_t), intent(in) :: slave, map
-  integer(c_int), intent(in) :: n, nquad, ntest, element(2, nquad), fixed(2, nquad), found(nquad), state(ntest)
+  integer(c_int), intent(in) :: n, nquad, ntest, element(2, nquad), fixed(2, nquad), found(nquad), with_friction, state(ntest)
+  integer(c_int), intent(in) :: ncounts
+  integer(c_int64_t), intent(inout) :: counts(ncounts)
   real(c_double), intent(in) :: x(3, n), xi(2, nquad), pressure(ntest), traction(2, ntest)
   real(c_double), intent(inout) :: forces(3, n)
   integer(c_int), intent(out) :: status
   type(slave_t), pointer :: side
   class(gap_map_t), pointer :: onto
   type(projections_t) :: projections
+  type(work_t) :: work
 
   status = 0
   call find(slave, side, status)
@@ -278,24 +296,25 @@ subroutine contact_forces(slave, map, x, n, xi, element, fixed, found, nquad, pr
   projections%place = element + 1
   projections%fixed = fixed /= 0
   projections%found = found /= 0
-  call integrate_forces(side, onto, x, projections, multipliers_t(pressure, traction, state /= 0), forces)
+  call integrate_forces(side, onto, x, projections, with_friction /= 0, multipliers_t(pressure, traction, state /= 0), forces, work)
+  call add_work(work, counts)
 end subroutine contact_forces
 
 !> Add constraint rows and the geometric tangent (isomortar_contact_blocks).
-!>
-!> - `with_friction`: 1 where tractions may act.
 subroutine contact_blocks(slave, map, x, n, xi, element, fixed, found, origin, slips, nquad, with_friction, pressure, traction, &
-    state, ntest, field_slip, row_pattern, nrows, nkinds, rows, pattern, nblocks, tangent, status, place)
+    state, ntest, field_slip, row_pattern, nrows, nkinds, rows, pattern, nblocks, tangent, counts, ncounts, status, place)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: find
   use isomortar_contact_blocks, only: integrate_blocks
   use isomortar_contact_gap_map_map, only: gap_map_t, projections_t
   use isomortar_contact_sample, only: multipliers_t
   use isomortar_contact_slave, only: slave_t
+  use isomortar_contact_work, only: add_work, work_t
   use isomortar_sparse_blocks, only: pattern_t
   implicit none
   integer(c_int64_t), intent(in) :: slave, map, row_pattern, pattern
-  integer(c_int), intent(in) :: n, nquad, ntest, nrows, nkinds, nblocks
+  integer(c_int), intent(in) :: n, nquad, ntest, nrows, nkinds, nblocks, ncounts
+  integer(c_int64_t), intent(inout) :: counts(ncounts)
   integer(c_int), intent(in) :: element(2, nquad), fixed(2, nquad), found(nquad), slips(nquad), with_friction, state(ntest)
   real(c_double), intent(in) :: x(3, n), xi(2, nquad), origin(2, nquad), field_slip(2, nquad)
   real(c_double), intent(in) :: pressure(ntest), traction(2, ntest)
@@ -305,6 +324,7 @@ subroutine contact_blocks(slave, map, x, n, xi, element, fixed, found, origin, s
   class(gap_map_t), pointer :: onto
   type(pattern_t), pointer :: of_rows, of_tangent
   type(projections_t) :: projections
+  type(work_t) :: work
 
   status = 0
   place = 0
@@ -320,7 +340,8 @@ subroutine contact_blocks(slave, map, x, n, xi, element, fixed, found, origin, s
   projections%origin = origin
   projections%slips = slips /= 0
   call integrate_blocks(side, onto, x, projections, with_friction /= 0, multipliers_t(pressure, traction, state /= 0), field_slip, &
-    of_rows, rows, of_tangent, tangent, status, place)
+    of_rows, rows, of_tangent, tangent, status, place, work)
+  call add_work(work, counts)
 end subroutine contact_blocks
 
 !> Rows of the multipliers' derivatives of the augmented law (isomortar_contact_augmentation), on the pattern `wide`, which differs

@@ -9,6 +9,7 @@ module isomortar_api_difference
   use isomortar_contact_gap_map_map, only: gap_map_t, projections_at, projections_t
   use isomortar_contact_sample, only: multipliers_t
   use isomortar_contact_slave, only: slave_t
+  use isomortar_contact_work, only: work_t
   implicit none
   private
 
@@ -64,6 +65,7 @@ contains
     type(projections_t) :: absolute
     real(wp), allocatable :: field_slip(:, :)
     logical, allocatable :: started(:)
+    type(work_t) :: work
     integer :: n, points
 
     n = fixed%slave%test%count
@@ -71,16 +73,16 @@ contains
     allocate (field_slip(2, points))
     quantities%projections = projections_at(fixed%start)
     allocate (started(points), source=.true.)
-    call project_points(fixed%slave, fixed%map, positions, started, fixed%origin, fixed%had, quantities%projections, status, &
-      place)
+    call project_points(fixed%slave, fixed%map, positions, started, fixed%origin, fixed%had, .true., quantities%projections, &
+      status, place, work)
     if (status /= status_ok) return
 
     call reserve(n, points, quantities%control)
-    call control_quantities(fixed%slave, fixed%map, positions, quantities%projections, quantities%control)
+    call control_quantities(fixed%slave, fixed%map, positions, quantities%projections, .true., quantities%control, work)
     call reserve(n, points, coordinates)
     absolute = quantities%projections
     absolute%slip = absolute%xi
-    call control_quantities(fixed%slave, fixed%map, positions, absolute, coordinates)
+    call control_quantities(fixed%slave, fixed%map, positions, absolute, .true., coordinates, work)
     quantities%coordinates = coordinates%slip
     call respond(fixed%slave, quantities%control, law, fixed%summed, quantities%response, field_slip)
 
@@ -101,10 +103,11 @@ contains
     type(law_t), intent(in) :: law
     type(multipliers_t), intent(in) :: multipliers
     real(wp), allocatable, intent(out) :: forces(:, :)
+    type(work_t) :: work
 
     allocate (forces(3, size(positions, 2)))
     forces = 0.0_wp
-    call integrate_forces(fixed%slave, fixed%map, positions, projections, multipliers, forces)
+    call integrate_forces(fixed%slave, fixed%map, positions, projections, .true., multipliers, forces, work)
   end subroutine contact_forces
 
   !> Make room for n control points and m quadrature points.

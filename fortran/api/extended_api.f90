@@ -138,6 +138,7 @@ subroutine extended_feet(slave, map, x, n, started, nquad, xi, element, fixed, f
   use isomortar_contact_control, only: project_points
   use isomortar_contact_gap_map_map, only: gap_map_t, projections_at, projections_t
   use isomortar_contact_slave, only: slave_t
+  use isomortar_contact_work, only: work_t
   implicit none
   integer(c_int64_t), intent(in) :: slave, map
   integer(c_int), intent(in) :: n, nquad, started(nquad)
@@ -147,6 +148,7 @@ subroutine extended_feet(slave, map, x, n, started, nquad, xi, element, fixed, f
   type(slave_t), pointer :: side
   class(gap_map_t), pointer :: onto
   type(projections_t) :: projections
+  type(work_t) :: work
 
   status = 0
   place = 0
@@ -154,7 +156,7 @@ subroutine extended_feet(slave, map, x, n, started, nquad, xi, element, fixed, f
   call find(map, onto, status)
   if (status /= 0) return
   projections = projections_at(real(xi, wp))
-  call project_points(side, onto, real(x, wp), started /= 0, real(xi, wp), started /= 0, projections, status, place)
+  call project_points(side, onto, real(x, wp), started /= 0, real(xi, wp), started /= 0, .true., projections, status, place, work)
   xi = real(projections%xi, c_double)
   element = projections%place - 1
   fixed = merge(1, 0, projections%fixed)

@@ -4,18 +4,19 @@
 !>
 !> - `slave`, `map`: the slave side, and the gap map onto its master.
 !> - `positions` (3, control points): of all control points, L. `projections`: feet of the quadrature points there.
-!> - `multipliers`: those that act.
+!> - `multipliers`: those that act. `with_friction`: whether tractions may act. `work`: counts of what is done.
 module isomortar_contact_blocks
   use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
   use isomortar_base_predicate, only: is_compressed
   use isomortar_base_status, only: status_ok, status_pattern
   use isomortar_contact_batch, only: add_sample, batch_t, reserve, scatter
-  use isomortar_contact_gap_map_map, only: all_components, gap_map_t, projections_t
+  use isomortar_contact_gap_map_map, only: all_components, for_forces, for_gap, for_tangent, gap_map_t, projections_t
   use isomortar_contact_gap_map_nodal_normals, only: add_turning, carry, normals_t
   use isomortar_contact_rows, only: row_metric
   use isomortar_contact_sample, only: fields_at, multipliers_t, sample_t, take_sample
   use isomortar_contact_slave, only: slave_t, slave_tangents
+  use isomortar_contact_work, only: work_t
   use isomortar_sparse_blocks, only: lacks, mark_row, pattern_t
   implicit none
   private
@@ -25,31 +26,35 @@ module isomortar_contact_blocks
 contains
 
   !> Add the contact forces r(d) = sum p^I <R^I dg> + sum t_a^I <R^I dxi^a> (theory 4.7) to `forces` (3, control points), F.
-  subroutine integrate_forces(slave, map, positions, projections, multipliers, forces)
+  subroutine integrate_forces(slave, map, positions, projections, with_friction, multipliers, forces, work)
     type(slave_t), intent(in) :: slave
     class(gap_map_t), intent(in) :: map
     real(wp), intent(in) :: positions(:, :)
     type(projections_t), intent(in) :: projections
+    logical, intent(in) :: with_friction
     type(multipliers_t), intent(in) :: multipliers
     real(wp), intent(inout) :: forces(:, :)
+    type(work_t), intent(inout) :: work
     type(normals_t) :: normals
     real(wp), allocatable :: extended(:, :), on_normals(:, :)
 
     if (contracts) call require(all(shape(forces) == shape(positions)), "integrate_forces: forces are those of the positions")
-    call map%extend(positions, normals, extended)
+    call map%extend(positions, normals, extended, work)
     allocate (on_normals(3, normals%count), source=0.0_wp)
-    call integrate_each(slave, map, extended, projections, multipliers, forces, on_normals)
+    call integrate_each(slave, map, extended, projections, with_friction, multipliers, forces, on_normals, work)
     call carry(normals, on_normals, forces)
   end subroutine integrate_forces
 
   !> Add the contact forces on control points, and those on normals of nodes, which stand after these in `positions`.
-  subroutine integrate_each(slave, map, positions, projections, multipliers, forces, on_normals)
+  subroutine integrate_each(slave, map, positions, projections, with_friction, multipliers, forces, on_normals, work)
     type(slave_t), intent(in) :: slave
     class(gap_map_t), intent(in) :: map
     real(wp), intent(in) :: positions(:, :)
     type(projections_t), intent(in) :: projections
+    logical, intent(in) :: with_friction
     type(multipliers_t), intent(in) :: multipliers
     real(wp), intent(inout) :: forces(:, :), on_normals(:, :)
+    type(work_t), intent(inout) :: work
     type(sample_t) :: sample
     real(wp) :: field(3), force(3), row(all_components)
     integer :: a, e, n, q
@@ -59,7 +64,7 @@ contains
       if (.not. any(multipliers%active(slave%test%nodes(:, e)))) cycle
       do q = (e - 1) * slave%per_element + 1, e * slave%per_element
         if (.not. projections%found(q)) cycle
-        call take_sample(slave, map, positions, projections, e, q, .false., sample)
+        call take_sample(slave, map, positions, projections, e, q, merge(for_forces, for_gap, with_friction), sample, work)
         field = fields_at(slave, multipliers, e, q)
         associate (components => 3 * size(sample%coefficients, 2))
           row(:components) = slave%area(q) * (field(1) * sample%variations%pressure_work(:components) &
@@ -80,14 +85,13 @@ contains
 
   !> Add constraint rows and the geometric tangent <p Ddg> + <t_a Ddxi^a> (theory 4.8).
   !>
-  !> - `with_friction`: whether there are rows and tangents of slips.
   !> - `field_slip` (2, points): field of control slips, P, for the slip sum's rows.
   !> - `row_pattern`, `rows` (component, kind, blocks): for each test function (row) the control points (columns) that its rows
   !>   reach, and these rows (isomortar_contact_rows).
   !> - `pattern`, `tangent` (column component, row component, blocks): pattern of the tangent, and this, F/L.
   !> - `status`, `place`: how it ended (isomortar_base_status), and on failure the row of a pattern that lacks a block.
   subroutine integrate_blocks(slave, map, positions, projections, with_friction, multipliers, field_slip, row_pattern, rows, &
-      pattern, tangent, status, place)
+      pattern, tangent, status, place, work)
     type(slave_t), intent(in) :: slave
     class(gap_map_t), intent(in) :: map
     real(wp), intent(in) :: positions(:, :)
@@ -98,6 +102,7 @@ contains
     type(pattern_t), intent(in) :: row_pattern, pattern
     real(wp), intent(inout) :: rows(:, :, :), tangent(:, :, :)
     integer, intent(out) :: status, place
+    type(work_t), intent(inout) :: work
     type(sample_t) :: sample
     type(batch_t) :: batch
     logical :: pending(slave%per_element), together(slave%per_element)
@@ -105,7 +110,7 @@ contains
     real(wp), allocatable :: extended(:, :), forces(:, :), on_normals(:, :)
     integer, allocatable :: stencils(:, :)
     integer :: columns(size(positions, 2))
-    integer :: before, e, k
+    integer :: before, e, k, wanted
 
     if (contracts) call require(is_compressed(row_pattern%start, size(rows, 3)), "integrate_blocks: rows are those of a pattern")
     if (contracts) call require(size(row_pattern%start) == slave%test%count + 1, "integrate_blocks: each test function has a row")
@@ -114,9 +119,10 @@ contains
     status = status_pattern
     place = 0
     columns = 0
-    call map%extend(positions, normals, extended)
+    call map%extend(positions, normals, extended, work)
     stencils = map%stencils(projections)
-    call reserve(slave, map, size(pending), map%vectors(with_friction), size(rows, 2), batch)
+    wanted = merge(for_tangent, for_forces, with_friction)
+    call reserve(slave, map, size(pending), map%vectors(wanted), size(rows, 2), batch)
     do e = 1, size(slave%test%nodes, 2)
       if (.not. any(multipliers%active(slave%test%nodes(:, e)))) cycle
       before = (e - 1) * size(pending)
@@ -128,7 +134,7 @@ contains
         batch%count = 0
         do k = 1, size(together)
           if (.not. together(k)) cycle
-          call take_sample(slave, map, extended, projections, e, before + k, with_friction, sample)
+          call take_sample(slave, map, extended, projections, e, before + k, wanted, sample, work)
           call add_sample(slave, map, before + k, projections%slips(before + k), sample, field_slip(:, before + k), &
             fields_at(slave, multipliers, e, before + k), batch)
         end do
@@ -143,8 +149,8 @@ contains
     end if
     if (normals%count > 0) then
       allocate (forces(3, size(positions, 2)), on_normals(3, normals%count), source=0.0_wp)
-      call integrate_each(slave, map, extended, projections, multipliers, forces, on_normals)
-      call add_turning(normals, positions, on_normals, pattern, columns, tangent, place)
+      call integrate_each(slave, map, extended, projections, with_friction, multipliers, forces, on_normals, work)
+      call add_turning(normals, positions, on_normals, pattern, columns, tangent, place, work)
       if (place > 0) return
     end if
     status = status_ok

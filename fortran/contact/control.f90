@@ -2,15 +2,17 @@
 !>
 !> - `slave`, `map`: the slave side, and the gap map onto its master.
 !> - `positions` (3, control points): of all control points, L. `projections`: feet of the quadrature points there.
-!> - `control`: what is integrated.
+!> - `control`: what is integrated. `with_friction`: whether slips and metric are wanted; else they are zero.
+!> - `work`: counts of what is done.
 module isomortar_contact_control
   use isomortar_base_algebra, only: first_not_finite
   use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
   use isomortar_base_status, only: status_not_finite, status_ok
-  use isomortar_contact_gap_map_map, only: contact_point_t, gap_map_t, projections_t
+  use isomortar_contact_gap_map_map, only: contact_point_t, for_gap, gap_map_t, projections_t
   use isomortar_contact_gap_map_nodal_normals, only: normals_t
   use isomortar_contact_slave, only: integrate_functions, slave_t, slave_tangents
+  use isomortar_contact_work, only: count_points, work_t
   implicit none
   private
 
@@ -37,14 +39,16 @@ contains
   !> - `started` (points): whether there is a start; elsewhere the nearest sample of the master is one.
   !> - `origin` (2, points), `had` (points): feet at the last converged load step, P, and whether there were any.
   !> - `status`, `place`: how it ended (isomortar_base_status), and on failure the quadrature point.
-  subroutine project_points(slave, map, positions, started, origin, had, projections, status, place)
+  subroutine project_points(slave, map, positions, started, origin, had, with_friction, projections, status, place, work)
     type(slave_t), intent(in) :: slave
     class(gap_map_t), intent(in) :: map
     real(wp), intent(in) :: positions(:, :)
     logical, intent(in) :: started(:), had(:)
     real(wp), intent(in) :: origin(:, :)
+    logical, intent(in) :: with_friction
     type(projections_t), intent(inout) :: projections
     integer, intent(out) :: status, place
+    type(work_t), intent(inout) :: work
     type(normals_t) :: normals
     real(wp), allocatable :: extended(:, :)
     integer :: q
@@ -53,44 +57,48 @@ contains
     place = first_not_finite(positions, slave%point)
     status = merge(status_not_finite, status_ok, place > 0)
     if (status /= status_ok) return
-    call map%extend(positions, normals, extended)
-    call map%locate(slave, extended, started, had, projections, status, place)
+    call map%extend(positions, normals, extended, work)
+    call map%locate(slave, extended, started, had, projections, status, place, work)
     if (status /= status_ok) return
     if (contracts) call require(all(projections%found .or. projections%doubt == status_ok), "project_points: doubt is of a foot")
     projections%origin = origin
     projections%slips = projections%found .and. had
+    projections%slip = 0.0_wp
+    if (.not. with_friction) return
     do q = 1, size(slave%area)
-      projections%slip(:, q) = 0.0_wp
-      if (projections%slips(q)) projections%slip(:, q) = map%slip(slave, extended, projections, q)
+      if (projections%slips(q)) call map%slip(slave, extended, projections, q, projections%slip(:, q), work)
     end do
   end subroutine project_points
 
   !> How far the foot of every slave quadrature point has climbed since the last converged load step, `climbs` (points), L; zero
   !> at points without a slip (theory 3.31).
-  pure subroutine find_climbs(map, positions, projections, climbs)
+  pure subroutine find_climbs(map, positions, projections, climbs, work)
     class(gap_map_t), intent(in) :: map
     real(wp), intent(in) :: positions(:, :)
     type(projections_t), intent(in) :: projections
     real(wp), intent(out) :: climbs(:)
+    type(work_t), intent(inout) :: work
     type(normals_t) :: normals
     real(wp), allocatable :: all(:, :)
     integer :: q
 
-    call map%extend(positions, normals, all)
+    call map%extend(positions, normals, all, work)
     climbs = 0.0_wp
     do q = 1, size(climbs)
-      if (projections%slips(q)) climbs(q) = map%climb(all, projections, q)
+      if (projections%slips(q)) call map%climb(all, projections, q, climbs(q), work)
     end do
   end subroutine find_climbs
 
   !> Integrate the control quantities. Points without a projection take no part in any of them (theory 4.1), but in those that need
   !> none where the map is of that kind (theory 3.30).
-  pure subroutine control_quantities(slave, map, positions, projections, control)
+  pure subroutine control_quantities(slave, map, positions, projections, with_friction, control, work)
     type(slave_t), intent(in) :: slave
     class(gap_map_t), intent(in) :: map
     real(wp), intent(in) :: positions(:, :)
     type(projections_t), intent(in) :: projections
+    logical, intent(in) :: with_friction
     type(control_t), intent(inout) :: control
+    type(work_t), intent(inout) :: work
     type(contact_point_t) :: point
     type(normals_t) :: normals
     real(wp), allocatable :: extended(:, :), coefficients(:, :), fields(:, :), totals(:, :)
@@ -99,28 +107,31 @@ contains
 
     if (contracts) call require(size(projections%found) == size(slave%area), "control_quantities: points are the slave's")
     if (contracts) call require(size(control%weight) == slave%test%count, "control_quantities: functions are the slave's")
-    call map%extend(positions, normals, extended)
+    call map%extend(positions, normals, extended, work)
     allocate (fields(4, size(slave%area)), totals(4, slave%test%count))
-    allocate (coefficients(map%bearing(), map%vectors(of_slip=.false.)))
+    allocate (coefficients(map%bearing(), map%vectors(for_gap)))
     fields = 0.0_wp
     control%point_metric = 0.0_wp
     do q = 1, size(slave%area)
-      if (map%counts_all_points .and. .not. projections%found(q)) then
+      if (map%counts_all_points .and. .not. projections%found(q)) fields(1, q) = 1.0_wp
+      if (with_friction .and. map%counts_all_points .and. .not. projections%found(q)) then
         tangents = slave_tangents(slave, positions, q)
-        fields(1, q) = 1.0_wp
         control%point_metric(:, q) = [sum(tangents(:, 1)**2), dot_product(tangents(:, 1), tangents(:, 2)), sum(tangents(:, 2)**2)]
       end if
       if (.not. projections%found(q)) cycle
-      call map%at(slave, extended, projections, q, .false., point, points, coefficients)
+      call count_points(1, work)
+      call map%at(slave, extended, projections, q, for_gap, point, points, coefficients, work)
       fields(:, q) = [1.0_wp, point%gap, projections%slip(:, q)]
-      control%point_metric(:, q) = [point%metric(1, 1), point%metric(1, 2), point%metric(2, 2)]
+      if (with_friction) control%point_metric(:, q) = [point%metric(1, 1), point%metric(1, 2), point%metric(2, 2)]
     end do
     call integrate_functions(slave, fields, totals)
     control%weight(:) = totals(1, :)
     if (map%counts_all_points) where (.not. has_foot(slave, projections)) control%weight = 0.0_wp
     control%gap(:) = totals(2, :)
     control%slip(:, :) = totals(3:4, :)
-    call integrate_squares(slave, fields(1, :), control)
+    control%square = 0.0_wp
+    control%metric = 0.0_wp
+    if (with_friction) call integrate_squares(slave, fields(1, :), control)
   end subroutine control_quantities
 
   !> Which control points have a foot of a quadrature point within their reach.
@@ -144,8 +155,6 @@ contains
     real(wp) :: share
     integer :: a, e, i, q
 
-    control%square = 0.0_wp
-    control%metric = 0.0_wp
     do q = 1, size(slave%area)
       e = (q - 1) / slave%per_element + 1
       do a = 1, size(slave%test%nodes, 1)

@@ -5,13 +5,14 @@
 !>
 !> - `surface`, `positions` (3, control points): the face; all control points, L.
 !> - `place`, `xi`: an element by direction, from 1, and coordinates in it, P. `x`: place of a slave point, L.
-!> - `pole`: a for that at the end of direction a, -a at its start.
+!> - `pole`: a for that at the end of direction a, -a at its start. `work`: counts of what is done.
 module isomortar_contact_pole
   use isomortar_base_algebra, only: cross
   use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
   use isomortar_base_predicate, only: is_unit
   use isomortar_contact_gap_map_map, only: contact_point_t
+  use isomortar_contact_work, only: evaluate, work_t
   use isomortar_nurbs_surface, only: homogeneous_net, surface_point, surface_t
   implicit none
   private
@@ -123,11 +124,12 @@ contains
   end subroutine gather_at_pole
 
   !> What a point sees from the pole, looking along lines of all elements round it: `view` (theory 3.11).
-  pure subroutine look_from_pole(surface, positions, x, pole, view)
+  pure subroutine look_from_pole(surface, positions, x, pole, view, work)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :), x(3)
     integer, intent(in) :: pole
     type(view_t), intent(out) :: view
+    type(work_t), intent(inout) :: work
     real(wp) :: net(4, surface%direction(1)%order + 1, surface%direction(2)%order + 1), s(3, 6), inwards(3), xi(2), normal(3)
     integer :: across, e, k, place(2), round
 
@@ -147,6 +149,7 @@ contains
           xi(round) = direction%boundary(e - 1) + (direction%boundary(e) - direction%boundary(e - 1)) * real(k, wp) &
             / real(2 * direction%order, wp)
           call surface_point(surface, place, net, xi, s)
+          call evaluate(2, 1, work)
           inwards = sign(1.0_wp, -real(pole, wp)) * s(:, 1 + across)
           normal = cross(s(:, 5), s(:, 1 + across)) ! a_1 grows with S,12 from a pole of direction 2, a_2 from one of direction 1
           if (across == 1) normal = -normal
@@ -171,16 +174,17 @@ contains
 
   !> Kinematics of a foot at a pole, `point` (theory 3.11): it stays the foot of what moves about it if the distance rises in all
   !> directions.
-  pure subroutine hold_at_pole(surface, positions, x, pole, point)
+  pure subroutine hold_at_pole(surface, positions, x, pole, point, work)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :), x(3)
     integer, intent(in) :: pole
     type(contact_point_t), intent(inout) :: point
+    type(work_t), intent(inout) :: work
     type(view_t) :: view
     real(wp) :: d(3)
 
     if (contracts) call require(pole /= 0, "hold_at_pole: there is a pole")
-    call look_from_pole(surface, positions, x, pole, view)
+    call look_from_pole(surface, positions, x, pole, view, work)
     d = x - view%centre
     point%surface = 0.0_wp
     point%surface(:, 1) = view%centre

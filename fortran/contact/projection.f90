@@ -5,18 +5,20 @@
 !> - `surface`, `opposite`, `hulls`: the face, that across from it, and the hulls of its elements.
 !> - `positions` (3, control points): of all control points, L. `x`: place of a slave point, L.
 !> - `place`, `xi`: an element by direction, from 1, and coordinates in it, P. `here`: where the search stands.
+!> - `work`: counts of what is done.
 module isomortar_contact_projection
   use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
   use isomortar_base_predicate, only: is_index
   use isomortar_contact_hulls, only: hulls_t, is_farther, nearest_sample
   use isomortar_contact_search, only: descend, search_element, search_t
+  use isomortar_contact_work, only: evaluate, work_t
   use isomortar_nurbs_surface, only: homogeneous_net, surface_element_count, surface_element_of, surface_point, &
     surface_t
   implicit none
   private
 
-  public :: is_too_deep, look_round, shallow_depth, square_depth, start_nearest
+  public :: find_too_deep, look_round, shallow_depth, square_depth, start_nearest
 
   !> Two feet that are at the same distance but for this share are equally near: the one in the lower element is taken.
   real(wp), parameter :: tie = epsilon(1.0_wp)**0.75_wp
@@ -50,12 +52,13 @@ contains
 
   !> Search the elements of a `list` (number) that may hold a nearer point than the one found, and go on from there: first from
   !> what samples are nearer, then in all elements that may still hold one (theory 3.1).
-  pure subroutine look_round(surface, hulls, positions, x, list, here)
+  pure subroutine look_round(surface, hulls, positions, x, list, here, work)
     type(surface_t), intent(in) :: surface
     type(hulls_t), intent(in) :: hulls
     real(wp), intent(in) :: positions(:, :), x(3)
     integer, intent(in) :: list(:)
     type(search_t), intent(inout) :: here
+    type(work_t), intent(inout) :: work
     type(search_t) :: there
     real(wp) :: square
     integer :: count, k, near(size(list))
@@ -68,16 +71,16 @@ contains
       near(count) = list(k)
       there%place = surface_element_of(surface, list(k))
       call nearest_sample(surface, hulls, list(k), x, there%xi, square)
-      if (square < 2.0_wp * here%distance) call go_on(surface, positions, x, there, here)
+      if (square < 2.0_wp * here%distance) call go_on(surface, positions, x, there, here, work)
     end do
     do k = 1, count
       if (is_settled(surface, hulls, near(k), x, here)) cycle
       there%place = surface_element_of(surface, near(k))
       if (is_plain(hulls, near(k), here)) then
         call nearest_sample(surface, hulls, near(k), x, there%xi, square)
-        call go_on(surface, positions, x, there, here)
+        call go_on(surface, positions, x, there, here, work)
       else
-        call search_thoroughly(surface, positions, x, there%place, here)
+        call search_thoroughly(surface, positions, x, there%place, here, work)
       end if
     end do
   end subroutine look_round
@@ -107,27 +110,29 @@ contains
   end function is_plain
 
   !> Search the element of a start, and go on from where that ends if it is better.
-  pure subroutine go_on(surface, positions, x, start, here)
+  pure subroutine go_on(surface, positions, x, start, here, work)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :), x(3)
     type(search_t), intent(in) :: start
     type(search_t), intent(inout) :: here
+    type(work_t), intent(inout) :: work
     type(search_t) :: there
 
     there = start
-    call search_element(surface, positions, x, there)
+    call search_element(surface, positions, x, there, work)
     if (.not. is_preferred(there, here)) return
     here = there
-    call descend(surface, positions, x, here)
+    call descend(surface, positions, x, here, work)
   end subroutine go_on
 
   !> Search an element that may hold several near points, from places of a fine grid (Chebyshev's: denser at the bounds)
   !> that are lowest along one of its lines and not farther than the point found by more than the way to their neighbours.
-  pure subroutine search_thoroughly(surface, positions, x, place, here)
+  pure subroutine search_thoroughly(surface, positions, x, place, here, work)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :), x(3)
     integer, intent(in) :: place(2)
     type(search_t), intent(inout) :: here
+    type(work_t), intent(inout) :: work
     type(search_t) :: there
     real(wp) :: square(0:grid_size(surface, 1) + 1, 0:grid_size(surface, 2) + 1), xi(2, size(square, 1), size(square, 2))
     real(wp) :: net(4, surface%direction(1)%order + 1, surface%direction(2)%order + 1), s(3, 6), share(2)
@@ -145,6 +150,7 @@ contains
           end associate
         end do
         call surface_point(surface, place, net, xi(:, i, j), s)
+        call evaluate(2, 1, work)
         point(:, i, j) = s(:, 1)
         square(i, j) = sum((x - s(:, 1))**2)
       end do
@@ -155,7 +161,7 @@ contains
         if (sqrt(square(i, j)) > sqrt(2.0_wp * here%distance) + way_to_neighbours(point, i, j)) cycle
         there%place = place
         there%xi = xi(:, i, j)
-        call go_on(surface, positions, x, there, here)
+        call go_on(surface, positions, x, there, here, work)
       end do
     end do
   end subroutine search_thoroughly
@@ -195,29 +201,37 @@ contains
     end if
   end function is_preferred
 
-  !> Whether a point is behind the surface by more than its body's depth below the foot (theory 3.19).
-  pure logical function is_too_deep(surface, opposite, positions, here) result(deep)
+  !> Whether a point is behind the surface by more than its body's depth below the foot: `deep` (theory 3.19).
+  pure subroutine find_too_deep(surface, opposite, positions, here, deep, work)
     type(surface_t), intent(in) :: surface, opposite
     real(wp), intent(in) :: positions(:, :)
     type(search_t), intent(in) :: here
+    logical, intent(out) :: deep
+    type(work_t), intent(inout) :: work
+    real(wp) :: square
 
     deep = surface%outward * dot_product(here%way, here%across) > 0.0_wp
-    if (deep) deep = 2.0_wp * here%distance > square_depth(surface, opposite, positions, here%place, here%xi)
-  end function is_too_deep
+    if (.not. deep) return
+    call square_depth(surface, opposite, positions, here%place, here%xi, square, work)
+    deep = 2.0_wp * here%distance > square
+  end subroutine find_too_deep
 
-  !> Square of the depth of the body below a place of its surface (theory 3.19).
-  pure real(wp) function square_depth(surface, opposite, positions, place, xi)
+  !> The `square` of the depth of the body below a place of its surface, L^2 (theory 3.19).
+  pure subroutine square_depth(surface, opposite, positions, place, xi, square, work)
     type(surface_t), intent(in) :: surface, opposite
     real(wp), intent(in) :: positions(:, :), xi(2)
     integer, intent(in) :: place(2)
+    real(wp), intent(out) :: square
+    type(work_t), intent(inout) :: work
     real(wp) :: net(4, surface%direction(1)%order + 1, surface%direction(2)%order + 1), near(3, 6), far(3, 6)
 
     call homogeneous_net(surface, positions, place, net)
     call surface_point(surface, place, net, xi, near)
     call homogeneous_net(opposite, positions, place, net)
     call surface_point(opposite, place, net, xi, far)
-    square_depth = sum((far(:, 1) - near(:, 1))**2)
-  end function square_depth
+    square = sum((far(:, 1) - near(:, 1))**2)
+    call evaluate(2, 2, work)
+  end subroutine square_depth
 
   !> Distance from a surface up to which its body is deep enough anywhere: a share of the least distance of its control points from
   !> those across the body (theory 3.19).

@@ -5,8 +5,9 @@
 !> - `projections`: feet of the quadrature points. `sample`: what bears on the point.
 module isomortar_contact_sample
   use isomortar_base_kinds, only: wp
-  use isomortar_contact_gap_map_map, only: contact_point_t, gap_map_t, projections_t, variations_t
+  use isomortar_contact_gap_map_map, only: contact_point_t, for_tangent, gap_map_t, projections_t, variations_t
   use isomortar_contact_slave, only: slave_t
+  use isomortar_contact_work, only: count_points, work_t
   implicit none
   private
 
@@ -46,28 +47,32 @@ contains
     end do
   end function fields_at
 
-  !> Control points, kinematics, variations and coefficients of the short vectors at a quadrature point, `of_slip` those of slips
-  !> too.
-  pure subroutine take_sample(slave, map, positions, projections, e, q, of_slip, sample)
+  !> Control points, kinematics, variations and coefficients of the short vectors at a quadrature point.
+  !>
+  !> - `wanted`: what of them (isomortar_contact_gap_map_map). `work`: counts of what is done.
+  pure subroutine take_sample(slave, map, positions, projections, e, q, wanted, sample, work)
     type(slave_t), intent(in) :: slave
     class(gap_map_t), intent(in) :: map
     real(wp), intent(in) :: positions(:, :)
     type(projections_t), intent(in) :: projections
-    integer, intent(in) :: e, q
-    logical, intent(in) :: of_slip
+    integer, intent(in) :: e, q, wanted
     type(sample_t), intent(inout) :: sample
+    type(work_t), intent(inout) :: work
     integer :: n
 
+    call count_points(1, work)
     n = size(slave%shape%nodes, 1)
     if (.not. allocated(sample%points)) then
-      allocate (sample%points(n + map%bearing()), sample%coefficients(n + map%bearing(), map%vectors(of_slip)))
+      allocate (sample%points(n + map%bearing()), sample%coefficients(n + map%bearing(), map%vectors(wanted)))
       sample%coefficients = 0.0_wp
     end if
-    call map%at(slave, positions, projections, q, of_slip, sample%point, sample%points(n + 1:), sample%coefficients(n + 1:, :))
+    call map%at(slave, positions, projections, q, wanted, sample%point, sample%points(n + 1:), sample%coefficients(n + 1:, :), work)
     sample%variations = map%first(sample%point, size(sample%coefficients, 2))
     sample%points(:n) = slave%point(slave%shape%nodes(:, e))
     sample%coefficients(:n, 1) = slave%shape%values(:, q)
-    if (map%of_tangents > 0 .and. of_slip) sample%coefficients(:n, map%of_tangents:map%of_tangents + 1) = slave%slopes(:, :, q)
+    associate (first => map%of_tangents)
+      if (first > 0 .and. wanted == for_tangent) sample%coefficients(:n, first:first + 1) = slave%slopes(:, :, q)
+    end associate
   end subroutine take_sample
 
 end module isomortar_contact_sample

@@ -6,13 +6,14 @@
 !> fixed, and the foot belongs to the lower element, wherever the search came from.
 !>
 !> - `surface`, `positions` (3, control points): the face; all control points, L.
-!> - `x`, `xi`: place of a slave point, L; coordinates, P. `here`: where the search stands.
+!> - `x`, `xi`: place of a slave point, L; coordinates, P. `here`: where the search stands. `work`: counts of what is done.
 module isomortar_contact_search
   use isomortar_base_algebra, only: cross
   use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
   use isomortar_base_predicate, only: is_index, slack, within
   use isomortar_contact_pole, only: look_from_pole, net_about_pole, pole_bound, pole_of, view_t
+  use isomortar_contact_work, only: evaluate, work_t
   use isomortar_nurbs_direction, only: element_at, is_kink
   use isomortar_nurbs_surface, only: element_bounds, homogeneous_net, step_across, surface_element_count, surface_point, &
     surface_t
@@ -72,15 +73,16 @@ contains
   end function start_at
 
   !> From where a search stands to the next place that is nearest to x among those near it (theory 3.1).
-  pure subroutine descend(surface, positions, x, here)
+  pure subroutine descend(surface, positions, x, here, work)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :), x(3)
     type(search_t), intent(inout) :: here
+    type(work_t), intent(inout) :: work
     logical :: left, moved
     integer :: visit
 
     left = .false.
-    call search_element(surface, positions, x, here)
+    call search_element(surface, positions, x, here, work)
     do visit = 1, 8 + 2 * surface_element_count(surface)
       here%outcome = merge(projection_degenerate, projection_lost, here%degenerate)
       here%fixed = .false.
@@ -91,16 +93,16 @@ contains
       end if
       if (here%degenerate) then
         if (.not. collapses(surface, here)) return
-        if (.not. left) call leave_pole(surface, positions, x, here, left)
+        if (.not. left) call leave_pole(surface, positions, x, here, left, work)
         if (.not. here%degenerate) cycle
-        call stay_at_pole(surface, positions, x, here)
+        call stay_at_pole(surface, positions, x, here, work)
         return
       end if
       here%outcome = projection_inside
       if (all(here%pressing == 0)) return
-      call cross_boundary(surface, positions, x, here, moved)
+      call cross_boundary(surface, positions, x, here, moved, work)
       if (.not. moved .and. .not. left) then ! beside a pole round-off may hide that the distance falls farther round it
-        call leave_pole(surface, positions, x, here, left)
+        call leave_pole(surface, positions, x, here, left, work)
         moved = left
       end if
       if (moved) cycle
@@ -123,11 +125,12 @@ contains
   end function collapses
 
   !> Go on from the pole of an element along the line on which the distance falls most, if that ends no farther away.
-  pure subroutine leave_pole(surface, positions, x, here, left)
+  pure subroutine leave_pole(surface, positions, x, here, left, work)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :), x(3)
     type(search_t), intent(inout) :: here
     logical, intent(out) :: left
+    type(work_t), intent(inout) :: work
     type(search_t) :: there
     type(view_t) :: view
     integer :: pole
@@ -135,25 +138,26 @@ contains
     left = .false.
     pole = pole_of(surface, here%place, here%xi)
     if (pole == 0) return
-    call look_from_pole(surface, positions, x, pole, view)
+    call look_from_pole(surface, positions, x, pole, view, work)
     if (.not. view%fall > 0.0_wp) return
     there%place = view%place
     there%xi = view%xi
-    call search_element(surface, positions, x, there)
+    call search_element(surface, positions, x, there, work)
     left = there%settled .and. .not. there%degenerate .and. there%distance <= here%distance * same_distance
     if (left) here = there
   end subroutine leave_pole
 
   !> Take the pole of an element for the foot.
-  pure subroutine stay_at_pole(surface, positions, x, here)
+  pure subroutine stay_at_pole(surface, positions, x, here, work)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :), x(3)
     type(search_t), intent(inout) :: here
+    type(work_t), intent(inout) :: work
     type(view_t) :: view
     integer :: pole
 
     pole = pole_of(surface, here%place, here%xi)
-    call look_from_pole(surface, positions, x, pole, view)
+    call look_from_pole(surface, positions, x, pole, view, work)
     here%place(3 - abs(pole)) = 1
     here%xi(3 - abs(pole)) = surface%direction(3 - abs(pole))%boundary(0)
     here%xi(abs(pole)) = pole_bound(surface, pole)
@@ -213,11 +217,12 @@ contains
 
   !> Go on in the neighbour across the boundary (the diagonal one first) in which the distance falls further, or, where round-off
   !> hides that, in which the search ends inside.
-  pure subroutine cross_boundary(surface, positions, x, here, moved)
+  pure subroutine cross_boundary(surface, positions, x, here, moved, work)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :), x(3)
     type(search_t), intent(inout) :: here
     logical, intent(out) :: moved
+    type(work_t), intent(inout) :: work
     integer, parameter :: mask(2, 3) = reshape([1, 1, 1, 0, 0, 1], [2, 3])
     type(search_t) :: there
     integer :: attempt, step(2)
@@ -229,7 +234,7 @@ contains
       if (all(step == 0)) cycle
       there = here
       call step_across(surface, step, there%place, there%xi, within)
-      call search_element(surface, positions, x, there)
+      call search_element(surface, positions, x, there, work)
       moved = there%distance < here%distance ! where the search there does not settle, the point is lost and not on a line
       if (there%settled .and. all(there%pressing == 0)) moved = there%distance <= here%distance * same_distance
       if (moved) exit
@@ -238,15 +243,17 @@ contains
   end subroutine cross_boundary
 
   !> Least distance within one element: Newton's method on the free coordinates, steps kept inside the bounds (theory 3.16).
-  pure subroutine search_element(surface, positions, x, here)
+  pure subroutine search_element(surface, positions, x, here, work)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :), x(3)
     type(search_t), intent(inout) :: here
+    type(work_t), intent(inout) :: work
     real(wp) :: net(4, surface%direction(1)%order + 1, surface%direction(2)%order + 1)
     real(wp) :: low(2), high(2), slope(2), hessian(2, 2), metric(2, 2), step(2), target(3), centre(3), lengths(2), flat
     integer :: iteration, pole
 
     if (contracts) call require(all(is_index(here%place, surface%direction%elements)), "search_element: there is such an element")
+    work%elements = work%elements + 1
     call homogeneous_net(surface, positions, here%place, net)
     target = x
     flat = flat_metric
@@ -261,10 +268,11 @@ contains
     here%settled = .false.
     do iteration = 1, 100
       call distance_derivatives(surface, net, target, flat, high - low, here, slope, hessian, metric)
+      call evaluate(2, 1, work)
       call find_pressing(here, slope, metric, low, high)
       step = newton_step(here, slope, hessian, metric)
       if (maxval(abs(step) / (high - low)) > 1.0e-3_wp) then
-        call limit_step(surface, here, net, target, slope, low, high, step)
+        call limit_step(surface, here, net, target, slope, low, high, step, work)
       end if
       step = min(max(here%xi + step, low), high) - here%xi
       here%xi = here%xi + step
@@ -348,17 +356,19 @@ contains
   end function newton_step
 
   !> Halve a long step until the distance falls as its slope promises (theory 3.16, Armijo's rule on the bounded step).
-  pure subroutine limit_step(surface, here, net, x, slope, low, high, step)
+  pure subroutine limit_step(surface, here, net, x, slope, low, high, step, work)
     type(surface_t), intent(in) :: surface
     type(search_t), intent(in) :: here
     real(wp), intent(in) :: net(:, :, :), x(3), slope(2), low(2), high(2)
     real(wp), intent(inout) :: step(2)
+    type(work_t), intent(inout) :: work
     real(wp) :: d(3), s(3, 6), target(2), promised
     integer :: halving
 
     do halving = 1, 40
       target = min(max(here%xi + step, low), high)
       call surface_point(surface, here%place, net, target, s)
+      call evaluate(2, 1, work)
       d = x - s(:, 1)
       promised = 1.0e-4_wp * dot_product(slope, target - here%xi)
       if (0.5_wp * dot_product(d, d) <= here%distance * same_distance + promised) return

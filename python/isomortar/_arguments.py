@@ -12,6 +12,7 @@ from isomortar.errors import InputError
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int32]
+LongArray = NDArray[np.int64]
 
 #: Largest orders by family of a direction: 1 NURBS, 2 Lagrange.
 MAX_ORDERS = {1: 10, 2: 4}

@@ -1,4 +1,4 @@
-"""The kernel's numbers, by name: statuses, states of control points, kinds of constraint rows.
+"""The kernel's numbers, by name: statuses, states of control points, kinds of constraint rows, counts.
 
 They are given in Fortran; a test compares these with the sources.
 """
@@ -48,3 +48,15 @@ class FirstRow(IntEnum):
 #: How many kinds of rows there are without friction, with it, and with the paper's slip sum; along averaged normals one more: <R dg> as it
 #: is, not as pressures work on it (isomortar_contact_rows).
 ROW_KINDS = {"frictionless": 1, "frictionless, averaged": 2, "local": 8, "local, averaged": 9, "paper": 10}
+
+#: What the passes over contact points count, in the order of the kernel (isomortar_contact_work).
+WORK = (
+    "warm projections",
+    "cold projections",
+    "elements searched",
+    "contact points",
+    "evaluations to order 0",
+    "evaluations to order 1",
+    "evaluations to order 2",
+    "evaluations to order 3",
+)

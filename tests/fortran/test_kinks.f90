@@ -2,9 +2,10 @@
 module test_kinks
   use isomortar_base_kinds, only: wp
   use isomortar_contact_gap_map_closest_point, only: closest_point_t
-  use isomortar_contact_gap_map_map, only: all_components, contact_point_t, projections_t, variations_t
+  use isomortar_contact_gap_map_map, only: all_components, contact_point_t, for_tangent, projections_t, variations_t
   use isomortar_contact_search, only: descend, projection_inside, search_t, start_at
   use isomortar_contact_slave, only: slave_t
+  use isomortar_contact_work, only: work_t
   use surfaces, only: lone_point, roof
   use testing, only: by_difference, expect, expect_true, round_off, step
   implicit none
@@ -18,19 +19,20 @@ contains
     type(closest_point_t) :: map
     real(wp), allocatable :: positions(:, :)
     type(search_t) :: here
+    type(work_t) :: work
     real(wp) :: x(3)
 
     call roof(0.4_wp, map%surface, positions)
     x = [1.05_wp, 0.3_wp, 0.6_wp]
     here = start_at(map%surface, [0.2_wp, 0.9_wp])
-    call descend(map%surface, positions, x, here)
+    call descend(map%surface, positions, x, here, work)
     call expect_true("a foot on the ridge stays on it", &
       here%outcome == projection_inside .and. here%fixed(1) .and. .not. here%fixed(2))
     call expect_true("and belongs to the lower element", here%place(1) == 1)
     call expect("at the height of its point", maxval(abs(here%xi - [1.0_wp, 0.3_wp])), round_off)
     call distance_from_line(map, positions, x, here)
     here = start_at(map%surface, [0.2_wp, 0.9_wp])
-    call descend(map%surface, positions, [0.2_wp, 0.3_wp, 0.6_wp], here)
+    call descend(map%surface, positions, [0.2_wp, 0.3_wp, 0.6_wp], here, work)
     call expect_true("a foot beside it is free", here%outcome == projection_inside .and. .not. any(here%fixed))
   end subroutine kinks
 
@@ -83,15 +85,16 @@ contains
     type(slave_t) :: slave
     integer :: points(4)
     real(wp) :: coefficients(4, 6)
+    type(work_t) :: work
 
     moved = here
-    call descend(map%surface, positions, x, moved)
+    call descend(map%surface, positions, x, moved, work)
     projections%xi = reshape(moved%xi, [2, 1])
     projections%place = reshape(moved%place, [2, 1])
     projections%fixed = reshape(moved%fixed, [2, 1])
     projections%found = [.true.]
     slave = lone_point(7)
-    call map%at(slave, reshape([positions, x], [3, 7]), projections, 1, .true., point, points, coefficients)
+    call map%at(slave, reshape([positions, x], [3, 7]), projections, 1, for_tangent, point, points, coefficients, work)
     variations = map%first(point, 6)
   end subroutine on_line
 

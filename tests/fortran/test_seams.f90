@@ -2,6 +2,7 @@
 module test_seams
   use isomortar_base_kinds, only: wp
   use isomortar_contact_search, only: descend, projection_inside, projection_outside, search_t, start_at
+  use isomortar_contact_work, only: work_t
   use isomortar_nurbs_surface, only: shortest_way, step_across, surface_t
   use surfaces, only: curved, tube
   use testing, only: expect, expect_true, round_off
@@ -41,13 +42,14 @@ contains
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :)
     type(search_t) :: here
+    type(work_t) :: work
 
     here = start_at(surface, [3.9_wp, 0.5_wp])
-    call descend(surface, positions, [0.5_wp, 1.2_wp, 0.5_wp], here)
+    call descend(surface, positions, [0.5_wp, 1.2_wp, 0.5_wp], here, work)
     call expect_true("foot beyond the seam", here%outcome == projection_inside .and. here%place(1) == 1)
     call expect("its coordinates", maxval(abs(here%xi - [0.25_wp, 0.5_wp])), round_off)
     here = start_at(surface, [3.9_wp, 0.5_wp])
-    call descend(surface, positions, [0.5_wp, 1.2_wp, 1.5_wp], here)
+    call descend(surface, positions, [0.5_wp, 1.2_wp, 1.5_wp], here, work)
     call expect_true("no foot beyond the end", here%outcome == projection_outside)
   end subroutine crosses
 

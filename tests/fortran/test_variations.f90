@@ -3,9 +3,10 @@
 module test_variations
   use isomortar_base_kinds, only: wp
   use isomortar_contact_gap_map_closest_point, only: closest_point_t
-  use isomortar_contact_gap_map_map, only: contact_point_t, projections_t, variations_t
+  use isomortar_contact_gap_map_map, only: contact_point_t, for_tangent, projections_t, variations_t
   use isomortar_contact_search, only: descend, search_t, start_at
   use isomortar_contact_slave, only: slave_t
+  use isomortar_contact_work, only: work_t
   use surfaces, only: curved, lone_point
   use testing, only: by_difference, expect, random_numbers, step
   implicit none
@@ -68,16 +69,17 @@ contains
     type(projections_t) :: projections
     type(search_t) :: here
     type(slave_t) :: slave
+    type(work_t) :: work
 
     here = start_at(map%surface, [0.5_wp, 0.5_wp])
-    call descend(map%surface, positions, positions(:, 26), here)
+    call descend(map%surface, positions, positions(:, 26), here, work)
     state%xi = here%xi
     projections%xi = reshape(here%xi, [2, 1])
     projections%place = reshape(here%place, [2, 1])
     projections%fixed = reshape(here%fixed, [2, 1])
     projections%found = [.true.]
     slave = lone_point(26)
-    call map%at(slave, positions, projections, 1, .true., state%point, state%points, state%coefficients)
+    call map%at(slave, positions, projections, 1, for_tangent, state%point, state%points, state%coefficients, work)
     state%rows = map%first(state%point, vectors)
   end function state_at
 

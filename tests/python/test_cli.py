@@ -110,6 +110,20 @@ def test_set_changes_the_scene(invoke: Invoke) -> None:
     assert last("rough.h5").contacts[0].traction_norm.max() > 0.0
 
 
+def test_costs_are_told_on_demand(invoke: Invoke) -> None:
+    """Of all load steps of the results, those computed before included."""
+    code, out, err = invoke("run", "press", *settings(SMALL), "--quiet", "--cost")
+    assert (code, out) == (0, "results/press.h5\n")
+    with isomortar.Results("results/press.h5") as results:
+        points, seconds = int(results.counters()["contact points"].sum()), results.timings()["total"].sum()
+    words = [line.split("  ") for line in err.splitlines()]
+    assert ["contact points", f"{points:,}".replace(",", " ")] in [[w.strip() for w in line if w.strip()][:2] for line in words]
+    assert f"total             {seconds:.3f}" in err
+    assert "cold projections" not in err
+    again = invoke("run", "press", *settings(SMALL), "--quiet", "--resume", "--cost")[2]
+    assert again[again.index("phase") :] == err[err.index("phase") :]
+
+
 def test_existing_results_are_kept_resumed_or_overwritten(invoke: Invoke) -> None:
     small = settings(SMALL)
     code, out, err = invoke("run", "press", *small, "--quiet")

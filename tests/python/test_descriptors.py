@@ -14,7 +14,7 @@ import pytest
 
 from isomortar import _bindings, _extended
 from isomortar._arrays import FrictionArrays, MaterialArrays, Pattern
-from isomortar._codes import Status
+from isomortar._codes import WORK, Status
 from isomortar._compiled import kernel
 from isomortar._descriptors import Descriptors
 from isomortar.errors import InputError, KernelError
@@ -67,8 +67,11 @@ def test_a_handle_of_something_else_is_refused_by_every_routine() -> None:
     assert kernel.material_stress(wrong, np.zeros((3, 3, 1), order="F"))[1] == Status.STALE_HANDLE
     assert kernel.surface_functions(wrong, 1, 0, feet, 4)[2] == Status.STALE_HANDLE
     assert kernel.keep_face(wrong, 1, 0, 0, 0.0) == (-1, Status.STALE_HANDLE)
-    assert kernel.project_points(wrong, wrong, points, flags, feet, flags, feet)[-2] == Status.STALE_HANDLE
-    assert kernel.contact_forces(wrong, wrong, points, feet, places, places, flags, np.ones(2), feet, flags, points) == Status.STALE_HANDLE
+    counts = np.zeros(len(WORK), np.int64)
+    assert kernel.project_points(wrong, wrong, points, flags, feet, flags, 1, counts, feet)[-2] == Status.STALE_HANDLE
+    projected = (points, feet, places, places, flags)
+    assert kernel.contact_forces(wrong, wrong, *projected, 1, np.ones(2), feet, flags, counts, points) == Status.STALE_HANDLE
+    assert not counts.any()
     assert kernel.find_places(also_wrong, 1, flags, flags, 0, np.zeros(1, np.int64), np.zeros(0, np.int64))[1] == Status.STALE_HANDLE
 
 

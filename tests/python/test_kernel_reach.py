@@ -7,7 +7,7 @@ import pytest
 
 from isomortar import _bindings
 from isomortar._bindings import FaceArrays, Projections, SlaveArrays
-from isomortar._codes import Status
+from isomortar._codes import WORK, Status
 from isomortar._compiled import kernel
 from isomortar._descriptors import Descriptors
 from isomortar.errors import LostProjectionError
@@ -62,5 +62,6 @@ def test_a_position_that_is_not_finite_is_an_error_of_the_kernel(value: float, c
     flags = np.full(2, had, dtype=np.int32)
     descriptors = Descriptors(kernel)
     handles = descriptors.handle("slave", slave, SlaveArrays), descriptors.handle("master", master, FaceArrays)
-    *_, status, place = kernel.project_points(*handles, positions.T, flags, np.full((2, 2), 0.5).T, flags, np.full((2, 2), 0.5).T)
+    starts, counts = np.full((2, 2), 0.5), np.zeros(len(WORK), np.int64)
+    *_, status, place = kernel.project_points(*handles, positions.T, flags, starts.T, flags, 1, counts, starts.copy().T)
     assert (status, place) == (Status.NOT_FINITE, point + 1)

@@ -11,10 +11,12 @@ module isomortar_contact_gap_map_averaged
   use isomortar_base_status, only: status_not_finite, status_ok, status_passed_through
   use isomortar_contact_gap_map_averaged_climb, only: climb_between
   use isomortar_contact_gap_map_averaged_foot, only: accept, find_foot, foot_equation, foot_t, follow, scope_of, scope_t
-  use isomortar_contact_gap_map_map, only: all_components, contact_point_t, gap_map_t, projections_t, variations_t
+  use isomortar_contact_gap_map_map, only: all_components, contact_point_t, for_tangent, gap_map_t, projections_t, &
+    variations_t
   use isomortar_contact_gap_map_nodal_normals, only: average, normals_t
   use isomortar_contact_projection, only: shallow_depth, square_depth
   use isomortar_contact_slave, only: slave_normal, slave_position, slave_t, slave_tangents
+  use isomortar_contact_work, only: count_points, evaluate, work_t
   use isomortar_nurbs_direction, only: element_at
   use isomortar_nurbs_surface, only: surface_basis, surface_nodes, surface_t
   implicit none
@@ -30,8 +32,8 @@ module isomortar_contact_gap_map_averaged
     procedure :: bearing
     procedure :: vectors
     procedure :: locate
-    procedure :: slip
-    procedure :: climb
+    procedure :: slip => find_slip
+    procedure :: climb => find_climb
     procedure :: at
     procedure, nopass :: first
     procedure, nopass :: metric
@@ -59,13 +61,14 @@ contains
   end function averaged_on
 
   !> Averaged normals of all nodes of the face, and the list of positions with these at its end (theory 3.21).
-  pure subroutine extend(self, positions, normals, all)
+  pure subroutine extend(self, positions, normals, all, work)
     class(averaged_t), intent(in) :: self
     real(wp), intent(in) :: positions(:, :)
     type(normals_t), intent(out) :: normals
     real(wp), allocatable, intent(out) :: all(:, :)
+    type(work_t), intent(inout) :: work
 
-    call average(self%surface, positions, normals)
+    call average(self%surface, positions, normals, work)
     allocate (all(3, size(positions, 2) + normals%count))
     all(:, :size(positions, 2)) = positions
     all(:, size(positions, 2) + 1:) = normals%normal
@@ -97,25 +100,26 @@ contains
   end function bearing
 
   !> The first six without friction, nine with it.
-  pure integer function vectors(self, of_slip)
+  pure integer function vectors(self, wanted)
     class(averaged_t), intent(in) :: self
-    logical, intent(in) :: of_slip
+    integer, intent(in) :: wanted
 
-    vectors = merge(way_back, slave_along, of_slip)
+    vectors = merge(way_back, slave_along, wanted == for_tangent)
   end function vectors
 
   !> Find the feet of all points: from where they were, else anywhere (theory 3.30); none behind the body (theory 3.19).
-  subroutine locate(self, slave, positions, started, had, projections, status, place)
+  subroutine locate(self, slave, positions, started, had, projections, status, place, work)
     class(averaged_t), intent(in) :: self
     type(slave_t), intent(in) :: slave
     real(wp), intent(in) :: positions(:, :)
     logical, intent(in) :: started(:), had(:)
     type(projections_t), intent(inout) :: projections
     integer, intent(out) :: status, place
+    type(work_t), intent(inout) :: work
     type(scope_t) :: scope
     type(foot_t) :: foot
-    real(wp) :: across(3), shallow, x(3)
-    logical :: behind, deep
+    real(wp) :: across(3), shallow, square, x(3)
+    logical :: behind, cold, deep
     integer :: q
 
     place = first_not_finite(positions, self%surface%point)
@@ -123,16 +127,23 @@ contains
     if (status /= status_ok) return
     scope = scope_of(self%surface, positions)
     shallow = shallow_depth(self%surface, self%opposite, positions)
+    call count_points(size(slave%area), work)
     do q = 1, size(slave%area)
       x = slave_position(slave, positions, q)
       across = slave_normal(slave, positions, q)
       foot%found = .false.
-      if (started(q)) call follow(self%surface, positions, x, projections%xi(:, q), foot)
+      if (started(q)) call follow(self%surface, positions, x, projections%xi(:, q), foot, work)
       deep = foot%found .and. had(q)
       if (deep) deep = foot%gap > scope%deepest
-      if (.not. accept(scope, foot, across)) call find_foot(self%surface, scope, positions, x, across, foot)
+      cold = .not. accept(scope, foot, across)
+      work%warm = work%warm + merge(0, 1, cold)
+      work%cold = work%cold + merge(1, 0, cold)
+      if (cold) call find_foot(self%surface, scope, positions, x, across, foot, work)
       behind = foot%found .and. foot%gap > shallow
-      if (behind) behind = foot%gap**2 > square_depth(self%surface, self%opposite, positions, foot%place, foot%xi)
+      if (behind) then
+        call square_depth(self%surface, self%opposite, positions, foot%place, foot%xi, square, work)
+        behind = foot%gap**2 > square
+      end if
       if ((deep .and. .not. foot%found) .or. (behind .and. had(q))) then
         status = status_passed_through
         place = q
@@ -148,52 +159,56 @@ contains
   end subroutine locate
 
   !> Components, in the slave's basis, of the way from the last foot to that now (theory 3.25).
-  pure function slip(self, slave, positions, projections, q)
+  pure subroutine find_slip(self, slave, positions, projections, q, slip, work)
     class(averaged_t), intent(in) :: self
     type(slave_t), intent(in) :: slave
     real(wp), intent(in) :: positions(:, :)
     type(projections_t), intent(in) :: projections
     integer, intent(in) :: q
-    real(wp) :: slip(2)
+    real(wp), intent(out) :: slip(2)
+    type(work_t), intent(inout) :: work
     type(contact_point_t) :: point
     integer :: points(self%bearing())
     real(wp) :: coefficients(size(points), way_back)
 
-    call self%at(slave, positions, projections, q, .true., point, points, coefficients)
+    call self%at(slave, positions, projections, q, for_tangent, point, points, coefficients, work)
     slip = matmul(point%way, point%tangent)
     slip = matmul(point%inverse_metric, slip)
-  end function slip
+  end subroutine find_slip
 
   !> How far the foot has climbed since the last load step (theory 3.31).
-  pure real(wp) function climb(self, positions, projections, q)
+  pure subroutine find_climb(self, positions, projections, q, climb, work)
     class(averaged_t), intent(in) :: self
     real(wp), intent(in) :: positions(:, :)
     type(projections_t), intent(in) :: projections
     integer, intent(in) :: q
+    real(wp), intent(out) :: climb
+    type(work_t), intent(inout) :: work
 
-    climb = climb_between(self%surface, positions, projections%origin(:, q), projections%xi(:, q))
-  end function climb
+    call climb_between(self%surface, positions, projections%origin(:, q), projections%xi(:, q), climb, work)
+  end subroutine find_climb
 
   !> Kinematics at a foot (theory 3.24). `tangent` and `metric` are the slave's.
-  pure subroutine at(self, slave, positions, projections, q, of_slip, point, points, coefficients)
+  pure subroutine at(self, slave, positions, projections, q, wanted, point, points, coefficients, work)
     class(averaged_t), intent(in) :: self
     type(slave_t), intent(in) :: slave
     real(wp), intent(in) :: positions(:, :)
     type(projections_t), intent(in) :: projections
-    integer, intent(in) :: q
-    logical, intent(in) :: of_slip
+    integer, intent(in) :: q, wanted
     type(contact_point_t), intent(out) :: point
     integer, intent(out) :: points(:)
     real(wp), intent(out) :: coefficients(:, :)
+    type(work_t), intent(inout) :: work
     integer :: n, nodes(size(points) / 3), origin(2)
     real(wp) :: before(size(nodes), 1), equation(3, 3), functions(size(nodes), 3), x(3)
 
     if (contracts) call require(projections%found(q), "at: the point has a foot")
-    if (contracts) call require(all(shape(coefficients) == [self%bearing(), self%vectors(of_slip)]), "at: there is room")
+    if (contracts) call require(all(shape(coefficients) == [self%bearing(), self%vectors(wanted)]), "at: there is room")
     n = size(nodes)
     x = slave_position(slave, positions, q)
     call surface_nodes(self%surface, projections%place(:, q), nodes)
     call surface_basis(self%surface, projections%place(:, q), nodes, projections%xi(:, q), 1, functions)
+    call evaluate(1, 1, work)
     points(:n) = self%surface%point(nodes)
     points(n + 1:2 * n) = size(positions, 2) - size(self%surface%point) + nodes
     points(2 * n + 1:) = points(:n)
@@ -216,12 +231,13 @@ contains
     point%facing = cross(point%tangent(:, 1), point%tangent(:, 2))
     point%facing = point%facing / norm2(point%facing)
     point%way = 0.0_wp
-    if (.not. of_slip) return
+    if (wanted /= for_tangent) return
     if (.not. projections%slips(q)) return
     origin = [element_at(self%surface%direction(1), projections%origin(1, q)), &
       element_at(self%surface%direction(2), projections%origin(2, q))]
     call surface_nodes(self%surface, origin, nodes)
     call surface_basis(self%surface, origin, nodes, projections%origin(:, q), 0, before)
+    call evaluate(0, 1, work)
     points(2 * n + 1:) = self%surface%point(nodes)
     coefficients(:n, way_back) = -functions(:, 1)
     coefficients(2 * n + 1:, way_back) = before(:, 1)

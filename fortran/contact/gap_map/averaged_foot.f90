@@ -5,10 +5,11 @@
 !>
 !> - `surface`: the face. `positions` (3, control points and nodes): of all control points, L; normals of its nodes at the end.
 !> - `x`, `across`: place of a slave point, L, and its unit normal. `xi`: coordinates of a start, P.
-!> - `scope`, `foot`: where feet are looked for, and one that is found, or not.
+!> - `scope`, `foot`: where feet are looked for, and one that is found, or not. `work`: counts of what is done.
 module isomortar_contact_gap_map_averaged_foot
   use isomortar_base_algebra, only: determinant, inverse
   use isomortar_base_kinds, only: wp
+  use isomortar_contact_work, only: evaluate, work_t
   use isomortar_nurbs_direction, only: element_at
   use isomortar_nurbs_surface, only: element_span, first_bound, step_across, surface_basis, surface_element_count, &
     surface_element_of, surface_nodes, surface_t
@@ -106,17 +107,19 @@ contains
   end function foot_equation
 
   !> Newton's step of a foot in its element, and whether there is one. The gap is that along the normal at `foot` at first.
-  pure subroutine newton_step(surface, positions, x, foot, step, regular)
+  pure subroutine newton_step(surface, positions, x, foot, step, regular, work)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :), x(3)
     type(foot_t), intent(inout) :: foot
     real(wp), intent(out) :: step(3)
     logical, intent(out) :: regular
+    type(work_t), intent(inout) :: work
     integer :: nodes(product(surface%direction%order + 1))
     real(wp) :: away(3), det, equation(3, 3), field(3, 3), functions(size(nodes), 3), s(3, 3)
 
     call surface_nodes(surface, foot%place, nodes)
     call surface_basis(surface, foot%place, nodes, foot%xi, 1, functions)
+    call evaluate(1, 1, work)
     s = matmul(positions(:, surface%point(nodes)), functions)
     field = matmul(positions(:, size(positions, 2) - size(surface%point) + nodes), functions)
     foot%normal = field(:, 1) / norm2(field(:, 1))
@@ -132,10 +135,11 @@ contains
   end subroutine newton_step
 
   !> From given coordinates along Newton's path to a foot, if it stays on the face (theory 3.30).
-  pure subroutine follow(surface, positions, x, xi, foot)
+  pure subroutine follow(surface, positions, x, xi, foot, work)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :), x(3), xi(2)
     type(foot_t), intent(inout) :: foot
+    type(work_t), intent(inout) :: work
     real(wp) :: length(2), low(2), share, step(3)
     integer :: across, k, way(2)
     logical :: regular, within
@@ -143,8 +147,9 @@ contains
     foot%place = [element_at(surface%direction(1), xi(1)), element_at(surface%direction(2), xi(2))]
     foot%xi = xi
     foot%found = .false.
+    work%elements = work%elements + 1
     do k = 1, most_steps
-      call newton_step(surface, positions, x, foot, step, regular)
+      call newton_step(surface, positions, x, foot, step, regular, work)
       if (.not. regular) return
       call element_span(surface, foot%place, low, length)
       call first_bound(foot%xi, step(1:2), low, length, share, across)
@@ -154,6 +159,7 @@ contains
         way(across) = merge(1, -1, step(across) > 0.0_wp)
         call step_across(surface, way, foot%place, foot%xi, within)
         if (.not. within) return
+        work%elements = work%elements + 1
         cycle
       end if
       foot%xi = min(max(foot%xi + step(1:2), low), low + length)
@@ -164,11 +170,12 @@ contains
   end subroutine follow
 
   !> The foot with the smallest gap among those of all elements that may hold one (theory 3.30).
-  pure subroutine find_foot(surface, scope, positions, x, across, foot)
+  pure subroutine find_foot(surface, scope, positions, x, across, foot, work)
     type(surface_t), intent(in) :: surface
     type(scope_t), intent(in) :: scope
     real(wp), intent(in) :: positions(:, :), x(3), across(3)
     type(foot_t), intent(out) :: foot
+    type(work_t), intent(inout) :: work
     type(foot_t) :: there
     integer :: e
 
@@ -179,7 +186,7 @@ contains
     foot%normal = 0.0_wp
     do e = 1, surface_element_count(surface)
       if (.not. may_hold(scope, e, x)) cycle
-      call search_inside(surface, positions, x, surface_element_of(surface, e), there)
+      call search_inside(surface, positions, x, surface_element_of(surface, e), there, work)
       if (.not. accept(scope, there, across)) cycle
       if (abs(there%gap) < abs(foot%gap)) foot = there
     end do
@@ -204,28 +211,30 @@ contains
 
   !> Newton's method in one element from its middle, its surface and normals carried on beyond the bounds; what ends a little beyond
   !> them goes on from there (theory 3.30).
-  pure subroutine search_inside(surface, positions, x, place, foot)
+  pure subroutine search_inside(surface, positions, x, place, foot, work)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :), x(3)
     integer, intent(in) :: place(2)
     type(foot_t), intent(out) :: foot
+    type(work_t), intent(inout) :: work
     real(wp) :: length(2), low(2), step(3)
     integer :: k
     logical :: regular
 
+    work%elements = work%elements + 1
     call element_span(surface, place, low, length)
     foot%found = .false.
     foot%place = place
     foot%xi = low + 0.5_wp * length
     do k = 1, most_inside
-      call newton_step(surface, positions, x, foot, step, regular)
+      call newton_step(surface, positions, x, foot, step, regular, work)
       if (.not. regular) return
       foot%xi = foot%xi + step(1:2) / max(1.0_wp, maxval(abs(step(1:2)) / length))
       if (any(abs(foot%xi - low - 0.5_wp * length) > 2.0_wp * length)) return
       if (maxval(abs(step(1:2)) / length) <= sqrt(last_step)) exit
     end do
     if (k > most_inside .or. any(abs(foot%xi - low - 0.5_wp * length) > (0.5_wp + sqrt(last_step)) * length)) return
-    call follow(surface, positions, x, min(max(foot%xi, low), low + length), foot)
+    call follow(surface, positions, x, min(max(foot%xi, low), low + length), foot, work)
   end subroutine search_inside
 
 end module isomortar_contact_gap_map_averaged_foot

@@ -7,6 +7,7 @@ module isomortar_contact_gap_map_kink_line
   use isomortar_base_kinds, only: wp
   use isomortar_base_predicate, only: is_unit
   use isomortar_contact_gap_map_map, only: contact_point_t
+  use isomortar_contact_work, only: evaluate, work_t
   use isomortar_nurbs_surface, only: derivative_columns, step_across, surface_basis, surface_nodes, surface_t
   implicit none
   private
@@ -25,19 +26,21 @@ contains
   !>
   !> - `surface`, `positions` (3, control points): the master's face, and all control points, L.
   !> - `x`: place of the slave point, L. `xi`, `place`, `fixed`: coordinates of its foot, P, their element, and which do not vary.
-  !> - `point`: the kinematics.
-  pure subroutine hold_on_lines(surface, positions, x, xi, place, fixed, point)
+  !> - `point`: the kinematics. `work`: counts of what is done.
+  pure subroutine hold_on_lines(surface, positions, x, xi, place, fixed, point, work)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :), x(3), xi(2)
     integer, intent(in) :: place(2)
     logical, intent(in) :: fixed(2)
     type(contact_point_t), intent(inout) :: point
+    type(work_t), intent(inout) :: work
     real(wp) :: d(3), facing(3), h(2, 2)
     integer :: a, b
 
     if (contracts) call require(any(fixed), "hold_on_lines: the foot is on a line")
     d = x - point%surface(:, 1)
     facing = mean_normal(surface, positions, xi, place, fixed)
+    call evaluate(1, product(merge(2, 1, fixed)), work)
     point%fixed = fixed
     point%turns = norm2(d) > least_distance * element_size(surface, place, point)
     point%normal = facing

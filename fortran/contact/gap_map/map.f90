@@ -9,12 +9,13 @@
 !> - `slave`, `positions` (3, control points): the slave side; all control points, and normals of nodes after them where a map has
 !>   any, L.
 !> - `projections`: feet of the quadrature points. `q`: one of these points, from 1.
-!> - `point`, `variations`: kinematics of a slave point at its foot, and its first variations. `of_slip`: whether those of slips
-!>   are wanted.
+!> - `point`, `variations`: kinematics of a slave point at its foot, and its first variations. `wanted`: what of them (for_gap,
+!>   for_forces, for_tangent). `work`: counts of what is done.
 module isomortar_contact_gap_map_map
   use isomortar_base_kinds, only: wp
   use isomortar_contact_gap_map_nodal_normals, only: normals_t
   use isomortar_contact_slave, only: slave_t
+  use isomortar_contact_work, only: work_t
   implicit none
   private
 
@@ -22,6 +23,10 @@ module isomortar_contact_gap_map_map
 
   !> Components of all short vectors of any map.
   integer, parameter, public :: all_components = 27
+
+  !> What of a point's kinematics is wanted: gap, normal and metric; also what first variations of slips and second ones of the gap
+  !> take; also what second variations of slips take. Each takes a derivative of the master more; the rest means nothing.
+  integer, parameter, public :: for_gap = 1, for_forces = 2, for_tangent = 3
 
   !> Where the slave quadrature points stand on the master.
   type, public :: projections_t
@@ -111,20 +116,20 @@ module isomortar_contact_gap_map_map
       class(gap_map_t), intent(in) :: self
     end function count_bearing
 
-    !> Number of short vectors: for first variations and the second ones of the gap, and `of_slip` for those of the slip too.
-    pure integer function count_vectors(self, of_slip)
+    !> Number of short vectors in what is wanted.
+    pure integer function count_vectors(self, wanted)
       import :: gap_map_t
       implicit none
       class(gap_map_t), intent(in) :: self
-      logical, intent(in) :: of_slip
+      integer, intent(in) :: wanted
     end function count_vectors
 
     !> Find the master points of all slave quadrature points: all of `projections` but the slips; its coordinates hold starts.
     !>
     !> - `started` (points), `had` (points): whether there is a start; whether there was a foot at the last converged load step.
     !> - `status`, `place`: how it ended (isomortar_base_status), and on failure the quadrature point.
-    subroutine locate_points(self, slave, positions, started, had, projections, status, place)
-      import :: gap_map_t, projections_t, slave_t, wp
+    subroutine locate_points(self, slave, positions, started, had, projections, status, place, work)
+      import :: gap_map_t, projections_t, slave_t, work_t, wp
       implicit none
       class(gap_map_t), intent(in) :: self
       type(slave_t), intent(in) :: slave
@@ -132,36 +137,38 @@ module isomortar_contact_gap_map_map
       logical, intent(in) :: started(:), had(:)
       type(projections_t), intent(inout) :: projections
       integer, intent(out) :: status, place
+      type(work_t), intent(inout) :: work
     end subroutine locate_points
 
-    !> Slip of quadrature point `q`, P, from its foot at the last converged load step to that which it has now.
-    pure function slip_between(self, slave, positions, projections, q) result(slip)
-      import :: gap_map_t, projections_t, slave_t, wp
+    !> The `slip` of quadrature point `q`, P, from its foot at the last converged load step to that which it has now.
+    pure subroutine slip_between(self, slave, positions, projections, q, slip, work)
+      import :: gap_map_t, projections_t, slave_t, work_t, wp
       implicit none
       class(gap_map_t), intent(in) :: self
       type(slave_t), intent(in) :: slave
       real(wp), intent(in) :: positions(:, :)
       type(projections_t), intent(in) :: projections
       integer, intent(in) :: q
-      real(wp) :: slip(2)
-    end function slip_between
+      real(wp), intent(out) :: slip(2)
+      type(work_t), intent(inout) :: work
+    end subroutine slip_between
 
     !> Kinematics of slave quadrature point `q`, which has a projection, and what bears on it.
     !>
     !> - `points` (bearing): master control points, and normals of nodes, counted on from these.
     !> - `coefficients` (bearing, vectors): of each in the short vectors.
-    pure subroutine point_at(self, slave, positions, projections, q, of_slip, point, points, coefficients)
-      import :: contact_point_t, gap_map_t, projections_t, slave_t, wp
+    pure subroutine point_at(self, slave, positions, projections, q, wanted, point, points, coefficients, work)
+      import :: contact_point_t, gap_map_t, projections_t, slave_t, work_t, wp
       implicit none
       class(gap_map_t), intent(in) :: self
       type(slave_t), intent(in) :: slave
       real(wp), intent(in) :: positions(:, :)
       type(projections_t), intent(in) :: projections
-      integer, intent(in) :: q
-      logical, intent(in) :: of_slip
+      integer, intent(in) :: q, wanted
       type(contact_point_t), intent(out) :: point
       integer, intent(out) :: points(:)
       real(wp), intent(out) :: coefficients(:, :)
+      type(work_t), intent(inout) :: work
     end subroutine point_at
 
     !> Rows of dg, dxi and what pressures and tractions work on, over so many short `vectors`.
@@ -214,11 +221,12 @@ contains
 
   !> The `normals` of nodes, which bear on points like control points do, and the list of positions of both that all the above
   !> take, `all` (3, control points and nodes): of control points alone.
-  pure subroutine add_nothing(self, positions, normals, all)
+  pure subroutine add_nothing(self, positions, normals, all, work)
     class(gap_map_t), intent(in) :: self
     real(wp), intent(in) :: positions(:, :)
     type(normals_t), intent(out) :: normals
     real(wp), allocatable, intent(out) :: all(:, :)
+    type(work_t), intent(inout) :: work
 
     normals%count = 0
     allocate (all, source=positions)
@@ -233,15 +241,17 @@ contains
     stencils = projections%place
   end function elements
 
-  !> Integral of n dS along the way of quadrature point `q`'s foot since the last converged load step, L: none where normals are
-  !> at right angles to the face (theory 3.31).
-  pure real(wp) function stay_level(self, positions, projections, q)
+  !> Integral of n dS along the way of quadrature point `q`'s foot since the last converged load step, `climb`, L: none where
+  !> normals are at right angles to the face (theory 3.31).
+  pure subroutine stay_level(self, positions, projections, q, climb, work)
     class(gap_map_t), intent(in) :: self
     real(wp), intent(in) :: positions(:, :)
     type(projections_t), intent(in) :: projections
     integer, intent(in) :: q
+    real(wp), intent(out) :: climb
+    type(work_t), intent(inout) :: work
 
-    stay_level = 0.0_wp
-  end function stay_level
+    climb = 0.0_wp
+  end subroutine stay_level
 
 end module isomortar_contact_gap_map_map

@@ -6,11 +6,13 @@
 !>
 !> - `positions` (3, control points): of all control points, L.
 !> - `forces` (3, control points), `on_normals` (3, nodes): forces on them, F; those on the normals of nodes, F L.
+!> - `work`: counts of what is done.
 module isomortar_contact_gap_map_nodal_normals
   use isomortar_base_algebra, only: add_product, cross, identity, inverse2
   use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
   use isomortar_base_predicate, only: is_compressed, is_index, is_unit
+  use isomortar_contact_work, only: evaluate, work_t
   use isomortar_nurbs_direction, only: direction_t, element_at, family_nurbs
   use isomortar_nurbs_surface, only: surface_basis, surface_nodes, surface_t
   use isomortar_sparse_blocks, only: lacks, mark_row, pattern_t
@@ -57,10 +59,11 @@ module isomortar_contact_gap_map_nodal_normals
 contains
 
   !> Averaged normals at the nodes of a face, `surface`, with their derivatives (theory 3.21, 3.22).
-  pure subroutine average(surface, positions, self)
+  pure subroutine average(surface, positions, self, work)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :)
     type(normals_t), intent(out) :: self
+    type(work_t), intent(inout) :: work
     type(facet_t), allocatable :: facets(:)
     integer, allocatable :: point(:)
     real(wp), allocatable :: slope(:, :, :)
@@ -73,7 +76,7 @@ contains
     self%start(0) = 0
     allocate (self%column(0), self%slope(3, 3, 0), self%stretch(3, 0))
     do a = 1, self%count
-      call meet(surface, positions, a, facets)
+      call meet(surface, positions, a, facets, work)
       total = 0.0_wp
       do e = 1, size(facets)
         total = total + facets(e)%normal
@@ -115,11 +118,12 @@ contains
   end subroutine make_room
 
   !> The elements that meet at node a of a face, past a seam too.
-  pure subroutine meet(surface, positions, a, facets)
+  pure subroutine meet(surface, positions, a, facets, work)
     type(surface_t), intent(in) :: surface
     real(wp), intent(in) :: positions(:, :)
     integer, intent(in) :: a
     type(facet_t), allocatable, intent(out) :: facets(:)
+    type(work_t), intent(inout) :: work
     integer :: count(2), i, j, index(2), place(2, 2)
     real(wp) :: xi(2, 2)
 
@@ -128,6 +132,7 @@ contains
       call beside_node(surface%direction(i), surface%closed(i), index(i), place(i, :), xi(i, :), count(i))
     end do
     allocate (facets(product(count)))
+    call evaluate(1, product(count), work)
     do j = 1, count(2)
       do i = 1, count(1)
         facets(i + count(1) * (j - 1)) = facet_at(surface, positions, [place(1, i), place(2, j)], [xi(1, i), xi(2, j)])
@@ -353,13 +358,14 @@ contains
   !> - `pattern`, `tangent` (column component, row component, blocks): pattern of the tangent, and this, F/L.
   !> - `columns` (control points): to mark places of blocks in (isomortar_sparse_blocks), zero at first.
   !> - `lacking`: a row of the pattern without one of the blocks, 0: none.
-  pure subroutine add_turning(self, positions, on_normals, pattern, columns, tangent, lacking)
+  pure subroutine add_turning(self, positions, on_normals, pattern, columns, tangent, lacking, work)
     type(normals_t), intent(in) :: self
     real(wp), intent(in) :: positions(:, :), on_normals(:, :)
     type(pattern_t), intent(in) :: pattern
     integer, intent(inout) :: columns(:)
     real(wp), intent(inout) :: tangent(:, :, :)
     integer, intent(out) :: lacking
+    type(work_t), intent(inout) :: work
     real(wp), allocatable :: form(:, :, :, :)
     integer :: a, k, l
 
@@ -367,7 +373,7 @@ contains
     do a = 1, self%count
       if (.not. any(abs(on_normals(:, a)) > 0.0_wp)) cycle
       associate (point => self%column(self%start(a - 1) + 1:self%start(a)))
-        call turning_of(self, positions, a, on_normals(:, a), form)
+        call turning_of(self, positions, a, on_normals(:, a), form, work)
         do k = 1, size(point)
           lacking = point(k)
           call mark_row(pattern, lacking, columns)
@@ -385,11 +391,12 @@ contains
 
   !> Second variation of the normal at node a times a force on it, by the control points that it depends on: (left component, right
   !> component, left, right) (theory 3.23).
-  pure subroutine turning_of(self, positions, a, force, form)
+  pure subroutine turning_of(self, positions, a, force, form, work)
     type(normals_t), intent(in) :: self
     real(wp), intent(in) :: positions(:, :), force(3)
     integer, intent(in) :: a
     real(wp), allocatable, intent(out) :: form(:, :, :, :)
+    type(work_t), intent(inout) :: work
     type(facet_t), allocatable :: facets(:)
     real(wp) :: along, across(3)
     integer :: e, first, k, l, last
@@ -408,7 +415,7 @@ contains
         end associate
       end do
     end do
-    call meet(self%surface, positions, a, facets)
+    call meet(self%surface, positions, a, facets, work)
     do e = 1, size(facets)
       call add_facet(facets(e), across, self%column(first:last), form)
     end do

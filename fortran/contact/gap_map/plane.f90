@@ -7,6 +7,7 @@ module isomortar_contact_gap_map_plane
   use isomortar_base_status, only: status_ok
   use isomortar_contact_gap_map_map, only: all_components, contact_point_t, gap_map_t, projections_t, variations_t
   use isomortar_contact_slave, only: slave_position, slave_t
+  use isomortar_contact_work, only: count_points, work_t
   implicit none
   private
 
@@ -20,7 +21,7 @@ module isomortar_contact_gap_map_plane
     procedure :: bearing
     procedure :: vectors
     procedure :: locate
-    procedure :: slip
+    procedure :: slip => find_slip
     procedure :: at
     procedure, nopass :: first
     procedure, nopass :: metric
@@ -51,23 +52,25 @@ contains
   end function bearing
 
   !> dx alone.
-  pure integer function vectors(self, of_slip)
+  pure integer function vectors(self, wanted)
     class(plane_t), intent(in) :: self
-    logical, intent(in) :: of_slip
+    integer, intent(in) :: wanted
 
     vectors = 1
   end function vectors
 
   !> Every point has its foot.
-  subroutine locate(self, slave, positions, started, had, projections, status, place)
+  subroutine locate(self, slave, positions, started, had, projections, status, place, work)
     class(plane_t), intent(in) :: self
     type(slave_t), intent(in) :: slave
     real(wp), intent(in) :: positions(:, :)
     logical, intent(in) :: started(:), had(:)
     type(projections_t), intent(inout) :: projections
     integer, intent(out) :: status, place
+    type(work_t), intent(inout) :: work
     integer :: q
 
+    call count_points(size(slave%area), work)
     do q = 1, size(slave%area)
       projections%xi(:, q) = matmul(slave_position(slave, positions, q) - self%origin, self%tangent)
     end do
@@ -79,28 +82,29 @@ contains
   end subroutine locate
 
   !> The difference of the coordinates.
-  pure function slip(self, slave, positions, projections, q)
+  pure subroutine find_slip(self, slave, positions, projections, q, slip, work)
     class(plane_t), intent(in) :: self
     type(slave_t), intent(in) :: slave
     real(wp), intent(in) :: positions(:, :)
     type(projections_t), intent(in) :: projections
     integer, intent(in) :: q
-    real(wp) :: slip(2)
+    real(wp), intent(out) :: slip(2)
+    type(work_t), intent(inout) :: work
 
     slip = projections%xi(:, q) - projections%origin(:, q)
-  end function slip
+  end subroutine find_slip
 
   !> Kinematics (theory 3.4); no master control points.
-  pure subroutine at(self, slave, positions, projections, q, of_slip, point, points, coefficients)
+  pure subroutine at(self, slave, positions, projections, q, wanted, point, points, coefficients, work)
     class(plane_t), intent(in) :: self
     type(slave_t), intent(in) :: slave
     real(wp), intent(in) :: positions(:, :)
     type(projections_t), intent(in) :: projections
-    integer, intent(in) :: q
-    logical, intent(in) :: of_slip
+    integer, intent(in) :: q, wanted
     type(contact_point_t), intent(out) :: point
     integer, intent(out) :: points(:)
     real(wp), intent(out) :: coefficients(:, :)
+    type(work_t), intent(inout) :: work
 
     points = 0
     coefficients = 0.0_wp

@@ -3,7 +3,7 @@
 Arguments are checked, status codes become exceptions. Arrays are laid out as `_arrays` says.
 """
 
-from isomortar._arguments import FloatArray, IntArray
+from isomortar._arguments import FloatArray, IntArray, LongArray
 from isomortar._arrays import (
     AveragedFaceArrays,
     Control,
@@ -25,7 +25,7 @@ from isomortar._bindings.faces import slave_tables, surface_functions
 from isomortar._bindings.kinematics import control_quantities, find_climbs, project_points
 from isomortar._bindings.multipliers import augmented_multipliers, condense_multipliers, friction_radius, multiplier_rows
 from isomortar._bindings.solid import add_body, material_stress
-from isomortar._bindings.system import LongArray, add_values, find_places
+from isomortar._bindings.system import add_values, find_places
 
 __all__ = [
     "AveragedFaceArrays", "Control", "FaceArrays", "FloatArray", "FrictionArrays", "FunctionArrays", "IntArray", "Law", "LongArray",

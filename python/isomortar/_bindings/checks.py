@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from isomortar import _arguments as check
-from isomortar._arguments import FloatArray
+from isomortar._arguments import FloatArray, LongArray
 from isomortar._arrays import (
     Control,
     FaceArrays,
@@ -18,7 +18,7 @@ from isomortar._arrays import (
     Response,
     SlaveArrays,
 )
-from isomortar._codes import ROW_KINDS
+from isomortar._codes import ROW_KINDS, WORK
 from isomortar.errors import InputError
 
 
@@ -103,3 +103,8 @@ def check_rows(pattern: Pattern, rows: FloatArray, constraints: int, control_poi
     kinds = check.array("rows", rows, np.float64, len(pattern.column), None, 3).shape[1]
     if kinds not in ROW_KINDS.values():
         raise InputError(f"has {kinds} kinds; allowed: {', '.join(map(str, ROW_KINDS.values()))}", "rows")
+
+
+def check_counts(counts: LongArray | None) -> LongArray:
+    """Counts for the kernel to add to (`WORK`): those given; where nobody asks, some of nobody's."""
+    return np.zeros(len(WORK), dtype=np.int64) if counts is None else check.array("counts", counts, np.int64, len(WORK))

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from isomortar import _arguments as check
-from isomortar._arguments import FloatArray, IntArray
+from isomortar._arguments import FloatArray, IntArray, LongArray
 from isomortar._arrays import Pattern
 from isomortar._bindings import handles
 from isomortar._bindings.statuses import raise_status
 from isomortar._codes import Status
 from isomortar._compiled import kernel as _kernel
 from isomortar.errors import KernelError
-
-LongArray = NDArray[np.int64]
 
 
 def find_places(

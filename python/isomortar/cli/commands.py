@@ -62,6 +62,7 @@ def run(
     resume: Annotated[bool, typer.Option("--resume", help="Go on after the last load step that the results file holds.")] = False,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Begin anew where the results file exists.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress; warnings and errors still show.")] = False,
+    cost: Annotated[bool, typer.Option("--cost", help="Say at the end what it cost: CPU seconds by phase, and what was done.")] = False,
 ) -> None:
     """Compute a scene.
 
@@ -75,9 +76,13 @@ def run(
     - `isomortar run my_scene.toml --output my_results.h5`
     - `isomortar run twist --set "bodies.master.mesh.order=[3,3,2]" --set contacts.interface.friction=0.5`
     - `isomortar run press --set stages.press.steps=10 --output fine.h5`
+    - `isomortar run twist --cost`
 
-    Progress goes to stderr, the name of the results file to stdout.
+    Progress and costs go to stderr, the name of the results file to stdout.
     """
+    from rich.console import Console
+
+    from isomortar.cli.cost import costs
     from isomortar.cli.progress import progress
     from isomortar.driver import compute
 
@@ -88,11 +93,14 @@ def run(
     problem = chosen.problem()
     with progress(problem, quiet) as observer:
         try:
-            compute(chosen, problem, path, observer, resume, overwrite).close()
+            results = compute(chosen, problem, path, observer, resume, overwrite)
         except BaseException as error:  # Ctrl-C and want of memory too
             observer.stopped(path, interrupted=isinstance(error, KeyboardInterrupt))
             raise
         observer.finished()
+    with results:
+        if cost:
+            Console(stderr=True).print(costs(results))
     print(path)
 
 

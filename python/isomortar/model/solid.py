@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from collections import Counter
+
 import numpy as np
 from scipy import sparse
 
@@ -30,7 +33,9 @@ class Solid:
         An element is folded in the reference configuration.
     """
 
-    def __init__(self, problem: Problem, numbering: Numbering) -> None:
+    def __init__(self, problem: Problem, numbering: Numbering, counts: Counter[str] | None = None) -> None:
+        """`counts`, if given, is told of each quadrature point that is visited: "solid points"."""
+        self._counts = Counter[str]() if counts is None else counts
         self._numbering = numbering
         self._bodies = problem.deformable
         total = sparse.eye_array(numbering.count, dtype=np.int32, format="csr")
@@ -86,8 +91,10 @@ class Solid:
         """Add forces and tangent of a body; its smallest J."""
         pattern, reference = self.pattern if tangent is not None else None, self._numbering.reference
         try:
-            return _bindings.add_body(patch, body.quadrature, body.material.arrays, positions, reference, forces, pattern, tangent)
+            smallest = _bindings.add_body(patch, body.quadrature, body.material.arrays, positions, reference, forces, pattern, tangent)
         except FoldedElementError as error:
             where = np.unravel_index(error.place, [d.elements for d in body.patch.directions], order="F")
             place = ", ".join(str(int(i)) for i in where)
             raise FoldedElementError(f"body {body.name!r}: {error} (element {place} along u, v, w)", error.place) from error
+        self._counts["solid points"] += math.prod(patch.elements) * math.prod(body.quadrature)
+        return smallest

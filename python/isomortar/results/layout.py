@@ -8,8 +8,8 @@ The program knows no units; `unit` names the dimension in terms of the scene's o
     /curves/<quantity>           one row a recorded step
     /curves/supports/<name>/...  reactions
     /curves/contacts/<name>/...  resultants and counts of a contact pair
-    /timings/<phase>             seconds, one row a recorded step
-    /counters/<name>             kernel counters, one row a recorded step
+    /timings/<phase>             CPU seconds, one row a recorded step
+    /counters/<name>             what was done, one row a recorded step
     /orderings/<matrices>        orderings of the unknowns, one row a recorded step: part of what a restart needs
     /log/augmentations           one row an augmentation, in the order in which they happened
     /log/iterations              one row a Newton iteration, in the order in which they happened
@@ -30,17 +30,26 @@ FORMAT_VERSION = 3
 
 @dataclass(frozen=True)
 class Quantity:
-    """Type, unit and meaning of a dataset, shape of a row where the data do not tell it, what stands for a value nobody gave."""
+    """Type, unit and meaning of a dataset, shape of a row where the data do not tell it, what stands for a value nobody gave.
+
+    `frictional`: of contacts with friction alone; without it all zeros, and not written.
+    """
 
     dtype: np.dtype
     unit: str
     description: str
     row: tuple[int, ...] = ()
     missing: float | str | None = None
+    frictional: bool = False
 
 
 def _real(unit: str, description: str, row: tuple[int, ...] = ()) -> Quantity:
     return Quantity(np.dtype(np.float64), unit, description, row)
+
+
+def _of_friction(unit: str, description: str, row: tuple[int, ...] = ()) -> Quantity:
+    """What is zero without friction; `row` is that of a constraint."""
+    return Quantity(np.dtype(np.float64), unit, description, row, frictional=True)
 
 
 def _later(unit: str, description: str) -> Quantity:
@@ -93,14 +102,14 @@ CONTACT = {
 #: Restart state of a contact pair, named as in `ContactState`.
 CONTACT_STATE = {
     "pressure": _real("force/area", "pressures p^J of the constraints: slave control points (mortar), or points of the slave"),
-    "traction": _real("force/area*length/parameter", "covariant tractions tau_alpha^J of the constraints"),
+    "traction": _of_friction("force/area*length/parameter", "covariant tractions tau_alpha^J of the constraints", (2,)),
     "projection": _real("parameter", "master coordinates of the slave quadrature points (on a rigid plane: lengths)"),
     "projected": _flag("1 where the slave quadrature point has a projection on the master, else 0"),
 }
 
 #: Measured values of the constraints, named as in `ContactResult`; kept with the states.
 CONTACT_VALUES = {
-    "traction_norm": _real("force/area", "metric norm of the tractions"),
+    "traction_norm": _of_friction("force/area", "metric norm of the tractions"),
     "status": _flag("constraints: 0 open, 1 stick, 2 slip"),
     "gap": _real("length", "gap g^J of the constraints, positive is penetration"),
 }
@@ -109,11 +118,11 @@ STATE_STEP = _count("number of the load step whose state this row is")
 POSITIONS = _real(
     "length", "positions of all control points, bodies one after the other, those glued to one right after it, shared points once"
 )
-TIMING = Quantity(np.dtype(np.float64), "s", "time spent in the phase within the load step", missing=np.nan)
+TIMING = Quantity(np.dtype(np.float64), "s", "CPU time of all threads in the phase within the load step", missing=np.nan)
 ORDERING = Quantity(
     TEXT, "text", "ordering of the unknowns in use since it was chosen, by the number of matrices in the system", missing=""
 )
-COUNTER = Quantity(np.dtype(np.int64), "1", "kernel counter within the load step", missing=-1)
+COUNTER = Quantity(np.dtype(np.int64), "1", "what was done within the load step: counts, of sizes the largest", missing=-1)
 
 _AUGMENTATIONS = Quantity(
     np.dtype(

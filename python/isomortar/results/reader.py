@@ -153,11 +153,11 @@ class Results:
         return values[:, "xyz".index(component)]
 
     def timings(self) -> dict[str, FloatArray]:
-        """Seconds by phase over the recorded load steps; NaN where a step did not tell."""
+        """CPU seconds, of all threads, by phase over the recorded load steps; NaN where a step did not tell."""
         return self._read(lambda file: {name: data[()] for name, data in file["timings"].items()})
 
     def counters(self) -> dict[str, NDArray[np.int64]]:
-        """Kernel counters over the recorded load steps; -1 where a step did not tell."""
+        """What was done, by name, over the recorded load steps; -1 where a step did not tell (docs/method.md, "What a run costs")."""
         return self._read(lambda file: {name: data[()] for name, data in file["counters"].items()})
 
     def contact(self, name: str) -> ContactHistory:
@@ -165,8 +165,9 @@ class Results:
         contact = _named(self.problem.contacts, name, "contact")
         if not len(self.kept_states):
             raise ResultsError(f"{self.path} holds no load step yet")
+        known = {**layout.CONTACT_STATE, **layout.CONTACT_VALUES}
         names = ("pressure", "traction", "traction_norm", "status", "gap")
-        values = self._read(lambda file: {n: file[f"states/contacts/{name}/{n}"][()] for n in names})
+        values = self._read(lambda file: {n: _column(file, f"states/contacts/{name}/{n}", known[n])[()] for n in names})
         return ContactHistory(contact=contact, steps=self.kept_states, **values)
 
     def last_step(self) -> StepResult | None:
@@ -255,9 +256,11 @@ def _get(file: h5py.File, group: str, quantities: Mapping[str, layout.Quantity],
 
 
 def _column(file: h5py.File, path: str, quantity: layout.Quantity) -> Any:
-    """A dataset; of a quantity that the file is too old for, what stands for it at every recorded load step."""
+    """A dataset; of a quantity that the file is too old for, what stands for it at every recorded load step; of none, zeros."""
     if quantity.missing is not None and path not in file:
         return np.full(len(file["curves/step"]), quantity.missing)
+    if quantity.frictional and path not in file:
+        return np.zeros((*file[f"{path.rpartition('/')[0]}/pressure"].shape, *quantity.row))
     return file[path]
 
 

@@ -142,8 +142,9 @@ class ResultsWriter(Observer):
         _put_row(file, "states/step", layout.STATE_STEP, result.step, kept)
         _put_row(file, "states/positions", layout.POSITIONS, result.state.positions, kept)
         for contact, state, measured in zip(self._problem.contacts, result.state.contacts, result.contacts, strict=True):
-            _put(file, f"states/contacts/{contact.name}", layout.CONTACT_STATE, state, kept)
-            _put(file, f"states/contacts/{contact.name}", layout.CONTACT_VALUES, measured, kept)
+            for quantities, source in ((layout.CONTACT_STATE, state), (layout.CONTACT_VALUES, measured)):
+                wanted = {name: kind for name, kind in quantities.items() if contact.friction_law.acts or not kind.frictional}
+                _put(file, f"states/contacts/{contact.name}", wanted, source, kept)
 
 
 def _put(file: h5py.File, group: str, quantities: Mapping[str, layout.Quantity], source: object, row: int) -> None:

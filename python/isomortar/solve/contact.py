@@ -133,15 +133,16 @@ class PairMechanics:
         LostProjectionError
             A point has passed through its master, or the master has no normal there.
         """
-        pair = self.pair
+        pair, counts = self.pair, self._ledger.work
         with self._ledger.phase("projection"):
             try:
-                projections = _bindings.project_points(pair.slave, pair.master, positions, start.projection, start.projected)
+                projections = _bindings.project_points(
+                    pair.slave, pair.master, positions, start.projection, start.projected, self.friction.acts, counts
+                )
             except LostProjectionError as error:
                 raise self._feet.named(error, positions) from error
         with self._ledger.phase("contact"):
-            control = _bindings.control_quantities(pair.slave, pair.master, positions, projections)
-        self._ledger.counts["projections"] += len(pair.slave.area)
+            control = _bindings.control_quantities(pair.slave, pair.master, positions, projections, self.friction.acts, counts)
         return Kinematics(projections, control)
 
     def stiffness(self, scales: Scales) -> float:
@@ -208,7 +209,10 @@ class PairMechanics:
         """
         self._feet.check(positions, kinematics.projections, response)
         with self._ledger.phase("contact"):
-            _bindings.contact_forces(self.pair.slave, self.pair.master, positions, kinematics.projections, response, forces)
+            _bindings.contact_forces(
+                self.pair.slave, self.pair.master, positions, kinematics.projections, response, forces, self.friction.acts,
+                self._ledger.work,
+            )  # fmt: skip
 
     def blocks(self, positions: FloatArray, kinematics: Kinematics, law: Law, response: Response) -> Blocks:
         """Constraint rows, derivatives of the multipliers and the geometric tangent."""
@@ -218,7 +222,7 @@ class PairMechanics:
         with self._ledger.phase("contact"):
             _bindings.contact_blocks(
                 self.pair.slave, self.pair.master, positions, kinematics.projections, self.friction.acts, response,
-                patterns.rows, rows, patterns.tangent, geometric,
+                patterns.rows, rows, patterns.tangent, geometric, self._ledger.work,
             )  # fmt: skip
             changes, trial = _bindings.multiplier_rows(
                 self.pair.slave, kinematics.control, law, response, patterns.rows, rows, self.pair.neighbours, patterns.wide
@@ -340,7 +344,7 @@ class PairMechanics:
         slave, master = self.pair.slave, self.pair.master
         pressure = 0.5 * self.pair.field(begun.pressure + np.where(acts, response.pressure, 0.0))
         with self._ledger.phase("contact"):
-            ends = [_bindings.find_climbs(slave, master, place, kinematics.projections) for place in (start, positions)]
+            ends = [_bindings.find_climbs(slave, master, place, kinematics.projections, self._ledger.work) for place in (start, positions)]
         return np.array([friction, -float(np.sum(slave.area * pressure * 0.5 * (ends[0] + ends[1])))])
 
     def result(self, positions: FloatArray, kinematics: Kinematics, response: Response, work: FloatArray) -> ContactResult:

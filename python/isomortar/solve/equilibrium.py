@@ -73,7 +73,7 @@ class Equilibrium:
         self.ledger = ledger
         self.numbering = Numbering(problem)
         self.supports = Supports(problem, self.numbering)
-        self.solid = Solid(problem, self.numbering)
+        self.solid = Solid(problem, self.numbering, ledger.counts)
         self.measures = PieceMeasures(self.numbering, self.supports, self.solid)
         pairs = [Pair(c, problem, self.numbering) for c in problem.contacts]
         self.pairs = [

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -105,6 +106,15 @@ class ContactResult:
         return np.array([self.friction_work, self.spurious_work])
 
 
+def history_bytes(state: State, contacts: Sequence[ContactResult], frictional: Sequence[bool]) -> int:
+    """What the state of a load step takes in a results file, which holds tractions where there is friction, and the step's number."""
+    arrays: list[np.ndarray | np.generic] = [state.positions, np.int64(0)]
+    for contact, result, rubs in zip(state.contacts, contacts, frictional, strict=True):
+        arrays += [contact.pressure, contact.projection, contact.projected, result.status, result.gap]
+        arrays += [contact.traction, result.traction_norm] if rubs else []
+    return sum(array.nbytes for array in arrays)
+
+
 @dataclass(frozen=True)
 class StepResult:
     """One recorded load step.
@@ -132,9 +142,9 @@ class StepResult:
         Load increment that the step-size control would try next, as a share of the longest one that the supports' turns allow (part of
         the restart state).
     timings : dict
-        Seconds by phase within the step: solid, projection, contact, factor, solve, other.
+        CPU seconds, of all threads, by phase within the step: solid, projection, contact, factor, solve, other, total.
     counters : dict
-        Kernel counters within the step: solves, factorisations, analyses, projections, ...
+        What was done within the step, by name (docs/method.md, "What a run costs").
     orderings : dict
         Orderings of the unknowns that are in use, by the number of matrices that make up the system (part of the restart state: which
         one is better was tried on the first of them).

@@ -21,7 +21,7 @@ from isomortar.solve.lost import LostDigits
 from isomortar.solve.method import Increment, Method
 from isomortar.solve.monolithic import Monolithic
 from isomortar.solve.pulling import Pulling
-from isomortar.solve.record import AugmentationRecord, ContactResult, Observer, Reaction, State, StepResult
+from isomortar.solve.record import AugmentationRecord, ContactResult, Observer, Reaction, State, StepResult, history_bytes
 from isomortar.solve.sharing import Sharing
 from isomortar.solve.timing import Ledger
 from isomortar.solve.uzawa import Uzawa
@@ -206,22 +206,23 @@ class Simulation:
         cuts: int,
     ) -> StepResult:
         pairs = zip(self.equilibrium.pairs, balance.kinematics, balance.responses, work, strict=True)
-        timings, counters = self.ledger.take()
         origin = self.equilibrium.origin
+        contacts = tuple(_about_origin(pair.result(balance.positions, k, r, w), origin) for pair, k, r, w in pairs)
+        timings, counters = self.ledger.take()
         return StepResult(
             step=step,
             stage=self._stage_of(step),
             time=float(step),
             state=replace(state, positions=state.positions + origin),
             reactions=self._reactions(float(step), balance.positions, balance.total),
-            contacts=tuple(_about_origin(pair.result(balance.positions, k, r, w), origin) for pair, k, r, w in pairs),
+            contacts=contacts,
             augmentations=log,
             newton_order=float(np.median(orders)) if orders else float("nan"),
             substeps=substeps,
             cuts=cuts,
             next_increment=self._increment,
             timings=timings,
-            counters=counters,
+            counters={**counters, "history bytes": history_bytes(state, contacts, [pair.friction.acts for pair in self.equilibrium.pairs])},
             orderings=dict(self.equilibrium.orderings),
         )
 

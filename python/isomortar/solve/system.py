@@ -100,8 +100,11 @@ class LinearSystem:
                     refused = refused or error
             if refused and not sound:
                 raise refused
-            self._rivals = [min(sound, key=lambda factors: factors.flops)]
+            best = min(sound, key=lambda factors: factors.flops)
+            self._rivals = [best]
         self._ledger.counts["factorisations"] += 1
+        self._ledger.largest("system non-zeros", len(self._column))
+        self._ledger.largest("factor non-zeros", best.statistics.factor_entries if best.statistics else 0)
 
     @property
     def rcond(self) -> float:

@@ -1,38 +1,81 @@
-"""Seconds by phase and counts of what the kernel was asked for."""
+"""CPU seconds by phase and counts of what was done."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
-from time import perf_counter
+from time import process_time
+
+import numpy as np
+
+from isomortar._bindings import LongArray
+from isomortar._codes import WORK
 
 PHASES = ("solid", "projection", "contact", "factor", "solve")
+#: What is counted, by name. Orders are those of derivatives.
+COUNTERS = {
+    "solid residuals": "internal forces of all bodies",
+    "solid tangents": "their tangents, those that are at hand still included",
+    "solid points": "quadrature points of bodies, each time that a stress is computed there",
+    "contact tangents": "tangents of contacts",
+    "contact points": "quadrature points of contacts, each time that a foot or kinematics are computed there",
+    "warm projections": "feet found by a search that begins at the last one",
+    "cold projections": "feet that the whole master was searched for",
+    "elements searched": "elements of a master that were searched for a foot",
+    **{
+        name: f"places of masters where functions were evaluated {name.removeprefix('evaluations ')}"
+        for name in WORK
+        if name.startswith("evaluations")
+    },
+    "analyses": "orderings of a linear system",
+    "factorisations": "factors of one",
+    "solves": "solutions by these",
+    "system non-zeros": "entries of the largest system",
+    "factor non-zeros": "entries of its factors L and U",
+    "history bytes": "what states take in the results file",
+}
+#: Counts that are sizes: of several the largest is told, not the sum.
+SIZES = ("system non-zeros", "factor non-zeros")
 
 
 class Ledger:
-    """Seconds by phase of PHASES and counts by name, since the last `take`."""
+    """CPU seconds of all threads by phase of PHASES, and counts by name, since the last `take`.
+
+    Attributes
+    ----------
+    counts : Counter
+        What Python counts, by name.
+    work : ndarray of int64
+        What the kernel counts, to which it adds; numbers of `_codes.WORK`.
+    """
 
     def __init__(self) -> None:
         self.seconds: dict[str, float] = dict.fromkeys(PHASES, 0.0)
         self.counts: Counter[str] = Counter()
-        self._start = perf_counter()
+        self.work: LongArray = np.zeros(len(WORK), dtype=np.int64)
+        self._start = process_time()
 
     @contextmanager
     def phase(self, name: str) -> Iterator[None]:
         """Time a phase."""
-        start = perf_counter()
+        start = process_time()
         try:
             yield
         finally:
-            self.seconds[name] += perf_counter() - start
+            self.seconds[name] += process_time() - start
+
+    def largest(self, name: str, size: int) -> None:
+        """Note one of SIZES."""
+        self.counts[name] = max(self.counts[name], size)
 
     def take(self) -> tuple[dict[str, float], dict[str, int]]:
         """Seconds by phase (what is in none of them is `other`) and counts; both begin anew."""
-        total = perf_counter() - self._start
+        total = process_time() - self._start
         seconds = {**self.seconds, "other": total - sum(self.seconds.values()), "total": total}
-        counts = dict(self.counts)
+        counts = {**self.counts, **dict(zip(WORK, self.work.tolist(), strict=True))}
         self.seconds = dict.fromkeys(PHASES, 0.0)
         self.counts.clear()
+        self.work[:] = 0
         self._start += total
         return seconds, counts
