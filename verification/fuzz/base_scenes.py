@@ -202,6 +202,45 @@ motions.head.translate = [0.0, 0.0, -0.03]
 max_cuts = 3
 """
 
+#: A rigid die pressed onto the free end of a block, then turned; below is a rigid table that nothing moves.
+DIE = """
+format = 1
+name = "die"
+[bodies.block]
+geometry = { kind = "box", lower = [-0.5, -0.5, 0.0], upper = [0.5, 0.5, 0.4] }
+mesh = { order = [2, 2, 1], elements = [2, 2, 1] }
+[bodies.die]
+rigid = true
+geometry = { kind = "bowl", centre = [0.05, 0.02], half_width = 0.6, bottom = 0.4, rise = 0.1, top = 0.8 }
+[bodies.table]
+rigid = true
+geometry = { kind = "box", lower = [-1.0, -1.0, -0.5], upper = [1.0, 1.0, -0.01] }
+mesh = { order = 1, elements = [2, 1, 1] }
+[contacts.above]
+slave = "block.w1"
+master = "die.w0"
+friction = 0.2
+[contacts.below]
+slave = "block.w0"
+master = "table.w1"
+friction = 0.5
+[supports.wall]
+face = "block.u0"
+[supports.die]
+face = "die.w1"
+centre = [0.05, 0.02, 0.6]
+[[stages]]
+name = "press"
+steps = 1
+motions.die.translate = [0.0, 0.0, -0.06]
+[[stages]]
+name = "turn"
+steps = 1
+motions.die = { translate = [0.02, 0.0, 0.0], rotate = 5.0 }
+[solver]
+max_cuts = 3
+"""
+
 #: No contact: a beam bent by turning its end.
 BEAM = """
 format = 1
@@ -226,4 +265,4 @@ motions.hand = { translate = [0.1, 0.0, 0.0], rotate = 30.0 }
 max_cuts = 3
 """
 
-TEXTS = (PRESS, BOWL, UZAWA, TYRE, PATCH, PLATES, BEAM)
+TEXTS = (PRESS, BOWL, UZAWA, TYRE, PATCH, PLATES, DIE, BEAM)

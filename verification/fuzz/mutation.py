@@ -114,6 +114,13 @@ def _settled(data: Any, chance: random.Random) -> None:
     table[key] = chance.choice(values)
 
 
+def _stiffened(data: Any, chance: random.Random) -> None:
+    """A rigid body, or one no longer."""
+    body = chance.choice(list(data["bodies"].values()))
+    body["rigid"] = not body.get("rigid", False)
+    body.pop("material", None)
+
+
 def _extreme(data: Any, chance: random.Random) -> None:
     _put(chance.choice(list(numbers(data))), chance.choice(EXTREMES))
 
@@ -160,10 +167,10 @@ def _elsewhere(data: Any, chance: random.Random) -> None:
 
 
 MUTATIONS: tuple[Callable[[Any, random.Random], None], ...] = (
-    *(_moderate, _refined, _settled, _extreme, _opposite),
+    *(_moderate, _refined, _settled, _stiffened, _extreme, _opposite),
     *(_dropped, _exchanged, _other_type, _doubled, _elsewhere),
 )
-WEIGHTS = (30, 12, 8, 15, 5, 5, 4, 8, 4, 6)
+WEIGHTS = (30, 12, 8, 6, 15, 5, 5, 4, 8, 4, 6)
 
 
 def _limit(data: Any) -> None:

@@ -15,7 +15,8 @@ from fuzz.mutation import mutated, numbers
 from isomortar import Results
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, case
-from isomortar.model.entities import Contact, RigidPlane
+from isomortar.model.entities import Contact, Face, Problem, RigidPlane
+from isomortar.model.glue import pieces
 from isomortar.results import layout
 from isomortar.scene.source import dump
 
@@ -86,6 +87,9 @@ def _look(results: Results) -> None:
             forces.append(-values["force_slave"])
         elif not _close(values["force_slave"], -values["force_master"], ROUND_OFF, _nothing(results)):
             raise Wrong(f"forces on both sides of {contact.name} differ: {values['force_slave'][-1]}, {values['force_master'][-1]}")
+        forces += [
+            values[f"force_{side}"] for side, place in (("slave", contact.slave), ("master", contact.master)) if _stands(problem, place)
+        ]
         _look_at_contact(results, contact)
     for force in forces:
         _finite("a force", force)
@@ -96,6 +100,14 @@ def _look(results: Results) -> None:
         raise Wrong(f"supports and planes leave {left.max():.3e} of {whole.max():.3e}")
     for number in results.kept_states:
         _finite("positions", results.step(int(number)).state.positions)
+
+
+def _stands(problem: Problem, place: Face | RigidPlane) -> bool:
+    """Whether it is of a rigid body that no support bears, nor what is glued to it."""
+    if isinstance(place, RigidPlane) or not problem.body(place.body).rigid:
+        return False
+    (whole,) = ({body.name for body in piece} for piece in pieces(problem) if problem.body(place.body) in piece)
+    return not any(support.place.body in whole for support in problem.supports)
 
 
 def _look_at_contact(results: Results, contact: Contact) -> None:
@@ -125,11 +137,11 @@ def _nothing(results: Results) -> float:
     """A force that is round-off of the stiffest body: of the last bits of its positions, far away as well, in its thinnest direction."""
     farthest = np.max([np.abs(results.step(int(number)).state.positions).max() for number in results.kept_states])
     forces = []
-    for body in results.problem.bodies:
+    for body in results.problem.deformable:
         extents = np.ptp(body.patch.control_points, axis=0)
         size, thin = float(extents.max()), float(extents.min())
         forces.append(1e-13 * body.material.young * size**2 * max(1.0, 0.1 * farthest / thin))
-    return float(np.max(forces))
+    return float(np.max(forces, initial=0.0))
 
 
 def _close(one: FloatArray, other: FloatArray, share: float, nothing: float = 0.0) -> bool:
