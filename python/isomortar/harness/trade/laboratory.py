@@ -10,7 +10,9 @@ from typing import Any
 import numpy as np
 
 from isomortar.errors import InputError
-from isomortar.harness.runner import Submit, run, start
+from isomortar.harness.cases import Cell
+from isomortar.harness.measurement import Measurement
+from isomortar.harness.runner import Result, Submit, run, start
 from isomortar.harness.store import Store
 from isomortar.harness.study import Run
 from isomortar.harness.trade.knobs import Dial, changed
@@ -60,7 +62,6 @@ class Laboratory:
 
     def __init__(self, scene: Scene, dials: Sequence[Dial], folder: Path, submit: Submit, tell: Callable[[Tried], None]) -> None:
         self._scene, self._dials, self._folder, self._submit, self._tell = scene, tuple(dials), folder, submit, tell
-        self._store = Store(folder / "cells")
         self.outcomes: dict[Choice, Tried] = {}
 
     @property
@@ -96,27 +97,42 @@ class Laboratory:
                 scene = changed(scene, [setting])
         return [f"{key}={value}" for key, value in found.items()]
 
-    def run(self, choices: Sequence[Choice], fresh: bool = False) -> list[Tried]:
-        """Run what was not run yet, `fresh` all of it, at the same time where there are processes for it."""
-        missing = [choice for choice in dict.fromkeys(choices) if fresh or choice not in self.outcomes]
-        cells, refused = {}, {}
-        for choice in missing:
+    def run(self, choices: Sequence[Choice]) -> list[Tried]:
+        """Run what was not run yet, at the same time where there are processes for it."""
+        missing = [choice for choice in dict.fromkeys(choices) if choice not in self.outcomes]
+        found = self._measured(missing, Store(self._folder / "cells"))
+        self.outcomes |= {choice: found[choice] for choice in missing}
+        return [self.outcomes[choice] for choice in choices]
+
+    def run_afresh(self, choice: Choice) -> Tried:
+        """Run a choice again. What was measured before stays, and what the search made of it: it comes to the same answer again."""
+        return self._measured([choice], Store(self._folder / "afresh"), fresh=True)[choice]
+
+    def _measured(self, choices: Sequence[Choice], store: Store, fresh: bool = False) -> dict[Choice, Tried]:
+        """What became of some choices, in any order."""
+        cells: dict[str, Cell] = {}
+        by_name: dict[str, Choice] = {}
+        found: dict[Choice, Tried] = {}
+        for choice in choices:
             try:
                 scene = self.scene(choice)
                 scene.problem()
             except InputError as error:
-                refused[choice] = Tried(choice, self.name(choice), {}, f"refused: {error}", 0.0, 0.0)
+                found[choice] = Tried(choice, self.name(choice), {}, f"refused: {error}", 0.0, 0.0)
                 continue
             name = f"{self._scene.name}-{'-'.join(map(str, choice))}"
-            cells[choice] = Run(name, scene, traded).cell(self._folder / "scenes")
-        started = start(list(cells.values()), self._store, self._submit, fresh)
-        results = dict(zip(cells, run(started, lambda *_: None, self._store), strict=True))
-        for choice in missing:
-            self.outcomes[choice] = refused.get(choice) or self._outcome(choice, results[choice].measurement)
-            self._tell(self.outcomes[choice])
-        return [self.outcomes[choice] for choice in choices]
+            cells[name] = Run(name, scene, traded).cell(self._folder / "scenes")
+            by_name[cells[name].name] = choice
 
-    def _outcome(self, choice: Choice, measurement: Any) -> Tried:
+        def made(result: Result) -> None:
+            choice = by_name[result.cell.name]
+            found[choice] = self._tried(choice, result.measurement)
+            self._tell(found[choice])
+
+        run(start(list(cells.values()), store, self._submit, fresh), lambda *_: None, store, made)
+        return found
+
+    def _tried(self, choice: Choice, measurement: Measurement) -> Tried:
         broken = [n for n, v in measurement.numbers.items() if n != "area" and not np.isfinite(np.asarray(v, float)).all()]
         failure = "" if measurement.ending == "measured" else measurement.reason
         failure = failure or (f"not finite: {', '.join(broken)}" if broken else "")

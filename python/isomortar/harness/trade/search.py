@@ -13,6 +13,8 @@ from isomortar.harness.trade.laboratory import Choice, Laboratory, Tried
 from isomortar.harness.trade.model import Model, Yardstick
 from isomortar.harness.trade.want import Want
 
+#: Where over-refined runs differ by this share of what is wanted, it is round-off or nothing they have in common.
+NOTHING = 0.5
 #: A target is told from the truth's own error where it is this many times as large.
 RESOLVED = 3.0
 #: Forecasts aim at this share of the target; what is measured may take all of it.
@@ -145,7 +147,7 @@ class Search:
         if best is None:
             why = "no combination was found within the budget" if self._over else "no combination that was tried comes so near for less"
             return Recommendation(target, None, math.nan, why, "", by_order)
-        (afresh,) = self.laboratory.run([best.choice], fresh=True)
+        afresh = self.laboratory.run_afresh(best.choice)
         return Recommendation(target, afresh, self.error(afresh), "", self._binding(afresh.choice), by_order)
 
     def order(self, choice: Choice) -> int:
@@ -182,6 +184,8 @@ class Search:
 
     def _needed(self, target: float) -> str:
         """Why a target is refused, and what it would take."""
+        if not self.uncertainty < NOTHING:
+            return "what is wanted is nothing in this scene, or no more than over-refined runs differ by"
         finer = (RESOLVED * self.uncertainty / target) ** (1.0 / RATE)
         assert self.truth
         assert self.rival
