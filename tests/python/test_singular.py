@@ -176,7 +176,8 @@ def test_a_corner_that_sticks_to_two_planes(
     assert np.abs(total - result.reactions[0].force).max() <= 1e-8
     floor, wall = (found.status[pair.shared] for pair, found in zip(simulation.equilibrium.pairs, result.contacts, strict=True))
     stuck = np.count_nonzero((floor > 0) & (wall > 0) & ((floor == 1) | (wall == 1)))
-    assert [f"{stuck} slave control points" in told for told in observer.said] == [True] * bool(stuck)
+    shared = [told for told in observer.said if "at the edge between them" in told]  # others speak of coefficients that this leaves open
+    assert [f"{stuck} slave control points" in told for told in shared] == [True] * bool(stuck)
 
 
 def test_a_corner_without_friction_is_no_such_thing() -> None:
