@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,7 @@ from isomortar.model.entities import SolverSettings
 from isomortar.model.held import held_by, nothing_held
 from isomortar.model.pairs import Pair
 from isomortar.model.supports import BoolArray, Supports
+from isomortar.solve.apart import Separation
 from isomortar.solve.feet import Feet
 from isomortar.solve.reach import ContactPatterns, Reach
 from isomortar.solve.record import ContactResult, ContactState
@@ -31,6 +33,29 @@ class Kinematics:
 
     projections: Projections
     control: Control
+
+
+class PutOff(Kinematics):
+    """Those of a pair out of reach, where all points are open: computed when somebody asks."""
+
+    _compute: Callable[[], Kinematics]
+
+    def __init__(self, compute: Callable[[], Kinematics]) -> None:
+        object.__setattr__(self, "_compute", compute)
+
+    @cached_property
+    def _computed(self) -> Kinematics:
+        return self._compute()
+
+    @property
+    def projections(self) -> Projections:
+        """Where the slave quadrature points stand on the master."""
+        return self._computed.projections
+
+    @property
+    def control(self) -> Control:
+        """Control quantities."""
+        return self._computed.control
 
 
 @dataclass(frozen=True)
@@ -85,6 +110,7 @@ class PairMechanics:
     def __init__(self, pair: Pair, settings: SolverSettings, ledger: Ledger, origin: FloatArray, others: Sequence[Pair]) -> None:
         self.pair = pair
         self._feet = Feet(pair, origin)
+        self._separation = Separation(pair)
         self.friction = pair.contact.friction_law
         self.summed = settings.slip_sum == "paper" and self.friction.acts
         self.reach = Reach(pair, self.summed, settings.method == "uzawa")
@@ -108,6 +134,7 @@ class PairMechanics:
         """Begin a load increment from positions `start` with state `begun` to a load time."""
         self.reach.begin()
         self.held = held_by(supports, self.pair, start, time)
+        self._separation.begin(start, bool(np.any(begun.pressure != 0.0)))
         if self.elastic:
             self._stretch = self._stretched(self.kinematics(start, begun).control, begun)
 
@@ -126,13 +153,18 @@ class PairMechanics:
         return replace(nowhere, projection=projections.xi, projected=projections.followed)
 
     def kinematics(self, positions: FloatArray, start: ContactState) -> Kinematics:
-        """Project and integrate the control quantities; slips count from `start`.
+        """Project and integrate the control quantities; slips count from `start`. What is out of reach is put off.
 
         Raises
         ------
         LostProjectionError
             A point has passed through its master, or the master has no normal there.
         """
+        compute = partial(self._kinematics, positions, start)
+        return PutOff(compute) if self._separation.holds(positions) else compute()
+
+    def _kinematics(self, positions: FloatArray, start: ContactState) -> Kinematics:
+        """The same, now."""
         pair, counts = self.pair, self._ledger.work
         with self._ledger.phase("projection"):
             try:
@@ -144,6 +176,10 @@ class PairMechanics:
         with self._ledger.phase("contact"):
             control = _bindings.control_quantities(pair.slave, pair.master, positions, projections, self.friction.acts, counts)
         return Kinematics(projections, control)
+
+    def rests(self, kinematics: Kinematics, pressure: FloatArray, traction: FloatArray) -> bool:
+        """Whether all is open and stays so without a look at the kinematics: it is out of reach, and has no multipliers."""
+        return isinstance(kinematics, PutOff) and not (np.any(pressure != 0.0) or np.any(traction != 0.0))
 
     def stiffness(self, scales: Scales) -> float:
         """Largest diagonal entry of the tangents of the pair's bodies, all as soft as the softest (theory 5.7), force per length.
@@ -168,6 +204,8 @@ class PairMechanics:
 
     def bear(self, kinematics: Kinematics, depth: float) -> bool:
         """Let constraints that supports hold along the normal bear if deeper than `depth` (theory 4.11); whether there are any."""
+        if isinstance(kinematics, PutOff):
+            return False
         alone = (self.held.bears == 0) & (kinematics.control.weight > 0)
         sunk = alone & (kinematics.control.gap > depth * kinematics.control.weight)
         self.held.bears[sunk] = 1
@@ -178,7 +216,7 @@ class PairMechanics:
         pushed = np.any(self.held.pushed != 0.0, axis=1)
         return np.where(pushed[:, None], self.radius(start.pressure)[:, None] * self.held.pushed, start.traction)
 
-    def resting(self, start: ContactState, control: Control, pressure: FloatArray, traction: FloatArray) -> FloatArray:
+    def resting(self, start: ContactState, kinematics: Kinematics, pressure: FloatArray, traction: FloatArray) -> FloatArray:
         """The tractions, where supports keep control points still those of `start` as far as friction bears them (theory 4.12); (n, 2).
 
         Nothing else tells them there, but elastic slips do: a pressure that was too low for an iteration would lower them for good.
@@ -186,7 +224,7 @@ class PairMechanics:
         still = self.held.still > 0
         if self.elastic or not still.any():
             return traction
-        length, borne = self.traction_norms(control, start.traction), self.radius(pressure)
+        length, borne = self.traction_norms(kinematics.control, start.traction), self.radius(pressure)
         share = np.divide(borne, length, out=np.ones_like(length), where=length > borne)
         return np.where(still[:, None], share[:, None] * start.traction, traction)
 
@@ -196,6 +234,10 @@ class PairMechanics:
 
     def respond(self, kinematics: Kinematics, law: Law) -> Response:
         """Multipliers and states of the law."""
+        if self.rests(kinematics, law.pressure, law.traction):
+            n, q = self.pair.slave.test.count, len(self.pair.slave.area)
+            states = np.full(n, PointState.OPEN, dtype=np.int32)
+            return Response(np.zeros(n), np.zeros((n, 2)), states, np.zeros(n), np.zeros((n, 6, 2)), np.zeros((q, 2)))
         with self._ledger.phase("contact"):
             return _bindings.augmented_multipliers(self.pair.slave, kinematics.control, law)
 
@@ -207,6 +249,8 @@ class PairMechanics:
         LostProjectionError
             Contact acts at a point whose foot does not follow it.
         """
+        if not np.any(response.state):
+            return
         self._feet.check(positions, kinematics.projections, response)
         with self._ledger.phase("contact"):
             _bindings.contact_forces(
@@ -338,6 +382,8 @@ class PairMechanics:
         into it in that at the start: of both together no work is left.
         """
         acts = response.state > 0
+        if not (acts.any() or np.any(begun.pressure != 0.0)):
+            return np.zeros(2)
         friction = float(np.sum(response.traction[acts] * kinematics.control.slip[acts]))
         if not self.pair.contact.averaged:
             return np.array([friction, 0.0])

@@ -111,6 +111,16 @@ class Equilibrium:
         pairs = zip(self.pairs, balance.kinematics, balance.responses, strict=True)
         return State(balance.positions, tuple(pair.state(kinematics, response) for pair, kinematics, response in pairs))
 
+    def complete(self, balance: Balance) -> None:
+        """Compute what was put off at the positions of a balance.
+
+        Raises
+        ------
+        LostProjectionError
+        """
+        for kinematics in balance.kinematics:
+            _ = kinematics.control
+
     def balance(self, positions: FloatArray, start: State, laws: Sequence[Law]) -> Balance:
         """Forces at given positions with the multipliers that given laws make of them; slips count from `start`.
 

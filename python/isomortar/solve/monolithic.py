@@ -31,7 +31,8 @@ class Monolithic(Method):
         newton = _BorderedNewton(self._equilibrium, start, scales)
         found = newton.solve(newton.first(), prescribed, partial(self._observer.iteration, step, time, 1))
         last = found.iterate
-        record = augmentation_record(1, last.laws, (last.gap_pressure, last.gap_traction), found.log)
+        self._equilibrium.complete(last.balance)
+        record = augmentation_record(1, newton.settled(last), (last.gap_pressure, last.gap_traction), found.log)
         return Increment(last.balance, (record,), (found.order,))
 
 
@@ -80,6 +81,14 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
         multipliers = [(contact.pressure, pair.sliding(contact)) for pair, contact in zip(pairs, self._start.contacts, strict=True)]
         return self._evaluate(self._start.positions, multipliers, self._margin, [pair.held.still for pair in pairs])
 
+    def settled(self, iterate: _BorderedIterate) -> list[Law]:
+        """The laws of a converged iterate, with the parameters of pairs that rest."""
+        pairs = zip(self._equilibrium.pairs, iterate.balance.kinematics, iterate.laws, strict=True)
+        return [
+            replace(law, penalties=pair.parameters(k.control, self._scales)) if pair.rests(k, law.pressure, law.traction) else law
+            for pair, k, law in pairs
+        ]
+
     def _evaluate(
         self, positions: FloatArray, multipliers: Sequence[Multipliers], margin: float = 0.0, held: Sequence[np.ndarray] | None = None
     ) -> _BorderedIterate:
@@ -88,7 +97,8 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
 
         def respond(k: int, kinematics: Kinematics) -> Response:
             pair, (pressure, traction) = self._equilibrium.pairs[k], multipliers[k]
-            law = pair.law(pair.parameters(kinematics.control, self._scales), pressure, traction)
+            rests = pair.rests(kinematics, pressure, traction)
+            law = pair.law(np.zeros(2) if rests else pair.parameters(kinematics.control, self._scales), pressure, traction)
             law = replace(
                 law, slip_margin=margin, forgiving="forgiving" in self._settings.measures, held=law.held if held is None else held[k]
             )
@@ -108,6 +118,7 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
         return largest(
             pair.apart(k.control, (now.pressure, now.traction), (to.pressure, to.traction), pair.round_off(balance.positions, law, to))
             for pair, k, now, law, to in pairs
+            if not pair.rests(k, law.pressure, law.traction)
         )
 
     def _converged(self, iterate: _BorderedIterate) -> bool:

@@ -81,10 +81,11 @@ class Uzawa(Method):
             self._observer.augmented(step, time, records[-1])
             off = np.array(distances) / constants.DISTANCE_ALLOWED[self._settings.augmentation_norm]
             if np.max([*changes, *off]) <= self._settings.augmentation_tolerance and not equilibrium.bear(balance):
+                equilibrium.complete(balance)
                 return Increment(balance, tuple(records), tuple(orders))
             growth = min(growth * self._settings.penalty_growth, max(self._settings.penalty_growth_max, 1.0))
             laws = [
-                replace(law, penalties=growth * b, pressure=r.pressure, traction=pair.resting(s, k.control, r.pressure, r.traction))
+                replace(law, penalties=growth * b, pressure=r.pressure, traction=pair.resting(s, k, r.pressure, r.traction))
                 for pair, law, b, s, k, r in zip(
                     equilibrium.pairs, laws, base, start.contacts, balance.kinematics, balance.responses, strict=True
                 )
@@ -103,6 +104,8 @@ class Uzawa(Method):
         """
         changes = []
         for pair, law, kinematics, response in zip(self._equilibrium.pairs, laws, balance.kinematics, balance.responses, strict=True):
+            if pair.rests(kinematics, law.pressure, law.traction):
+                continue
             if self._settings.augmentation_norm == "paper":
                 new_p, new_t = response.pressure - law.pressure, response.traction - law.traction
                 mixed = ratio(float(np.sum(new_p**2) + np.sum(new_t**2)), float(np.sum(law.pressure**2) + np.sum(law.traction**2)))
@@ -124,6 +127,7 @@ class Uzawa(Method):
         return largest(
             pair.off_conditions(balance.positions, kinematics, law, response, scales, self._unbalanced(pair, kinematics, balance))
             for pair, law, kinematics, response in pairs
+            if not pair.rests(kinematics, law.pressure, law.traction)
         )
 
     def _unbalanced(self, pair: PairMechanics, kinematics: Kinematics, balance: Balance) -> float:
