@@ -80,9 +80,6 @@ def run(
 
     Progress and costs go to stderr, the name of the results file to stdout.
     """
-    from rich.console import Console
-
-    from isomortar.cli.cost import costs
     from isomortar.cli.progress import progress
     from isomortar.driver import compute
 
@@ -100,6 +97,10 @@ def run(
         observer.finished()
     with results:
         if cost:
+            from rich.console import Console
+
+            from isomortar.cli.cost import costs
+
             Console(stderr=True).print(costs(results))
     print(path)
 
