@@ -215,6 +215,15 @@ def test_a_target_below_the_truth_is_refused_with_what_it_needs(scene):
     assert search.uncertainty > 1e-6 / 3
 
 
+def test_what_can_not_be_refined_has_no_truth(scene):
+    """Else one run twice would know it to the last bit."""
+    dials = (Dial("elements of block along u", (Setting("2"), Setting("4")), 1, "", part="elements"),)
+    search = Search(Formula(scene, dials), dials, [wanted("force.top.x", scene.problem())], 1e6)
+    search.screen()
+    with pytest.raises(IsomortarError, match="nothing of the scene can be refined"):
+        search.find_truth(0.1)
+
+
 def test_what_is_nothing_in_a_scene_is_said_to_be(scene):
     _, answer = searched(scene, 0.01, wants=("force.top.y",))
     assert "is nothing in this scene" in answer.why

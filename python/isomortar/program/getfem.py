@@ -44,7 +44,7 @@ class GetFEM:
     python : str
         An interpreter that finds the module getfem.
     works : bool
-        Whether its load steps tell their works, which are integrated for us and cost about 2 % more: not where it is timed.
+        Whether its load steps tell their works, which are integrated for us: not where it is timed.
     """
 
     name = "GetFEM"

@@ -122,12 +122,14 @@ class Search:
         Raises
         ------
         IsomortarError
-            Such a run does not come to its end.
+            Such a run does not come to its end, or the two are one: nothing can be refined.
         """
         for level in range(1, 1 + max(len(dial.settings) for dial in self.dials)):
             pair = self._refined(1, level, 1), self._refined(2, max(0, level - 1), 2)
             if self.truth and (pair[0] == self.truth.choice or self.laboratory.spent + sum(map(self._cost, pair)) > TRUTH * self.budget):
                 return
+            if pair[0] == pair[1]:
+                raise IsomortarError("nothing of the scene can be refined further, so that two runs cannot tell what the truth is")
             truth, rival = self.laboratory.run(pair)
             failed = [outcome for outcome in (truth, rival) if outcome.failure]
             if failed and self.truth:
