@@ -61,18 +61,37 @@ def numbers(force=((1.0, 0.0, 0.0),) * 4, cpu=1.0, **more):
 def test_a_curve_begins_at_rest_and_is_linear_between_load_steps(scene):
     run = numbers([(1.0, 0, 0), (2.0, 0, 0), (2.0, 0, 0), (4.0, 3.0, 0)])
     whole = wanted("force.top.x", scene.problem())
-    assert whole.values(run).mean() == pytest.approx((0.25 + 0.75 + 1.0 + 1.5) / 2, rel=1e-3)
+    assert whole.values(run, run).mean() == pytest.approx((0.25 + 0.75 + 1.0 + 1.5) / 2, rel=1e-3)
     assert whole.weights(run).sum() == pytest.approx(1.0)
-    assert wanted("force.top.x@press", scene.problem()).values(run).max() < 2.0
-    assert wanted("force.top.x@press:end", scene.problem()).values(run) == [2.0]
-    assert wanted("force.top:peak", scene.problem()).values(run) == [5.0]  # the norm, where no component is named
-    assert wanted("area.floor:end", scene.problem()).values(run) == [0.3]
+    assert wanted("force.top.x@press", scene.problem()).values(run, run).max() < 2.0
+    assert wanted("force.top.x@press:end", scene.problem()).values(run, run) == [2.0]
+    assert wanted("force.top:peak", scene.problem()).values(run, run) == [5.0]  # the norm, where no component is named
+    assert wanted("area.floor:end", scene.problem()).values(run, run) == [0.3]
 
 
-def test_a_field_counts_by_area(scene):
-    pressure = wanted("pressure.floor", scene.problem())
-    values, weights = pressure.values(numbers()), pressure.weights(numbers())
-    assert pressure.size(values, weights) == pytest.approx(math.sqrt(0.25 * 1 + 0.75 * 9))
+def test_a_curve_is_as_far_from_the_truth_as_its_load_steps_are(scene):
+    """Steps that are as long as a bend of the curve show it less well, and are not wrong for that."""
+    fine = numbers([(3.0, 0, 0), (2.0, 0, 0), (1.0, 0, 0), (4.0, 0, 0)])
+    whole = wanted("force.top.x", scene.problem())
+    coarse = fine | {"time": [1.0, 2.0], "force": [[[2.0, 0, 0], [4.0, 0, 0]]]}
+    assert np.array_equal(whole.values(coarse, fine), whole.values(fine, fine))
+    off = coarse | {"force": [[[2.5, 0, 0], [4.0, 0, 0]]]}
+    difference = whole.values(off, fine) - whole.values(fine, fine)
+    assert difference.max() == pytest.approx(0.5, rel=0.01)
+    assert difference.mean() == pytest.approx(0.25, rel=1e-3)  # a hat over both stages
+
+
+def test_a_curve_wants_load_steps_that_show_it(scene):
+    long = Scene.from_toml(TINY, overrides=["stages.press.steps=16", "stages.drag.steps=16"])
+
+    def steps(*texts):
+        dials = {dial.name: dial for dial in dials_of(long, [wanted(text, long.problem()) for text in texts])}
+        return [int(dials[f"load steps of {stage}"].settings[0].label) for stage in ("press", "drag")]
+
+    assert steps("force.top.x@drag") == [2, 8]
+    assert steps("force.top.x", "area.floor:end") == [8, 8]
+    assert steps("force.top.x@drag:end", "pressure.floor") == [2, 2]
+    assert "load steps of drag" in [dial.name for dial in dials_of(scene, [wanted("force.top.x", scene.problem())])]  # 2, 4, 6 and 8
 
 
 @pytest.mark.parametrize(
@@ -124,7 +143,7 @@ def test_a_dial_leaves_out_what_the_scene_can_not_have(scene):
     knob = Knob(
         "half", "nothing", lambda *_: iter([Dial("half", (Setting("own"), Setting("odd", lambda _: ["stages.press.steps=0"])), 0, "")])
     )
-    assert dials_of(scene, [knob]) == ()
+    assert dials_of(scene, knobs=[knob]) == ()
 
 
 # The search: a laboratory whose runs are formulas
@@ -260,11 +279,11 @@ def test_a_knob_is_one_entry(scene, tmp_path):
         yield Dial("friction of floor", (Setting("none", lambda _: ["contacts.floor.friction=0"]), Setting("own")), 1, spoils)
 
     knobs = (*[knob for knob in KNOBS if knob.name == "load steps"], Knob("friction", "everything that slides", dials))
-    made = dials_of(scene, knobs)
+    made = dials_of(scene, knobs=knobs)
 
     class Frictionless(Formula):
         def of(self, choice):
-            return 0.001 * (choice[1] == 0), 0.5 if choice[1] == 0 else 1.0, ""
+            return 0.001 * (choice[-1] == 0), 0.5 if choice[-1] == 0 else 1.0, ""
 
     search = Search(Frictionless(scene, made), made, [wanted("force.top.x", scene.problem())], 1e6)
     search.screen()
@@ -282,7 +301,7 @@ def test_a_knob_is_one_entry(scene, tmp_path):
 
 def test_a_search_that_was_killed_goes_on_to_the_same_answer(scene, tmp_path):
     knobs = [knob for knob in KNOBS if knob.name in ("elements", "load steps")]
-    dials = dials_of(scene, knobs)
+    dials = dials_of(scene, knobs=knobs)
     wants = [wanted("force.top.z", scene.problem())]
 
     def conducted(stop):

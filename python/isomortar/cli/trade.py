@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from isomortar.harness.trade.knobs import Dial
     from isomortar.harness.trade.laboratory import Tried
     from isomortar.harness.trade.search import Search
+    from isomortar.harness.trade.want import Want
     from isomortar.scene import Scene
 
 
@@ -63,7 +64,8 @@ def trade(
     from isomortar.scene import Scene
 
     loaded = Scene.load(scene, overrides or ())
-    _conduct(Search, loaded, dials_of(loaded), want, within, budget, jobs, out or Path("results") / f"trade-{loaded.name}")
+    wants = _wants(loaded, want)
+    _conduct(Search, loaded, dials_of(loaded, wants), wants, within, budget, jobs, out or Path("results") / f"trade-{loaded.name}")
 
 
 def advise(
@@ -91,20 +93,35 @@ def advise(
     from isomortar.scene import Scene
 
     loaded = Scene.load(scene, overrides or ())
-    _conduct(CheaperSearch, loaded, cheaper_dials(loaded), want, within, budget, jobs, out or Path("results") / f"advice-{loaded.name}")
+    wants = _wants(loaded, want)
+    _conduct(
+        CheaperSearch, loaded, cheaper_dials(loaded, wants), wants, within, budget, jobs, out or Path("results") / f"advice-{loaded.name}"
+    )
+
+
+def _wants(scene: Scene, texts: list[str]) -> list[Want]:
+    """What is wanted of the scene."""
+    from isomortar.harness.trade.want import wanted
+
+    return [wanted(text, scene.problem()) for text in texts]
 
 
 def _conduct(
-    kind: type[Search], scene: Scene, dials: Sequence[Dial], want: list[str], within: list[str], budget: float, jobs: int, folder: Path
+    kind: type[Search],
+    scene: Scene,
+    dials: Sequence[Dial],
+    wants: Sequence[Want],
+    within: list[str],
+    budget: float,
+    jobs: int,
+    folder: Path,
 ) -> None:
     """Search, write the page, say the answers."""
     from isomortar.harness.runner import local_processes
     from isomortar.harness.trade import page
     from isomortar.harness.trade.laboratory import Laboratory
-    from isomortar.harness.trade.want import wanted
 
     targets = sorted((_share(text) for text in within), reverse=True)
-    wants = [wanted(text, scene.problem()) for text in want]
     started = datetime.now().astimezone()
     with local_processes(jobs) as submit:
         search = kind(Laboratory(scene, dials, folder, submit, _tell), dials, wants, 60.0 * budget)

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from isomortar.harness.trade.knobs import KNOBS, Changes, Dial, Knob, Setting, dials_of, directions, faces_in_contact, given, stated
 from isomortar.harness.trade.search import Recommendation, Search
+from isomortar.harness.trade.want import Want
 from isomortar.model.entities import RigidPlane
 from isomortar.scene.scene import Scene
 
@@ -30,9 +31,9 @@ class CheaperSearch(Search):
         return iter(())
 
 
-def cheaper_dials(scene: Scene) -> tuple[Dial, ...]:
+def cheaper_dials(scene: Scene, wants: Sequence[Want] = ()) -> tuple[Dial, ...]:
     """Dials of what a scene may do without; of those that refine, settings up to the scene's own."""
-    found = dials_of(scene, (*VARIANTS, *KNOBS))
+    found = dials_of(scene, wants, (*VARIANTS, *KNOBS))
     cut = [Dial(d.name, d.settings[: d.own + 1], d.own, d.spoils, d.refines, d.part) if d.refines else d for d in found]
     return tuple(dial for dial in cut if len(dial.settings) > 1)
 

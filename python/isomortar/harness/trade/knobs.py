@@ -10,6 +10,7 @@ from isomortar.errors import InputError
 from isomortar.geometry.patch import MAX_ORDER, Direction
 from isomortar.geometry.quadrature import contact_points, volume_points
 from isomortar.harness.discretisations import coarse_geometry, lowest_order
+from isomortar.harness.trade.want import Want
 from isomortar.model.entities import Body, Contact, Face, Projection, RigidPlane
 from isomortar.scene.scene import Scene
 
@@ -71,17 +72,18 @@ class Knob:
     dials: Callable[[Scene, str], Iterator[Dial]]
 
 
-def dials_of(scene: Scene, knobs: Sequence[Knob] | None = None) -> tuple[Dial, ...]:
-    """All dials of a scene that have more than one setting the scene can have.
+def dials_of(scene: Scene, wants: Sequence[Want] = (), knobs: Sequence[Knob] | None = None) -> tuple[Dial, ...]:
+    """All dials of a scene that have more than one setting which the scene can have and which shows what is wanted.
 
     Parameters
     ----------
     scene : Scene
+    wants : sequence of Want
     knobs : sequence of Knob, optional
         Default: `KNOBS`.
     """
     found = [dial for knob in (KNOBS if knobs is None else knobs) for dial in knob.dials(scene, knob.spoils)]
-    possible = [_possible(scene, dial) for dial in found]
+    possible = [_possible(scene, dial, wants) for dial in found]
     return tuple(dial for dial in possible if len(dial.settings) > 1)
 
 
@@ -93,15 +95,16 @@ def changed(scene: Scene, settings: Sequence[Setting]) -> Scene:
     return scene
 
 
-def _possible(scene: Scene, dial: Dial) -> Dial:
-    """The dial without settings that the scene can not have: two bodies that are glued share a mesh, say."""
+def _possible(scene: Scene, dial: Dial, wants: Sequence[Want]) -> Dial:
+    """The dial without settings that the scene can not have (glued bodies share a mesh, say), or that do not show what is wanted."""
     kept = []
     for number, setting in enumerate(dial.settings):
         try:
-            changed(scene, [setting]).problem()
+            problem = changed(scene, [setting]).problem()
         except InputError:
             continue
-        kept.append(number)
+        if all(want.shown(problem) for want in wants):
+            kept.append(number)
     return Dial(dial.name, tuple(dial.settings[n] for n in kept), kept.index(dial.own), dial.spoils, dial.refines, dial.part)
 
 
@@ -194,15 +197,10 @@ def _cells(scene: Scene, spoils: str) -> Iterator[Dial]:
 
 
 def _load_steps(scene: Scene, spoils: str) -> Iterator[Dial]:
-    """Load steps of all stages alike."""
-    own = [stage.steps for stage in scene.problem().stages]
-    counts = sorted({tuple(max(1, round(n * factor)) for n in own) for factor in STEPS}, key=sum)
-
-    def overrides(steps: Sequence[int]) -> Changes:
-        return given([f"stages.{number}.steps={count}" for number, count in enumerate(steps)])
-
-    settings = [Setting(" + ".join(map(str, steps)), None if list(steps) == own else overrides(steps)) for steps in counts]
-    yield Dial("load steps", tuple(settings), counts.index(tuple(own)), spoils)
+    """Load steps of each stage."""
+    for number, stage in enumerate(scene.problem().stages):
+        counts = sorted({max(1, round(stage.steps * factor)) for factor in STEPS})
+        yield _values(f"stages.{number}.steps", f"load steps of {stage.name}", counts, spoils, stage.steps, refines=True)
 
 
 def _tolerances(scene: Scene, spoils: str) -> Iterator[Dial]:

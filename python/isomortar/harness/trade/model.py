@@ -37,15 +37,15 @@ class Yardstick:
     """
 
     def __init__(self, want: Want, truth: Tried, rival: Tried) -> None:
-        self.want = want
-        self.truth = want.values(truth.numbers)
+        self.want, self._truth = want, truth.numbers
+        self.truth = self.values(truth)
         self.weights = want.weights(truth.numbers)
         self.size = want.size(self.truth, self.weights)
         self.uncertainty = self.error(rival)
 
     def values(self, outcome: Tried) -> FloatArray:
         """What is wanted, of a run, shape (n,)."""
-        return self.want.values(outcome.numbers)
+        return self.want.values(outcome.numbers, self._truth)
 
     def norm(self, values: FloatArray) -> float:
         """Norm of some values over that of the truth."""

@@ -16,6 +16,8 @@ from isomortar.scene.types import listed
 
 #: Places of a stage that curves are compared at, evenly apart.
 PLACES = 200
+#: Load steps of a stage that show a curve, where the scene has as many.
+FEWEST = 5
 _PATTERN = re.compile(r"(?P<quantity>\w+)\.(?P<where>[\w-]+)(\.(?P<component>\w+))?(@(?P<stage>[\w-]+))?(:(?P<part>\w+))?")
 _FORM = "QUANTITY.NAME[.COMPONENT][@STAGE][:PART]"
 _SUPPORT, _CURVES, _FIELDS = ("force", "moment"), ("force", "moment", "area"), ("pressure", "traction")
@@ -31,14 +33,18 @@ class Want:
     text : str
         As it was asked for: ``force.top.x``, ``moment.top.z@twist:peak``, ``pressure.floor``.
     values : callable
-        From the numbers of a run (`isomortar.harness.trade.run.traded`) to what is compared, shape (n,).
+        From the numbers of a run (`isomortar.harness.trade.run.traded`) and of the truth to what is compared, shape (n,). How far a curve
+        is from the truth is known where the run has a load step, and linear between them; the truth alone is linear itself.
     weights : callable
-        From them to what each value counts, shape (n,).
+        From the numbers of a run to what each value counts, shape (n,).
+    shown : callable
+        Whether a problem has the load steps that show it.
     """
 
     text: str
-    values: Callable[[Mapping[str, Any]], FloatArray]
+    values: Callable[[Mapping[str, Any], Mapping[str, Any]], FloatArray]
     weights: Callable[[Mapping[str, Any]], FloatArray]
+    shown: Callable[[Problem], bool] = lambda _: True
 
     def size(self, values: FloatArray, weights: FloatArray) -> float:
         """Weighted norm of some values."""
@@ -69,19 +75,19 @@ def wanted(text: str, problem: Problem) -> Want:
         number = _contact(where, problem)
         if found["component"] or found["stage"] or found["part"]:
             raise InputError(f"is {text!r}; a field is that at the end, without component, stage or part: {quantity}.{where}", "want")
-        return Want(text, lambda run: _share(run, quantity, number), lambda run: _share(run, "cells", number))
+        return Want(text, lambda run, _: _share(run, quantity, number), lambda run: _share(run, "cells", number))
     _among(part, _PARTS, f"{text!r} has no such part")
-    within = _stages(found["stage"], problem)
+    stages = _stages(found["stage"], problem)
     if quantity == "area":
         if found["component"]:
             raise InputError(f"is {text!r}; an area has no components: area.{where}", "want")
         number = _contact(where, problem)
-        return _of_curve(text, lambda run: np.asarray(run["area"], float)[number], within, part)
+        return _of_curve(text, lambda run: np.asarray(run["area"], float)[number], stages, part, problem)
     names = [support.name for support in problem.supports]
     _among(where, names, f"{text!r} has no such support")
     component = found["component"] or "norm"
     _among(component, _COMPONENTS, f"{text!r} has no such component")
-    return _of_curve(text, lambda run: _component(np.asarray(run[quantity], float)[names.index(where)], component), within, part)
+    return _of_curve(text, lambda run: _component(np.asarray(run[quantity], float)[names.index(where)], component), stages, part, problem)
 
 
 def wishes(problem: Problem) -> tuple[str, ...]:
@@ -93,17 +99,28 @@ def wishes(problem: Problem) -> tuple[str, ...]:
     return (*curves, *fields)
 
 
-def _of_curve(text: str, curve: Callable[[Mapping[str, Any]], FloatArray], within: tuple[float, float], part: str) -> Want:
-    places = np.linspace(*within, round(PLACES * (within[1] - within[0])), endpoint=False) + 0.5 / PLACES
+def _of_curve(text: str, curve: Callable[[Mapping[str, Any]], FloatArray], stages: range, part: str, problem: Problem) -> Want:
+    first, last = float(stages.start), float(stages.stop)
+    places = np.linspace(first, last, PLACES * len(stages), endpoint=False) + 0.5 / PLACES
+    needed = [min(FEWEST, problem.stages[n].steps) for n in stages]
+    count = len(places) if part == "curve" else 1
 
-    def values(run: Mapping[str, Any]) -> FloatArray:
-        times, heights = np.append(0.0, run["time"]), np.append(0.0, curve(run))  # at rest before the first load step
+    def recorded(run: Mapping[str, Any]) -> tuple[FloatArray, FloatArray]:
+        return np.append(0.0, run["time"]), np.append(0.0, curve(run))  # at rest before the first load step
+
+    def values(run: Mapping[str, Any], truth: Mapping[str, Any]) -> FloatArray:
+        times, heights = recorded(run)
         if part == "end":
-            return np.array([np.interp(within[1], times, heights)])
-        inside = heights[(times >= within[0]) & (times <= within[1])]
-        return np.array([np.abs(inside).max()]) if part == "peak" else np.interp(places, times, heights)
+            return np.array([np.interp(last, times, heights)])
+        if part == "peak":
+            return np.array([np.abs(heights[(times >= first) & (times <= last)]).max()])
+        right = recorded(truth)
+        return np.interp(places, *right) + np.interp(places, times, heights - np.interp(times, *right))
 
-    return Want(text, values, lambda run: np.full(len(values(run)), 1.0 / len(values(run))))
+    def shown(other: Problem) -> bool:
+        return part != "curve" or all(other.stages[n].steps >= least for n, least in zip(stages, needed, strict=True))
+
+    return Want(text, values, lambda _: np.full(count, 1.0 / count), shown)
 
 
 def _component(vectors: FloatArray, component: str) -> FloatArray:
@@ -116,13 +133,13 @@ def _share(run: Mapping[str, Any], name: str, contact: int) -> FloatArray:
     return np.asarray(run[name], float)[ends[contact] - int(run["counts"][contact]) : ends[contact]]
 
 
-def _stages(name: str | None, problem: Problem) -> tuple[float, float]:
-    """Where a stage begins and ends, where each has length one; of all without a name."""
+def _stages(name: str | None, problem: Problem) -> range:
+    """The numbers of the stages that are meant: all, without a name. In a trade each takes a time of one."""
     names = [stage.name for stage in problem.stages]
     if name is None:
-        return 0.0, float(len(names))
+        return range(len(names))
     _among(name, names, f"there is no stage {name!r}")
-    return float(names.index(name)), names.index(name) + 1.0
+    return range(names.index(name), names.index(name) + 1)
 
 
 def _contact(name: str, problem: Problem) -> int:
