@@ -27,7 +27,7 @@ SOLVER = {
     "max_augmentations": 100,
     "max_iterations": 30,
     "max_cuts": 8,
-    "measures": ("forgiving", "margin", "reversal", "halving", "keeping"),
+    "measures": ("forgiving", "margin", "reversal", "halving", "keeping", "extrapolation"),
     "path_tolerance": None,
 }
 _FRICTION = {"cohesion": 0.0, "traction_max": None, "elastic_slip": 0.0}
@@ -163,7 +163,7 @@ newton_tolerance = 1e-9
 complementarity_tolerance = 1e-8
 max_iterations = 30
 max_cuts = 8
-measures = ["forgiving", "margin", "reversal", "halving", "keeping"]
+measures = ["forgiving", "margin", "reversal", "halving", "keeping", "extrapolation"]
 """
 )
 

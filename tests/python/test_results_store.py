@@ -21,6 +21,7 @@ from isomortar.results import layout
 from isomortar.results.files import sealed
 from isomortar.results.reader import Results
 from isomortar.results.writer import ResultsWriter
+from isomortar.solve.record import ContactRates, Rates, StepResult
 from results_samples import problem, step_result
 
 SCENE = "[scene]\nname = 'rolling'  # größer ≤ ö\n"
@@ -156,9 +157,49 @@ def test_work_that_an_older_file_does_not_hold_is_not_a_number(tmp_path: Path) -
         assert np.array_equal(results.curve("spurious_work", contact="ground"), [np.nan] * 3 + expected, equal_nan=True)
 
 
+def with_rates(number: int) -> StepResult:
+    """A load step with rates, of which those of tractions are zero where there is no friction."""
+    result = step_result(number)
+    random = np.random.default_rng(number)
+    pairs = zip(problem().contacts, result.state.contacts, strict=True)
+    contacts = tuple(
+        ContactRates(random.normal(size=state.pressure.shape), random.normal(size=state.traction.shape) * contact.friction_law.acts)
+        for contact, state in pairs
+    )
+    rates = Rates(float(number), random.normal(size=result.state.positions.shape), contacts)
+    return dataclasses.replace(result, state=dataclasses.replace(result.state, rates=rates))
+
+
+@pytest.mark.parametrize("states", ["every", "last"])
+def test_rates_are_those_of_the_newest_step(tmp_path: Path, states: str) -> None:
+    """Each row takes the place of the one before, and of a step without rates there is none."""
+    path = tmp_path / "run.h5"
+    writer = ResultsWriter(path, problem(), SCENE, "0.1", states=states)
+    for number, rates in ((1, False), (2, True), (3, True), (4, False), (5, True)):
+        expected = with_rates(number) if rates else step_result(number)
+        writer.recorded(expected)
+        with Results(path) as results:
+            assert same(results.last_step(), expected)
+            if states == "every" and number > 1:
+                assert results.step(number - 1).state.rates is None
+
+
+def test_a_file_from_before_there_were_rates_is_resumed(tmp_path: Path) -> None:
+    path = tmp_path / "run.h5"
+    write(path, range(1, 3))
+    with h5py.File(path, "a") as file:
+        del file["rates"]
+    path.write_bytes(sealed(path.read_bytes()))
+    ResultsWriter(path, problem(), SCENE, "0.1", resume=True).recorded(step_result(3))
+    ResultsWriter(path, problem(), SCENE, "0.1", resume=True).recorded(with_rates(4))
+    with Results(path) as results:
+        assert same(results.last_step(), with_rates(4))
+
+
 def test_every_dataset_has_unit_and_description(tmp_path: Path) -> None:
     path = tmp_path / "run.h5"
     write(path, range(1, 3))
+    ResultsWriter(path, problem(), SCENE, "0.1", resume=True).recorded(with_rates(3))
     bare = []
 
     def look(name: str, entry: h5py.Dataset | h5py.Group) -> None:
@@ -285,6 +326,7 @@ def test_no_changed_byte_reaches_hdf5(tmp_path: Path, monkeypatch: pytest.Monkey
 
 CHILD = """
 import sys
+from isomortar.solve.record import ContactRates, Rates, StepResult
 from results_samples import problem, step_result
 from isomortar.results.reader import Results
 from isomortar.results.writer import ResultsWriter

@@ -223,8 +223,8 @@ class Stage:
 #: help the monolithic loop. forgiving: slip rows with the current traction in place of the cone's. margin: what slips at the
 #: start of an increment goes on slipping. reversal: predicted slip against its traction sticks instead. halving: updates that
 #: fold an element, lose a projection, return to an earlier set of states, or double the merit are halved; in Uzawa's loop those that
-#: leave a larger residual.
-Measure = Literal["forgiving", "margin", "reversal", "halving", "keeping"]
+#: leave a larger residual. extrapolation: an increment begins where it ends if all goes on as in the last one of its stage.
+Measure = Literal["forgiving", "margin", "reversal", "halving", "keeping", "extrapolation"]
 #: Residuals and distances that are left stand for an error of the result: above this share none is worth having.
 Tolerance = Annotated[Positive, Field(le=1e-3)]
 Penalty = Annotated[Real, Field(ge=1e-12, le=1e12)]

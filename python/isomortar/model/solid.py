@@ -67,6 +67,8 @@ class Solid:
         FoldedElementError
             Naming body and element.
         """
+        if self._last is not None and self._last[0] is positions:
+            return self._last[1]
         forces = np.zeros_like(self._numbering.reference)
         self._add(forces, positions, None)
         return forces
@@ -74,7 +76,7 @@ class Solid:
     def forces_and_tangent(self, positions: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Internal forces and tangent blocks, shape (blocks, 3, 3): block, row component, column component.
 
-        Those of the last positions are kept: the start of a load step asks for them twice.
+        Those of the last positions are kept: the start of a load increment asks for them twice, and for the forces again.
         """
         if self._last is None or self._last[0] is not positions:
             forces, tangent = np.zeros_like(positions), np.zeros((len(self.pattern.column), 3, 3))

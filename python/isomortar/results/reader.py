@@ -20,7 +20,17 @@ from isomortar.model.entities import Contact, Problem
 from isomortar.results import layout
 from isomortar.results.definition import read_problem
 from isomortar.results.files import is_marked, is_whole
-from isomortar.solve.record import AugmentationRecord, ContactResult, ContactState, IterationRecord, Reaction, State, StepResult
+from isomortar.solve.record import (
+    AugmentationRecord,
+    ContactRates,
+    ContactResult,
+    ContactState,
+    IterationRecord,
+    Rates,
+    Reaction,
+    State,
+    StepResult,
+)
 
 Value = TypeVar("Value")
 
@@ -236,6 +246,7 @@ def _step_result(file: h5py.File, problem: Problem, number: int, row: int, kept:
         state=State(
             positions=file["states/positions"][kept],
             contacts=tuple(ContactState(**_get(file, state, layout.CONTACT_STATE, kept)) for state in states),
+            rates=_rates(file, problem) if number == file["curves/step"][-1] else None,
         ),
         reactions=tuple(Reaction(**_get(file, f"curves/supports/{s.name}", layout.REACTION, row)) for s in problem.supports),
         contacts=tuple(
@@ -247,6 +258,14 @@ def _step_result(file: h5py.File, problem: Problem, number: int, row: int, kept:
         counters={name: int(data[row]) for name, data in file["counters"].items() if data[row] >= 0},
         orderings={int(matrices): data.asstr()[row] for matrices, data in file["orderings"].items() if data[row]},
     )
+
+
+def _rates(file: h5py.File, problem: Problem) -> Rates | None:
+    """Rates of the newest step; None where it has none, as in a file from before there were any."""
+    if "rates/time" not in file or not len(file["rates/time"]):
+        return None
+    of_contacts = (_get(file, f"rates/contacts/{contact.name}", layout.CONTACT_RATES, 0) for contact in problem.contacts)
+    return Rates(**_get(file, "rates", layout.RATES, 0), contacts=tuple(ContactRates(**values) for values in of_contacts))
 
 
 def _get(file: h5py.File, group: str, quantities: Mapping[str, layout.Quantity], row: int) -> dict[str, Any]:

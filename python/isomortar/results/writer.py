@@ -13,12 +13,12 @@ import h5py
 import numpy as np
 
 from isomortar.errors import ResultsError
-from isomortar.model.entities import Problem
+from isomortar.model.entities import Contact, Problem
 from isomortar.results import layout
 from isomortar.results.definition import differences, write_problem
 from isomortar.results.files import SEAL_SIZE, read, replace, sealed
 from isomortar.results.reader import Results
-from isomortar.solve.record import AugmentationRecord, Observer, StepResult
+from isomortar.solve.record import AugmentationRecord, Observer, Rates, StepResult
 
 #: HDF5 1.10's format: its metadata carry checksums (the data get theirs from the filter), so damage is seen, not read.
 LIBVER = ("v110", "v110")
@@ -134,6 +134,7 @@ class ResultsWriter(Observer):
         _put_named(file["orderings"], layout.ORDERING, {str(matrices): name for matrices, name in result.orderings.items()}, row)
         _log(file, result.step, result.augmentations)
         self._put_state(file, result)
+        self._put_rates(file, result.state.rates)
 
     def _put_state(self, file: h5py.File, result: StepResult) -> None:
         kept = len(file["states/step"])
@@ -143,8 +144,27 @@ class ResultsWriter(Observer):
         _put_row(file, "states/positions", layout.POSITIONS, result.state.positions, kept)
         for contact, state, measured in zip(self._problem.contacts, result.state.contacts, result.contacts, strict=True):
             for quantities, source in ((layout.CONTACT_STATE, state), (layout.CONTACT_VALUES, measured)):
-                wanted = {name: kind for name, kind in quantities.items() if contact.friction_law.acts or not kind.frictional}
-                _put(file, f"states/contacts/{contact.name}", wanted, source, kept)
+                _put(file, f"states/contacts/{contact.name}", _wanted(contact, quantities), source, kept)
+
+    def _put_rates(self, file: h5py.File, rates: Rates | None) -> None:
+        """One row of rates, or none: those of earlier steps nobody asks for."""
+        if rates is None:
+            file.require_group("rates").visititems(_empty)
+            return
+        _put(file, "rates", layout.RATES, rates, 0)
+        for contact, of_contact in zip(self._problem.contacts, rates.contacts, strict=True):
+            _put(file, f"rates/contacts/{contact.name}", _wanted(contact, layout.CONTACT_RATES), of_contact, 0)
+
+
+def _wanted(contact: Contact, quantities: Mapping[str, layout.Quantity]) -> dict[str, layout.Quantity]:
+    """What is written of a contact."""
+    return {name: kind for name, kind in quantities.items() if contact.friction_law.acts or not kind.frictional}
+
+
+def _empty(_: str, member: h5py.Group | h5py.Dataset) -> None:
+    """Take the rows of a dataset."""
+    if isinstance(member, h5py.Dataset):
+        member.resize(0, axis=0)
 
 
 def _put(file: h5py.File, group: str, quantities: Mapping[str, layout.Quantity], source: object, row: int) -> None:

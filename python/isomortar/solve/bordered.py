@@ -153,7 +153,7 @@ def _border(equilibrium: Equilibrium, k: int, balance: Balance, law: Law, target
     lengths = np.concatenate([[1.0], pair.tangent_lengths(control)])
     present = control.weight > 0
     weight = np.where(present, control.weight, median(control.weight[present]))
-    loose = pair.loose(balance.kinematics[k].projections)
+    loose = pair.loose(balance.kinematics[k].projections.found)
     return Border(pair, blocks, equation.ravel(), weight[:, None] / lengths, float(law.penalties[0]) * lengths, target, loose)
 
 

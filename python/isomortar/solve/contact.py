@@ -13,7 +13,7 @@ from isomortar import _bindings
 from isomortar._bindings import Control, Law, Pattern, Projections, Response
 from isomortar._codes import ROW_KINDS, PointState
 from isomortar.errors import LostProjectionError
-from isomortar.geometry.patch import FloatArray
+from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model import constants
 from isomortar.model.entities import SolverSettings
 from isomortar.model.held import held_by, nothing_held
@@ -274,8 +274,10 @@ class PairMechanics:
         self._ledger.counts["contact tangents"] += 1
         return Blocks(patterns, rows, changes, trial, geometric)
 
-    def loose(self, projections: Projections) -> BoolArray:
+    def loose(self, found: IntArray) -> BoolArray:
         """Multipliers whose conditions may repeat others where they are active, shape (constraints, 3) (theory 6.4).
+
+        `found`: 0 of slave quadrature points without a foot.
 
         Control points of two contacts have six conditions for three components, of which the pressures are not too many; where supports
         have moved them along a plane slips are given, and where these have them just touch one they leave nothing to a pressure; and of
@@ -284,7 +286,7 @@ class PairMechanics:
         nodes = self.pair.slave.test.nodes
         given = self.shared | self.held.moved
         loose: BoolArray = np.column_stack([self.held.rests, given, given])
-        loose[nodes[np.any(projections.found.reshape(len(nodes), -1) == 0, axis=1)]] = True
+        loose[nodes[np.any(found.reshape(len(nodes), -1) == 0, axis=1)]] = True
         if self.elastic:  # these tractions are told by their slips
             loose[:, 1:] = False
         return loose

@@ -90,8 +90,15 @@ class Equilibrium:
         reference = self.numbering.reference
         return State(reference.copy(), tuple(pair.initial(reference) for pair in self.pairs))
 
-    def begin(self, start: State, time: float) -> tuple[FloatArray, Scales]:
+    def begin(self, start: State, time: float, first: FloatArray | None = None) -> tuple[FloatArray, Scales]:
         """Begin a load increment from a converged state to a load time.
+
+        Parameters
+        ----------
+        start : State
+        time : float
+        first : ndarray, optional
+            Positions of the first iterate, where these are not those of the start.
 
         Returns
         -------
@@ -103,7 +110,7 @@ class Equilibrium:
         for pair, contact in zip(self.pairs, start.contacts, strict=True):
             pair.begin(self.supports, start.positions, contact, time)
         with self.ledger.phase("solid"):
-            scales = self.measures.scales(start.positions)
+            scales = self.measures.scales(start.positions if first is None else first)
         return self.supports.increment(start.positions, time), scales
 
     def state(self, balance: Balance) -> State:

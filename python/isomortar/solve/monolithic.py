@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -10,16 +10,20 @@ import numpy as np
 
 from isomortar._bindings import Law, Response
 from isomortar._codes import PointState
-from isomortar.errors import FoldedElementError, LostProjectionError
+from isomortar.errors import ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
 from isomortar.solve.bordered import Border, Correction, solve_bordered, solve_with_kept_factors
 from isomortar.solve.contact import Kinematics, Multipliers, largest
 from isomortar.solve.equilibrium import Balance, Equilibrium
+from isomortar.solve.extrapolation import multipliers_ahead, positions_ahead
 from isomortar.solve.method import Increment, Method, augmentation_record
-from isomortar.solve.newton import Iterate, Newton
-from isomortar.solve.record import State
+from isomortar.solve.newton import Converged, Iterate, Newton
+from isomortar.solve.record import IterationRecord, State
 from isomortar.solve.scales import Scales
+
+#: Note of an iteration whose positions and multipliers went on from the last increment.
+EXTRAPOLATION = "extrapolation"
 
 
 class Monolithic(Method):
@@ -27,13 +31,30 @@ class Monolithic(Method):
 
     def advance(self, start: State, time: float, step: int) -> Increment:
         """Solve the increment; see `Method.advance`."""
-        prescribed, scales = self._equilibrium.begin(start, time)
-        newton = _BorderedNewton(self._equilibrium, start, scales)
-        found = newton.solve(newton.first(), prescribed, partial(self._observer.iteration, step, time, 1))
+        observe = partial(self._observer.iteration, step, time, 1)
+        newton, found = self._from_ahead(start, time, observe) or self._from_start(start, time, observe)
         last = found.iterate
         self._equilibrium.complete(last.balance)
         record = augmentation_record(1, newton.settled(last), (last.gap_pressure, last.gap_traction), found.log)
         return Increment(last.balance, (record,), (found.order,))
+
+    def _from_start(self, start: State, time: float, observe: Callable[[IterationRecord], None]) -> _Solved:
+        """The solution from the start, with the prescribed increment in the first solve."""
+        prescribed, scales = self._equilibrium.begin(start, time)
+        newton = _BorderedNewton(self._equilibrium, start, scales)
+        return newton, newton.solve(newton.first(), prescribed, observe)
+
+    def _from_ahead(self, start: State, time: float, observe: Callable[[IterationRecord], None]) -> _Solved | None:
+        """The solution from where all goes on as in the last increment; None where that is not known, or leads nowhere (theory 6.7)."""
+        if start.rates is None:
+            return None
+        positions = positions_ahead(start, start.rates, self._equilibrium.supports, time)
+        try:
+            _, scales = self._equilibrium.begin(start, time, positions)
+            newton = _BorderedNewton(self._equilibrium, start, scales)
+            return newton, newton.solve(newton.ahead(positions, time - start.rates.time), None, observe, (EXTRAPOLATION,))
+        except (ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError):
+            return None
 
 
 @dataclass(frozen=True)
@@ -80,6 +101,14 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
         pairs = self._equilibrium.pairs
         multipliers = [(contact.pressure, pair.sliding(contact)) for pair, contact in zip(pairs, self._start.contacts, strict=True)]
         return self._evaluate(self._start.positions, multipliers, self._margin, [pair.held.still for pair in pairs])
+
+    def ahead(self, positions: FloatArray, length: float) -> _BorderedIterate:
+        """The first iterate at positions ahead of the start, with multipliers that went on by a length at their rates (theory 6.7)."""
+        rates = self._start.rates
+        assert rates is not None
+        parts = zip(self._equilibrium.pairs, self._start.contacts, rates.contacts, strict=True)
+        multipliers = [multipliers_ahead(pair, contact, rate, length) for pair, contact, rate in parts]
+        return self._evaluate(positions, multipliers, self._margin, [pair.held.still for pair in self._equilibrium.pairs])
 
     def settled(self, iterate: _BorderedIterate) -> list[Law]:
         """The laws of a converged iterate, with the parameters of pairs that rest."""
@@ -196,3 +225,7 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
         if following.states != iterate.states and following.states in self._trail.states and halving == 0:
             return "cycle"
         return "" if following.merit <= constants.MERIT_GROWTH * iterate.merit else "merit"
+
+
+#: A Newton loop that has converged, with what it came to.
+_Solved = tuple[_BorderedNewton, Converged[_BorderedIterate]]

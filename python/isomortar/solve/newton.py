@@ -79,25 +79,29 @@ class Newton(ABC, Generic[Iterated, Corrected]):
         self._keeps = "keeping" in self._settings.measures
         self._factorised = False
 
-    def solve(self, iterate: Iterated, prescribed: FloatArray, observe: Callable[[IterationRecord], None]) -> Converged[Iterated]:
+    def solve(
+        self, iterate: Iterated, prescribed: FloatArray | None, observe: Callable[[IterationRecord], None], notes: tuple[str, ...] = ()
+    ) -> Converged[Iterated]:
         """Iterate until forces are in balance.
 
         Parameters
         ----------
         iterate : Iterate
             Where the iteration starts.
-        prescribed : ndarray, shape (control points, 3)
-            Increment of the prescribed positions, which enters the first solve with a tangent of its own.
+        prescribed : ndarray, shape (control points, 3), or None
+            Increment of the prescribed positions, which enters the first solve with a tangent of its own; None: there they are.
         observe : callable
             Gets the record of every iteration.
+        notes : tuple of str
+            What acted where the iteration starts.
 
         Raises
         ------
         ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError
         """
-        moves = bool(np.any(prescribed))
+        moves = prescribed is not None and bool(np.any(prescribed))
         keep = self._keeps and self._factorised and not moves
-        log, tangents, notes = list[IterationRecord](), 0, tuple[str, ...]()
+        log, tangents = list[IterationRecord](), 0
         self._trail = Trail()
         for iteration in count():
             self._trail.add(iterate.balance)

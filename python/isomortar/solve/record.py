@@ -34,11 +34,37 @@ class ContactState:
 
 
 @dataclass(frozen=True)
+class ContactRates:
+    """How fast a load increment changed the pressures, shape (n,), and tractions, shape (n, 2), of a contact pair, per load step."""
+
+    pressure: FloatArray
+    traction: FloatArray
+
+
+@dataclass(frozen=True)
+class Rates:
+    """How fast a load increment changed things, per load step (theory 6.7).
+
+    Parameters
+    ----------
+    time : float
+        Load time at which it ended.
+    positions : ndarray, shape (n, 3)
+    contacts : tuple of ContactRates
+    """
+
+    time: float
+    positions: FloatArray
+    contacts: tuple[ContactRates, ...]
+
+
+@dataclass(frozen=True)
 class State:
-    """Positions of all control points, shape (n, 3), and the state of each contact pair."""
+    """Positions of all control points, shape (n, 3), and the state of each contact pair; rates where all may go on like that."""
 
     positions: FloatArray
     contacts: tuple[ContactState, ...]
+    rates: Rates | None = None
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,7 @@ from isomortar.solve.causes import causes
 from isomortar.solve.contact import largest, moment
 from isomortar.solve.doubts import doubts
 from isomortar.solve.equilibrium import Balance, Equilibrium
+from isomortar.solve.extrapolation import with_rates
 from isomortar.solve.lost import LostDigits
 from isomortar.solve.method import Increment, Method
 from isomortar.solve.monolithic import Monolithic
@@ -66,6 +67,7 @@ class Simulation:
         self.equilibrium = Equilibrium(problem, self.ledger)
         self._observer = observer or Observer()
         self._method = _METHODS[problem.settings.method](self.equilibrium, self._observer)
+        self._extrapolates = problem.settings.method == "monolithic" and "extrapolation" in problem.settings.measures
         self._lost, self._pulling, self._sharing = LostDigits(self.equilibrium), Pulling(self.equilibrium), Sharing(self.equilibrium)
         self._step = resume_from.step if resume_from else 0
         self._increment = resume_from.next_increment if resume_from else 1.0
@@ -114,12 +116,12 @@ class Simulation:
                 self._cut(step, state, target, increment, longest, error)
                 cuts += 1
                 continue
-            time, substeps = target, substeps + len(parts)
-            for part in parts:
+            for part, end in zip(parts, np.linspace(time, target, len(parts) + 1)[1:], strict=True):
                 log += part.augmentations
                 orders += [order for order in part.orders if np.isfinite(order)]
                 work += self._work(state, part.balance)
-                state = self.equilibrium.state(part.balance)
+                state = self._reached(state, part.balance, float(end), (target - time) / len(parts))
+            time, substeps = target, substeps + len(parts)
             self._grow(increment / longest, parts)
         result = self._result(step, state, parts[-1].balance, work, tuple(log), orders, substeps, cuts)
         self._warn(self._lost.after_step(parts[-1].balance, result))
@@ -133,12 +135,18 @@ class Simulation:
         tolerance = self.problem.settings.path_tolerance
         if tolerance is None:
             return [whole]
-        first = self._method.advance(state, 0.5 * (time + target), step)
-        second = self._method.advance(self.equilibrium.state(first.balance), target, step)
+        middle = 0.5 * (time + target)
+        first = self._method.advance(state, middle, step)
+        second = self._method.advance(self._reached(state, first.balance, middle, 0.5 * (target - time)), target, step)
         error = self._distance(whole.balance, second.balance)
         if not error <= tolerance:
             raise ConvergenceError(f"the path error of the multipliers is {error:.2e}, above solver.path_tolerance = {tolerance:g}")
         return [first, second]
+
+    def _reached(self, start: State, balance: Balance, time: float, length: float) -> State:
+        """The state that an increment of some length leads to, at a load time."""
+        reached = self.equilibrium.state(balance)
+        return with_rates(start, reached, time, length) if self._extrapolates else reached
 
     def _distance(self, whole: Balance, halves: Balance) -> float:
         """Largest relative distance between the pressures, or the tractions, of two solutions of an increment (theory 5.9)."""
@@ -164,6 +172,10 @@ class Simulation:
                 f"1/{round(1 / increment)} step: {error}{''.join(f'. {cause[0].upper()}{cause[1:]}' for cause in likely)}"
             ) from error
         self._observer.cut(step, time, 0.5 * increment, str(error))
+
+    def _ends_stage(self, step: int) -> bool:
+        """Whether a load step is the last one of its stage: the next one does not go on as it did."""
+        return step in np.cumsum([stage.steps for stage in self.problem.stages])
 
     def _stage_of(self, step: int) -> str:
         ends = np.cumsum([stage.steps for stage in self.problem.stages])
@@ -213,7 +225,7 @@ class Simulation:
             step=step,
             stage=self._stage_of(step),
             time=float(step),
-            state=replace(state, positions=state.positions + origin),
+            state=replace(state, positions=state.positions + origin, rates=None if self._ends_stage(step) else state.rates),
             reactions=self._reactions(float(step), balance.positions, balance.total),
             contacts=contacts,
             augmentations=log,
