@@ -52,7 +52,7 @@ def test_a_stage_that_goes_on_takes_fewer_tangents_and_comes_to_the_same() -> No
 def test_what_goes_on_as_it_did_needs_no_solve_at_all() -> None:
     """Bodies that are apart: one of them goes on."""
     results = list(Simulation(block("stages.press.motions.top.translate=[0,0,-0.02]")).run())
-    assert [r.counters.get("solves", 0) for r in results[:4]] == [1, 0, 0, 0]
+    assert [r.counters["solves"] for r in results[:4]] == [1, 0, 0, 0]
 
 
 @pytest.mark.parametrize("wrong", ["folded", "not converged"])

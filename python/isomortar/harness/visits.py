@@ -59,7 +59,8 @@ class RecordingPair(PairMechanics):
 def visited_states(problem: Problem, step: int) -> list[Visit]:
     """Run a problem to a load step and take up to three states of its last increment.
 
-    They are the first iterate after the predictor, the last one before the converged state, and that itself.
+    They are the first iterate after the predictor, the last one before the converged state, and that itself. Increments begin at their
+    starts: an extrapolation that leads nowhere has visits of its own.
 
     Raises
     ------
@@ -68,6 +69,8 @@ def visited_states(problem: Problem, step: int) -> list[Visit]:
     """
     if not 1 <= step <= problem.total_steps:
         raise InputError(f"load step {step} does not exist; the scene has steps 1 to {problem.total_steps}", "step")
+    measures = tuple(measure for measure in problem.settings.measures if measure != "extrapolation")
+    problem = replace(problem, settings=replace(problem.settings, measures=measures))
     simulation = Simulation(problem)
     notes: list[Note] = []
     simulation.equilibrium.pairs[:] = [RecordingPair(pair, problem, simulation, notes) for pair in simulation.equilibrium.pairs]

@@ -15,7 +15,7 @@ from isomortar._codes import WORK
 PHASES = ("solid", "projection", "contact", "factor", "solve")
 #: What is counted, by name. Orders are those of derivatives.
 COUNTERS = {
-    "solid residuals": "internal forces of all bodies",
+    "solid residuals": "internal forces of all bodies, those that are at hand still included",
     "solid tangents": "their tangents, those that are at hand still included",
     "solid points": "quadrature points of bodies, each time that a stress is computed there",
     "contact tangents": "tangents of contacts",
@@ -73,7 +73,7 @@ class Ledger:
         """Seconds by phase (what is in none of them is `other`) and counts; both begin anew."""
         total = process_time() - self._start
         seconds = {**self.seconds, "other": total - sum(self.seconds.values()), "total": total}
-        counts = {**self.counts, **dict(zip(WORK, self.work.tolist(), strict=True))}
+        counts = {**dict.fromkeys(COUNTERS, 0), **self.counts, **dict(zip(WORK, self.work.tolist(), strict=True))}
         self.seconds = dict.fromkeys(PHASES, 0.0)
         self.counts.clear()
         self.work[:] = 0
