@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import ctypes
+import gc
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 # Parameters of glibc's mallopt, with the variables of the environment that set them too.
 _KEPT = {"MALLOC_MMAP_MAX_": (-4, 0), "MALLOC_TRIM_THRESHOLD_": (-1, -1)}
@@ -26,6 +29,20 @@ def own_process() -> None:
         for variable, (parameter, value) in _KEPT.items():
             if variable not in os.environ:
                 library.mallopt(parameter, value)
+
+
+@contextmanager
+def loading() -> Iterator[None]:
+    """Look for no garbage while modules load: what they make stays, and to look through it time and again is a twentieth of a small run.
+
+    What is there at the end is left out of later looks as well.
+    """
+    gc.disable()
+    try:
+        yield
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 def give_back_memory() -> None:

@@ -70,6 +70,15 @@ def test_a_run_loads_what_it_needs(tmp_path: Path, words: tuple[str, ...], not_n
     assert not (ASIDE | AROUND | not_needed) & names
 
 
+def test_what_is_loaded_is_not_looked_through_for_garbage(tmp_path: Path) -> None:
+    """But what comes after it is."""
+    look = COMMAND.replace('"\\n".join(sys.modules)', 'f"{gc.isenabled()} {gc.get_freeze_count()}"').replace("import sys", "import gc, sys")
+    subprocess.run([sys.executable, "-c", look, "found", "run", *PRESS, "--output", "scene.h5"], check=True, cwd=tmp_path)
+    enabled, frozen = (tmp_path / "found").read_text().split()
+    assert enabled == "True"
+    assert int(frozen) > 50_000
+
+
 def test_a_quiet_run_loads_nothing_for_progress(tmp_path: Path) -> None:
     assert "rich" not in loaded(tmp_path, "run", *PRESS, "--quiet", "--output", "scene.h5")
 

@@ -39,10 +39,13 @@ CALCULIX_NOTE = "another volumetric energy, A1/2 (J - 1)^2; contact by a penalty
 #: All that isomortar does before its first load step: imports, reading the scene, setting the system up.
 START_UP = """
 import sys
-import isomortar.cli.commands, isomortar.driver
-from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
-Simulation(Scene.load("block", sys.argv[1:]).problem())
+from isomortar._process import loading
+with loading():
+    import isomortar.cli.commands, isomortar.driver
+    from isomortar.scene import Scene
+    from isomortar.solve.simulation import Simulation
+    problem = Scene.load("block", sys.argv[1:]).problem()
+Simulation(problem)
 """
 
 

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 import isomortar
+from isomortar._process import loading
 from isomortar.cli.bench import bench
 from isomortar.cli.endings import FAILED
 from isomortar.cli.mutants import mutants
@@ -80,14 +81,15 @@ def run(
 
     Progress and costs go to stderr, the name of the results file to stdout.
     """
-    from isomortar.cli.progress import progress
-    from isomortar.driver import compute
-
     if resume and overwrite:
         raise InputError("--resume and --overwrite exclude each other: go on with the results file, or begin anew")
-    chosen = isomortar.Scene.load(scene, overrides or ())
+    with loading():
+        from isomortar.cli.progress import progress
+        from isomortar.driver import compute
+
+        chosen = isomortar.Scene.load(scene, overrides or ())
+        problem = chosen.problem()
     path = output or Path("results") / f"{chosen.name}.h5"
-    problem = chosen.problem()
     with progress(problem, quiet) as observer:
         try:
             results = compute(chosen, problem, path, observer, resume, overwrite)
