@@ -67,7 +67,7 @@ end subroutine sparse_solve
 !> Free what a handle owns.
 subroutine sparse_release(handle, status)
   use iso_c_binding, only: c_int, c_int64_t
-  use isomortar_sparse_factorisation, only: release
+  use isomortar_sparse_handles, only: release
   implicit none
   integer(c_int64_t), intent(in) :: handle
   integer(c_int), intent(out) :: status

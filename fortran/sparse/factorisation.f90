@@ -1,10 +1,4 @@
-!> Table of sparse factorisations, the one saved state of the kernel. A handle is a slot of the table and the slot's
-!> generation.
-!>
-!> Threads: `analyse` and `release` change the table and run one at a time (the caller holds Python's lock; METIS also
-!> draws from the random numbers of the whole process). `factorise` and `solve` touch their own slot only and may run at
-!> the same time for different handles: the table therefore never moves in memory, and what they call is `recursive`
-!> (locals of their own; without it Fortran 2008 lets them be shared).
+!> Sparse LU factorisations by handle (isomortar_sparse_handles).
 !>
 !> - `handle`: a pattern that was analysed, and the factors of the last matrix of that pattern.
 !> - `values` (entries): entries of the matrix, in the order of the pattern.
@@ -13,24 +7,14 @@ module isomortar_sparse_factorisation
   use, intrinsic :: iso_c_binding, only: c_associated, c_double, c_int64_t
   use isomortar_base_status, only: status_ok, status_singular, status_stale_handle, status_out_of_memory, &
     status_library
-  use isomortar_sparse_lu, only: eliminate, forget, forget_factors, lu_t, order, smallest_pivot, substitute
+  use isomortar_sparse_handles, only: free_slot, handle_of, slot_of, slots, table
+  use isomortar_sparse_lu, only: eliminate, forget_factors, lu_t, order, smallest_pivot, substitute
   use isomortar_sparse_umfpack, only: umfpack_ok, umfpack_singular, umfpack_out_of_memory, ordering_amd, ordering_metis, &
     info_last, info_size_of_unit, info_peak_memory, info_flops, info_lnz, info_unz, info_rcond
   implicit none
   private
 
-  public :: analyse, factorise, solve, release
-
-  !> Most factorisations alive at once.
-  integer(c_int64_t), parameter :: slots = 1024
-
-  !> One slot.
-  type :: factorisation
-    integer(c_int64_t) :: generation = 1
-    type(lu_t) :: lu
-  end type factorisation
-
-  type(factorisation) :: table(0:slots - 1)
+  public :: analyse, factorise, solve
 
 contains
 
@@ -63,7 +47,7 @@ contains
     call order(table(slot)%lu, indptr, indices, merge(ordering_metis, ordering_amd, by_metis), narrow_limit, code)
     narrow = allocated(table(slot)%lu%start)
     status = status_of(code)
-    if (status == status_ok) handle = table(slot)%generation * slots + slot
+    if (status == status_ok) handle = handle_of(slot)
     if (status == status_library) place = code
   end subroutine analyse
 
@@ -144,39 +128,6 @@ contains
       if (status /= status_ok) return
     end do
   end subroutine solve
-
-  !> Free what a handle owns. The handle is stale from then on, its slot free for others.
-  subroutine release(handle, status)
-    integer(c_int64_t), intent(in) :: handle
-    integer, intent(out) :: status
-
-    integer(c_int64_t) :: slot
-
-    slot = slot_of(handle)
-    status = status_stale_handle
-    if (slot == slots) return
-    call forget(table(slot)%lu)
-    table(slot)%generation = table(slot)%generation + 1
-    status = status_ok
-  end subroutine release
-
-  !> First slot that is free; `slots` when none is.
-  function free_slot() result(slot)
-    integer(c_int64_t) :: slot
-
-    do slot = 0, slots - 1
-      if (.not. c_associated(table(slot)%lu%symbolic)) return
-    end do
-  end function free_slot
-
-  !> Slot of a handle; `slots` when the handle was never given out or was released.
-  recursive function slot_of(handle) result(slot)
-    integer(c_int64_t), intent(in) :: handle
-    integer(c_int64_t) :: slot
-
-    slot = modulo(handle, slots)
-    if (handle / slots /= table(slot)%generation .or. .not. c_associated(table(slot)%lu%symbolic)) slot = slots
-  end function slot_of
 
   !> Unknown (0-based) that a singular matrix determines least: the largest entry of its null vector, which is what a solve
   !> gives, for any right-hand side; where a pivot is zero, that of the pivot.

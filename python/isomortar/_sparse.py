@@ -91,7 +91,7 @@ class SparseLU:
     """
 
     def __init__(self, indptr: LongArray, indices: LongArray, *, ordering: Ordering = "metis") -> None:
-        _check_pattern(indptr, indices)
+        check_pattern(indptr, indices)
         if ordering not in ORDERINGS:
             raise InputError(f"is {ordering!r}; allowed: {', '.join(ORDERINGS)}", "ordering")
         self.ordering = ordering
@@ -147,7 +147,7 @@ class SparseLU:
         """
         check.array("values", values, np.float64, len(self._indices))
         check.real("rcond_min", rcond_min, lambda value: 0 <= value < 1, "a number from 0 to below 1")
-        _check_finite(values, self._indptr)
+        check_finite(values, self._indptr)
         with self._lock:
             self._values = None
             found = _kernel.sparse_factorise(self._handle, values, rcond_min)
@@ -209,7 +209,7 @@ class SparseLU:
         return np.asarray(x).reshape(b.shape)
 
 
-def _check_pattern(indptr: LongArray, indices: LongArray) -> None:
+def check_pattern(indptr: LongArray, indices: LongArray) -> None:
     """Refuse what is not a square pattern in compressed rows with sorted columns."""
     check.array("indptr", indptr, np.int64, None)
     check.array("indices", indices, np.int64, None)
@@ -226,7 +226,7 @@ def _check_pattern(indptr: LongArray, indices: LongArray) -> None:
         raise InputError(f"must increase strictly within each row; they do not in row {row}", "indices")
 
 
-def _check_finite(values: FloatArray, indptr: LongArray) -> None:
+def check_finite(values: FloatArray, indptr: LongArray) -> None:
     """Refuse a matrix with NaN or infinity: its factorisation would end as singular and name the wrong unknown."""
     finite = np.isfinite(values)
     if not finite.all():

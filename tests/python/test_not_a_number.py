@@ -16,7 +16,7 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.scene import Scene
 from isomortar.solve.contact import largest, ratio
 from isomortar.solve.simulation import Simulation
-from isomortar.solve.system import LinearSystem
+from isomortar.solve.system import CheckedSystem
 
 SCENE = """
 format = 1
@@ -99,7 +99,7 @@ def test_poor_solutions_are_refined(monkeypatch: pytest.MonkeyPatch) -> None:
     right = [result.reactions[0].force for result in Simulation(problem).run()]
     solve = SparseLU.solve
     monkeypatch.setattr(SparseLU, "solve", lambda self, b, refine=2: (1.0 if refine else 1.001) * solve(self, b, refine=refine))
-    monkeypatch.setattr(LinearSystem, "_left", spied := Spy(LinearSystem._left))
+    monkeypatch.setattr(CheckedSystem, "_left", spied := Spy(CheckedSystem._left))
     for force, result in zip(right, Simulation(problem).run(), strict=True):
         np.testing.assert_allclose(result.reactions[0].force, force, rtol=1e-9, atol=1e-12)
     assert max(spied.found) > 1e-4 > 1e-9 > min(spied.found)

@@ -16,17 +16,20 @@ import numpy as np
 from fuzz.child import Ending, Wrong, tally, tried
 
 from isomortar import _bindings
+from isomortar._condensed import CondensedFactors, fill_reducing
 from isomortar._sparse import SparseLU
 from isomortar.errors import InputError, IsomortarError
 from isomortar.harness import Bound, case
 from isomortar.scene import Scene
 from isomortar.solve.simulation import Simulation
 
-#: Every routine of the kernel's interface; those of the sparse LU at the end.
+#: Those of factors.
+_FACTORS = ("analyse", "factorise", "solve", "order", "condense", "factorise_condensed", "solve_condensed")
+#: Every routine of the kernel's interface.
 ROUTINES = (
     *("add_body", "material_stress", "surface_functions", "slave_tables", "project_points", "control_quantities", "augmented_multipliers"),
     *("friction_radius", "contact_forces", "contact_blocks", "multiplier_rows", "condense_multipliers", "find_places", "add_values"),
-    *("analyse", "factorise", "solve"),
+    *_FACTORS,
 )
 #: Tiny scenes that call them all but `surface_functions`, for each kind of master, and slip sums: condensed multipliers are
 #: Uzawa's, the paper's sum has neighbours. As few iterations as there may be: under valgrind each is a third of a second.
@@ -60,7 +63,7 @@ def sound(master: str) -> dict[str, tuple[Callable[..., Any], dict[str, Any]]]:
     """Each routine with arguments as a run on a kind of master gives them, those of its last call with all of them."""
     heard: dict[str, tuple[Callable[..., Any], dict[str, Any]]] = {}
     with ExitStack() as stack:
-        for name in ROUTINES[:-3]:
+        for name in ROUTINES[: -len(_FACTORS)]:
             stack.enter_context(patch.object(_bindings, name, _listener(name, heard)))
         lower, place, slip_sum = MASTERS[master]
         last = list(Simulation(Scene.from_toml(_SCENE.format(lower=lower, master=place, slip_sum=slip_sum)).problem()).run())[-1]
@@ -70,7 +73,7 @@ def sound(master: str) -> dict[str, tuple[Callable[..., Any], dict[str, Any]]]:
     heard["surface_functions"] = _bindings.surface_functions, {"patch": face["patch"], "axis": 3, "side": 0, "xi": points}
     gradients = 0.1 * np.random.default_rng(2).standard_normal((4, 3, 3))
     heard["material_stress"] = _bindings.material_stress, {"material": heard["add_body"][1]["material"], "gradient": gradients}
-    heard |= _sparse()
+    heard |= _sparse() | _condensed()
     assert heard.keys() == {*ROUTINES}
     return heard
 
@@ -105,6 +108,33 @@ def _sparse() -> dict[str, tuple[Callable[..., Any], dict[str, Any]]]:
         "analyse": (analyse, {"indptr": start, "indices": column, "ordering": "amd"}),
         "factorise": (factorise, {"values": values, "rcond_min": 1e-13}),
         "solve": (solve, {"b": np.ones((3, 2)), "refine": 2}),
+    }
+
+
+def _condensed() -> dict[str, tuple[Callable[..., Any], dict[str, Any]]]:
+    start, column = np.array([0, 2, 4, 5], dtype=np.int64), np.array([0, 1, 0, 1, 2], dtype=np.int64)
+    values, on_face, rows = np.array([2.0, 1.0, 1.0, 3.0, 4.0]), np.array([False, True, False]), np.arange(3, dtype=np.int64)
+    added = np.asfortranarray([[1.0, 2.0], [-2.0, 1.0]])
+
+    def order(indptr: Any, indices: Any, ordering: Any) -> Any:
+        return fill_reducing(indptr, indices, ordering)
+
+    def condense(indptr: Any, indices: Any, on_face: Any, order: Any) -> Any:
+        return CondensedFactors(indptr, indices, on_face, order)
+
+    def factorise_condensed(values: Any, added: Any, rcond_min: Any) -> Any:
+        return condense(start, column, on_face, rows).factorise(values, added, rcond_min=rcond_min)
+
+    def solve_condensed(b: Any) -> Any:
+        factors = condense(start, column, on_face, rows)
+        factors.factorise(values, added)
+        return factors.solve(b)
+
+    return {
+        "order": (order, {"indptr": start, "indices": column, "ordering": "amd"}),
+        "condense": (condense, {"indptr": start, "indices": column, "on_face": on_face, "order": rows}),
+        "factorise_condensed": (factorise_condensed, {"values": values, "added": added, "rcond_min": 1e-13}),
+        "solve_condensed": (solve_condensed, {"b": np.ones(4)}),
     }
 
 
@@ -166,7 +196,9 @@ def _rearranged(value: Any, chance: random.Random) -> Any:
 
 
 def _other_entry(value: Any, chance: random.Random) -> Any:
-    if value.size:
+    if value.size and value.dtype.kind == "b":
+        value.flat[chance.randrange(value.size)] ^= True
+    elif value.size:
         numbers: tuple[Any, ...] = _INTEGERS if value.dtype.kind == "i" else _REALS
         limits = np.iinfo(value.dtype) if value.dtype.kind == "i" else np.finfo(value.dtype)
         number = chance.choice(numbers)

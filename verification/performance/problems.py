@@ -15,6 +15,7 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.harness.discretisations import Discretisation, overrides, sweep_of
 from isomortar.model.entities import Problem
 from isomortar.scene import Scene
+from isomortar.solve.condensed import Bodies
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.simulation import Simulation
 from isomortar.solve.system import LinearSystem
@@ -70,7 +71,7 @@ def solid_system(equilibrium: Equilibrium, positions: FloatArray) -> LinearSyste
 
 
 def last_system(problem: Problem, steps: int) -> System:
-    """The last linear system that is solved in some load steps, multipliers included."""
+    """The last linear system that is solved in some load steps, multipliers included, as a whole."""
     solved: list[System] = []
     solve = LinearSystem.solve
 
@@ -78,7 +79,7 @@ def last_system(problem: Problem, steps: int) -> System:
         solved[:] = [System(system.matrix().copy(), right.copy())]
         return solve(system, right)
 
-    with patch.object(LinearSystem, "solve", note):
+    with patch.object(LinearSystem, "solve", note), patch.object(Bodies, "condense", lambda *_: False):
         for _ in islice(Simulation(problem).run(), steps):
             pass
     return solved[0]

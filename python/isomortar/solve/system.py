@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -48,8 +49,82 @@ def entries(sources: Sequence[Source], size: int) -> sparse.csr_array:
     return sparse.csr_array((np.ones(len(row), dtype=np.int8), (row, column)), shape=(size, size))
 
 
-class LinearSystem:
-    """A system of a fixed pattern: analysed once, assembled, factorised and solved many times."""
+class CheckedSystem(ABC):
+    """A linear system with a fixed pattern that is factorised and solved many times; every solution is checked."""
+
+    def __init__(self, ledger: Ledger) -> None:
+        self._ledger = ledger
+
+    @abstractmethod
+    def begin(self) -> None:
+        """Begin a load increment: what it does follows from the state that it starts from, and not from increments before."""
+
+    @property
+    @abstractmethod
+    def rcond(self) -> float:
+        """Estimate of the reciprocal condition of the last factors."""
+
+    @abstractmethod
+    def factorise(self, sources: Sequence[FloatArray]) -> None:
+        """Gather the values of all sources and factorise.
+
+        Raises
+        ------
+        SingularSystemError
+            `place` is an equation that nothing holds.
+        """
+
+    @property
+    @abstractmethod
+    def ordering(self) -> Ordering | None:
+        """The ordering that general factors have kept, after the first ones."""
+
+    @abstractmethod
+    def near_null(self) -> FloatArray:
+        """A direction that a singular matrix maps to next to nothing, of length one; not a number if there is no telling."""
+
+    @abstractmethod
+    def _substituted(self, right: FloatArray) -> FloatArray:
+        """Solution by the factors as they are."""
+
+    @abstractmethod
+    def _refined(self, solution: FloatArray, right: FloatArray) -> FloatArray:
+        """A solution that leaves less."""
+
+    @abstractmethod
+    def _product(self, solution: FloatArray) -> FloatArray:
+        """The matrix times a vector."""
+
+    def solve(self, right: FloatArray) -> FloatArray:
+        """Solution for one right-hand side, shape (unknowns,).
+
+        Raises
+        ------
+        SingularSystemError
+            What it leaves of the right-hand side is not small, nor is it after refinement.
+        """
+        with self._ledger.phase("solve"):
+            solution = self._substituted(right)
+            if not self._left(solution, right) <= constants.REFINED_ABOVE:
+                solution = self._refined(solution, right)
+                left = self._left(solution, right)
+                if not left <= constants.REFUSED_ABOVE:
+                    raise SingularSystemError(
+                        f"the solution of the linear system leaves {left:.1e} of its right-hand side: round-off has taken its digits "
+                        f"(reciprocal condition {self.rcond:.1e})",
+                        -1,
+                    )
+        self._ledger.counts["solves"] += 1
+        return solution
+
+    def _left(self, solution: FloatArray, right: FloatArray) -> float:
+        """What a solution leaves of the right-hand side; not a number where it is not finite."""
+        size = float(np.linalg.norm(right))
+        return float(np.linalg.norm(right - self._product(solution))) / size if size > 0.0 else float(np.abs(solution).max(initial=0.0))
+
+
+class LinearSystem(CheckedSystem):
+    """A general system: analysed once, assembled, factorised and solved many times."""
 
     def __init__(
         self,
@@ -64,7 +139,7 @@ class LinearSystem:
         `known` is that of the first source in its own rows and columns, where it is at hand already. Without an `ordering` that one of
         the size is kept whose first factors take the fewest operations.
         """
-        self._ledger = ledger
+        super().__init__(ledger)
         first = entries(sources[:1], size) if known is None else known
         start = np.append(first.indptr, np.full(size + 1 - len(first.indptr), first.nnz, dtype=first.indptr.dtype))
         total = sparse.csr_array((first.data, first.indices, start), shape=(size, size))
@@ -72,7 +147,7 @@ class LinearSystem:
             total = total + entries(sources[1:], size)
         self._start, self._column = total.indptr.astype(np.int64), total.indices.astype(np.int64)
         self.values = np.zeros(len(self._column))
-        self._product = self.matrix()  # the values are its own
+        self._whole = self.matrix()  # the values are its own
         with ledger.phase("factor"):
             self._places = [
                 _bindings.find_places(s.pattern, s.row_of, s.column_of, s.transposed, self._start, self._column) for s in sources
@@ -80,14 +155,11 @@ class LinearSystem:
             self._rivals = [SparseLU(self._start, self._column, ordering=name) for name in ((ordering,) if ordering else orderings(size))]
         ledger.counts["analyses"] += len(self._rivals)
 
-    def factorise(self, sources: Sequence[FloatArray]) -> None:
-        """Gather the values of all sources and factorise.
+    def begin(self) -> None:
+        """The orderings that were chosen are part of the state."""
 
-        Raises
-        ------
-        SingularSystemError
-            `place` is an equation that nothing holds.
-        """
+    def factorise(self, sources: Sequence[FloatArray]) -> None:
+        """Gather the values of all sources and factorise."""
         with self._ledger.phase("factor"):
             self.values[:] = 0.0
             for places, source in zip(self._places, sources, strict=True):
@@ -116,38 +188,17 @@ class LinearSystem:
         """The ordering that was kept, after the first factors."""
         return self._rivals[0].ordering
 
-    def solve(self, right: FloatArray) -> FloatArray:
-        """Solution for one right-hand side, shape (unknowns,).
+    def _substituted(self, right: FloatArray) -> FloatArray:
+        return self._rivals[0].solve(right, refine=0)
 
-        Raises
-        ------
-        SingularSystemError
-            What it leaves of the right-hand side is not small, nor is it after refinement.
-        """
-        with self._ledger.phase("solve"):
-            solution = self._rivals[0].solve(right, refine=0)
-            if not self._left(solution, right) <= constants.REFINED_ABOVE:
-                solution = self._rivals[0].solve(right)
-                left = self._left(solution, right)
-                if not left <= constants.REFUSED_ABOVE:
-                    raise SingularSystemError(
-                        f"the solution of the linear system leaves {left:.1e} of its right-hand side: round-off has taken its digits "
-                        f"(reciprocal condition {self.rcond:.1e})",
-                        -1,
-                    )
-        self._ledger.counts["solves"] += 1
-        return solution
+    def _refined(self, solution: FloatArray, right: FloatArray) -> FloatArray:  # noqa: ARG002  UMFPACK begins anew
+        return self._rivals[0].solve(right)
 
-    def _left(self, solution: FloatArray, right: FloatArray) -> float:
-        """What a solution leaves of the right-hand side; not a number where it is not finite."""
-        size = float(np.linalg.norm(right))
-        return float(np.linalg.norm(right - self._product @ solution)) / size if size > 0.0 else float(np.abs(solution).max(initial=0.0))
+    def _product(self, solution: FloatArray) -> FloatArray:
+        return np.asarray(self._whole @ solution)
 
     def near_null(self) -> FloatArray:
-        """A direction that the assembled matrix maps to next to nothing, of length one; not a number if there is no telling.
-
-        Inverse iteration on a matrix next to it: the one itself has no factors.
-        """
+        """By inverse iteration on a matrix next to it: the one itself has no factors."""
         matrix = self.matrix()
         size = matrix.shape[0]
         beside = sparse.csr_array(matrix + constants.SHIFT * float(np.abs(self.values).max()) * sparse.eye_array(size))

@@ -1,0 +1,201 @@
+!> Factors of a symmetric body with what is not symmetric on its faces: Cholesky within, dense LU of what is left on the faces.
+!>
+!>     [ K_ii  K_if         0    ]  inner unknowns of the bodies
+!>     [ K_fi  K_ff + C_ff  C_fm ]  those of faces in contact
+!>     [ 0     C_mf         C_mm ]  multipliers
+!>
+!> K is factorised with the faces last (`cholmod.c`): L_ff L_ff^T, the end of its factor, is the Schur complement of K on the faces,
+!> but for what their diagonal had more (theory 5.11, 5.12).
+!>
+!> - `values` (entries): of K, both halves, in the order of the pattern. `added` (trailing, trailing): C, faces first.
+!> - `code`: how it ended (isomortar_sparse_cholmod).
+module isomortar_sparse_condensed
+  use, intrinsic :: iso_c_binding, only: c_associated, c_double, c_int, c_int64_t, c_null_ptr, c_ptr
+  use isomortar_base_contract, only: contracts, require
+  use isomortar_base_predicate, only: is_compressed, is_permutation
+  use isomortar_sparse_cholmod, only: cholesky_analyse, cholesky_back, cholesky_done, cholesky_factorise, cholesky_forget, &
+    cholesky_forth, cholesky_out_of_memory
+  implicit none
+  private
+
+  public :: condense, eliminate_condensed, forget_condensed, is_condensed, substitute_condensed
+
+  !> What the diagonals of faces grow by, of themselves, so that K is definite where contact alone holds them.
+  real(c_double), parameter :: face_share = 1
+
+  !> The pattern of K that was analysed, and the factors of the last matrix.
+  type, public :: condensed_t
+    type(c_ptr) :: body = c_null_ptr
+    !> Unknowns of K, and how many of them are of faces.
+    integer :: unknowns = 0, faces = 0
+    !> L_ff, and the LU factors of the complement with their pivots; not allocated without factors.
+    real(c_double), allocatable :: corner(:, :), complement(:, :)
+    integer(c_int), allocatable :: pivot(:)
+  end type condensed_t
+
+  interface
+    subroutine dsyrk(uplo, trans, n, k, alpha, a, lda, beta, c, ldc)
+      import :: c_double, c_int
+      implicit none
+      character, intent(in) :: uplo, trans
+      integer(c_int), intent(in) :: n, k, lda, ldc
+      real(c_double), intent(in) :: alpha, beta, a(lda, *)
+      real(c_double), intent(inout) :: c(ldc, *)
+    end subroutine dsyrk
+    subroutine dgetrf(m, n, a, lda, ipiv, info)
+      import :: c_double, c_int
+      implicit none
+      integer(c_int), intent(in) :: m, n, lda
+      real(c_double), intent(inout) :: a(lda, *)
+      integer(c_int), intent(out) :: ipiv(*), info
+    end subroutine dgetrf
+    subroutine dgetrs(trans, n, nrhs, a, lda, ipiv, b, ldb, info)
+      import :: c_double, c_int
+      implicit none
+      character, intent(in) :: trans
+      integer(c_int), intent(in) :: n, nrhs, lda, ldb
+      real(c_double), intent(in) :: a(lda, *)
+      integer(c_int), intent(in) :: ipiv(*)
+      real(c_double), intent(inout) :: b(ldb, *)
+      integer(c_int), intent(out) :: info
+    end subroutine dgetrs
+  end interface
+
+contains
+
+  !> Analyse the pattern of K.
+  !>
+  !> - `indptr` (unknowns + 1), `indices` (entries): compressed rows, from 0, symmetric, with the diagonal.
+  !> - `on_face` (unknowns): 1 for unknowns of faces, 0 for others. `order` (unknowns): that of the others, from 0.
+  !> - `flops`, `factor_entries`: operations of a factorisation of K, entries of its factor.
+  subroutine condense(self, indptr, indices, on_face, order, flops, factor_entries, code)
+    type(condensed_t), intent(inout) :: self
+    integer(c_int64_t), contiguous, intent(in) :: indptr(:), indices(:), order(:)
+    integer(c_int), contiguous, intent(in) :: on_face(:)
+    real(c_double), intent(out) :: flops, factor_entries
+    integer(c_int), intent(out) :: code
+
+    if (contracts) call require(is_compressed(indptr, size(indices)), "condense: rows follow one another")
+    if (contracts) call require(size(on_face) == size(indptr) - 1, "condense: each unknown is on a face or not")
+    if (contracts) call require(is_permutation(order), "condense: unknowns are in some order")
+    self%unknowns = size(on_face)
+    self%faces = sum(on_face)
+    code = cholesky_analyse(int(self%unknowns, c_int64_t), indptr, indices, on_face, order, flops, factor_entries, self%body)
+  end subroutine condense
+
+  !> Whether there is a pattern.
+  pure recursive function is_condensed(self)
+    type(condensed_t), intent(in) :: self
+    logical :: is_condensed
+
+    is_condensed = c_associated(self%body)
+  end function is_condensed
+
+  !> Factorise; without `cholesky_done` there are no factors afterwards.
+  !>
+  !> - `rcond`: estimate of the reciprocal condition: the least pivot of K as a share of its diagonal, or smallest over largest
+  !>   pivot of what is left on the faces. Not above zero where one of them is not finite.
+  recursive subroutine eliminate_condensed(self, values, added, rcond, code)
+    type(condensed_t), intent(inout) :: self
+    real(c_double), contiguous, intent(in) :: values(:), added(:, :)
+    real(c_double), intent(out) :: rcond
+    integer(c_int), intent(out) :: code
+    real(c_double) :: shift(self%faces), least
+    integer(c_int) :: failure, n
+
+    if (contracts) call require(size(added, 1) == size(added, 2), "eliminate_condensed: the trailing block is square")
+    if (contracts) call require(size(added, 1) >= self%faces, "eliminate_condensed: faces and more")
+    rcond = 0
+    n = size(added, 1)
+    call forget_numbers(self)
+    code = cholesky_out_of_memory
+    allocate (self%corner(self%faces, self%faces), stat=failure)
+    if (failure == 0) allocate (self%complement(n, n), stat=failure)
+    if (failure == 0) allocate (self%pivot(n), stat=failure)
+    if (failure == 0) code = cholesky_factorise(self%body, values, face_share, self%corner, shift, least)
+    if (code /= cholesky_done) then
+      call forget_numbers(self)
+      return
+    end if
+    rcond = least
+    if (n == 0) return ! LAPACK takes no leading dimension of zero
+    call complement_faces(self, added, shift)
+    call dgetrf(n, n, self%complement, n, self%pivot, failure)
+    rcond = min(least, pivots_apart(self%complement))
+  end subroutine eliminate_condensed
+
+  !> The Schur complement of K on the faces, with what is added and without the `shift` (faces) of their diagonal.
+  recursive subroutine complement_faces(self, added, shift)
+    type(condensed_t), intent(inout) :: self
+    real(c_double), contiguous, intent(in) :: added(:, :), shift(:)
+    real(c_double), allocatable :: product(:, :)
+    integer :: k
+
+    self%complement(:, :) = added
+    if (self%faces == 0) return
+    allocate (product(self%faces, self%faces))
+    associate (n => int(self%faces, c_int))
+      call dsyrk("L", "N", n, n, 1.0_c_double, self%corner, n, 0.0_c_double, product, n)
+      do k = 1, n
+        product(k, k) = product(k, k) - shift(k)
+        self%complement(k:n, k) = self%complement(k:n, k) + product(k:, k)
+        self%complement(k, k + 1:n) = self%complement(k, k + 1:n) + product(k + 1:, k)
+      end do
+    end associate
+  end subroutine complement_faces
+
+  !> Smallest over largest pivot of LU factors, `lu` (n, n); zero where one is zero or not finite.
+  pure recursive function pivots_apart(lu) result(ratio)
+    real(c_double), intent(in) :: lu(:, :)
+    real(c_double) :: ratio
+    real(c_double) :: pivots(size(lu, 1))
+    integer :: k
+
+    pivots = [(abs(lu(k, k)), k=1, size(pivots))]
+    ratio = 1
+    if (maxval(pivots) > 0) ratio = minval(pivots) / maxval(pivots)
+    if (any(.not. (pivots > 0 .and. pivots <= huge(pivots)))) ratio = 0
+  end function pivots_apart
+
+  !> Solve with the factors: `b`, `x` (unknowns of K and multipliers).
+  recursive subroutine substitute_condensed(self, b, x, code)
+    type(condensed_t), intent(in) :: self
+    real(c_double), contiguous, intent(in) :: b(:)
+    real(c_double), contiguous, intent(out) :: x(:)
+    integer(c_int), intent(out) :: code
+    real(c_double) :: within(self%unknowns), trailing(size(self%pivot), 1)
+    integer(c_int) :: n, failure
+
+    if (contracts) call require(size(b) == self%unknowns - self%faces + size(self%pivot), "substitute_condensed: all unknowns")
+    if (contracts) call require(size(x) == size(b), "substitute_condensed: and a place for each")
+    n = size(trailing, 1)
+    code = cholesky_forth(self%body, b, within)
+    if (code /= cholesky_done) return
+    associate (faces => within(self%unknowns - self%faces + 1:))
+      trailing(:self%faces, 1) = matmul(self%corner, faces)
+      trailing(self%faces + 1:, 1) = b(self%unknowns + 1:)
+      if (n > 0) call dgetrs("N", n, 1_c_int, self%complement, n, self%pivot, trailing, n, failure)
+      faces = matmul(trailing(:self%faces, 1), self%corner)
+    end associate
+    code = cholesky_back(self%body, within, x)
+    x(self%unknowns + 1:) = trailing(self%faces + 1:, 1)
+  end subroutine substitute_condensed
+
+  !> Free the factors on the faces; without them there is nothing to solve with.
+  pure recursive subroutine forget_numbers(self)
+    type(condensed_t), intent(inout) :: self
+
+    if (allocated(self%corner)) deallocate (self%corner)
+    if (allocated(self%complement)) deallocate (self%complement)
+    if (allocated(self%pivot)) deallocate (self%pivot)
+  end subroutine forget_numbers
+
+  !> Free everything.
+  subroutine forget_condensed(self)
+    type(condensed_t), intent(inout) :: self
+
+    call forget_numbers(self)
+    call cholesky_forget(self%body)
+  end subroutine forget_condensed
+
+end module isomortar_sparse_condensed

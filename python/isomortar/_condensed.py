@@ -1,0 +1,191 @@
+"""Factors of the bodies' symmetric stiffness with what contact adds on its faces (CHOLMOD, LAPACK), of the kernel, as an object."""
+
+from __future__ import annotations
+
+import threading
+import weakref
+
+import numpy as np
+from numpy.typing import NDArray
+
+from isomortar import _arguments as check
+from isomortar._codes import Status
+from isomortar._compiled import kernel as _kernel
+from isomortar._sparse import ORDERINGS, FloatArray, LongArray, Ordering, check_finite, check_pattern
+from isomortar.errors import InputError, KernelError, SingularSystemError
+
+
+def fill_reducing(indptr: LongArray, indices: LongArray, ordering: Ordering) -> tuple[LongArray, float]:
+    """Order the unknowns of a symmetric pattern for little fill.
+
+    Parameters
+    ----------
+    indptr, indices : ndarray of int64
+        Compressed rows of both halves, with the whole diagonal.
+    ordering : {"metis", "amd"}
+
+    Returns
+    -------
+    ndarray of int64, shape (n,)
+        The unknowns in their order.
+    float
+        Floating-point operations of a Cholesky factorisation by it.
+
+    Raises
+    ------
+    InputError
+        The pattern is not as above.
+    KernelError
+        Memory ran out, or CHOLMOD failed.
+    """
+    _check_symmetric(indptr, indices)
+    if ordering not in ORDERINGS:
+        raise InputError(f"is {ordering!r}; allowed: {', '.join(ORDERINGS)}", "ordering")
+    order, flops, status = _kernel.condensed_order(indptr, indices, ordering == "metis")
+    _check_status(status, -1)
+    return order, flops
+
+
+class CondensedFactors:
+    """Factors of ``K + C``: K symmetric and sparse, C dense, on some unknowns of K, the faces, and on others that are not of K.
+
+    K is factorised by Cholesky with the faces last, what is left on these, with C, by LU. The pattern of K is analysed here,
+    once. Different objects may work in different threads at the same time; calls on one object wait for each other.
+
+    Parameters
+    ----------
+    indptr : ndarray of int64, shape (n + 1,)
+        Start of each row of K in `indices` (compressed rows).
+    indices : ndarray of int64, shape (nnz,)
+        Columns, strictly increasing within each row; both halves of the pattern, with the whole diagonal.
+    on_face : ndarray of bool, shape (n,)
+        Which unknowns are faces'.
+    order : ndarray of int64, shape (n,)
+        That of the others: all unknowns, by `fill_reducing`.
+
+    Raises
+    ------
+    InputError
+        The pattern or the order is not as above.
+    KernelError
+        Memory ran out, or CHOLMOD failed.
+
+    Attributes
+    ----------
+    faces : int
+        Number of unknowns of faces.
+    flops : float
+        Floating-point operations of a factorisation of K.
+    factor_entries : int
+        Entries of its factor.
+    rcond : float
+        Estimate of the reciprocal condition of the last matrix; NaN before the first.
+    """
+
+    def __init__(self, indptr: LongArray, indices: LongArray, on_face: NDArray[np.bool_], order: LongArray) -> None:
+        _check_symmetric(indptr, indices)
+        n = len(indptr) - 1
+        check.array("on_face", on_face, np.bool_, n)
+        if not np.array_equal(np.sort(check.array("order", order, np.int64, n)), np.arange(n)):
+            raise InputError(f"is no order of the unknowns 0 to {n - 1}", "order")
+        self.faces, self.rcond = int(np.count_nonzero(on_face)), float("nan")
+        self._indptr, self._unknowns, self._entries, self._others = indptr, n, len(indices), -1
+        self._lock = threading.Lock()
+        self._handle, self.flops, entries, place, status = _kernel.condensed_analyse(indptr, indices, on_face.astype(np.int32), order)
+        _check_status(status, place)
+        self.factor_entries = int(entries)
+        release = weakref.finalize(self, _kernel.sparse_release, self._handle)
+        release.atexit = False  # a thread may still be at work, and the memory goes with the process
+
+    def factorise(self, values: FloatArray, added: FloatArray, *, rcond_min: float = 1e-13) -> None:
+        """Factorise ``K + C``; its factors take the place of the last ones.
+
+        Parameters
+        ----------
+        values : ndarray of float64, shape (nnz,)
+            Entries of K in the order of `indices`. Of the two halves one counts.
+        added : ndarray of float64, shape (t, t), Fortran order
+            C on the unknowns of faces, by their numbers, and on the others after them.
+        rcond_min : float
+            Smallest reciprocal condition that passes for regular.
+
+        Raises
+        ------
+        SingularSystemError
+            K is not definite, nor is it with its faces' diagonals doubled, or `rcond` is below `rcond_min`: what is so may be regular, and
+            is for `SparseLU` to judge. `place` is -1.
+        KernelError
+            An entry is not finite (`place`: its row), memory ran out, or CHOLMOD failed.
+        InputError
+            Wrong type or shape of an argument.
+        """
+        check.array("values", values, np.float64, self._entries)
+        check.array("added", added.T if isinstance(added, np.ndarray) else added, np.float64, None, None)
+        if added.shape[0] != added.shape[1] or len(added) < self.faces:
+            raise InputError(f"has shape {added.shape}; allowed: square, of {self.faces} unknowns of faces and others", "added")
+        check.real("rcond_min", rcond_min, lambda value: 0 <= value < 1, "a number from 0 to below 1")
+        check_finite(values, self._indptr)
+        if not np.isfinite(added).all():
+            raise KernelError("what is added to the matrix is not finite", -1)
+        with self._lock:
+            self._others = -1
+            self.rcond, status = _kernel.condensed_factorise(self._handle, values, added, rcond_min)
+            _check_status(status, -1)
+            self._others = len(added) - self.faces
+
+    def solve(self, b: FloatArray) -> FloatArray:
+        """Solve ``(K + C) x = b`` with the factors of the last `factorise`.
+
+        Parameters
+        ----------
+        b : ndarray of float64, shape (n + others,)
+
+        Returns
+        -------
+        ndarray, shape (n + others,)
+
+        Raises
+        ------
+        KernelError
+            Nothing is factorised, or an entry of `b` is not finite (`place`: its row).
+        InputError
+            Wrong type or shape of `b`.
+        """
+        with self._lock:
+            if self._others < 0:
+                raise KernelError("no matrix is factorised: the last one was refused, or there was none")
+            check.array("b", b, np.float64, self._unknowns + self._others)
+            finite = np.isfinite(b)
+            if not finite.all():
+                row = int(np.argmin(finite))
+                raise KernelError(f"the right-hand side is not finite in row {row}", row)
+            x, status = _kernel.condensed_solve(self._handle, b)
+            _check_status(status, -1)
+        return np.asarray(x)
+
+
+def _check_symmetric(indptr: LongArray, indices: LongArray) -> None:
+    """Refuse what is no pattern, or one that lacks an entry's mirror image or one on the diagonal."""
+    check_pattern(indptr, indices)
+    rows = np.repeat(np.arange(len(indptr) - 1), np.diff(indptr))
+    mirrored = np.lexsort((rows, indices))
+    if not (np.array_equal(rows[mirrored], indices) and np.array_equal(indices[mirrored], rows)):
+        raise InputError("is not symmetric: an entry has no mirror image", "indices")
+    if np.count_nonzero(rows == indices) != len(indptr) - 1:
+        raise InputError("has no entry on the diagonal in some row", "indices")
+
+
+def _check_status(status: int, place: int) -> None:
+    """Raise the sentence of a status code."""
+    if status == Status.SINGULAR:
+        raise SingularSystemError("the stiffness of the bodies is not definite, or what is left on their faces is singular", -1)
+    if status == Status.OUT_OF_MEMORY:
+        raise KernelError(
+            f"too many factorisations are alive: the kernel holds {place} of them; let some go"
+            if place >= 0
+            else "memory ran out in the Cholesky factors: take fewer elements or a lower order"
+        )
+    if status == Status.STALE_HANDLE:
+        raise KernelError("the factorisation was released before, or never made")
+    if status != Status.OK:
+        raise KernelError("CHOLMOD failed: most likely memory ran out; take fewer elements or a lower order")

@@ -1,0 +1,179 @@
+"""The linear system by parts: the bodies by Cholesky, what is left on their faces with contact by dense LU (theory 5.11)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from scipy import sparse
+
+from isomortar import _bindings
+from isomortar._bindings import LongArray
+from isomortar._condensed import CondensedFactors, fill_reducing
+from isomortar._sparse import Ordering
+from isomortar.errors import SingularSystemError
+from isomortar.geometry.patch import FloatArray
+from isomortar.model.supports import BoolArray
+from isomortar.solve.system import CheckedSystem, LinearSystem, Source, entries, orderings
+from isomortar.solve.timing import Ledger
+
+
+class Bodies:
+    """The stiffness of all bodies: its unknowns are ordered once, and analysed anew where contact acts on others of them.
+
+    Parameters
+    ----------
+    solid : Source
+        Stiffness of the bodies.
+    unknowns : int
+        Those that are free.
+    ledger : Ledger
+
+    Attributes
+    ----------
+    start, column : ndarray of int64
+        Its pattern.
+    places : ndarray of int64
+        Of the entries of the source in it.
+    on_face : ndarray of bool, shape (unknowns,)
+        Unknowns that contact acts on.
+    factors : CondensedFactors
+        With these last.
+    """
+
+    def __init__(self, solid: Source, unknowns: int, ledger: Ledger) -> None:
+        self.unknowns, self._ledger = unknowns, ledger
+        pattern = entries([solid], unknowns)
+        self.start, self.column = pattern.indptr.astype(np.int64), pattern.indices.astype(np.int64)
+        with ledger.phase("factor"):
+            self.places = _bindings.find_places(solid.pattern, solid.row_of, solid.column_of, False, self.start, self.column)
+            rivals = [fill_reducing(self.start, self.column, ordering) for ordering in orderings(unknowns)]
+        ledger.counts["analyses"] += len(rivals)
+        self._order = min(rivals, key=lambda rival: rival[1])[0]
+        self._analyse(np.zeros(unknowns, dtype=bool))
+
+    def act_on(self, on_face: BoolArray) -> None:
+        """Analyse with the unknowns that contact acts on last, where these are others than before."""
+        if not np.array_equal(on_face, self.on_face):
+            self._analyse(on_face)
+
+    def _analyse(self, on_face: BoolArray) -> None:
+        with self._ledger.phase("factor"):
+            self.on_face, self.factors = on_face, CondensedFactors(self.start, self.column, on_face, self._order)
+
+    def condense(self, others: int) -> bool:
+        """Whether what is dense, with so many unknowns more than faces have, takes no more operations than the bodies (theory 5.13)."""
+        faces = float(self.factors.faces)
+        return faces**3 + 2.0 / 3.0 * (faces + others) ** 3 <= self.factors.flops
+
+
+def touched(sources: Sequence[Source], unknowns: int) -> BoolArray:
+    """Which of the bodies' unknowns some sources act on, shape (unknowns,)."""
+    found = np.zeros(unknowns + 1, dtype=bool)  # the last one: of what is dropped, and of multipliers
+    for source in sources:
+        rows = source.row_of.reshape(-1, 3)[np.diff(source.pattern.start) > 0]
+        columns = source.column_of.reshape(-1, 3)[source.pattern.column]
+        for numbers in (rows, columns):
+            found[np.where(numbers < unknowns, numbers, -1)] = True
+    return found[:-1]
+
+
+class CondensedSystem(CheckedSystem):
+    """A system of bodies and what contact adds; where these are not definite a general one takes its place until the increment ends.
+
+    Parameters
+    ----------
+    bodies : Bodies
+    size : int
+        Unknowns: those of the bodies first, multipliers after them.
+    sources : sequence of Source
+        The first is the bodies'.
+    general : callable
+        Makes the general system of the same sources.
+    ledger : Ledger
+    """
+
+    def __init__(self, bodies: Bodies, size: int, sources: Sequence[Source], general: Callable[[], LinearSystem], ledger: Ledger) -> None:
+        super().__init__(ledger)
+        self._bodies, self._make_general = bodies, general
+        self._general: LinearSystem | None = None
+        self._trailing = np.concatenate([np.flatnonzero(bodies.on_face), np.arange(bodies.unknowns, size)])
+        number = np.full(size, -1, dtype=np.int64)
+        number[self._trailing] = np.arange(len(self._trailing))
+        self._places = [_dense_places(source, number, len(self._trailing)) for source in sources[1:]]
+        self._values = np.zeros(len(bodies.column))
+        self._stiffness = sparse.csr_array((self._values, bodies.column, bodies.start), shape=(bodies.unknowns,) * 2)
+        self._added = np.zeros((len(self._trailing),) * 2, order="F")
+
+    def begin(self) -> None:
+        """Where the bodies were not definite, they may be again."""
+        self._general = None
+
+    def factorise(self, sources: Sequence[FloatArray]) -> None:
+        """Gather the values of all sources and factorise, in general where the bodies do not allow it.
+
+        Raises
+        ------
+        SingularSystemError
+        """
+        if self._general is None:
+            try:
+                self._factorise(sources)
+                return
+            except SingularSystemError:  # for the general one to judge
+                self._general = self._make_general()
+        self._general.factorise(sources)
+
+    def _factorise(self, sources: Sequence[FloatArray]) -> None:
+        with self._ledger.phase("factor"):
+            self._values[:] = 0.0
+            _bindings.add_values(self._bodies.places, sources[0], self._values)
+            self._added[:] = 0.0
+            flat = self._added.reshape(-1, order="F")
+            for places, source in zip(self._places, sources[1:], strict=True):
+                _bindings.add_values(places, source, flat)
+            self._bodies.factors.factorise(self._values, self._added)
+        self._ledger.counts["factorisations"] += 1
+        self._ledger.largest("system non-zeros", len(self._values) + self._added.size)
+        self._ledger.largest("factor non-zeros", self._bodies.factors.factor_entries + self._added.size)
+
+    @property
+    def rcond(self) -> float:
+        """Estimate of the reciprocal condition of the last factors."""
+        return self._bodies.factors.rcond if self._general is None else self._general.rcond
+
+    @property
+    def ordering(self) -> Ordering | None:
+        """That of the general factors, where these have taken its place."""
+        return None if self._general is None else self._general.ordering
+
+    def near_null(self) -> FloatArray:
+        """Of the general system, which alone finds one singular."""
+        assert self._general is not None, "a general system has found it singular"
+        return self._general.near_null()
+
+    def _substituted(self, right: FloatArray) -> FloatArray:
+        return self._bodies.factors.solve(right) if self._general is None else self._general._substituted(right)
+
+    def _refined(self, solution: FloatArray, right: FloatArray) -> FloatArray:
+        if self._general is not None:
+            return self._general._refined(solution, right)
+        return solution + self._bodies.factors.solve(right - self._product(solution))
+
+    def _product(self, solution: FloatArray) -> FloatArray:
+        if self._general is not None:
+            return self._general._product(solution)
+        product = np.zeros_like(solution)
+        product[: self._bodies.unknowns] = self._stiffness @ solution[: self._bodies.unknowns]
+        product[self._trailing] += self._added @ solution[self._trailing]
+        return product
+
+
+def _dense_places(source: Source, number: LongArray, size: int) -> LongArray:
+    """Where each entry of a source goes in a dense matrix by columns (from 1; 0: dropped), shape (blocks, 3, 3)."""
+    row_of, column_of = (np.where(of >= 0, number[of], -1).reshape(-1, 3) for of in (source.row_of, source.column_of))
+    block_row = np.repeat(np.arange(len(source.pattern.start) - 1), np.diff(source.pattern.start))
+    row, column = row_of[block_row][:, :, None], column_of[source.pattern.column][:, None, :]
+    if source.transposed:
+        row, column = column, row
+    return np.where((row >= 0) & (column >= 0), 1 + row + size * column, 0)
