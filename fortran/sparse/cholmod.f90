@@ -33,7 +33,7 @@ module isomortar_sparse_cholmod
     !> - `rows`, `start` (rows + 1), `column` (entries): the pattern, with the diagonal.
     !> - `is_last` (rows): 1 where a row comes last, in the order of their numbers; 0 elsewhere. `order` (rows): that of the others.
     !> - `flops`, `entries`: operations of a factorisation, entries of the factor.
-    !> - `self`: what the others take; null where the code is not `cholesky_done`.
+    !> - What the others take is null where the code is not done.
     function cholesky_analyse(rows, start, column, is_last, order, flops, entries, self) result(code) &
       bind(C, name="isomortar_cholesky_analyse")
       import :: c_double, c_int, c_int64_t, c_ptr

@@ -124,7 +124,7 @@ contains
     rcond = min(least, pivots_apart(self%complement))
   end subroutine eliminate_condensed
 
-  !> The Schur complement of K on the faces, with what is added and without the `shift` (faces) of their diagonal.
+  !> The Schur complement of K on the faces, with what is added and without the `shift` (faces) of their diagonal (theory 5.12).
   recursive subroutine complement_faces(self, added, shift)
     type(condensed_t), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: added(:, :), shift(:)
@@ -157,7 +157,7 @@ contains
     if (any(.not. (pivots > 0 .and. pivots <= huge(pivots)))) ratio = 0
   end function pivots_apart
 
-  !> Solve with the factors: `b`, `x` (unknowns of K and multipliers).
+  !> Solve with the factors (theory 5.12): `b` (size), `x` (size): unknowns of K, then multipliers.
   recursive subroutine substitute_condensed(self, b, x, code)
     type(condensed_t), intent(in) :: self
     real(c_double), contiguous, intent(in) :: b(:)

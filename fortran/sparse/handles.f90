@@ -39,7 +39,7 @@ contains
     end do
   end function free_slot
 
-  !> Handle of a slot that was taken.
+  !> Handle of a `slot` that was taken.
   function handle_of(slot) result(handle)
     integer(c_int64_t), intent(in) :: slot
     integer(c_int64_t) :: handle
@@ -56,7 +56,7 @@ contains
     if (handle / slots /= table(slot)%generation .or. .not. is_taken(slot)) slot = slots
   end function slot_of
 
-  !> Free what a handle owns. The handle is stale from then on, its slot free for others.
+  !> Free what a handle owns. The handle is stale from then on, its slot free for others. `status`: whether it was not before.
   subroutine release(handle, status)
     integer(c_int64_t), intent(in) :: handle
     integer, intent(out) :: status

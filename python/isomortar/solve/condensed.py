@@ -125,6 +125,7 @@ class CondensedSystem(CheckedSystem):
         self._general.factorise(sources)
 
     def _factorise(self, sources: Sequence[FloatArray]) -> None:
+        """By parts (theory 5.11)."""
         with self._ledger.phase("factor"):
             self._values[:] = 0.0
             _bindings.add_values(self._bodies.places, sources[0], self._values)
@@ -161,6 +162,7 @@ class CondensedSystem(CheckedSystem):
         return solution + self._bodies.factors.solve(right - self._product(solution))
 
     def _product(self, solution: FloatArray) -> FloatArray:
+        """By parts too (theory 5.11)."""
         if self._general is not None:
             return self._general._product(solution)
         product = np.zeros_like(solution)
