@@ -35,6 +35,7 @@ mesh = { order = [2, 2, 1], elements = [MASTER, MASTER, 1] }
 [contacts.c]
 slave = "upper.w0"
 master = "lower.w1"
+quadrature = POINTS
 [supports]
 top = { face = "upper.w1" }
 floor = { face = "lower.w0" }
@@ -47,7 +48,8 @@ steps = 1
 motions.top.translate = [0, 0, -0.1]
 """
 SOUND: dict[str, Any] = {
-    "SOFT": 10, "POISSON": 0.3, "HARD": 10, "TOP": 2, "SLAVE": 2, "MASTER": 2, "METHOD": "monolithic", "PENALTY": 100
+    "SOFT": 10, "POISSON": 0.3, "HARD": 10, "TOP": 2, "SLAVE": 2, "MASTER": 2, "METHOD": "monolithic", "PENALTY": 100,
+    "POINTS": 6,
 }  # fmt: skip
 
 
@@ -150,8 +152,18 @@ def test_the_message_of_a_step_that_is_given_up_ends_with_the_causes() -> None:
         simulation._cut(1, simulation.state, 1.0, 0.5**8, 1.0, ConvergenceError("no luck"))
 
 
+#: Six points a cell are more than the elements of the master.
+IN_CELLS = {"SLAVE": 1, "MASTER": 8, "POINTS": "6\nsubcells = 1"}
+
+
 def test_few_points_are_warned_of_under_a_stiffer_slave_only() -> None:
-    for changes, count in (({}, 0), ({"HARD": 1}, 0), ({"SLAVE": 1, "MASTER": 8, "HARD": 1}, 0), ({"SLAVE": 1, "MASTER": 8}, 1)):
+    for changes, count in (
+        ({}, 0),
+        ({"HARD": 1}, 0),
+        ({"SLAVE": 1, "MASTER": 8, "HARD": 1}, 0),
+        ({"SLAVE": 1, "MASTER": 8}, 1),
+        (IN_CELLS, 0),
+    ):
         problem = scene(**changes).problem
         assert len(list(few_points(problem, problem.contacts[0]))) == count
 

@@ -59,7 +59,7 @@ TABLES = {
         "projection": None,
         "enforcement": "mortar",
         "quadrature": None,
-        "subcells": 0,
+        "subcells": None,
         "reference_area": None,
     },
     "SupportTable": {"components": ("x", "y", "z"), "centre": (0.0, 0.0, 0.0), "axis": (0.0, 0.0, 1.0)},

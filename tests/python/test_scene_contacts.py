@@ -386,6 +386,39 @@ def test_quadrature_points_are_enforced_by_augmentations_or_where_they_are_few()
 
 
 @pytest.mark.parametrize(
+    ("overrides", "subcells", "points"),
+    [
+        ([], 0, (6, 6)),
+        (["bodies.lower.mesh.elements=[5,5,1]"], 1, (4, 4)),
+        (["bodies.lower.mesh.elements=[20,3,1]"], 2, (4, 4)),
+        (["bodies.lower.mesh.elements=[3,20,1]"], 2, (4, 4)),
+        (["bodies.lower.mesh.elements=[60,60,1]"], 4, (4, 4)),
+        (
+            ["bodies.lower.geometry.lower=[-1,-1,-1]", "bodies.lower.geometry.upper=[0.3,1,0]", "bodies.lower.mesh.elements=[1,1,1]"],
+            1,
+            (4, 4),
+        ),
+        (["bodies.lower.mesh.elements=[5,5,1]", "bodies.lower.mesh.order=[2,5,2]"], 1, (5, 5)),
+        (["bodies.lower.mesh.elements=[5,5,1]", "bodies.upper.mesh.order=[1,3,2]"], 1, (3, 5)),
+        (["bodies.lower.mesh.elements=[5,5,1]", "contacts.pair.quadrature=5"], 0, (5, 5)),
+        (["bodies.lower.mesh.elements=[5,5,1]", "contacts.pair.subcells=0"], 0, (6, 6)),
+        (["bodies.lower.mesh.elements=[5,5,1]", "contacts.pair.subcells=3"], 3, (6, 6)),
+        (["bodies.lower.mesh.elements=[5,5,1]", "contacts.pair.enforcement=greville"], 0, (6, 6)),
+        (["bodies.lower.mesh.elements=[5,5,1]", "contacts.pair.enforcement=dual"], 1, (4, 4)),
+    ],
+)
+def test_who_says_nothing_of_quadrature_gets_what_the_masters_lines_need(overrides, subcells, points):
+    (contact,) = Scene.from_toml(PAIR, overrides=overrides).problem().contacts
+    assert (contact.subcells, contact.quadrature) == (subcells, points)
+
+
+def test_rings_and_planes_whose_lines_cross_nothing_have_whole_elements():
+    for text in (PRESS, RINGS):
+        (contact,) = Scene.from_toml(text).problem().contacts
+        assert (contact.subcells, contact.quadrature[0]) == (0, 6)
+
+
+@pytest.mark.parametrize(
     ("text", "overrides", "sentence"),
     [
         (PRESS, ["contacts.floor.subcells=1"], "a rigid plane, which has no knot lines"),

@@ -17,7 +17,7 @@ _DEPTH, _CURVATURE = 0.08, 1.0
 
 
 def paraboloid(order: int) -> FloatArray:
-    """Control values of its depth on the square, shape (n,); consistent ones (theory 10.10), exact above order 1."""
+    """Control values of its depth on the square, shape (n,); consistent ones (theory 10.11), exact above order 1."""
     ends = knots(order, ELEMENTS)
     places = np.array([ends[i + 1 : i + order + 1].mean() for i in range(ELEMENTS + order)])
     line = make_interp_spline(places, 0.5 * _CURVATURE * (places - 0.5) ** 2, k=order, t=ends).c
@@ -65,7 +65,7 @@ _SOMETHING = Bound(at_least=1e-3, reason="theory: control pressures of closed ga
 def work(form: str, order: int) -> dict[str, float]:
     """Work of the pressure on the gap over force times depth, of a paraboloid pressed into an elastic cube; small deformations.
 
-    In `mixed` control gaps (theory 10.10) are closed by control pressures.
+    In `mixed` control gaps (theory 10.11) are closed by control pressures.
     """
     mass, yielding, start = masses(order, ELEMENTS, ELEMENTS), compliance(order, ELEMENTS, 1.0), paraboloid(order)
     areas = mass.sum(axis=1)
@@ -91,7 +91,7 @@ def work(form: str, order: int) -> dict[str, float]:
     },
 )
 def metric(projection: str, order: int) -> dict[str, float]:
-    """How far another augmentation moves the mortar method's pressures, over their norm (theory 10.11)."""
+    """How far another augmentation moves the mortar method's pressures, over their norm (theory 10.12)."""
     mass, yielding, start = masses(order, ELEMENTS, ELEMENTS), compliance(order, ELEMENTS, 1.0), paraboloid(order)
     pressures = pressed(mass / mass.sum(axis=1)[:, None], mass, yielding, start)
     trial = pressures + (start - yielding @ mass @ pressures) / np.diag(yielding @ mass).mean()

@@ -1,4 +1,4 @@
-"""The mixed rule: the slave's forces by the slave's quadrature points, the master's by its own (theory 10.13)."""
+"""The mixed rule: the slave's forces by the slave's quadrature points, the master's by its own (theory 10.14)."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ _INEXACT = Bound(at_least=1e-9, reason="quadrature: points that do not see the o
     },
 )
 def mixed_rule(points: str, order: int) -> dict[str, float]:
-    """Largest error of the master's loads of a uniform pressure; sum of forces where contact is partly open (theory 10.13).
+    """Largest error of the master's loads of a uniform pressure; sum of forces where contact is partly open (theory 10.14).
 
     Both sides are one unit interval, of one order. The master's forces are integrated by some points, the slave's by its own.
     """

@@ -96,7 +96,7 @@ bodies.slave.geometry = { kind = "bowl", half_width = 0.3, bottom = 0.0, rise = 
 bodies.slave.mesh = { order = [2, 2, 1], elements = [3, 3, 1] }
 bodies.master.geometry = { kind = "box", lower = [-0.6, -0.6, -0.5], upper = [0.4, 0.6, 0] }
 bodies.master.mesh = { order = [2, 3, 1], elements = [3, 2, 1] }
-contacts.interface = { slave = "slave.w0", master = "master.w1", friction = FRICTION }
+contacts.interface = { slave = "slave.w0", master = "master.w1", friction = FRICTION, subcells = 0 }
 supports.top.face = "slave.w1"
 supports.base.face = "master.w0"
 stages = [

@@ -202,13 +202,13 @@ def default_bounds(slave_order: int, master_order: int, tilt: float) -> dict[str
 
 
 @case(
-    claim="A uniform pressure passes a non-matching interface to the accuracy of the default quadrature.",
+    claim="A uniform pressure passes a non-matching interface to the accuracy of the paper's quadrature in whole elements.",
     tier=tier,
     grid={"slave_order": ORDERS, "master_order": ORDERS, "tilt": TILTS},
     bounds=default_bounds,
 )
 def uniform_pressure(slave_order: int, master_order: int, tilt: float) -> dict[str, object]:
-    """Error of the pressure field, and with it those of control pressures and positions; default contact quadrature."""
+    """Error of the pressure field, and with it those of control pressures and positions; the points of Table 1."""
     points, elements = default_rule(slave_order)
     found = errors(problem(slave_order, master_order, tilt, points, elements))
     return {"pressure": found.field, "errors": [found.field, found.control, found.position]}

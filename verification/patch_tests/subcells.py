@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from unittest.mock import patch
 
 import numpy as np
-from patch_tests.contact import ORDERS, TILTS, errors, nested_bounds, problem
+from patch_tests.contact import ORDERS, TILTS, default_rule, errors, nested_bounds, problem
 
-from isomortar.geometry.patch import FloatArray
-from isomortar.harness import Bound, case
+from isomortar.geometry.patch import Direction, FloatArray
+from isomortar.harness import Bound, Shown, case
 from isomortar.harness.cases import Tier
-from isomortar.model.enforcement import SlaveFace
+from isomortar.model import pairs
+from isomortar.model.enforcement import SlaveFace, slave_side
+from isomortar.model.enforcement.integration import integrated
 from isomortar.model.enforcement.subcells import Subcells
-from isomortar.model.entities import Problem
+from isomortar.model.entities import Face, Problem
 from isomortar.model.numbering import Numbering
 
 #: Master elements on the three of the slave: up to three knot lines cross one, nowhere where halving would find them.
@@ -25,6 +28,9 @@ FEW, MANY = 3, 5
 TURNS = [20.0, 1.0, 0.01]
 #: It is this much smaller than its master.
 SHARE = 0.6
+#: Master elements of tests whose lines have moved, and by which shares of these along both directions: nowhere onto points of a cell.
+SLID = (2, 4, 7)
+PLACES = ((0.13, -0.21), (0.3, 0.42), (-0.4, 0.08), (0.45, 0.25), (-0.07, -0.33))
 
 
 def tier(slave_order: int, master_order: int, tilt: float) -> Tier:
@@ -45,6 +51,75 @@ def uniform_pressure_in_cells(slave_order: int, master_order: int, tilt: float) 
     contact = replace(given.contacts[0], subcells=SUBCELLS)
     settings = replace(given.settings, measures=())  # a tangent for every solve: the last one goes far below the tolerance
     return {"pressure": errors(replace(given, contacts=(contact,), settings=settings)).field}
+
+
+def by_default_tier(slave_order: int, master_order: int, elements: int) -> Tier:
+    """Orders that are equal up to three, and the first with the others, stand for all of them at the gate."""
+    low = max(slave_order, master_order) <= 3 and (slave_order == master_order or 1 in (slave_order, master_order))
+    return "gate" if low and elements in (5, 7) else "nightly"
+
+
+@case(
+    claim="What a contact takes that says nothing of quadrature passes a non-matching interface to round-off, whatever orders and meshes.",
+    tier=by_default_tier,
+    grid={"slave_order": ORDERS, "master_order": ORDERS, "elements": (2, 4, 5, 7, 13)},
+    bounds=lambda slave_order, master_order, elements: nested_bounds(slave_order, master_order, TILTS[-1]),  # noqa: ARG005
+)
+def uniform_pressure_by_default(slave_order: int, master_order: int, elements: int) -> dict[str, float]:
+    """Error of the pressure field by cells and points that the program chooses."""
+    given = problem(slave_order, master_order, TILTS[-1], default_rule(slave_order)[0], elements)
+    contact = integrated(given.contacts[0], given)
+    settings = replace(given.settings, measures=())  # as above
+    return {"pressure": errors(replace(given, contacts=(contact,), settings=settings)).field}
+
+
+def moved(given: Problem, by: tuple[float, float]) -> Problem:
+    """A level test whose master's knot lines lie farther along both directions by shares of its elements; its shape is what it was."""
+    contact = given.contacts[0]
+    assert isinstance(contact.master, Face)
+    master = given.body(contact.master.body)
+    shape = master.patch
+    directions = list(shape.directions)
+    points = shape.control_points.reshape(*shape.shape[::-1], 3).copy()
+    for axis in (0, 1):
+        direction = directions[axis]
+        inner = slice(direction.order + 1, -direction.order - 1)
+        lines = direction.knots.copy()
+        lines[inner] += by[axis] / direction.elements
+        directions[axis] = Direction(direction.family, direction.order, lines)
+        points[..., axis] = np.expand_dims(directions[axis].greville, (0, 1) if axis == 0 else (0, 2))
+    other = replace(shape, directions=(directions[0], directions[1], directions[2]), control_points=points.reshape(-1, 3))
+    return replace(given, bodies=tuple(replace(master, patch=other) if body is master else body for body in given.bodies))
+
+
+def by_default(order: int, elements: int) -> Problem:
+    """A level test of one order, integrated as the program chooses."""
+    given = problem(order, order, 0.0, default_rule(order)[0], elements)
+    return replace(given, contacts=(integrated(given.contacts[0], given),))
+
+
+@case(
+    claim="Where bodies have slid since cells were cut, errors are about those of whole elements by the paper's points.",
+    tier=lambda order, elements: "gate" if elements == SLID[1] else "nightly",  # noqa: ARG005
+    grid={"order": ORDERS[:3], "elements": SLID},
+    bounds={
+        "cells": Shown("quadrature: median of the pressures' largest errors, in cells"),
+        "whole": Shown("quadrature: the same in whole elements"),
+        "ratio": Bound(at_most=2.0, reason="quadrature: either rule misses kinks, by points that are about as dense"),
+    },
+)
+def uniform_pressure_after_sliding(order: int, elements: int) -> dict[str, float]:
+    """Median errors of the pressure field with the master's lines at five places, in cells that were cut at another one, and without."""
+    cut = by_default(order, elements)
+    whole = problem(order, order, 0.0, default_rule(order)[0], elements)
+    side = slave_side(cut.contacts[0], cut, Numbering(cut))
+    found = []
+    for by in PLACES:
+        with patch.object(pairs, "slave_side", return_value=side):
+            in_cells = errors(moved(cut, by)).field
+        found.append([in_cells, errors(moved(whole, by)).field])
+    in_cells, in_whole = np.median(found, axis=0).tolist()
+    return {"cells": in_cells, "whole": in_whole, "ratio": in_cells / in_whole}
 
 
 def rotation(turn: float) -> FloatArray:

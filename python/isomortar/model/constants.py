@@ -39,6 +39,8 @@ ON_LINE = 1e-7
 CELL_MARGIN = 1e-5
 #: Lines of a cell along which these are looked for, as shares of it: the middle one counts first.
 CELL_LINES = (0.5, 0.0, 1.0)
+#: Places along the middle line of an element at which the lines that cross it are counted: more than 16 are not told apart.
+CELL_PLACES = 17
 #: Halvings by which a crossing is found: more than a number has bits, so that round-off ends them.
 CELL_HALVINGS = 50
 

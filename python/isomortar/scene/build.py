@@ -12,6 +12,7 @@ from isomortar.geometry.quadrature import contact_points, volume_points
 from isomortar.geometry.refinement import mesh
 from isomortar.model import constants
 from isomortar.model.contact_checks import has_pole
+from isomortar.model.enforcement.integration import integrated
 from isomortar.model.entities import Body, Contact, Face, Faces, Material, Motion, Problem, RigidPlane, Stage, Support
 from isomortar.model.kinks import has_kinks
 from isomortar.model.messages import located
@@ -154,7 +155,7 @@ def _contact(name: str, table: ContactTable, problem: Problem) -> Contact:
     if master == slave:
         raise InputError(f"is the slave face {slave.words!r} itself; allowed: another face", f"{path}.master")
     first, second = slave_sheet.directions
-    return Contact(
+    contact = Contact(
         name=name,
         slave=slave,
         master=master,
@@ -166,9 +167,10 @@ def _contact(name: str, table: ContactTable, problem: Problem) -> Contact:
         projection="averaged" if by_default else table.projection or "closest",
         by_default=by_default,
         enforcement=table.enforcement,
-        subcells=table.subcells,
+        subcells=table.subcells or 0,
         elastic_slip=table.elastic_slip,
     )
+    return integrated(contact, problem) if table.quadrature is None and table.subcells is None else contact
 
 
 def _side(names: tuple[str, ...], problem: Problem, field: str) -> tuple[Face, Sheet]:

@@ -59,7 +59,7 @@ def few_points(problem: Problem, contact: Contact) -> Iterator[str]:
     if isinstance(contact.master, RigidPlane):
         return
     slave, master = Sheet.of(problem, contact.slave), Sheet.of(problem, contact.master)
-    apart = _element_size(slave) / np.sqrt(np.prod(contact.quadrature))
+    apart = _element_size(slave) / (2**contact.subcells * np.sqrt(np.prod(contact.quadrature)))
     share = float(_element_size(master) / apart)
     if share < ENOUGH and max(body.modulus for body in slave.bodies) >= _softest(master):
         needed = [int(np.ceil(2.0 * points / share)) for points in contact.quadrature]

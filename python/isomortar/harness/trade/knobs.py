@@ -8,7 +8,7 @@ from typing import Literal
 
 from isomortar.errors import InputError
 from isomortar.geometry.patch import MAX_ORDER, Direction
-from isomortar.geometry.quadrature import contact_points, volume_points
+from isomortar.geometry.quadrature import volume_points
 from isomortar.harness.discretisations import coarse_geometry, lowest_order
 from isomortar.harness.trade.want import Want
 from isomortar.model.entities import Body, Contact, Face, Projection, RigidPlane
@@ -179,10 +179,8 @@ def _contact_points(scene: Scene, spoils: str) -> Iterator[Dial]:
 def _points(name: str, change: int) -> Changes:
     def overrides(scene: Scene) -> list[str]:
         contact = _contact(scene, name)
-        given = scene.tables.contacts[name].quadrature
-        body = scene.problem().body(contact.slave.body)
-        own = given or [contact_points(d) for d in body.patch.face_directions(contact.slave.face)]
-        return [f"contacts.{name}.quadrature={[max(1, n + change) for n in own]}"]
+        cells = [f"contacts.{name}.subcells={contact.subcells}"] if contact.subcells else []
+        return [f"contacts.{name}.quadrature={[max(1, n + change) for n in contact.quadrature]}", *cells]
 
     return overrides
 

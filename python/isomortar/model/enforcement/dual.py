@@ -1,4 +1,4 @@
-"""The dual mortar method: consistent control gaps and slips, with the multipliers that do work on these alone (theory 10.12)."""
+"""The dual mortar method: consistent control gaps and slips, with the multipliers that do work on these alone (theory 10.13)."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from isomortar.model.enforcement.side import SlaveSide
 
 
 def side(face: SlaveFace) -> SlaveSide:
-    """A constraint a control point: what the mortar method has, but for the functions that weight constraints (theory 10.12)."""
+    """A constraint a control point: what the mortar method has, but for the functions that weight constraints (theory 10.13)."""
     found = mortar.side(face)
     shape, area = found.arrays.shape, found.arrays.area
     test = FunctionArrays(shape.nodes, _biorthogonal(shape, area), shape.count)
@@ -22,7 +22,7 @@ def side(face: SlaveFace) -> SlaveSide:
 
 
 def _biorthogonal(shape: FunctionArrays, area: FloatArray) -> FloatArray:
-    """Functions whose integrals with those of the face are, in each element, these functions' areas, or zero (theory 10.12).
+    """Functions whose integrals with those of the face are, in each element, these functions' areas, or zero (theory 10.13).
 
     Values at the quadrature points, shape (points, local). An element may have several cells: they have its control points in common.
     Pseudo-inverses, as mass matrices lose twice the digits.

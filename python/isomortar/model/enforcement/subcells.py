@@ -44,6 +44,18 @@ class Subcells:
         area = (np.prod(length, axis=1)[:, None] * weights).ravel() * self._face.areas(nodes, slopes)
         return np.ascontiguousarray(nodes[:: len(weights)]), values, slopes, area
 
+    def lines(self) -> int:
+        """The most of the master's knot lines of one family, and edges, that are seen to cross a cell along one of its middle lines."""
+        return max(self._seen(axis) for axis in (0, 1))
+
+    def _seen(self, axis: int) -> int:
+        """The same along one direction, as changes of the element from one of a row of places to the next."""
+        places = np.repeat(0.5 * (self.low + self.high)[:, None], constants.CELL_PLACES, axis=1)
+        low, high = (self.low + self._margin)[:, axis], (self.high - self._margin)[:, axis]
+        places[..., axis] = np.linspace(low, high, constants.CELL_PLACES, axis=1)
+        elements = self._elements(places.reshape(-1, 2)).reshape(places.shape)
+        return int(np.count_nonzero(np.diff(elements, axis=1), axis=1).max())
+
     def _cut(self, axis: int) -> None:
         """Cut cells across a direction where the master's element changes along their middle, else along their edges (theory 10.9).
 
