@@ -392,6 +392,7 @@ def test_quadrature_points_are_enforced_by_augmentations_or_where_they_are_few()
         (["bodies.lower.mesh.elements=[5,5,1]"], 1, (4, 4)),
         (["bodies.lower.mesh.elements=[20,3,1]"], 2, (4, 4)),
         (["bodies.lower.mesh.elements=[3,20,1]"], 2, (4, 4)),
+        (["bodies.lower.mesh.elements=[12,3,1]"], 2, (4, 4)),
         (["bodies.lower.mesh.elements=[60,60,1]"], 4, (4, 4)),
         (
             ["bodies.lower.geometry.lower=[-1,-1,-1]", "bodies.lower.geometry.upper=[0.3,1,0]", "bodies.lower.mesh.elements=[1,1,1]"],
