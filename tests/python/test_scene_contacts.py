@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from isomortar.errors import InputError
+from isomortar.errors import InputError, LostProjectionError
+from isomortar.model.enforcement.subcells import Subcells
 from isomortar.scene import Scene
 from isomortar.scene.source import bundled_scenes
 
@@ -411,6 +412,15 @@ def test_quadrature_points_are_enforced_by_augmentations_or_where_they_are_few()
 def test_who_says_nothing_of_quadrature_gets_what_the_masters_lines_need(overrides, subcells, points):
     (contact,) = Scene.from_toml(PAIR, overrides=overrides).problem().contacts
     assert (contact.subcells, contact.quadrature) == (subcells, points)
+
+
+def test_elements_stay_whole_where_a_place_has_no_foot(monkeypatch):
+    def lost(_: Subcells) -> int:
+        raise LostProjectionError("degenerate", 0)
+
+    monkeypatch.setattr(Subcells, "lines", lost)
+    (contact,) = Scene.from_toml(PAIR, overrides=["bodies.lower.mesh.elements=[5,5,1]"]).problem().contacts
+    assert (contact.subcells, contact.quadrature) == (0, (6, 6))
 
 
 def test_rings_and_planes_whose_lines_cross_nothing_have_whole_elements():

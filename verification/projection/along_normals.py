@@ -25,7 +25,7 @@ bodies.slave = {{ geometry = {{ kind = "box", lower = [0.3, 0.3, 0.0], upper = [
 mesh = {{ order = [2, 2, 1], elements = [3, 3, 1] }} }}
 bodies.plate = {{ geometry = {{ kind = "box", lower = [0, 0, -0.5], upper = [1, 1, 0] }}, \
 mesh = {{ family = "L", order = [{order}, {order}, 1], elements = [{elements}, {elements}, 1] }} }}
-contacts.pair = {{ slave = "slave.w0", master = "plate.w1", projection = "averaged" }}
+contacts.pair = {{ slave = "slave.w0", master = "plate.w1", projection = "averaged", subcells = 0 }}
 supports = {{ top.face = "slave.w1", base.face = "plate.w0" }}
 stages = [{{ name = "rest", steps = 1 }}]
 """

@@ -31,6 +31,7 @@ slave = "slave.w0"
 master = "master.w1"
 projection = "closest"
 friction = 0.3
+subcells = 0
 
 [supports.top]
 face = "slave.w1"

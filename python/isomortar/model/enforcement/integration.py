@@ -15,7 +15,7 @@ from isomortar.model.sheet import Sheet
 
 
 def integrated(contact: Contact, problem: Problem) -> Contact:
-    """The contact with cells and their points, where lines of its master cross its elements; else as it is.
+    """The contact with cells and their points, where lines of its master cross its elements; else as it is (theory 10.10).
 
     So are contacts whose constraints are at points, and those with a rigid plane.
     """
