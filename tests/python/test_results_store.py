@@ -171,17 +171,16 @@ def with_rates(number: int) -> StepResult:
 
 
 @pytest.mark.parametrize("states", ["every", "last"])
-def test_rates_are_those_of_the_newest_step(tmp_path: Path, states: str) -> None:
-    """Each row takes the place of the one before, and of a step without rates there is none."""
+def test_rates_come_back_with_their_states(tmp_path: Path, states: str) -> None:
+    """And none where there were none."""
     path = tmp_path / "run.h5"
     writer = ResultsWriter(path, problem(), SCENE, "0.1", states=states)
-    for number, rates in ((1, False), (2, True), (3, True), (4, False), (5, True)):
-        expected = with_rates(number) if rates else step_result(number)
-        writer.recorded(expected)
+    given = [with_rates(number) if number in (2, 3, 5) else step_result(number) for number in range(1, 6)]
+    for number, result in enumerate(given, 1):
+        writer.recorded(result)
         with Results(path) as results:
-            assert same(results.last_step(), expected)
-            if states == "every" and number > 1:
-                assert results.step(number - 1).state.rates is None
+            assert same(results.last_step(), result)
+            assert states == "last" or all(same(results.step(k), given[k - 1]) for k in range(1, number + 1))
 
 
 def test_a_file_from_before_there_were_rates_is_resumed(tmp_path: Path) -> None:
@@ -193,7 +192,8 @@ def test_a_file_from_before_there_were_rates_is_resumed(tmp_path: Path) -> None:
     ResultsWriter(path, problem(), SCENE, "0.1", resume=True).recorded(step_result(3))
     ResultsWriter(path, problem(), SCENE, "0.1", resume=True).recorded(with_rates(4))
     with Results(path) as results:
-        assert same(results.last_step(), with_rates(4))
+        assert [same(results.step(k), step_result(k)) for k in (1, 2, 3)] == [True] * 3
+        assert same(results.step(4), with_rates(4))
 
 
 def test_every_dataset_has_unit_and_description(tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ The program knows no units; `unit` names the dimension in terms of the scene's o
     /log/iterations              one row a Newton iteration, in the order in which they happened
     /log/notes                   one row a note of a Newton iteration
     /states/...                  one row a kept state: positions, control pressures, ...: enough to restart
-    /rates/...                   of the newest recorded step, where the next one may go on like that: part of what a restart needs
+    /rates/...                   one row a kept state, NaN where the next step does not go on like that: part of what a restart needs
 """
 
 from __future__ import annotations
@@ -121,12 +121,12 @@ POSITIONS = _real(
 )
 #: Named as in `Rates`.
 RATES = {
-    "time": _real("load step", "load time at which the increment ended that had these rates"),
-    "positions": _real("length/load step", "rates of the positions of all control points"),
+    "time": _later("load step", "load time at which the increment ended that had these rates; NaN: there are none"),
+    "positions": _later("length/load step", "rates of the positions of all control points"),
 }
 #: Named as in `ContactRates`.
 CONTACT_RATES = {
-    "pressure": _real("force/area/load step", "rates of the pressures of the constraints"),
+    "pressure": _later("force/area/load step", "rates of the pressures of the constraints"),
     "traction": _of_friction("force/area*length/parameter/load step", "rates of the covariant tractions of the constraints", (2,)),
 }
 TIMING = Quantity(np.dtype(np.float64), "s", "CPU time of all threads in the phase within the load step", missing=np.nan)

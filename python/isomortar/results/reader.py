@@ -246,7 +246,7 @@ def _step_result(file: h5py.File, problem: Problem, number: int, row: int, kept:
         state=State(
             positions=file["states/positions"][kept],
             contacts=tuple(ContactState(**_get(file, state, layout.CONTACT_STATE, kept)) for state in states),
-            rates=_rates(file, problem) if number == file["curves/step"][-1] else None,
+            rates=_rates(file, problem, kept),
         ),
         reactions=tuple(Reaction(**_get(file, f"curves/supports/{s.name}", layout.REACTION, row)) for s in problem.supports),
         contacts=tuple(
@@ -260,12 +260,13 @@ def _step_result(file: h5py.File, problem: Problem, number: int, row: int, kept:
     )
 
 
-def _rates(file: h5py.File, problem: Problem) -> Rates | None:
-    """Rates of the newest step; None where it has none, as in a file from before there were any."""
-    if "rates/time" not in file or not len(file["rates/time"]):
+def _rates(file: h5py.File, problem: Problem, kept: int) -> Rates | None:
+    """Rates of a kept state; None where it has none, as in a file from before there were any."""
+    values = _get(file, "rates", layout.RATES, kept)
+    if np.isnan(values["time"]):
         return None
-    of_contacts = (_get(file, f"rates/contacts/{contact.name}", layout.CONTACT_RATES, 0) for contact in problem.contacts)
-    return Rates(**_get(file, "rates", layout.RATES, 0), contacts=tuple(ContactRates(**values) for values in of_contacts))
+    of_contacts = (_get(file, f"rates/contacts/{contact.name}", layout.CONTACT_RATES, kept) for contact in problem.contacts)
+    return Rates(**values, contacts=tuple(ContactRates(**of_contact) for of_contact in of_contacts))
 
 
 def _get(file: h5py.File, group: str, quantities: Mapping[str, layout.Quantity], row: int) -> dict[str, Any]:
