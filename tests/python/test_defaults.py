@@ -34,14 +34,14 @@ _FRICTION = {"cohesion": 0.0, "traction_max": None, "elastic_slip": 0.0}
 #: By entity of a problem; those that are not named have none.
 ENTITIES = {
     "Material": {"young": 10.0, "poisson": 0.3, "law": "neo-hookean"},
-    "Body": {"closed": None, "rigid": False},
+    "Body": {"closed": None, "rigid": False, "raised": None},
     "Contact": {"reference_area": None, **_FRICTION, "projection": "closest", "by_default": False, "enforcement": "mortar", "subcells": 0},
     "Motion": {"translate": (0.0, 0.0, 0.0), "rotate": 0.0},
     "Support": {"components": (0, 1, 2), "centre": (0.0, 0.0, 0.0), "axis": (0.0, 0.0, 1.0)},
     "SolverSettings": SOLVER,
     "Problem": {"settings": SOLVER, "glue": ()},
 }
-_MESH = {"family": ("N", "N", "N"), "order": None, "elements": None, "quadrature": None}
+_MESH = {"family": ("N", "N", "N"), "order": None, "contact_order": None, "elements": None, "quadrature": None}
 _RECORD = {"states": "every", "curves": None}
 #: By table of a scene file that is none of these.
 TABLES = {

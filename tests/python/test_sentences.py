@@ -25,6 +25,8 @@ from results_samples import problem, step_result
 from test_advice import DOUBTFUL, PLATE, PRESS, Warned, _of_weights, material, rational, warnings
 from test_causes import said, scene
 from test_glue import WRONG as UNGLUED
+from test_raised import WRONG as UNRAISED
+from test_raised import wrong
 from test_rigid import GOOD as DIE
 from test_rigid import WRONG as UNBENDING
 from test_scene_contacts import WRONG
@@ -73,6 +75,12 @@ def bad_rigid_bodies(_: pytest.MonkeyPatch) -> Told:
     """Refused for rigid bodies that cannot be."""
     for name, (old, new, *_) in UNBENDING.items():
         yield name, refused(DIE.replace(old, new))
+
+
+def bad_raised_faces(_: pytest.MonkeyPatch) -> Told:
+    """Refused for orders that a face in contact cannot have."""
+    for name in UNRAISED:
+        yield name, refused(wrong(name))
 
 
 def bad_sides(_: pytest.MonkeyPatch) -> Told:
@@ -235,6 +243,7 @@ KINDS = (
     bad_contacts,
     bad_joints,
     bad_rigid_bodies,
+    bad_raised_faces,
     bad_sides,
     bad_words,
     doubtful,

@@ -59,6 +59,23 @@ def mesh(patch: Patch, families: Sequence[Family], orders: Sequence[int], elemen
     return Patch((directions[0], directions[1], directions[2]), points.reshape(-1, 3, order="F"), weights.ravel(order="F"))
 
 
+def raised_along(patch: Patch, face: str, order: int) -> Patch:
+    """A patch of a higher order along a face, no smoother across its knot lines than it is.
+
+    Raises
+    ------
+    InputError
+        It is not NURBS along that face, or of a higher order there.
+    """
+    along = [direction for axis, direction in zip("uvw", patch.directions, strict=True) if axis != face[0]]
+    lowest = min(direction.order for direction in along) + 1
+    if any(direction.family == "L" for direction in along) or not lowest <= order <= MAX_ORDER["N"]:
+        families = "" if all(direction.family == "N" for direction in along) else ", of NURBS"
+        raise InputError(f"is {order} along {face}; allowed there{families}: {lowest} to {MAX_ORDER['N']}")
+    orders = [d.order if axis == face[0] else max(order, d.order) for axis, d in zip("uvw", patch.directions, strict=True)]
+    return _k_refined(patch, orders, [direction.elements for direction in patch.directions])
+
+
 def _evaluated(direction: Direction, grid: FloatArray, axis: int, parameters: FloatArray) -> FloatArray:
     """Values of B-splines along an axis of a grid of control values: parameters take the place of control points."""
     control = np.moveaxis(grid, axis, 0)

@@ -16,6 +16,7 @@ from isomortar.errors import KernelError
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.harness.visits import PairVisit, Visit, visited_states
 from isomortar.model.entities import Problem
+from isomortar.model.numbering import patch_arrays
 from isomortar.solve.contact import PairMechanics
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.system import block_product
@@ -321,21 +322,19 @@ def _sample(
 
 def solid_twin(equilibrium: Equilibrium, positions: FloatArray, along: FloatArray) -> FloatArray:
     """The twin's derivative of all internal forces, shape (control points, 3)."""
-    numbering = equilibrium.numbering
-    return sum(
-        (
-            _twin.solid_difference(
-                numbering.patch_arrays(body),
-                body.quadrature,
-                body.material.arrays,
-                positions,
-                along,
-                numbering.reference,
-            )
-            for body in equilibrium.problem.deformable
-        ),
-        np.zeros_like(positions),
-    )
+    numbering, total = equilibrium.numbering, np.zeros_like(positions)
+    for body in equilibrium.problem.deformable:
+        points = np.arange(len(body.patch.weights), dtype=np.int32)
+        of_patch = _twin.solid_difference(
+            patch_arrays(body.patch, points),
+            body.quadrature,
+            body.material.arrays,
+            numbering.of_patch(body.name, positions),
+            numbering.of_patch(body.name, along),
+            body.patch.control_points,
+        )
+        numbering.add_of_patch(body.name, of_patch, total)
+    return total
 
 
 def _symmetry(equilibrium: Equilibrium, solid: FloatArray, linear: list[PairTangent]) -> Sample:

@@ -30,6 +30,8 @@ NO_SHARE = 1e-9
 #: How far masters go on beyond their edges for constraints at points, as a share of the outer elements (theory 10.7): points on an edge of
 #: the slave often lie on the master's, and the least tilt of a face would have them come and go from one iteration to the next.
 BRIM = 0.05
+#: Control value of a function of lower order, of size one, that is zero but for round-off (theory 2.12).
+NO_ENTRY = 1e-12
 #: Share of the largest coordinate that bodies have to be apart by, so that they are: round-off of positions is no distance.
 CLEAR = 1e-8
 #: How near to a knot line of the master, as a share of its coordinates, places count as beyond it: beside a line by less than the root of

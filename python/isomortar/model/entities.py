@@ -54,12 +54,21 @@ class Material:
 
 
 @dataclass(frozen=True)
+class Raised:
+    """A face along which functions are of the patch's orders in its own row of control points alone, and of other `orders` below."""
+
+    face: str
+    orders: tuple[int, int, int]
+
+
+@dataclass(frozen=True)
 class Body:
     """A body: one volume patch with its material.
 
     `quadrature` are Gauss points per element and direction. `closed` names the direction ("u", "v", "w")
     whose last row of control points is the same unknown as the first (a ring), or is None.
     A `rigid` one does not deform: all of its control points go where its support does, or stand still; it needs no material.
+    `raised`: its functions are of the patch's order at a face alone (theory 2.12).
     """
 
     name: str
@@ -68,6 +77,13 @@ class Body:
     quadrature: tuple[int, int, int]
     closed: Literal["u", "v", "w"] | None = None
     rigid: bool = False
+    raised: Raised | None = None
+
+    @property
+    def orders(self) -> tuple[int, int, int]:
+        """Orders by direction; below a raised face."""
+        u, v, w = self.patch.directions
+        return self.raised.orders if self.raised else (u.order, v.order, w.order)
 
     @property
     def modulus(self) -> float:

@@ -70,6 +70,12 @@ def shared_points(problem: Problem, number: int) -> tuple[IntArray, IntArray]:
     """
     faces = problem.glue[number]
     bodies = [problem.body(face.body) for face in faces]
+    for body in bodies:
+        if body.raised:
+            raise InputError(
+                f"joins {body.name!r}, whose order at {body.raised.face} is another one than below; remove its mesh.contact_order",
+                f"glue.{number}",
+            )
     one, other = (Net.of(body.patch, face.face) for body, face in zip(bodies, faces, strict=True))
     names, near = (faces[0].body, faces[1].body), constants.SAME_POINT * max(body.size for body in bodies)
     misfits = []

@@ -10,6 +10,7 @@ from isomortar.geometry.patch import FloatArray, IntArray, Patch
 from isomortar.model import constants
 from isomortar.model.entities import Body, Problem
 from isomortar.model.glue import pieces, shared_points
+from isomortar.model.raised import Rows
 
 _FAMILY_CODE = {"N": 1, "L": 2}
 
@@ -25,8 +26,12 @@ class Numbering:
         Bodies with all that is glued to them: their numbers follow each other.
     starts : ndarray of int32, shape (pieces,)
         The first control point of each piece.
+    rows : dict of str to Rows
+        Of bodies of two orders, whose patches have other control points than there are.
+    own : dict of str to ndarray of int32
+        For each body the global numbers of its control points.
     points : dict of str to ndarray of int32
-        For each body the global number of each control point of its patch.
+        For each body the global number of each control point of its patch; with two orders, below the raised face, of the nearest one.
     reference : ndarray, shape (count, 3)
         Reference positions.
     size : float
@@ -41,15 +46,19 @@ class Numbering:
     def __init__(self, problem: Problem) -> None:
         self.pieces = pieces(problem)
         bodies = [body for piece in self.pieces for body in piece]
-        offsets = dict(zip((b.name for b in bodies), np.cumsum([0, *(len(b.patch.weights) for b in bodies)]).tolist(), strict=False))
-        first = _same_points(problem, bodies, offsets)
+        self.rows = {body.name: Rows(body) for body in bodies if body.raised}
+        references = [self.rows[b.name].reference if b.raised else b.patch.control_points for b in bodies]
+        counts = [len(points) for points in references]
+        offsets = dict(zip((b.name for b in bodies), np.cumsum([0, *counts]).tolist(), strict=False))
+        first = _same_points(problem, bodies, counts, offsets)
         kept = first == np.arange(len(first))
         number = np.cumsum(kept, dtype=np.int32) - 1
-        places = {body.name: slice(offsets[body.name], offsets[body.name] + len(body.patch.weights)) for body in problem.bodies}
-        self.points: dict[str, IntArray] = {name: number[first[place]].astype(np.int32) for name, place in places.items()}
+        places = {b.name: slice(offsets[b.name], offsets[b.name] + count) for b, count in zip(bodies, counts, strict=True)}
+        self.own: dict[str, IntArray] = {b.name: number[first[places[b.name]]].astype(np.int32) for b in problem.bodies}
+        self.points = {name: own[self.rows[name].nearest] if name in self.rows else own for name, own in self.own.items()}
         self.count = int(np.count_nonzero(kept))
         self.starts: IntArray = number[[offsets[piece[0].name] for piece in self.pieces]]
-        self.reference: FloatArray = np.ascontiguousarray(np.concatenate([body.patch.control_points for body in bodies])[kept])
+        self.reference: FloatArray = np.ascontiguousarray(np.concatenate(references)[kept])
         self.size = float(np.linalg.norm(np.ptp(self.reference, axis=0)))
 
     def piece_of(self, point: int) -> int:
@@ -72,6 +81,17 @@ class Numbering:
     def face_points(self, body: Body, face: str) -> IntArray:
         """Global numbers of the control points of a face, in the order of its net, shape (n2 * n1,)."""
         return self.points[body.name][body.patch.face_points(face)]
+
+    def of_patch(self, body: str, field: FloatArray) -> FloatArray:
+        """A field at the control points of a body's patch, from all control points, shape (control points of the patch, ...)."""
+        if body in self.rows:
+            return np.ascontiguousarray(self.rows[body].into @ field[self.own[body]])
+        return field[self.points[body]]
+
+    def add_of_patch(self, body: str, forces: FloatArray, total: FloatArray) -> None:
+        """Add forces on the control points of a body's patch to those on all control points, shape (count, 3)."""
+        own = self.rows[body].into.T @ forces if body in self.rows else forces
+        np.add.at(total, self.own[body], own)
 
     def patch_arrays(self, body: Body) -> PatchArrays:
         """The body's patch as the kernel reads it."""
@@ -128,11 +148,30 @@ def check_closed(body: Body) -> None:
         )
 
 
-def _same_points(problem: Problem, bodies: list[Body], offsets: dict[str, int]) -> IntArray:
+def check_raised(body: Body) -> None:
+    """Refuse what a body of two orders can not be.
+
+    Raises
+    ------
+    InputError
+        It is closed or rigid, or a line of its control points is one point.
+    """
+    words = "closed" if body.closed else "rigid" if body.rigid else ""
+    if not words and body.raised and len(np.unique(same_points(body.patch, None))) < len(body.patch.weights):
+        words = "one with a pole"
+    if body.raised and words:
+        raise InputError(
+            f"is given, and the body is {words}; remove it, or take that order for the whole", f"bodies.{body.name}.mesh.contact_order"
+        )
+
+
+def _same_points(problem: Problem, bodies: list[Body], counts: list[int], offsets: dict[str, int]) -> IntArray:
     """For each control point of all bodies, one body after the other, the first one that is the same."""
     for body in bodies:
         check_closed(body)
-    first = np.concatenate([same_points(body.patch, body.closed) + offsets[body.name] for body in bodies])
+        check_raised(body)
+    of_bodies = [np.arange(n) if body.raised else same_points(body.patch, body.closed) for body, n in zip(bodies, counts, strict=True)]
+    first = np.concatenate([points + offsets[body.name] for body, points in zip(bodies, of_bodies, strict=True)])
     links = [np.stack([np.arange(len(first)), first])]
     for number, joint in enumerate(problem.glue):
         shared = zip(shared_points(problem, number), joint, strict=True)

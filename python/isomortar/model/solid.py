@@ -15,6 +15,7 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Body, Problem
 from isomortar.model.numbering import Numbering
 from isomortar.model.pattern import element_points, incidence, pattern_of
+from isomortar.model.reduction import Reduction
 
 
 class Solid:
@@ -39,7 +40,11 @@ class Solid:
         self._numbering = numbering
         self._bodies = problem.deformable
         total = sparse.eye_array(numbering.count, dtype=np.int32, format="csr")
+        self._reductions = {body.name: Reduction(body, numbering) for body in self._bodies if body.raised}
         for body in self._bodies:
+            if body.raised:
+                total = total + self._reductions[body.name].reach
+                continue
             elements = incidence(element_points(body.patch, numbering.points[body.name]), numbering.count)
             total = total + elements.T @ elements
         self.pattern = pattern_of(sparse.csr_array(total))
@@ -93,7 +98,10 @@ class Solid:
         """Add forces and tangent of a body; its smallest J."""
         pattern, reference = self.pattern if tangent is not None else None, self._numbering.reference
         try:
-            smallest = _bindings.add_body(patch, body.quadrature, body.material.arrays, positions, reference, forces, pattern, tangent)
+            if body.raised:
+                smallest = self._reductions[body.name].add(positions, forces, pattern, tangent)
+            else:
+                smallest = _bindings.add_body(patch, body.quadrature, body.material.arrays, positions, reference, forces, pattern, tangent)
         except FoldedElementError as error:
             where = np.unravel_index(error.place, [d.elements for d in body.patch.directions], order="F")
             place = ", ".join(str(int(i)) for i in where)

@@ -14,7 +14,7 @@ import numpy as np
 from pydantic import TypeAdapter
 
 from isomortar.geometry.patch import Direction, Patch
-from isomortar.model.entities import Body, Contact, Face, Material, Problem, SolverSettings, Stage, Support
+from isomortar.model.entities import Body, Contact, Face, Material, Problem, Raised, SolverSettings, Stage, Support
 from isomortar.results.layout import CONTROL_POINTS, KNOTS, WEIGHTS, Quantity
 
 _AXES = "uvw"
@@ -26,13 +26,14 @@ _PLAIN: dict[str, Any] = {
     "glue": tuple[tuple[Face, Face], ...],
 }
 #: What earlier files of the same format do not hold, and had not.
-_LATER = ("glue", "rigid")
+_LATER = ("glue", "rigid", "raised")
 _BODY: dict[str, Any] = {
     "name": str,
     "material": Material,
     "quadrature": tuple[int, int, int],
     "closed": Literal["u", "v", "w"] | None,
     "rigid": bool,
+    "raised": Raised | None,
 }
 
 

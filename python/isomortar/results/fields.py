@@ -59,7 +59,7 @@ class ContactSurface:
 def body_points(problem: Problem, positions: FloatArray) -> dict[str, FloatArray]:
     """Positions of the control points of each body's patch, from all control points as in `State`."""
     numbering = Numbering(problem)
-    return {name: positions[numbers] for name, numbers in numbering.points.items()}
+    return {body.name: numbering.of_patch(body.name, positions) for body in problem.bodies}
 
 
 def contact_surfaces(problem: Problem, result: StepResult) -> list[ContactSurface]:

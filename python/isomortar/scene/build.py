@@ -9,11 +9,11 @@ from pathlib import Path
 from isomortar.errors import InputError
 from isomortar.geometry.patch import FACES, Direction, Patch
 from isomortar.geometry.quadrature import contact_points, volume_points
-from isomortar.geometry.refinement import mesh
+from isomortar.geometry.refinement import mesh, raised_along
 from isomortar.model import constants
 from isomortar.model.contact_checks import has_pole
 from isomortar.model.enforcement.integration import integrated
-from isomortar.model.entities import Body, Contact, Face, Faces, Material, Motion, Problem, RigidPlane, Stage, Support
+from isomortar.model.entities import Body, Contact, Face, Faces, Material, Motion, Problem, Raised, RigidPlane, Stage, Support
 from isomortar.model.kinks import has_kinks
 from isomortar.model.messages import located
 from isomortar.model.sheet import Sheet
@@ -45,7 +45,7 @@ def build(scene: SceneTable, name: str, folder: Path) -> Problem:
     meshes = {body: _MeshPlan.of(table, coarse[body]) for body, table in scene.bodies.items()}
     _check_size(meshes)
     _check_curves(scene)
-    bodies = tuple(_body(body, table, coarse[body], meshes[body], _material(scene, body)) for body, table in scene.bodies.items())
+    bodies = tuple(_body(body, table, coarse[body], meshes[body], scene) for body, table in scene.bodies.items())
     by_name = {body.name: body for body in bodies}
     problem = Problem(
         name=scene.name or name,
@@ -102,15 +102,30 @@ def _check_size(meshes: dict[str, _MeshPlan]) -> None:
         )
 
 
-def _body(name: str, table: BodyTable, coarse: Patch, plan: _MeshPlan, material: Material) -> Body:
-    patch = coarse
+def _body(name: str, table: BodyTable, coarse: Patch, plan: _MeshPlan, scene: SceneTable) -> Body:
+    patch, raised = coarse, None
     if plan.asked_for:
         with located(f"bodies.{name}.mesh"):
             patch = mesh(coarse, plan.families, plan.orders, plan.elements)
-    u, v, w = patch.directions
-    quadrature = table.mesh.quadrature or (volume_points(u), volume_points(v), volume_points(w))
+    below = patch.directions
+    if table.mesh.contact_order:
+        raised = Raised(_face_in_contact(scene, name), (below[0].order, below[1].order, below[2].order))
+        with located(f"bodies.{name}.mesh.contact_order"):
+            patch = raised_along(patch, raised.face, table.mesh.contact_order)
+    u, v, w = (max(volume_points(low), high.order + 1) for low, high in zip(below, patch.directions, strict=True))
+    quadrature = table.mesh.quadrature or (u, v, w)
     closed = table.closed or (table.geometry.closed if table.geometry else None)
-    return Body(name, patch, material, quadrature, closed, table.rigid)
+    return Body(name, patch, _material(scene, name), quadrature, closed, table.rigid, raised)
+
+
+def _face_in_contact(scene: SceneTable, body: str) -> str:
+    """The face of a body that is in contact, the only one."""
+    sides = [side for contact in scene.contacts.values() for side in (*contact.slave, *(contact.master or ()))]
+    faces = sorted({side.rpartition(".")[2] for side in sides if side.rpartition(".")[0] == body})
+    if len(faces) != 1:
+        named = f"of {body!r} are {', '.join(faces)}" if faces else f"{body!r} has none"
+        raise InputError(f"is for bodies with one face in contact, and {named}; remove it", f"bodies.{body}.mesh.contact_order")
+    return faces[0]
 
 
 def _material(scene: SceneTable, body: str) -> Material:

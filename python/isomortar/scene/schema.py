@@ -119,10 +119,12 @@ class MeshTable(Table):
     """N: NURBS by k-refinement. L: Lagrange elements with their nodes on the geometry."""
     order: PerDirection[Count] | None = None
     """Polynomial order; default: 2 for box, bowl and ring, else the geometry's own."""
+    contact_order: Count | None = None
+    """Order along the body's one face in contact in the row of control points there, above `order` and no smoother; default: `order`."""
     elements: PerDirection[Count] | None = None
     """Elements; a multiple of the geometry's knot spans; default: these."""
     quadrature: PerDirection[GaussPoints] | None = None
-    """Gauss points per volume element; default by family and order (Table 1 of the paper; above order 5: order + 2)."""
+    """Gauss points per volume element; default by family and order (Table 1 of the paper; above 5: order + 2), above contact_order."""
 
 
 class BodyTable(Table):

@@ -112,7 +112,7 @@ def _orders(scene: Scene, spoils: str) -> Iterator[Dial]:
     """Order of each body along its faces in contact."""
     for name, letters in faces_in_contact(scene).items():
         body = scene.problem().body(name)
-        own = max(d.order for axis, d in directions(body) if axis in letters)
+        own = max(order for axis, order in zip("uvw", body.orders, strict=True) if axis in letters)
         families = {d.family for axis, d in directions(body) if axis in letters}
         highest = min(HIGHEST, *(MAX_ORDER[family] for family in families))
         orders = sorted({own, *range(max(2, lowest_order(scene, name, letters)), highest + 1)})
@@ -123,8 +123,25 @@ def _orders(scene: Scene, spoils: str) -> Iterator[Dial]:
 def _order(name: str, letters: str, order: int) -> Changes:
     def overrides(scene: Scene) -> list[str]:
         body = scene.problem().body(name)
-        orders = [order if axis in letters else d.order for axis, d in directions(body)]
+        orders = [order if axis in letters else own for axis, own in zip("uvw", body.orders, strict=True)]
         return [f"bodies.{name}.mesh.order={orders}", *stated(body, ("family", "elements"))]
+
+    return overrides
+
+
+def _contact_orders(scene: Scene, spoils: str) -> Iterator[Dial]:
+    """Order at the face in contact of each body, above that of the rest."""
+    for name, letters in faces_in_contact(scene).items():
+        if not scene.problem().body(name).raised:
+            settings = (Setting("as below"), Setting("one higher", _contact_order(name, letters)))
+            yield Dial(f"order at the contact of {name}", settings, 0, spoils, refines=False)
+
+
+def _contact_order(name: str, letters: str) -> Changes:
+    def overrides(scene: Scene) -> list[str]:
+        body = scene.problem().body(name)
+        higher = 1 + max(order for axis, order in zip("uvw", body.orders, strict=True) if axis in letters)
+        return [f"bodies.{name}.mesh.contact_order={higher}", *stated(body, ("family", "order", "elements"))]
 
     return overrides
 
@@ -283,7 +300,7 @@ def stated(body: Body, keys: Sequence[str]) -> list[str]:
     """A body's mesh as it is, stated: defaults of some keys follow from others that are given."""
     values = {
         "family": [d.family for d in body.patch.directions],
-        "order": [d.order for d in body.patch.directions],
+        "order": list(body.orders),
         "elements": [d.elements for d in body.patch.directions],
     }
     return [f"bodies.{body.name}.mesh.{key}={values[key]}".replace("'", '"') for key in keys]
@@ -292,6 +309,7 @@ def stated(body: Body, keys: Sequence[str]) -> list[str]:
 #: Every knob, in the order in which settings are applied.
 KNOBS: tuple[Knob, ...] = (
     Knob("order", "everything that is smooth", _orders),
+    Knob("contact order", "the curves, by what is between the contact's control points", _contact_orders),
     Knob("elements", "everything; along a face the contact's edge first", _elements),
     Knob("volume quadrature", "the bodies' stiffness", _volume_points),
     Knob("contact quadrature", "the transfer of pressure between meshes that do not match", _contact_points),
