@@ -1,0 +1,132 @@
+"""Factors of bodies with what contact adds on their faces: what they solve, and what they leave to general ones."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+
+from isomortar._compiled import kernel
+from isomortar._condensed import CondensedFactors, fill_reducing
+from isomortar.errors import SingularSystemError
+from isomortar.geometry.patch import FloatArray
+from isomortar.harness import Bound, case
+
+#: Nodes along a body, unknowns of faces, and multipliers.
+LENGTH, FACES, OTHERS = 60, 40, 12
+#: Status of a handle that was released (fortran/base/status.f90).
+STALE = 6
+
+
+def held(nodes: int, springs: FloatArray, support: float = 1.0) -> sparse.csr_array:
+    """Stiffness of a ladder of springs of two unknowns a node, held at one end."""
+    chain = np.append(springs, 0.0) + np.insert(springs, 0, support)
+    line = sparse.diags_array([chain, -springs, -springs], offsets=[0, 1, -1], shape=(nodes, nodes))
+    return sparse.csr_array(sparse.kron(line, np.array([[2.0, 0.5], [0.5, 1.0]])))
+
+
+def body(random: np.random.Generator, soft: float = 0.0) -> tuple[sparse.csr_array, NDArray[np.bool_]]:
+    """A body with springs over four decades and faces anywhere, which press for more where they are soft."""
+    matrix = held(LENGTH, 10.0 ** random.uniform(-2, 2, LENGTH - 1))
+    on_face = random.permutation(np.arange(2 * LENGTH) < FACES)
+    matrix = sparse.csr_array(matrix - soft * sparse.diags_array(on_face * matrix.diagonal()))
+    matrix.sort_indices()
+    return matrix, on_face
+
+
+def factors(matrix: sparse.csr_array, on_face: NDArray[np.bool_], ordering: str = "amd") -> CondensedFactors:
+    """The analysis of a body."""
+    start, column = matrix.indptr.astype(np.int64), matrix.indices.astype(np.int64)
+    return CondensedFactors(start, column, on_face, fill_reducing(start, column, ordering)[0])  # type: ignore[arg-type]
+
+
+def added(random: np.random.Generator) -> FloatArray:
+    """What contact adds: an unsymmetric block, with zeros on the diagonal of multipliers."""
+    block = 10.0 * np.eye(FACES + OTHERS) + random.standard_normal((FACES + OTHERS, FACES + OTHERS))
+    block[-OTHERS:, -OTHERS:] = 0.0
+    return np.asfortranarray(block)
+
+
+@case(
+    claim="Systems of bodies and contact are solved to round-off by parts, faces that contact alone holds included.",
+    tier="gate",
+    grid={"ordering": ("metis", "amd"), "soft": (0.0, 0.4)},
+    bounds={
+        "residual": Bound(at_most=2e-15, reason="round-off: backward error of Cholesky and LU in the matrix' norm, ten units"),
+        "indefinite": Bound(at_least=1.0, reason="definition: the bodies alone are just where their faces are soft"),
+    },
+)
+def solution_by_parts(ordering: str, soft: float) -> dict[str, float]:
+    """Largest residual over the sizes of the matrix and of the solution, of ten bodies; whether these are indefinite as they should."""
+    random, worst, indefinite = np.random.default_rng(9), 0.0, 0
+    for _ in range(10):
+        (matrix, on_face), block = body(random, soft), added(random)
+        n = matrix.shape[0]
+        trailing = np.concatenate([np.flatnonzero(on_face), np.arange(n, n + OTHERS)])
+        whole = np.zeros((n + OTHERS, n + OTHERS))
+        whole[:n, :n] = matrix.toarray()
+        whole[np.ix_(trailing, trailing)] += block
+        found, right = factors(matrix, on_face, ordering), random.standard_normal(n + OTHERS)
+        found.factorise(matrix.data, block)
+        x = found.solve(right)
+        size = np.abs(whole).sum(axis=1).max() * np.abs(x).max() + np.abs(right).max()
+        worst = max(worst, float(np.abs(whole @ x - right).max() / size))
+        indefinite += bool(np.linalg.eigvalsh(matrix.toarray())[0] < 0)
+    return {"residual": worst, "indefinite": float((indefinite == 10) == (soft > 0.0))}
+
+
+def _refused(matrix: sparse.csr_array, on_face: NDArray[np.bool_], block: FloatArray) -> bool:
+    try:
+        factors(matrix, on_face).factorise(matrix.data, block)
+    except SingularSystemError:
+        return True
+    return False
+
+
+@case(
+    claim="What is singular, or not definite within, is left to general factors: of those that are one of a kind each is.",
+    tier="gate",
+    bounds={
+        name: Bound(at_least=1.0, at_most=1.0, reason="definition: its solution has no correct digit, or Cholesky's factors are none")
+        for name in ("floats", "repeats", "indefinite within")
+    }
+    | {"sound": Bound(at_most=0.0, reason="definition: the same without what is wrong of it")},
+)
+def left_to_general_factors() -> dict[str, float]:
+    """Shares of bodies that are refused: with a part that nothing holds, a repeated multiplier, a soft inside, and with none."""
+    random, found = np.random.default_rng(10), dict.fromkeys(("floats", "repeats", "indefinite within", "sound"), 0.0)
+    for _ in range(20):
+        (matrix, on_face), block = body(random), added(random)
+        loose = held(6, random.uniform(0.1, 1.0, 5), support=0.0)
+        apart = sparse.csr_array(sparse.block_diag([matrix, loose]))
+        repeated = block.copy(order="F")
+        repeated[-1], repeated[:, -1] = repeated[-2], repeated[:, -2]
+        inside = sparse.csr_array(matrix - sparse.diags_array(3.0 * ~on_face * matrix.diagonal()))
+        for one in (apart, inside):
+            one.sort_indices()
+        found["sound"] += _refused(matrix, on_face, block) / 20
+        found["floats"] += _refused(apart, np.append(on_face, np.zeros(12, dtype=bool)), block) / 20
+        found["repeats"] += _refused(matrix, on_face, repeated) / 20
+        found["indefinite within"] += _refused(inside, on_face, block) / 20
+    return {name: round(share, 12) for name, share in found.items()}
+
+
+@case(
+    claim="Bodies that were released, or never made, solve nothing.",
+    tier="gate",
+    bounds={
+        name: Bound(at_least=STALE, at_most=STALE, reason="definition: the handle is stale")
+        for name in ("factorised", "solved", "released twice")
+    },
+)
+def handles_of_bodies() -> dict[str, float]:
+    """Status codes of the kernel for a handle that was released."""
+    matrix, on_face = body(np.random.default_rng(11))
+    start, column = matrix.indptr.astype(np.int64), matrix.indices.astype(np.int64)
+    handle = kernel.condensed_analyse(start, column, on_face.astype(np.int32), fill_reducing(start, column, "amd")[0])[0]
+    kernel.sparse_release(handle)
+    return {
+        "factorised": float(kernel.condensed_factorise(handle, matrix.data, np.eye(FACES, order="F"), 0.0)[-1]),
+        "solved": float(kernel.condensed_solve(handle, np.ones(2 * LENGTH))[-1]),
+        "released twice": float(kernel.sparse_release(handle)),
+    }
