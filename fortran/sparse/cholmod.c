@@ -2,6 +2,7 @@
 
    In C, as CHOLMOD's settings and factors are structures of C whose layout differs from one of its versions to the next; Fortran sees
    them as a pointer (cholmod.f90, where each argument is named). Rows and columns count from 0. */
+#include <omp.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -154,6 +155,15 @@ static double read_factor(const cholesky *self, double *corner) {
   return least;
 }
 
+/* Factorise on this thread alone. CHOLMOD asks for four, whatever OMP_NUM_THREADS says: they would be in the way of other runs, and a process
+   that is forked off later would wait for them for ever. */
+static void factorise_alone(cholesky *self) {
+  const int levels = omp_get_max_active_levels();
+  omp_set_max_active_levels(0);
+  cholmod_l_factorize(self->matrix, self->factor, &self->common);
+  omp_set_max_active_levels(levels);
+}
+
 int isomortar_cholesky_factorise(cholesky *self, const double *values, double share, double *corner, double *shift, double *least) {
   double *entry = self->matrix->x;
   memcpy(entry, values, self->matrix->nzmax * sizeof(double));
@@ -162,7 +172,7 @@ int isomortar_cholesky_factorise(cholesky *self, const double *values, double sh
     shift[k] = share * *diagonal;
     *diagonal += shift[k];
   }
-  cholmod_l_factorize(self->matrix, self->factor, &self->common);
+  factorise_alone(self);
   const int code = ending(&self->common);
   if (code == done) *least = read_factor(self, corner);
   return code;

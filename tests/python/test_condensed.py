@@ -1,5 +1,10 @@
 """Factors of bodies with what contact adds on their faces, against dense matrices; and the system that is made of them."""
 
+import os
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 from scipy import sparse
@@ -12,6 +17,7 @@ from isomortar.solve.simulation import Simulation
 from isomortar.solve.system import LinearSystem, entries
 from isomortar.solve.timing import Ledger
 
+ROOT = Path(__file__).parents[2]
 RANDOM = np.random.default_rng(5)
 
 
@@ -136,6 +142,26 @@ def test_handles_are_given_back():
     matrix, on_face, added = body(nodes=2, faces=4, others=0)
     for _ in range(1100):  # more than the kernel holds
         factors(matrix, on_face).factorise(matrix.data, added)
+
+
+def test_no_threads_are_left_that_a_forked_process_would_wait_for():
+    """CHOLMOD by itself takes four, whatever is set."""
+    code = """
+import os, sys
+sys.path.insert(0, "tests/python")
+from test_condensed import body, factors
+matrix, on_face, added = body(nodes=12, faces=300)
+def factorise():
+    factors(matrix, on_face).factorise(matrix.data, added)
+factorise()
+if not (child := os.fork()):
+    factorise()
+    os._exit(7)
+print(len(os.listdir("/proc/self/task")), os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
+"""
+    environment = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    ended = subprocess.run([sys.executable, "-c", code], cwd=ROOT, env=environment, capture_output=True, text=True, timeout=60, check=False)
+    assert ended.stdout.split() == ["1", "7"], ended.stderr
 
 
 # The system of a scene

@@ -356,7 +356,7 @@ def stale():
 STALE = """
 [[fault]]
 name = "stale handles are released"
-file = "sparse/factorisation.f90"
+file = "sparse/handles.f90"
 old = "    slot = slot_of(handle)\\n    status = status_stale_handle\\n    if (slot == slots) return\\n    call forget"
 new = "    slot = slot_of(handle)\\n    status = status_ok\\n    if (slot == slots) return\\n    call forget"
 why = "a handle that is none"

@@ -58,7 +58,7 @@ def added(random: np.random.Generator) -> FloatArray:
 )
 def solution_by_parts(ordering: str, soft: float) -> dict[str, float]:
     """Largest residual over the sizes of the matrix and of the solution, of ten bodies; whether these are indefinite as they should."""
-    random, worst, indefinite = np.random.default_rng(9), 0.0, 0
+    random, residuals, indefinite = np.random.default_rng(9), [], 0
     for _ in range(10):
         (matrix, on_face), block = body(random, soft), added(random)
         n = matrix.shape[0]
@@ -70,9 +70,9 @@ def solution_by_parts(ordering: str, soft: float) -> dict[str, float]:
         found.factorise(matrix.data, block)
         x = found.solve(right)
         size = np.abs(whole).sum(axis=1).max() * np.abs(x).max() + np.abs(right).max()
-        worst = max(worst, float(np.abs(whole @ x - right).max() / size))
+        residuals.append(np.abs(whole @ x - right).max() / size)
         indefinite += bool(np.linalg.eigvalsh(matrix.toarray())[0] < 0)
-    return {"residual": worst, "indefinite": float((indefinite == 10) == (soft > 0.0))}
+    return {"residual": float(np.max(residuals)), "indefinite": float((indefinite == 10) == (soft > 0.0))}
 
 
 def _refused(matrix: sparse.csr_array, on_face: NDArray[np.bool_], block: FloatArray) -> bool:

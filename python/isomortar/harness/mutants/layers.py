@@ -71,6 +71,7 @@ LAYERS = {
                 "base/kinds.f90": "names of kinds",
                 "base/kinds_extended.f90": "names of kinds",
                 "base/status.f90": "names of status codes: any numbers do",
+                "sparse/cholmod.f90": "declarations of a C library",
                 "sparse/umfpack.f90": "declarations of a C library",
                 "api/difference.f90": "of the extended-precision twin alone",
                 "api/extended_api.f90": "of the extended-precision twin alone",
