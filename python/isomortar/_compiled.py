@@ -1,8 +1,13 @@
-"""The compiled kernel, loaded with the BLAS routines that fit the processor.
+"""The compiled kernel, loaded with settings of its libraries that suit it; nobody has to know of them.
 
-Debian's OpenBLAS takes a processor that is younger than itself for a very old one: matrix products, and with them assembly and
-factorisation, are then two to ten times slower. The right choice follows from the processor's flags; OpenBLAS reads it
-from the environment while it is loaded. A choice that the user has made stands.
+Libraries read the settings from the environment while they are loaded, and there they stand no longer than that: what the
+user has set stands, and what the program around us does with libraries of its own is left to it.
+
+- Debian's OpenBLAS takes a processor that is younger than itself for a very old one: matrix products, and with them assembly and
+  factorisation, are then two to ten times slower. The right choice follows from the processor's flags.
+- One thread for OpenBLAS: more do not make the solves faster, and get in the way of the assembly's.
+- Threads of the assembly sleep when they wait: two runs on the same cores would hold each other up tenfold.
+- Memory that is freed stays with the process (`keep_memory`).
 
 Another kernel with the same interface takes its place where the environment names one (docs/programs.md).
 """
@@ -11,14 +16,16 @@ from __future__ import annotations
 
 import importlib.util
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from types import ModuleType
 
+from isomortar._process import keep_memory
 from isomortar.errors import InputError
 
 #: Variable of the environment that names the file of another kernel, for this process and those that it starts.
 KERNEL = "ISOMORTAR_KERNEL"
-_CHOICE = "OPENBLAS_CORETYPE"
 
 
 def processor_kind(flags: frozenset[str]) -> str | None:
@@ -62,13 +69,23 @@ def kernel_at(path: Path, own: ModuleType) -> ModuleType:
     return module
 
 
-_kind = processor_kind(_processor_flags()) if _CHOICE not in os.environ else None
-if _kind is not None:
-    os.environ[_CHOICE] = _kind
-from isomortar import _kernel as kernel
+@contextmanager
+def _settings() -> Iterator[None]:
+    """Say what libraries should read while they are loaded, where the user has not."""
+    kind = processor_kind(_processor_flags())
+    said = {"OPENBLAS_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive"} | ({"OPENBLAS_CORETYPE": kind} if kind else {})
+    ours = {variable: value for variable, value in said.items() if variable not in os.environ}
+    os.environ.update(ours)
+    try:
+        yield
+    finally:
+        for variable in ours:
+            del os.environ[variable]
 
-if _kind is not None:
-    del os.environ[_CHOICE]
+
+keep_memory()
+with _settings():
+    from isomortar import _kernel as kernel
 if KERNEL in os.environ:
     kernel = kernel_at(Path(os.environ[KERNEL]), kernel)
 

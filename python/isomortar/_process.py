@@ -1,4 +1,4 @@
-"""Settings of a process that is isomortar's own; as a library it leaves its host's as they are."""
+"""Settings of the process: what all of it is told where it is isomortar's own, and what becomes of its memory."""
 
 from __future__ import annotations
 
@@ -13,17 +13,23 @@ _KEPT = {"MALLOC_MMAP_MAX_": (-4, 0), "MALLOC_TRIM_THRESHOLD_": (-1, -1)}
 
 
 def own_process() -> None:
-    """Set up a process before it loads the kernel; what the user's environment says of threads and memory stands.
+    """Set up a process before it loads any library; what the user's environment says stands.
 
-    One thread for the linear algebra library: more do not make the solves faster, and get in the way of the assembly's. Threads of the
-    assembly sleep when they wait: two runs on the same cores would hold each other up tenfold. And memory that is freed stays with the
-    process: factors and matrices come and go, and pages that the system has to find and clear anew each time are up to a quarter of a
-    factorisation (where the C library is glibc). The process grows by some per cent for it. Pydantic does not look through all that is
-    installed for plugins of its own, which would have nothing to do here.
+    One thread for the linear algebra library, NumPy's as well. Threads of the assembly sleep when they wait, whichever library is the
+    first that loads them. And Pydantic does not look through all that is installed for plugins of its own, which would have nothing to
+    do here.
     """
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     os.environ.setdefault("OMP_WAIT_POLICY", "passive")
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
+
+
+def keep_memory() -> None:
+    """Let memory that is freed stay with the process, where the C library is glibc and the user's environment does not say otherwise.
+
+    Factors and matrices come and go, and pages that the system has to find and clear anew each time are up to a quarter of a
+    factorisation. The process grows by some per cent for it.
+    """
     library = ctypes.CDLL(None)
     if hasattr(library, "mallopt"):
         for variable, (parameter, value) in _KEPT.items():

@@ -1,8 +1,9 @@
-"""Results do not depend on the number of threads, not in one bit."""
+"""Results do not depend on the number of threads, not in one bit; a program that uses the package has none that are in its way."""
 
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -37,3 +38,46 @@ def bits(threads: int) -> str:
 @pytest.mark.parametrize("threads", [2, 3, 7])
 def test_assembly_has_the_same_bits_on_any_number_of_threads(threads: int) -> None:
     assert bits(threads) == bits(1)
+
+
+#: Runs scenes with two threads for NumPy, as they are on most machines; prints the seconds of the second one.
+HELPER = """
+import os, time
+import numpy
+time.sleep(1.0)  # until it sleeps, which it does not at once
+helper = sorted(int(thread) for thread in os.listdir("/proc/self/task"))[1]
+import isomortar
+seconds = lambda: int(open(f"/proc/self/task/{helper}/schedstat").read().split()[0]) / 1e9
+before = seconds()
+for name, change in (("twist", "stages.twist.steps=1"), ("block", "stages.slide.steps=1")):
+    scene = isomortar.Scene.load(name, [change])
+    isomortar.run(scene, f"{name}.h5").close()
+print(seconds() - before)
+"""
+
+
+@pytest.mark.skipif(os.cpu_count() == 1, reason="NumPy has no second thread on one core")
+def test_a_run_wakes_no_thread_of_numpy(tmp_path: Path) -> None:
+    """It would stay awake for half a second, on a core that another run has use for."""
+    assert float(said(HELPER, tmp_path, OPENBLAS_NUM_THREADS="2")) == 0.0
+
+
+#: Prints what the environment says before and after the kernel is loaded, and how many threads the kernel's OpenBLAS has.
+LOADED = """
+import ctypes, os
+before = dict(os.environ)
+from isomortar._compiled import kernel
+print(before == dict(os.environ), ctypes.CDLL(kernel.__file__).openblas_get_num_threads())
+"""
+
+
+@pytest.mark.parametrize(("environment", "threads"), [({}, 1), ({"OPENBLAS_NUM_THREADS": "2"}, 2)])
+def test_the_kernel_is_loaded_with_one_thread_for_its_linear_algebra_unless_the_user_says_so(tmp_path, environment, threads) -> None:
+    assert said(LOADED, tmp_path, **environment) == f"True {threads}"
+
+
+def said(code: str, folder: Path, **environment: str) -> str:
+    """What a program prints, in an environment that says nothing of threads but this."""
+    clean = {name: value for name, value in os.environ.items() if not name.startswith(("OMP_", "OPENBLAS_"))}
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=clean | environment, check=True, cwd=folder)
+    return done.stdout.strip()

@@ -82,7 +82,7 @@ def _on_face(slave: Cells, master: Cells) -> Stance:
     beside = np.linalg.norm(arms - heights[:, None] * normals, axis=1) > np.sqrt(2.0 * master.areas[nearest])
     thickness = np.minimum(slave.thickness, master.thickness[nearest])
     depth, thick = _deepest(cosines, np.where(beside, np.inf, heights), thickness)
-    cosine = float((_some(slave.normals) @ _some(master.normals).T).min())
+    cosine = float(_product(_some(slave.normals), _some(master.normals).T).min())
     gap = 0.0 if depth > 0.0 else max(float((distances - np.sqrt(2.0 * master.areas[nearest])).min()), 0.0)
     return Stance(float(slave.areas.sum()), float(master.areas.sum()), cosine, depth, gap, thick, False)
 
@@ -91,9 +91,14 @@ def _nearest(points: FloatArray, others: FloatArray) -> IntArray:
     """Numbers of the others that are nearest to each point, by all distances: SciPy's tree takes a tenth of a second to load."""
     middle = others.mean(axis=0)
     points, others = points - middle, others - middle  # far from the origin squares would have lost their differences
-    squares = np.column_stack([-2.0 * others, np.einsum("ij,ij->i", others, others)]).T  # |x - y|^2 but for |x|^2
+    squares = np.column_stack([-2.0 * others, np.einsum("ij,ij->i", others, others)]).T.copy()  # |x - y|^2 but for |x|^2
     parts = np.array_split(np.column_stack([points, np.ones(len(points))]), -(-len(points) * len(others) // AT_ONCE))
-    return np.concatenate([np.argmin(part @ squares, axis=1) for part in parts])
+    return np.concatenate([np.argmin(_product(part, squares), axis=1) for part in parts])
+
+
+def _product(some: FloatArray, others: FloatArray) -> FloatArray:
+    """Product of two matrices without threads of NumPy's, which would stay awake for half a second afterwards."""
+    return np.asarray(np.einsum("ik,kj->ij", some, others))
 
 
 def _some(normals: FloatArray) -> FloatArray:

@@ -167,7 +167,8 @@ class CondensedSystem(CheckedSystem):
             return self._general._product(solution)
         product = np.zeros_like(solution)
         product[: self._bodies.unknowns] = self._stiffness @ solution[: self._bodies.unknowns]
-        product[self._trailing] += self._added @ solution[self._trailing]
+        # Not by `@`: NumPy's threads would stay awake afterwards.
+        product[self._trailing] += np.einsum("ij,j->i", self._added, solution[self._trailing])
         return product
 
 
