@@ -41,12 +41,17 @@ class Crew(Generic[Tool]):
         return self._threads.submit(self._call, function, item)
 
     def each(self, function: Callable[[Tool, _Item], _Result], items: Iterable[_Item]) -> Iterator[tuple[_Item, _Result]]:
-        """Every item with what the function makes of it, in order; a few items ahead of what was asked for."""
+        """Every item with what the function makes of it, in order.
+
+        Items of a sequence wait for tools alone, and one that takes long holds up no other; what makes its items on demand is asked for a
+        few more than were taken.
+        """
+        most = len(items) if isinstance(items, Sequence) else 2 * self._size
         waiting: deque[tuple[_Item, Future[_Result]]] = deque()
         try:
             for item in items:
                 waiting.append((item, self.submit(function, item)))
-                if len(waiting) > 2 * self._size:
+                if len(waiting) > most:
                     first, future = waiting.popleft()
                     yield first, future.result()
             while waiting:
