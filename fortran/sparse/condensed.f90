@@ -119,21 +119,29 @@ contains
     end if
     rcond = least
     if (n == 0) return ! LAPACK takes no leading dimension of zero
-    call complement_faces(self, added, shift)
+    call complement_faces(self, added, shift, failure)
+    if (failure /= 0) then
+      code = cholesky_out_of_memory
+      call forget_numbers(self)
+      return
+    end if
     call dgetrf(n, n, self%complement, n, self%pivot, failure)
     rcond = min(least, pivots_apart(self%complement))
   end subroutine eliminate_condensed
 
   !> The Schur complement of K on the faces, with what is added and without the `shift` (faces) of their diagonal (theory 5.12).
-  recursive subroutine complement_faces(self, added, shift)
+  !>
+  !> - `failure`: not zero where memory ran out.
+  recursive subroutine complement_faces(self, added, shift, failure)
     type(condensed_t), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: added(:, :), shift(:)
+    integer(c_int), intent(out) :: failure
     real(c_double), allocatable :: product(:, :)
     integer :: k
 
     self%complement(:, :) = added
-    if (self%faces == 0) return
-    allocate (product(self%faces, self%faces))
+    allocate (product(self%faces, self%faces), stat=failure)
+    if (failure /= 0 .or. self%faces == 0) return
     associate (n => int(self%faces, c_int))
       call dsyrk("L", "N", n, n, 1.0_c_double, self%corner, n, 0.0_c_double, product, n)
       do k = 1, n

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import weakref
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,35 +16,65 @@ from isomortar._sparse import ORDERINGS, FloatArray, LongArray, Ordering, check_
 from isomortar.errors import InputError, KernelError, SingularSystemError
 
 
-def fill_reducing(indptr: LongArray, indices: LongArray, ordering: Ordering) -> tuple[LongArray, float]:
-    """Order the unknowns of a symmetric pattern for little fill.
+@dataclass(frozen=True, eq=False)
+class SymmetricPattern:
+    """Where a symmetric matrix has entries: checked here, once, for all that is made of it.
 
     Parameters
     ----------
-    indptr, indices : ndarray of int64
-        Compressed rows of both halves, with the whole diagonal.
-    ordering : {"metis", "amd"}
-
-    Returns
-    -------
-    ndarray of int64, shape (n,)
-        The unknowns in their order.
-    float
-        Floating-point operations of a Cholesky factorisation by it.
+    indptr : ndarray of int64, shape (n + 1,)
+        Start of each row in `indices` (compressed rows).
+    indices : ndarray of int64, shape (nnz,)
+        Columns, strictly increasing within each row; both halves, with the whole diagonal.
 
     Raises
     ------
     InputError
         The pattern is not as above.
-    KernelError
-        Memory ran out, or CHOLMOD failed.
     """
-    _check_symmetric(indptr, indices)
-    if ordering not in ORDERINGS:
-        raise InputError(f"is {ordering!r}; allowed: {', '.join(ORDERINGS)}", "ordering")
-    order, flops, status = _kernel.condensed_order(indptr, indices, ordering == "metis")
-    _check_status(status, -1)
-    return order, flops
+
+    indptr: LongArray
+    indices: LongArray
+
+    def __post_init__(self) -> None:
+        check_pattern(self.indptr, self.indices)
+        rows = np.repeat(np.arange(len(self)), np.diff(self.indptr))
+        mirrored = np.argsort(self.indices, kind="stable")  # by columns, and by rows within each
+        if not (np.array_equal(rows[mirrored], self.indices) and np.array_equal(self.indices[mirrored], rows)):
+            raise InputError("is not symmetric: an entry has no mirror image", "indices")
+        if np.count_nonzero(rows == self.indices) != len(self):
+            raise InputError("has no entry on the diagonal in some row", "indices")
+
+    def __len__(self) -> int:
+        """Rows."""
+        return len(self.indptr) - 1
+
+    def fill_reducing(self, ordering: Ordering) -> tuple[LongArray, float]:
+        """Order the rows for little fill.
+
+        Parameters
+        ----------
+        ordering : {"metis", "amd"}
+
+        Returns
+        -------
+        ndarray of int64, shape (n,)
+            The rows in their order.
+        float
+            Floating-point operations of a Cholesky factorisation by it.
+
+        Raises
+        ------
+        InputError
+            There is no such ordering.
+        KernelError
+            Memory ran out, or CHOLMOD failed.
+        """
+        if ordering not in ORDERINGS:
+            raise InputError(f"is {ordering!r}; allowed: {', '.join(ORDERINGS)}", "ordering")
+        order, flops, status = _kernel.condensed_order(self.indptr, self.indices, ordering == "metis")
+        _check_status(status, -1)
+        return order, flops
 
 
 class CondensedFactors:
@@ -54,19 +85,17 @@ class CondensedFactors:
 
     Parameters
     ----------
-    indptr : ndarray of int64, shape (n + 1,)
-        Start of each row of K in `indices` (compressed rows).
-    indices : ndarray of int64, shape (nnz,)
-        Columns, strictly increasing within each row; both halves of the pattern, with the whole diagonal.
+    pattern : SymmetricPattern
+        That of K.
     on_face : ndarray of bool, shape (n,)
         Which unknowns are faces'.
     order : ndarray of int64, shape (n,)
-        That of the others: all unknowns, by `fill_reducing`.
+        That of the others: all unknowns, by `SymmetricPattern.fill_reducing`.
 
     Raises
     ------
     InputError
-        The pattern or the order is not as above.
+        The faces or the order are not as above.
     KernelError
         Memory ran out, or CHOLMOD failed.
 
@@ -82,16 +111,17 @@ class CondensedFactors:
         Estimate of the reciprocal condition of the last matrix; NaN before the first.
     """
 
-    def __init__(self, indptr: LongArray, indices: LongArray, on_face: NDArray[np.bool_], order: LongArray) -> None:
-        _check_symmetric(indptr, indices)
-        n = len(indptr) - 1
+    def __init__(self, pattern: SymmetricPattern, on_face: NDArray[np.bool_], order: LongArray) -> None:
+        n = len(pattern)
         check.array("on_face", on_face, np.bool_, n)
         if not np.array_equal(np.sort(check.array("order", order, np.int64, n)), np.arange(n)):
             raise InputError(f"is no order of the unknowns 0 to {n - 1}", "order")
         self.faces, self.rcond = int(np.count_nonzero(on_face)), float("nan")
-        self._indptr, self._unknowns, self._entries, self._others = indptr, n, len(indices), -1
+        self._pattern, self._others = pattern, -1
         self._lock = threading.Lock()
-        self._handle, self.flops, entries, place, status = _kernel.condensed_analyse(indptr, indices, on_face.astype(np.int32), order)
+        self._handle, self.flops, entries, place, status = _kernel.condensed_analyse(
+            pattern.indptr, pattern.indices, on_face.astype(np.int32), order
+        )
         _check_status(status, place)
         self.factor_entries = int(entries)
         release = weakref.finalize(self, _kernel.sparse_release, self._handle)
@@ -103,7 +133,7 @@ class CondensedFactors:
         Parameters
         ----------
         values : ndarray of float64, shape (nnz,)
-            Entries of K in the order of `indices`. Of the two halves one counts.
+            Entries of K in the order of its pattern. Of the two halves one counts.
         added : ndarray of float64, shape (t, t), Fortran order
             C on the unknowns of faces, by their numbers, and on the others after them.
         rcond_min : float
@@ -119,12 +149,12 @@ class CondensedFactors:
         InputError
             Wrong type or shape of an argument.
         """
-        check.array("values", values, np.float64, self._entries)
+        check.array("values", values, np.float64, len(self._pattern.indices))
         check.array("added", added.T if isinstance(added, np.ndarray) else added, np.float64, None, None)
         if added.shape[0] != added.shape[1] or len(added) < self.faces:
             raise InputError(f"has shape {added.shape}; allowed: square, of {self.faces} unknowns of faces and others", "added")
         check.real("rcond_min", rcond_min, lambda value: 0 <= value < 1, "a number from 0 to below 1")
-        check_finite(values, self._indptr)
+        check_finite(values, self._pattern.indptr)
         if not np.isfinite(added).all():
             raise KernelError("what is added to the matrix is not finite", -1)
         with self._lock:
@@ -154,7 +184,7 @@ class CondensedFactors:
         with self._lock:
             if self._others < 0:
                 raise KernelError("no matrix is factorised: the last one was refused, or there was none")
-            check.array("b", b, np.float64, self._unknowns + self._others)
+            check.array("b", b, np.float64, len(self._pattern) + self._others)
             finite = np.isfinite(b)
             if not finite.all():
                 row = int(np.argmin(finite))
@@ -162,17 +192,6 @@ class CondensedFactors:
             x, status = _kernel.condensed_solve(self._handle, b)
             _check_status(status, -1)
         return np.asarray(x)
-
-
-def _check_symmetric(indptr: LongArray, indices: LongArray) -> None:
-    """Refuse what is no pattern, or one that lacks an entry's mirror image or one on the diagonal."""
-    check_pattern(indptr, indices)
-    rows = np.repeat(np.arange(len(indptr) - 1), np.diff(indptr))
-    mirrored = np.lexsort((rows, indices))
-    if not (np.array_equal(rows[mirrored], indices) and np.array_equal(indices[mirrored], rows)):
-        raise InputError("is not symmetric: an entry has no mirror image", "indices")
-    if np.count_nonzero(rows == indices) != len(indptr) - 1:
-        raise InputError("has no entry on the diagonal in some row", "indices")
 
 
 def _check_status(status: int, place: int) -> None:

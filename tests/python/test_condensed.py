@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy import sparse
 
-from isomortar._condensed import CondensedFactors, fill_reducing
+from isomortar._condensed import CondensedFactors, SymmetricPattern
 from isomortar.errors import InputError, KernelError, SingularSystemError
 from isomortar.scene import Scene
 from isomortar.solve.condensed import Bodies, CondensedSystem, touched
@@ -36,11 +36,11 @@ def body(nodes: int = 5, faces: int = 40, others: int = 6, soft: float = 0.0):
 
 
 def pattern(matrix):
-    return matrix.indptr.astype(np.int64), matrix.indices.astype(np.int64)
+    return SymmetricPattern(matrix.indptr.astype(np.int64), matrix.indices.astype(np.int64))
 
 
 def factors(matrix, on_face, ordering="metis"):
-    return CondensedFactors(*pattern(matrix), on_face, fill_reducing(*pattern(matrix), ordering)[0])
+    return CondensedFactors(pattern(matrix), on_face, pattern(matrix).fill_reducing(ordering)[0])
 
 
 def whole(matrix, on_face, added):
@@ -98,21 +98,21 @@ def test_what_is_not_definite_or_singular_is_left_to_others():
 
 def test_what_is_wrong_is_named():
     matrix, on_face, added = body()
-    indptr, indices = pattern(matrix)
-    order = fill_reducing(indptr, indices, "amd")[0]
+    stiffness = pattern(matrix)
+    order = stiffness.fill_reducing("amd")[0]
     with pytest.raises(InputError, match="ordering: is 'best'; allowed: metis, amd"):
-        fill_reducing(indptr, indices, "best")
+        stiffness.fill_reducing("best")
     with pytest.raises(InputError, match="order: is no order of the unknowns"):
-        CondensedFactors(indptr, indices, on_face, np.zeros_like(order))
+        CondensedFactors(stiffness, on_face, np.zeros_like(order))
     with pytest.raises(InputError, match="on_face: is int"):
-        CondensedFactors(indptr, indices, on_face.astype(int), order)
+        CondensedFactors(stiffness, on_face.astype(int), order)
     upper = sparse.csr_array(sparse.triu(matrix))
     with pytest.raises(InputError, match="indices: is not symmetric"):
-        CondensedFactors(*pattern(upper), on_face, order)
+        pattern(upper)
     hollow = sparse.csr_array((np.ones(2), np.array([1, 0]), np.array([0, 1, 2])), shape=(2, 2))
     with pytest.raises(InputError, match="indices: has no entry on the diagonal"):
-        fill_reducing(*pattern(hollow), "amd")
-    found = CondensedFactors(indptr, indices, on_face, order)
+        pattern(hollow)
+    found = CondensedFactors(stiffness, on_face, order)
     with pytest.raises(InputError, match="values: is"):
         found.factorise(matrix.data[1:], added)
     with pytest.raises(InputError, match=r"added: has shape \(39, 39\); allowed: square, of 40 unknowns of faces and others"):
@@ -122,7 +122,7 @@ def test_what_is_wrong_is_named():
     with pytest.raises(InputError, match="rcond_min: "):
         found.factorise(matrix.data, added, rcond_min=2.0)
     bad = matrix.data.copy()
-    bad[indptr[7]] = np.nan
+    bad[matrix.indptr[7]] = np.nan
     with pytest.raises(KernelError, match="not finite in row 7"):
         found.factorise(bad, added)
     added[3, 4] = np.inf
@@ -219,7 +219,7 @@ def test_the_matrix_by_parts_is_the_general_one(last):
 
 def test_faces_are_the_unknowns_that_contact_acts_on(last):
     acted = np.unique(np.concatenate(entries(last["sources"][1:], last["size"]).nonzero()))
-    unknowns = last["bodies"].unknowns
+    unknowns = len(last["bodies"].pattern)
     assert np.array_equal(np.flatnonzero(touched(last["sources"][1:], unknowns)), acted[acted < unknowns])
     assert np.array_equal(np.flatnonzero(last["bodies"].on_face), acted[acted < unknowns])
 

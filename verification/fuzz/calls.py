@@ -16,7 +16,7 @@ import numpy as np
 from fuzz.child import Ending, Wrong, tally, tried
 
 from isomortar import _bindings
-from isomortar._condensed import CondensedFactors, fill_reducing
+from isomortar._condensed import CondensedFactors, SymmetricPattern
 from isomortar._sparse import SparseLU
 from isomortar.errors import InputError, IsomortarError
 from isomortar.harness import Bound, case
@@ -117,10 +117,10 @@ def _condensed() -> dict[str, tuple[Callable[..., Any], dict[str, Any]]]:
     added = np.asfortranarray([[1.0, 2.0], [-2.0, 1.0]])
 
     def order(indptr: Any, indices: Any, ordering: Any) -> Any:
-        return fill_reducing(indptr, indices, ordering)
+        return SymmetricPattern(indptr, indices).fill_reducing(ordering)
 
     def condense(indptr: Any, indices: Any, on_face: Any, order: Any) -> Any:
-        return CondensedFactors(indptr, indices, on_face, order)
+        return CondensedFactors(SymmetricPattern(indptr, indices), on_face, order)
 
     def factorise_condensed(values: Any, added: Any, rcond_min: Any) -> Any:
         return condense(start, column, on_face, rows).factorise(values, added, rcond_min=rcond_min)

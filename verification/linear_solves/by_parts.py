@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from isomortar._compiled import kernel
-from isomortar._condensed import CondensedFactors, fill_reducing
+from isomortar._condensed import CondensedFactors, SymmetricPattern
 from isomortar.errors import SingularSystemError
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, case
@@ -36,8 +36,13 @@ def body(random: np.random.Generator, soft: float = 0.0) -> tuple[sparse.csr_arr
 
 def factors(matrix: sparse.csr_array, on_face: NDArray[np.bool_], ordering: str = "amd") -> CondensedFactors:
     """The analysis of a body."""
-    start, column = matrix.indptr.astype(np.int64), matrix.indices.astype(np.int64)
-    return CondensedFactors(start, column, on_face, fill_reducing(start, column, ordering)[0])  # type: ignore[arg-type]
+    pattern = pattern_of(matrix)
+    return CondensedFactors(pattern, on_face, pattern.fill_reducing(ordering)[0])  # type: ignore[arg-type]
+
+
+def pattern_of(matrix: sparse.csr_array) -> SymmetricPattern:
+    """Where it has entries."""
+    return SymmetricPattern(matrix.indptr.astype(np.int64), matrix.indices.astype(np.int64))
 
 
 def added(random: np.random.Generator) -> FloatArray:
@@ -122,8 +127,9 @@ def left_to_general_factors() -> dict[str, float]:
 def handles_of_bodies() -> dict[str, float]:
     """Status codes of the kernel for a handle that was released."""
     matrix, on_face = body(np.random.default_rng(11))
-    start, column = matrix.indptr.astype(np.int64), matrix.indices.astype(np.int64)
-    handle = kernel.condensed_analyse(start, column, on_face.astype(np.int32), fill_reducing(start, column, "amd")[0])[0]
+    pattern = pattern_of(matrix)
+    order = pattern.fill_reducing("amd")[0]
+    handle = kernel.condensed_analyse(pattern.indptr, pattern.indices, on_face.astype(np.int32), order)[0]
     kernel.sparse_release(handle)
     return {
         "factorised": float(kernel.condensed_factorise(handle, matrix.data, np.eye(FACES, order="F"), 0.0)[-1]),

@@ -9,12 +9,12 @@ from scipy import sparse
 
 from isomortar import _bindings
 from isomortar._bindings import LongArray
-from isomortar._condensed import CondensedFactors, fill_reducing
+from isomortar._condensed import CondensedFactors, SymmetricPattern
 from isomortar._sparse import Ordering
 from isomortar.errors import SingularSystemError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.supports import BoolArray
-from isomortar.solve.system import CheckedSystem, LinearSystem, Source, entries, orderings
+from isomortar.solve.system import CheckedSystem, LinearSystem, Source, orderings
 from isomortar.solve.timing import Ledger
 
 
@@ -25,14 +25,14 @@ class Bodies:
     ----------
     solid : Source
         Stiffness of the bodies.
-    unknowns : int
-        Those that are free.
+    among : csr_array, shape (unknowns, unknowns)
+        Where it has entries, among the free unknowns.
     ledger : Ledger
 
     Attributes
     ----------
-    start, column : ndarray of int64
-        Its pattern.
+    pattern : SymmetricPattern
+        The same.
     places : ndarray of int64
         Of the entries of the source in it.
     on_face : ndarray of bool, shape (unknowns,)
@@ -41,16 +41,17 @@ class Bodies:
         With these last.
     """
 
-    def __init__(self, solid: Source, unknowns: int, ledger: Ledger) -> None:
-        self.unknowns, self._ledger = unknowns, ledger
-        pattern = entries([solid], unknowns)
-        self.start, self.column = pattern.indptr.astype(np.int64), pattern.indices.astype(np.int64)
+    def __init__(self, solid: Source, among: sparse.csr_array, ledger: Ledger) -> None:
+        self._ledger = ledger
         with ledger.phase("factor"):
-            self.places = _bindings.find_places(solid.pattern, solid.row_of, solid.column_of, False, self.start, self.column)
-            rivals = [fill_reducing(self.start, self.column, ordering) for ordering in orderings(unknowns)]
+            self.pattern = SymmetricPattern(among.indptr.astype(np.int64), among.indices.astype(np.int64))
+            self.places = _bindings.find_places(
+                solid.pattern, solid.row_of, solid.column_of, False, self.pattern.indptr, self.pattern.indices
+            )
+            rivals = [self.pattern.fill_reducing(ordering) for ordering in orderings(len(self.pattern))]
         ledger.counts["analyses"] += len(rivals)
         self._order = min(rivals, key=lambda rival: rival[1])[0]
-        self._analyse(np.zeros(unknowns, dtype=bool))
+        self._analyse(np.zeros(len(self.pattern), dtype=bool))
 
     def act_on(self, on_face: BoolArray) -> None:
         """Analyse with the unknowns that contact acts on last, where these are others than before."""
@@ -59,7 +60,7 @@ class Bodies:
 
     def _analyse(self, on_face: BoolArray) -> None:
         with self._ledger.phase("factor"):
-            self.on_face, self.factors = on_face, CondensedFactors(self.start, self.column, on_face, self._order)
+            self.on_face, self.factors = on_face, CondensedFactors(self.pattern, on_face, self._order)
 
     def condense(self, others: int) -> bool:
         """Whether what is dense, with so many unknowns more than faces have, takes no more operations than the bodies (theory 5.13)."""
@@ -71,10 +72,8 @@ def touched(sources: Sequence[Source], unknowns: int) -> BoolArray:
     """Which of the bodies' unknowns some sources act on, shape (unknowns,)."""
     found = np.zeros(unknowns + 1, dtype=bool)  # the last one: of what is dropped, and of multipliers
     for source in sources:
-        rows = source.row_of.reshape(-1, 3)[np.diff(source.pattern.start) > 0]
-        columns = source.column_of.reshape(-1, 3)[source.pattern.column]
-        for numbers in (rows, columns):
-            found[np.where(numbers < unknowns, numbers, -1)] = True
+        columns = source.column_of.reshape(-1, 3)[source.pattern.column]  # rows are the same unknowns, or multipliers
+        found[np.where(columns < unknowns, columns, -1)] = True
     return found[:-1]
 
 
@@ -97,12 +96,13 @@ class CondensedSystem(CheckedSystem):
         super().__init__(ledger)
         self._bodies, self._make_general = bodies, general
         self._general: LinearSystem | None = None
-        self._trailing = np.concatenate([np.flatnonzero(bodies.on_face), np.arange(bodies.unknowns, size)])
+        unknowns, column = len(bodies.pattern), bodies.pattern.indices
+        self._trailing = np.concatenate([np.flatnonzero(bodies.on_face), np.arange(unknowns, size)])
         number = np.full(size, -1, dtype=np.int64)
         number[self._trailing] = np.arange(len(self._trailing))
         self._places = [_dense_places(source, number, len(self._trailing)) for source in sources[1:]]
-        self._values = np.zeros(len(bodies.column))
-        self._stiffness = sparse.csr_array((self._values, bodies.column, bodies.start), shape=(bodies.unknowns,) * 2)
+        self._values = np.zeros(len(column))
+        self._stiffness = sparse.csr_array((self._values, column, bodies.pattern.indptr), shape=(unknowns, unknowns))
         self._added = np.zeros((len(self._trailing),) * 2, order="F")
 
     def begin(self) -> None:
@@ -166,7 +166,8 @@ class CondensedSystem(CheckedSystem):
         if self._general is not None:
             return self._general._product(solution)
         product = np.zeros_like(solution)
-        product[: self._bodies.unknowns] = self._stiffness @ solution[: self._bodies.unknowns]
+        unknowns = len(self._bodies.pattern)
+        product[:unknowns] = self._stiffness @ solution[:unknowns]
         # Not by `@`: NumPy's threads would stay awake afterwards.
         product[self._trailing] += np.einsum("ij,j->i", self._added, solution[self._trailing])
         return product

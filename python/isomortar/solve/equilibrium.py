@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy import sparse
@@ -81,7 +82,6 @@ class Equilibrium:
             PairMechanics(pair, problem.settings, ledger, self.origin, pairs[:k] + pairs[k + 1 :]) for k, pair in enumerate(pairs)
         ]
         self.solid_source = Source(self.solid.pattern, self.supports.equation, self.supports.equation)
-        self._solid_entries: sparse.csr_array | None = None
         self._bodies: Bodies | None = None
         self._system: CheckedSystem | None = None
         self._system_patterns: list[object] = []
@@ -240,17 +240,20 @@ class Equilibrium:
             self._system_patterns = patterns
         return self._system
 
+    @cached_property
+    def _solid_entries(self) -> sparse.csr_array:
+        """Where the bodies' stiffness has entries, among free unknowns."""
+        return entries([self.solid_source], len(self.supports.free))
+
     def _new_system(self, sources: list[Source], size: int) -> CheckedSystem:
         """By parts, where that takes fewer operations (theory 5.13)."""
 
         def general() -> LinearSystem:
-            if self._solid_entries is None:
-                self._solid_entries = entries([self.solid_source], len(self.supports.free))
             return LinearSystem(size, sources, self.ledger, self._solid_entries, self.orderings.get(len(sources)))
 
         free = len(self.supports.free)
         if self._bodies is None:
-            self._bodies = Bodies(self.solid_source, free, self.ledger)
+            self._bodies = Bodies(self.solid_source, self._solid_entries, self.ledger)
         self._bodies.act_on(touched(sources[1:], free))
         if self._bodies.condense(size - free):
             return CondensedSystem(self._bodies, size, sources, general, self.ledger)
