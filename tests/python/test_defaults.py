@@ -39,7 +39,7 @@ ENTITIES = {
     "Motion": {"translate": (0.0, 0.0, 0.0), "rotate": 0.0},
     "Support": {"components": (0, 1, 2), "centre": (0.0, 0.0, 0.0), "axis": (0.0, 0.0, 1.0)},
     "SolverSettings": SOLVER,
-    "Problem": {"settings": SOLVER, "glue": ()},
+    "Problem": {"settings": SOLVER, "glue": (), "symmetry": ()},
 }
 _MESH = {"family": ("N", "N", "N"), "order": None, "contact_order": None, "elements": None, "quadrature": None}
 _RECORD = {"states": "every", "curves": None}
@@ -71,6 +71,7 @@ TABLES = {
         "title": "",
         "materials": {},
         "glue": [],
+        "symmetry": {},
         "contacts": {},
         "supports": {},
         "solver": SOLVER,

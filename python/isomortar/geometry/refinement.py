@@ -45,7 +45,7 @@ def mesh(patch: Patch, families: Sequence[Family], orders: Sequence[int], elemen
         [n if family == "N" else own.elements for family, n, own in zip(families, elements, patch.directions, strict=True)],
     )
     directions = list(refined.directions)
-    grid = _homogeneous(refined)
+    grid = homogeneous(refined)
     for axis in (a for a in range(3) if families[a] == "L"):
         source = directions[axis]
         directions[axis] = Direction("L", orders[axis], source.subdivided(elements[axis] // source.elements))
@@ -118,7 +118,7 @@ def _k_refined(patch: Patch, orders: Sequence[int], elements: Sequence[int]) -> 
     return Patch((u, v, w), spline.control_points, spline.weights)
 
 
-def _homogeneous(patch: Patch) -> FloatArray:
+def homogeneous(patch: Patch) -> FloatArray:
     """Weighted control points and weights, shape (n1, n2, n3, 4)."""
     weights = patch.weights[:, None]
     return np.hstack([patch.control_points * weights, weights]).reshape((*patch.shape, 4), order="F")

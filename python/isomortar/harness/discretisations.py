@@ -103,7 +103,7 @@ def discretisation(scene: Scene, sweep: Sweep, kind: str, factor: float = 1.0) -
     Numbers of elements are rounded to what the geometry can have: multiples of its knot spans.
     """
     family, order = parse_kind(kind)
-    own = scene.problem().body(sweep.body).patch.directions
+    own = scene.whole().body(sweep.body).patch.directions
     spans = coarse_geometry(scene, sweep.body).directions
     wanted = factor / (order if family == "L" else 1)
     counts = [
@@ -126,7 +126,7 @@ def refined(scene: Scene, sweep: Sweep, chosen: Discretisation, factor: float) -
 def overrides(scene: Scene, sweep: Sweep, chosen: Discretisation) -> list[str]:
     """The overrides that give the scene a discretisation (`isomortar.scene.source.apply_overrides`)."""
     family, order = parse_kind(chosen.kind)
-    own = scene.problem().body(sweep.body).patch.directions
+    own = scene.whole().body(sweep.body).patch.directions
     geometry = coarse_geometry(scene, sweep.body).directions
     families, orders = [], []
     for axis, direction, exact in zip("uvw", own, geometry, strict=True):

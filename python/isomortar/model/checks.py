@@ -14,7 +14,7 @@ from isomortar.errors import FoldedElementError, InputError
 from isomortar.geometry.patch import FloatArray
 from isomortar.geometry.refinement import surface_samples
 from isomortar.model.contact_checks import check_contacts
-from isomortar.model.entities import Body, Contact, Face, Problem, SolverSettings, Support
+from isomortar.model.entities import Body, Contact, Face, Problem, SolverSettings, Support, unit
 from isomortar.model.glue import check_glue, named, pieces
 from isomortar.model.memory import memory_needed, memory_of_machine
 from isomortar.model.messages import input_error, located
@@ -225,7 +225,8 @@ def _check_agreement(problem: Problem, numbering: Numbering, one: Support, other
 
 
 def _agree(one: Support, other: Support, component: int) -> bool:
-    if not (one.turns or other.turns):
+    turned = [support for support in (one, other) if support.turns and abs(unit(support.axis)[component]) < 1.0]
+    if not turned:
         paths: list[FloatArray] = [np.array([motion.translate[component] for motion in s.motions]) for s in (one, other)]
         return bool(np.array_equal(paths[0], paths[1]))
     return (one.motions, one.centre, one.axis) == (other.motions, other.centre, other.axis)

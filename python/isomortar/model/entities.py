@@ -227,6 +227,19 @@ class Support:
 
 
 @dataclass(frozen=True)
+class Plane:
+    """A plane of symmetry across a coordinate `axis` (0, 1, 2), where that coordinate is `place`."""
+
+    axis: int
+    place: float
+
+    @property
+    def words(self) -> str:
+        """As messages name it."""
+        return f"the plane {'xyz'[self.axis]} = {self.place:g}"
+
+
+@dataclass(frozen=True)
 class Stage:
     """A part of the load history: `steps` equal load steps, each of them recorded."""
 
@@ -289,6 +302,7 @@ class Problem:
     """A whole computation, ready for `isomortar.solve`: plain data, no unknowns, no state.
 
     Scenes build it (`isomortar.scene`); it can be built by hand as well. `glue`: faces of two bodies each that share their control points.
+    `symmetry`: planes on whose upper side it is; forces of supports and contacts are those of the whole.
     """
 
     name: str
@@ -298,6 +312,7 @@ class Problem:
     stages: tuple[Stage, ...]
     settings: SolverSettings = field(default_factory=SolverSettings)
     glue: tuple[tuple[Face, Face], ...] = ()
+    symmetry: tuple[Plane, ...] = ()
 
     def body(self, name: str) -> Body:
         """The body of that name."""
@@ -312,6 +327,11 @@ class Problem:
     def total_steps(self) -> int:
         """Number of recorded load steps over all stages."""
         return sum(stage.steps for stage in self.stages)
+
+    @property
+    def images(self) -> int:
+        """How many times the whole holds it: itself and its mirror images."""
+        return int(2 ** len(self.symmetry))
 
 
 def unit(vector: tuple[float, float, float]) -> FloatArray:

@@ -12,6 +12,7 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Problem
 from isomortar.model.numbering import Numbering
 from isomortar.model.supports import Supports
+from isomortar.model.symmetry import of_whole
 from isomortar.program.process import Ending
 from isomortar.solve.contact import moment
 from isomortar.solve.record import Reaction
@@ -104,7 +105,8 @@ def load_step(problem: Problem, step: int, positions: FloatArray, forces: FloatA
     for support, points, share in zip(problem.supports, supports.points, supports.shares, strict=True):
         held, centre = share * forces[points], supports.centre(support, step)
         bearing = held.any(axis=1)  # where there is no node nothing is borne
-        reactions.append(Reaction(held.sum(axis=0), moment(positions[points][bearing] - centre, held[bearing]), centre))
+        force, turning = held.sum(axis=0), moment(positions[points][bearing] - centre, held[bearing])
+        reactions.append(Reaction(*of_whole(problem, force, turning, centre), centre))
     return LoadStep(step, positions, tuple(reactions))
 
 

@@ -13,10 +13,11 @@ from isomortar.geometry.refinement import mesh, raised_along
 from isomortar.model import constants
 from isomortar.model.contact_checks import has_pole
 from isomortar.model.enforcement.integration import integrated
-from isomortar.model.entities import Body, Contact, Face, Faces, Material, Motion, Problem, Raised, RigidPlane, Stage, Support
+from isomortar.model.entities import Body, Contact, Face, Faces, Material, Motion, Plane, Problem, Raised, RigidPlane, Stage, Support
 from isomortar.model.kinks import has_kinks
 from isomortar.model.messages import located
 from isomortar.model.sheet import Sheet
+from isomortar.model.symmetry import held_on_planes, upper_part
 from isomortar.scene.geometry_file import read_geometry
 from isomortar.scene.schema import BodyTable, ContactTable, MeshTable, PlaneTable, SceneTable, SupportTable
 from isomortar.scene.types import listed
@@ -45,7 +46,8 @@ def build(scene: SceneTable, name: str, folder: Path) -> Problem:
     meshes = {body: _MeshPlan.of(table, coarse[body]) for body, table in scene.bodies.items()}
     _check_size(meshes)
     _check_curves(scene)
-    bodies = tuple(_body(body, table, coarse[body], meshes[body], scene) for body, table in scene.bodies.items())
+    planes = tuple(Plane("xyz".index(axis), place) for axis, place in scene.symmetry.items())
+    bodies = upper_part(tuple(_body(body, table, coarse[body], meshes[body], scene) for body, table in scene.bodies.items()), planes)
     by_name = {body.name: body for body in bodies}
     problem = Problem(
         name=scene.name or name,
@@ -55,8 +57,10 @@ def build(scene: SceneTable, name: str, folder: Path) -> Problem:
         stages=_stages(scene),
         settings=scene.solver,
         glue=tuple(_joint(faces, by_name, f"glue.{number}") for number, faces in enumerate(scene.glue)),
+        symmetry=planes,
     )
-    return replace(problem, contacts=tuple(_contact(contact, table, problem) for contact, table in scene.contacts.items()))
+    contacts = tuple(_contact(contact, table, problem) for contact, table in scene.contacts.items())
+    return held_on_planes(replace(problem, contacts=contacts))
 
 
 def coarse_patch(name: str, table: BodyTable, folder: Path) -> Patch:

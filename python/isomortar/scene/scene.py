@@ -87,6 +87,10 @@ class Scene:
         check(problem)
         return problem
 
+    def whole(self) -> Problem:
+        """The same before symmetry has halved it, unchecked."""
+        return build(self.tables.model_copy(update={"symmetry": {}}), self.name, self._folder)
+
     @property
     def record(self) -> RecordTable:
         """What results are to keep."""

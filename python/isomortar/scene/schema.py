@@ -281,6 +281,8 @@ class SceneTable(Table):
     """Pairs of faces, ["BODY.FACE", "BODY.FACE"], that share their control points: those of two bodies with the same mesh there."""
     contacts: dict[Name, ContactTable] = Field({})
     """Contact pairs by name."""
+    symmetry: dict[Literal["x", "y", "z"], Real] = Field({})
+    """Planes of symmetry, { y = 0.0 } say: of a scene given whole the part above each is computed; forces are the whole's."""
     supports: dict[Name, SupportTable] = Field({})
     """Supports by name."""
     stages: Annotated[list[StageTable], Field(min_length=1)]

@@ -12,6 +12,7 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
 from isomortar.model.checks import check
 from isomortar.model.entities import Problem
+from isomortar.model.symmetry import of_whole
 from isomortar.solve.advice import StepAdvice, advice_on_problem
 from isomortar.solve.causes import causes
 from isomortar.solve.contact import largest, moment
@@ -198,7 +199,9 @@ class Simulation:
         supports = self.equilibrium.supports
         for support, points, share in zip(self.equilibrium.problem.supports, supports.points, supports.shares, strict=True):
             centre, forces = supports.centre(support, time), share * total[points]
-            reactions.append(Reaction(forces.sum(axis=0), moment(positions[points] - centre, forces), centre + self.equilibrium.origin))
+            force, turning = forces.sum(axis=0), moment(positions[points] - centre, forces)
+            centre = centre + self.equilibrium.origin
+            reactions.append(Reaction(*of_whole(self.problem, force, turning, centre), centre))
         return tuple(reactions)
 
     def _work(self, start: State, balance: Balance) -> FloatArray:
@@ -218,8 +221,8 @@ class Simulation:
         cuts: int,
     ) -> StepResult:
         pairs = zip(self.equilibrium.pairs, balance.kinematics, balance.responses, work, strict=True)
-        origin = self.equilibrium.origin
-        contacts = tuple(_about_origin(pair.result(balance.positions, k, r, w), origin) for pair, k, r, w in pairs)
+        origin, problem = self.equilibrium.origin, self.problem
+        contacts = tuple(_of_whole(_about_origin(pair.result(balance.positions, k, r, w), origin), problem) for pair, k, r, w in pairs)
         timings, counters = self.ledger.take()
         return StepResult(
             step=step,
@@ -245,4 +248,19 @@ def _about_origin(result: ContactResult, own: FloatArray) -> ContactResult:
         result,
         moment_slave=result.moment_slave + moment(own[None], result.force_slave[None]),
         moment_master=result.moment_master + moment(own[None], result.force_master[None]),
+    )
+
+
+def _of_whole(result: ContactResult, problem: Problem) -> ContactResult:
+    """The result with forces, moments and works of the whole in place of those on one side of planes of symmetry (theory 8.5)."""
+    slave = of_whole(problem, result.force_slave, result.moment_slave, np.zeros(3))
+    master = of_whole(problem, result.force_master, result.moment_master, np.zeros(3))
+    return replace(
+        result,
+        force_slave=slave[0],
+        moment_slave=slave[1],
+        force_master=master[0],
+        moment_master=master[1],
+        friction_work=problem.images * result.friction_work,
+        spurious_work=problem.images * result.spurious_work,
     )

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
+import numpy as np
+
 from isomortar.harness.trade.knobs import KNOBS, Changes, Dial, Knob, Setting, dials_of, directions, faces_in_contact, given, stated
 from isomortar.harness.trade.search import Recommendation, Search
 from isomortar.harness.trade.want import Want
@@ -40,7 +42,7 @@ def cheaper_dials(scene: Scene, wants: Sequence[Want] = ()) -> tuple[Dial, ...]:
 
 def _rigid(scene: Scene, spoils: str) -> Iterator[Dial]:
     """Masters that do not deform."""
-    problem = scene.problem()
+    problem = scene.whole()
     slaves = {face.body for contact in problem.contacts for face in contact.slave.faces}
     masters = [face.body for contact in problem.contacts if not isinstance(contact.master, RigidPlane) for face in contact.master.faces]
     for name in dict.fromkeys(masters):
@@ -60,7 +62,7 @@ def _orders_across(scene: Scene, spoils: str) -> Iterator[Dial]:
     """Lower orders of bodies away from their faces in contact."""
     for name, letters in faces_in_contact(scene).items():
         across = [axis for axis in "uvw" if axis not in letters]
-        own = {axis: d.order for axis, d in directions(scene.problem().body(name)) if axis in across}
+        own = {axis: d.order for axis, d in directions(scene.whole().body(name)) if axis in across}
         if across and max(own.values()) > 1:
             highest = max(own.values())
             settings = tuple(Setting(str(p), None if p == highest else _across(name, across, p)) for p in range(1, highest + 1))
@@ -69,9 +71,27 @@ def _orders_across(scene: Scene, spoils: str) -> Iterator[Dial]:
 
 def _across(name: str, axes: list[str], order: int) -> Changes:
     def changes(scene: Scene) -> list[str]:
-        body = scene.problem().body(name)
+        body = scene.whole().body(name)
         orders = [min(order, d.order) if axis in axes else d.order for axis, d in directions(body)]
         return [f"bodies.{name}.mesh.order={orders}", *stated(body, ("family", "elements"))]
+
+    return changes
+
+
+def _symmetries(scene: Scene, spoils: str) -> Iterator[Dial]:
+    """One side of each plane through the middle of all bodies in which the scene is its own mirror image."""
+    points = np.concatenate([body.patch.control_points for body in scene.whole().bodies])
+    middle = points.min(axis=0) + 0.5 * np.ptp(points, axis=0)
+    for axis, place in zip("xyz", middle, strict=True):
+        if axis not in scene.tables.symmetry:
+            name = f"the scene beyond {axis} = {place:g}"
+            yield Dial(name, (Setting("its mirror image", _mirrored(axis, float(place))), Setting("as it is")), 1, spoils, refines=False)
+
+
+def _mirrored(axis: str, place: float) -> Changes:
+    def changes(scene: Scene) -> list[str]:
+        planes = [f"{key} = {value!r}" for key, value in (*scene.tables.symmetry.items(), (axis, place))]
+        return [f"symmetry={{ {', '.join(planes)} }}"]
 
     return changes
 
@@ -80,5 +100,6 @@ def _across(name: str, axes: list[str], order: int) -> Changes:
 VARIANTS: tuple[Knob, ...] = (
     Knob("rigid", "all that the master gives way", _rigid),
     Knob("friction", "drag and torque, and what sticks", _frictionless),
+    Knob("symmetry", "what has no kink at the plane: functions are only continuous there", _symmetries),
     Knob("order across", "what bends or varies in depth", _orders_across),
 )

@@ -111,7 +111,7 @@ def _possible(scene: Scene, dial: Dial, wants: Sequence[Want]) -> Dial:
 def _orders(scene: Scene, spoils: str) -> Iterator[Dial]:
     """Order of each body along its faces in contact."""
     for name, letters in faces_in_contact(scene).items():
-        body = scene.problem().body(name)
+        body = scene.whole().body(name)
         own = max(order for axis, order in zip("uvw", body.orders, strict=True) if axis in letters)
         families = {d.family for axis, d in directions(body) if axis in letters}
         highest = min(HIGHEST, *(MAX_ORDER[family] for family in families))
@@ -122,7 +122,7 @@ def _orders(scene: Scene, spoils: str) -> Iterator[Dial]:
 
 def _order(name: str, letters: str, order: int) -> Changes:
     def overrides(scene: Scene) -> list[str]:
-        body = scene.problem().body(name)
+        body = scene.whole().body(name)
         orders = [order if axis in letters else own for axis, own in zip("uvw", body.orders, strict=True)]
         return [f"bodies.{name}.mesh.order={orders}", *stated(body, ("family", "elements"))]
 
@@ -132,14 +132,14 @@ def _order(name: str, letters: str, order: int) -> Changes:
 def _contact_orders(scene: Scene, spoils: str) -> Iterator[Dial]:
     """Order at the face in contact of each body, above that of the rest."""
     for name, letters in faces_in_contact(scene).items():
-        if not scene.problem().body(name).raised:
+        if not scene.whole().body(name).raised:
             settings = (Setting("as below"), Setting("one higher", _contact_order(name, letters)))
             yield Dial(f"order at the contact of {name}", settings, 0, spoils, refines=False)
 
 
 def _contact_order(name: str, letters: str) -> Changes:
     def overrides(scene: Scene) -> list[str]:
-        body = scene.problem().body(name)
+        body = scene.whole().body(name)
         higher = 1 + max(order for axis, order in zip("uvw", body.orders, strict=True) if axis in letters)
         return [f"bodies.{name}.mesh.contact_order={higher}", *stated(body, ("family", "order", "elements"))]
 
@@ -148,7 +148,7 @@ def _contact_order(name: str, letters: str) -> Changes:
 
 def _elements(scene: Scene, spoils: str) -> Iterator[Dial]:
     """Elements of each body by direction."""
-    for body in scene.problem().bodies:
+    for body in scene.whole().bodies:
         spans = {axis: d.elements for axis, d in zip("uvw", coarse_geometry(scene, body.name).directions, strict=True)}
         for axis, direction in directions(body):
             own, span = direction.elements, spans[axis]
@@ -159,7 +159,7 @@ def _elements(scene: Scene, spoils: str) -> Iterator[Dial]:
 
 def _element(name: str, letter: str, count: int) -> Changes:
     def overrides(scene: Scene) -> list[str]:
-        body = scene.problem().body(name)
+        body = scene.whole().body(name)
         counts = [count if axis == letter else d.elements for axis, d in directions(body)]
         return [f"bodies.{name}.mesh.elements={counts}", *stated(body, ("family", "order"))]
 
@@ -168,7 +168,7 @@ def _element(name: str, letter: str, count: int) -> Changes:
 
 def _volume_points(scene: Scene, spoils: str) -> Iterator[Dial]:
     """Quadrature points of each body's elements, fewer or more than its own."""
-    for body in scene.problem().bodies:
+    for body in scene.whole().bodies:
         yield Dial(f"quadrature of {body.name}", _more_or_fewer(body.name, -1, 0, 1), 1, spoils)
 
 
@@ -176,9 +176,9 @@ def _more_or_fewer(name: str, *changes: int) -> tuple[Setting, ...]:
     def overrides(change: int) -> Changes:
         def of(scene: Scene) -> list[str]:
             given = scene.tables.bodies[name].mesh.quadrature
-            if scene.problem().body(name).rigid:  # made so by another knob: nothing is integrated
+            if scene.whole().body(name).rigid:  # made so by another knob: nothing is integrated
                 return []
-            own = given or [volume_points(d) for _, d in directions(scene.problem().body(name))]
+            own = given or [volume_points(d) for _, d in directions(scene.whole().body(name))]
             return [f"bodies.{name}.mesh.quadrature={[max(1, n + change) for n in own]}"]
 
         return of
@@ -188,7 +188,7 @@ def _more_or_fewer(name: str, *changes: int) -> tuple[Setting, ...]:
 
 def _contact_points(scene: Scene, spoils: str) -> Iterator[Dial]:
     """Quadrature points of each contact's elements, fewer or more than its own."""
-    for contact in scene.problem().contacts:
+    for contact in scene.whole().contacts:
         settings = [Setting(f"{more:+d}" if more else "own", _points(contact.name, more) if more else None) for more in (-1, 0, 2, 4)]
         yield Dial(f"quadrature of {contact.name}", tuple(settings), 1, spoils)
 
@@ -204,7 +204,7 @@ def _points(name: str, change: int) -> Changes:
 
 def _cells(scene: Scene, spoils: str) -> Iterator[Dial]:
     """Contact elements cut along the master's knot lines."""
-    for contact in scene.problem().contacts:
+    for contact in scene.whole().contacts:
         if isinstance(contact.master, Face):
             values = sorted({0, 1, 2, contact.subcells})
             key, name = f"contacts.{contact.name}.subcells", f"subcells of {contact.name}"
@@ -213,14 +213,14 @@ def _cells(scene: Scene, spoils: str) -> Iterator[Dial]:
 
 def _load_steps(scene: Scene, spoils: str) -> Iterator[Dial]:
     """Load steps of each stage."""
-    for number, stage in enumerate(scene.problem().stages):
+    for number, stage in enumerate(scene.whole().stages):
         counts = sorted({max(1, round(stage.steps * factor)) for factor in STEPS})
         yield _values(f"stages.{number}.steps", f"load steps of {stage.name}", counts, spoils, stage.steps, refines=True)
 
 
 def _tolerances(scene: Scene, spoils: str) -> Iterator[Dial]:
     """How far a load step is iterated."""
-    solver = scene.problem().settings
+    solver = scene.whole().settings
 
     def setting(factor: float) -> Setting:
         keys = {"newton_tolerance": solver.newton_tolerance, "complementarity_tolerance": solver.complementarity_tolerance}
@@ -232,18 +232,18 @@ def _tolerances(scene: Scene, spoils: str) -> Iterator[Dial]:
 
 def _methods(scene: Scene, spoils: str) -> Iterator[Dial]:
     """Multipliers as unknowns, or augmentations."""
-    yield _values("solver.method", "method", ["monolithic", "uzawa"], spoils, scene.problem().settings.method)
+    yield _values("solver.method", "method", ["monolithic", "uzawa"], spoils, scene.whole().settings.method)
 
 
 def _slip_sums(scene: Scene, spoils: str) -> Iterator[Dial]:
     """Trial tractions by control point or summed."""
-    if any(contact.friction_law.parameters.size for contact in scene.problem().contacts):
-        yield _values("solver.slip_sum", "slip sum", ["local", "paper"], spoils, scene.problem().settings.slip_sum)
+    if any(contact.friction_law.parameters.size for contact in scene.whole().contacts):
+        yield _values("solver.slip_sum", "slip sum", ["local", "paper"], spoils, scene.whole().settings.slip_sum)
 
 
 def _enforcements(scene: Scene, spoils: str) -> Iterator[Dial]:
     """What is constrained."""
-    for contact in scene.problem().contacts:
+    for contact in scene.whole().contacts:
         ways = list(dict.fromkeys([contact.enforcement, "mortar", "dual", "greville"]))
         yield _values(f"contacts.{contact.name}.enforcement", f"enforcement of {contact.name}", ways, spoils, contact.enforcement)
 
@@ -251,16 +251,16 @@ def _enforcements(scene: Scene, spoils: str) -> Iterator[Dial]:
 def _projections(scene: Scene, spoils: str) -> Iterator[Dial]:
     """How slave points find theirs."""
     ways: list[Projection] = ["closest", "averaged"]
-    for contact in scene.problem().contacts:
+    for contact in scene.whole().contacts:
         if not isinstance(contact.master, RigidPlane):
             yield _values(f"contacts.{contact.name}.projection", f"projection of {contact.name}", ways, spoils, contact.projection)
 
 
 def _elastic_slips(scene: Scene, spoils: str) -> Iterator[Dial]:
     """A length of elastic slip in place of sticking."""
-    for contact in scene.problem().contacts:
+    for contact in scene.whole().contacts:
         if contact.friction_law.parameters.size:
-            size = scene.problem().body(contact.slave.body).size
+            size = scene.whole().body(contact.slave.body).size
             lengths = sorted({contact.elastic_slip, *(float(f"{share * size:.1g}") for share in SLIPS)}, reverse=True)
             yield _values(f"contacts.{contact.name}.elastic_slip", f"elastic slip of {contact.name}", lengths, spoils, contact.elastic_slip)
 
@@ -274,7 +274,7 @@ def _values(key: str, name: str, values: Sequence[object], spoils: str, own: obj
 def faces_in_contact(scene: Scene) -> dict[str, str]:
     """Directions along the faces in contact, by body."""
     letters: dict[str, set[str]] = {}
-    for contact in scene.problem().contacts:
+    for contact in scene.whole().contacts:
         for side in (contact.slave, contact.master):
             if isinstance(side, Face):
                 for face in side.faces:
@@ -283,7 +283,7 @@ def faces_in_contact(scene: Scene) -> dict[str, str]:
 
 
 def _contact(scene: Scene, name: str) -> Contact:
-    return next(contact for contact in scene.problem().contacts if contact.name == name)
+    return next(contact for contact in scene.whole().contacts if contact.name == name)
 
 
 def given(overrides: Sequence[str]) -> Changes:

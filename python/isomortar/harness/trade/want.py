@@ -38,7 +38,7 @@ class Want:
     weights : callable
         From the numbers of a run to what each value counts, shape (n,).
     shown : callable
-        Whether a problem has the load steps that show it.
+        Whether a problem has the load steps, or the whole face, that show it.
     """
 
     text: str
@@ -75,7 +75,8 @@ def wanted(text: str, problem: Problem) -> Want:
         number = _contact(where, problem)
         if found["component"] or found["stage"] or found["part"]:
             raise InputError(f"is {text!r}; a field is that at the end, without component, stage or part: {quantity}.{where}", "want")
-        return Want(text, lambda run, _: _share(run, quantity, number), lambda run: _share(run, "cells", number))
+        values, cells = (lambda run, _: _share(run, quantity, number)), (lambda run: _share(run, "cells", number))
+        return Want(text, values, cells, lambda other: other.images == problem.images)
     _among(part, _PARTS, f"{text!r} has no such part")
     stages = _stages(found["stage"], problem)
     if quantity == "area":

@@ -1,0 +1,92 @@
+"""A patch that is its own mirror image, cut along the plane."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from isomortar.errors import InputError
+from isomortar.geometry.patch import Direction, FloatArray, Patch
+from isomortar.geometry.refinement import homogeneous
+from isomortar.geometry.splines import Spline
+
+#: Apart by this share of a patch's size, or of a weight, or of a knot vector, points, weights and knots are mirror images.
+_SAME = 1e-12
+
+
+def upper_half(patch: Patch, axis: int, place: float) -> tuple[Patch, str]:
+    """The half of a patch on the upper side of a plane of symmetry.
+
+    Parameters
+    ----------
+    patch : Patch
+    axis : int
+        Coordinate across the plane.
+    place : float
+        Where the plane is.
+
+    Returns
+    -------
+    Patch
+        Of the same functions within its elements; its points on the plane are exactly there.
+    str
+        The face that is on the plane.
+
+    Raises
+    ------
+    InputError
+        The patch is not its own mirror image, or the plane goes through elements (`field`: ``mesh.elements``).
+    """
+    plane = f"the plane {'xyz'[axis]} = {place:g}"
+    across = [k for k in range(3) if _is_mirrored(patch, k, axis, place)]
+    if not across:
+        raise InputError(f"is not its own mirror image in {plane}, by its control points, weights and knots")
+    direction = patch.directions[across[0]]
+    if direction.elements % 2:
+        letter = "uvw"[across[0]]
+        raise InputError(
+            f"is {direction.elements} in direction {letter}, which {plane} halves; allowed there: even numbers", "mesh.elements"
+        )
+    grid = np.moveaxis(homogeneous(patch), across[0], 0)
+    rises = grid[-1, ..., axis].sum() / grid[-1, ..., 3].sum() > place
+    half, kept = _half(direction, grid.reshape(len(grid), -1), bool(rises))
+    kept = np.moveaxis(kept.reshape(-1, *grid.shape[1:]), 0, across[0])
+    weights = np.ones_like(kept[..., 3]) if np.all(patch.weights == 1.0) else kept[..., 3]
+    points = kept[..., :3] / weights[..., None]
+    face = f"{'uvw'[across[0]]}{0 if rises else 1}"
+    u, v, w = (half if k == across[0] else other for k, other in enumerate(patch.directions))
+    cut = Patch((u, v, w), points.reshape(-1, 3, order="F"), weights.ravel(order="F"))
+    cut.control_points[cut.face_points(face), axis] = place
+    return cut, face
+
+
+def _half(direction: Direction, control: FloatArray, upper: bool) -> tuple[Direction, FloatArray]:
+    """The upper or lower half of a direction with the control values of that."""
+    middle = direction.elements // 2
+    if direction.family == "L":
+        node, knots = direction.order * middle, direction.knots
+        half = knots[middle:] if upper else knots[: middle + 1]
+        return Direction("L", direction.order, half), control[node:] if upper else control[: node + 1]
+    order, knot = direction.order, direction.boundaries[middle]
+    spline = Spline([direction], control)
+    lacking = order - np.count_nonzero(direction.knots == knot)
+    if lacking:
+        spline.insert(0, np.full(lacking, knot))
+    knots, values = spline.knots[0], spline.control_points
+    first = int(np.searchsorted(knots, knot))
+    if upper:
+        return Direction("N", order, np.append(knot, knots[first:])), values[first - 1 :]
+    return Direction("N", order, np.append(knots[: first + order], knot)), values[:first]
+
+
+def _is_mirrored(patch: Patch, direction: int, axis: int, place: float) -> bool:
+    """Whether a patch that is run through the other way in one direction is its mirror image."""
+    knots, other = patch.directions[direction].knots, patch.directions[direction].reversed().knots
+    if np.abs(knots - other).max() > _SAME * np.ptp(knots):
+        return False
+    grid = patch.control_points.reshape(*patch.shape, 3, order="F")
+    image = np.flip(grid, direction).copy()
+    image[..., axis] = 2.0 * place - image[..., axis]
+    weights = patch.weights.reshape(patch.shape, order="F")
+    far = max(float(np.ptp(patch.control_points, axis=0).max()), float(np.abs(patch.control_points).max()))
+    same = np.abs(weights - np.flip(weights, direction)) <= _SAME * weights
+    return bool(np.abs(grid - image).max() <= _SAME * far and same.all())

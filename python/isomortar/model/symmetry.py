@@ -1,0 +1,116 @@
+"""Planes of symmetry: the part of a problem on their upper side, and forces of the whole from those of the part (theory 8.5)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from isomortar.errors import InputError
+from isomortar.geometry.halves import upper_half
+from isomortar.geometry.patch import FloatArray
+from isomortar.model import constants
+from isomortar.model.entities import Body, Face, Motion, Plane, Problem, RigidPlane, Support
+from isomortar.model.messages import located
+
+
+def upper_part(bodies: tuple[Body, ...], planes: tuple[Plane, ...]) -> tuple[Body, ...]:
+    """The bodies on the upper side of all planes.
+
+    Raises
+    ------
+    InputError
+        A body is not its own mirror image, or has elements across a plane.
+    """
+    for plane in planes:
+        bodies = tuple(_upper_half(body, plane) for body in bodies)
+    return bodies
+
+
+def held_on_planes(problem: Problem) -> Problem:
+    """The upper part of a problem, with a support for each face that lies on a plane: nothing goes through it.
+
+    Raises
+    ------
+    InputError
+        What it does is not symmetric: a motion, a rigid plane, a face across a plane that is in use.
+    """
+    for plane in problem.symmetry:
+        _check_motions(problem, plane)
+        _check_rigid_planes(problem, plane)
+        _check_faces(problem, plane)
+    still = tuple(Motion() for _ in problem.stages)
+    held = [
+        Support(f"symmetry-{'xyz'[plane.axis]}-{body.name}", Face(body.name, face), still, (plane.axis,))
+        for plane in problem.symmetry
+        for body in problem.deformable
+        for face in _faces_on(body, plane)
+    ]
+    return replace(problem, supports=(*problem.supports, *held))
+
+
+def of_whole(problem: Problem, force: FloatArray, moment: FloatArray, centre: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """A force and its moment about a centre with those of all mirror images, each shape (3,) (theory 8.5)."""
+    for plane in problem.symmetry:
+        normal, aside = np.eye(3)[plane.axis], centre[plane.axis] - plane.place
+        moment = 2.0 * (moment[plane.axis] * normal - aside * np.cross(normal, force))
+        force = 2.0 * (force - force[plane.axis] * normal)
+    return force, moment
+
+
+def _upper_half(body: Body, plane: Plane) -> Body:
+    with located(f"bodies.{body.name}"):
+        if body.raised:
+            raise InputError("is halved by symmetry, and its functions are of another order at a face; remove one", "mesh.contact_order")
+        half, face = upper_half(body.patch, plane.axis, plane.place)
+        if body.closed == face[0]:
+            raise InputError(f"is closed in {face[0]}, the direction that {plane.words} halves; allowed: planes that cut another one")
+    return replace(body, patch=half)
+
+
+def _faces_on(body: Body, plane: Plane) -> Iterator[str]:
+    """Faces of the part of a body that lie on a plane."""
+    for face in ("u0", "u1", "v0", "v1", "w0", "w1"):
+        if np.all(body.patch.control_points[body.patch.face_points(face), plane.axis] == plane.place):
+            yield face
+
+
+def _check_motions(problem: Problem, plane: Plane) -> None:
+    across = "xyz"[plane.axis]
+    for support in problem.supports:
+        along_axis = np.abs(np.delete(support.axis, plane.axis)).max() <= constants.NO_PART
+        for stage, motion in zip(problem.stages, support.motions, strict=True):
+            field = f"stages.{stage.name}.motions.{support.name}"
+            if motion.translate[plane.axis]:
+                raise InputError(f"goes along {across}, through {plane.words}; allowed with symmetry: 0 there", f"{field}.translate")
+            if motion.rotate and not along_axis:
+                raise InputError(
+                    f"turns out of {plane.words}; allowed with symmetry: 0, or an axis of the support along {across}", f"{field}.rotate"
+                )
+
+
+def _check_rigid_planes(problem: Problem, plane: Plane) -> None:
+    for contact in problem.contacts:
+        if isinstance(contact.master, RigidPlane) and abs(contact.master.normal[plane.axis]) > constants.NO_PART:
+            raise InputError(f"is not its own mirror image in {plane.words}; allowed: normals along it", f"contacts.{contact.name}.plane")
+
+
+def _check_faces(problem: Problem, plane: Plane) -> None:
+    """Refuse faces that are of a halved direction: of two that mirror each other one is not there any more."""
+    halved = {body.name: {face[0] for face in _faces_on(body, plane)} for body in problem.bodies}
+    for field, face in _faces_in_use(problem):
+        if face.face[0] in halved[face.body]:
+            raise InputError(f"is {face.words!r}, a face beside {plane.words}; allowed with symmetry: faces that it cuts", field)
+
+
+def _faces_in_use(problem: Problem) -> Iterator[tuple[str, Face]]:
+    """Faces of supports, contacts and glue with the keys that name them."""
+    for support in problem.supports:
+        yield f"supports.{support.name}.face", support.place
+    for contact in problem.contacts:
+        yield from ((f"contacts.{contact.name}.slave", face) for face in contact.slave.faces)
+        if isinstance(contact.master, Face):
+            yield from ((f"contacts.{contact.name}.master", face) for face in contact.master.faces)
+    for number, joint in enumerate(problem.glue):
+        yield from ((f"glue.{number}", face) for face in joint)

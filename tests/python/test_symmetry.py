@@ -1,0 +1,195 @@
+"""Scenes that are their own mirror images: a half or a quarter is computed, and forces are the whole's."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from isomortar.errors import InputError
+from isomortar.geometry.halves import upper_half
+from isomortar.geometry.patch import Direction, Patch
+from isomortar.geometry.primitives import bowl, box, ring
+from isomortar.geometry.refinement import mesh
+from isomortar.geometry.splines import Spline
+from isomortar.harness.trade.advice import cheaper_dials
+from isomortar.harness.trade.knobs import changed
+from isomortar.harness.trade.want import wanted
+from isomortar.scene import Scene
+from isomortar.solve.record import StepResult
+from isomortar.solve.simulation import Simulation
+
+PLANE = """
+format = 1
+[bodies.block]
+geometry = { kind = "box", lower = [-0.5, 2.0, 0.0], upper = [0.5, 2.8, 0.5] }
+mesh = { family = "L", order = [2, 2, 1], elements = [4, 4, 2] }
+[contacts.floor]
+slave = "block.w0"
+plane = {}
+friction = 0.2
+[supports.top]
+face = "block.w1"
+centre = [0.1, 2.5, 0.3]
+[solver]
+newton_tolerance = 1e-12
+complementarity_tolerance = 1e-12
+[[stages]]
+name = "press"
+steps = 2
+motions.top.translate = [0, 0, -0.04]
+"""
+PUSH = '[[stages]]\nname = "push"\nsteps = 2\nmotions.top.translate = [0.1, 0, 0]\n'
+TURN = '[[stages]]\nname = "turn"\nsteps = 1\nmotions.top.rotate = 20.0\n'
+
+
+def at(patch: Patch, parameters: np.ndarray) -> np.ndarray:
+    return Spline(patch.directions, patch.control_points, patch.weights).evaluate(parameters)
+
+
+def run(text: str, *overrides: str) -> list[StepResult]:
+    return list(Simulation(Scene.from_toml(text, overrides=overrides).problem()).run())
+
+
+SHAPES = {
+    "box": (box((0.0, 1.0, 0.0), (1.0, 4.0, 1.0)), 1, 2.5, (3, 2, 1), (2, 4, 1)),
+    "bowl": (bowl((0.5, -1.0), 0.4, 0.0, 0.2, 0.7), 0, 0.5, (2, 3, 2), (6, 3, 2)),
+    "ring": (ring((0.0, 0.0, 0.0), 1.0, 2.0, 0.8), 1, None, (2, 2, 4), (4, 2, 2)),
+}
+
+
+@pytest.mark.parametrize("shape", list(SHAPES))
+def test_a_half_is_the_same_geometry(shape: str) -> None:
+    coarse, axis, place, orders, elements = SHAPES[shape]
+    whole = mesh(coarse, ("N",) * 3, orders, elements)
+    if place is None:
+        place = float(whole.control_points[:, axis].mean())
+    half, face = upper_half(whole, axis, place)
+    across = "uvw".index(face[0])
+    assert half.directions[across].elements == elements[across] // 2
+    assert np.all(half.control_points[half.face_points(face), axis] == place)
+    ends = half.directions[across].knots[[0, -1]]
+    parameters = np.random.default_rng(2).uniform(size=(50, 3))
+    for k, direction in enumerate(whole.directions):
+        low, high = ends if k == across else direction.knots[[0, -1]]
+        parameters[:, k] = low + (high - low) * parameters[:, k]
+    points = at(half, parameters)
+    np.testing.assert_allclose(points, at(whole, parameters), rtol=0.0, atol=1e-14)
+    assert points[:, axis].min() >= place
+
+
+def test_weights_of_one_stay_exactly_one() -> None:
+    half, _ = upper_half(mesh(box((0.0,) * 3, (1.0,) * 3), ("N",) * 3, (3, 3, 3), (6, 2, 2)), 0, 0.5)
+    assert np.all(half.weights == 1.0)
+
+
+def test_a_direction_that_runs_the_other_way_keeps_its_lower_half() -> None:
+    one = Direction("N", 1, np.array([0.0, 0.0, 1.0, 2.0, 2.0]))
+    two = Direction("N", 1, np.array([0.0, 0.0, 1.0, 1.0]))
+    grid = np.stack(np.meshgrid([1.0, 0.0, -1.0], [0.0, 1.0], [0.0, 1.0], indexing="ij"), axis=-1)
+    half, face = upper_half(Patch((one, two, two), grid.reshape(-1, 3, order="F"), np.ones(12)), 0, 0.0)
+    assert face == "u1"
+    assert set(half.control_points[:, 0]) == {0.0, 1.0}
+
+
+@pytest.mark.parametrize("family", ["N", "L"])
+@pytest.mark.parametrize("planes", ["x = 0.0", "y = 2.4", "x = 0.0, y = 2.4"])
+def test_forces_and_moments_are_those_of_the_whole(family: str, planes: str) -> None:
+    """To round-off where functions have a kink at the plane in the whole too: Lagrange's, or NURBS of order one."""
+    text = PLANE + (PUSH if planes == "y = 2.4" else "")
+    mesh_ = ["bodies.block.mesh.family='N'", "bodies.block.mesh.order=1"] if family == "N" else []
+    whole, part = run(text, *mesh_), run(text, *mesh_, f"symmetry={{ {planes} }}")
+    for expected, found in zip(whole, part, strict=True):
+        size = np.linalg.norm(expected.reactions[0].force)
+        np.testing.assert_allclose(found.reactions[0].force, expected.reactions[0].force, rtol=0.0, atol=1e-9 * size)
+        np.testing.assert_allclose(found.reactions[0].moment, expected.reactions[0].moment, rtol=0.0, atol=1e-9 * size)
+        mine, theirs = found.contacts[0], expected.contacts[0]
+        for name in ("force_slave", "force_master", "moment_slave", "moment_master", "friction_work"):
+            np.testing.assert_allclose(getattr(mine, name), getattr(theirs, name), rtol=0.0, atol=1e-8 * size, err_msg=name)
+        for held in found.reactions[1:]:
+            np.testing.assert_array_equal(held.force, 0.0)  # what halves exert on each other is no support's
+            np.testing.assert_array_equal(held.moment, 0.0)
+
+
+def test_a_turn_about_the_normal_of_the_plane_is_symmetric() -> None:
+    text = PLANE.replace("centre", "axis = [0, 2, 0]\ncentre") + TURN
+    bounded = ["stages.turn.motions.top.rotate=4.0", "contacts.floor.friction=0.0"]
+    whole, part = run(text, *bounded), run(text, *bounded, "symmetry={ y = 2.4 }")
+    np.testing.assert_allclose(part[-1].reactions[0].moment, whole[-1].reactions[0].moment, rtol=0.0, atol=1e-9)
+    assert abs(whole[-1].reactions[0].moment[1]) > 1e-3
+
+
+def test_smooth_functions_have_a_kink_at_the_plane_alone() -> None:
+    """The half is as near to the truth as the whole: they differ by what the mesh leaves open."""
+    rough = ["bodies.block.mesh.family='N'", "bodies.block.mesh.order=2"]
+    whole, part = run(PLANE, *rough), run(PLANE, *rough, "symmetry={ x = 0.0 }")
+    apart = part[-1].reactions[0].force[2] / whole[-1].reactions[0].force[2] - 1.0
+    assert 0.0 < abs(apart) < 5e-3
+
+
+REFUSED = {
+    "off the middle": (PLANE, "x = 0.1", "bodies.block", "is not its own mirror image in the plane x = 0.1"),
+    "an odd number": (
+        PLANE.replace("[4, 4, 2]", "[5, 4, 2]"),
+        "x = 0.0",
+        "bodies.block.mesh.elements",
+        "is 5 in direction u, which the plane x = 0 halves; allowed there: even numbers",
+    ),
+    "a motion": (PLANE + PUSH, "x = 0.0", "stages.push.motions.top.translate", "goes along x, through the plane x = 0"),
+    "a turn": (PLANE + TURN, "x = 0.0", "stages.turn.motions.top.rotate", "turns out of the plane x = 0"),
+    "a rigid plane": (
+        PLANE.replace("plane = {}", "plane = { normal = [0.1, 0, 1], point = [0, 0, -1] }"),
+        "x = 0.0",
+        "contacts.floor.plane",
+        "is not its own mirror image in the plane x = 0",
+    ),
+    "a face beside": (
+        PLANE.replace('face = "block.w1"', 'face = "block.u1"'),
+        "x = 0.0",
+        "supports.top.face",
+        "a face beside the plane x = 0",
+    ),
+    "no axis": (PLANE, "a = 0.0", "symmetry", "x"),
+    "not finite": (PLANE, "x = nan", "symmetry.x", "finite"),
+}
+
+
+@pytest.mark.parametrize("name", list(REFUSED))
+def test_what_is_not_symmetric_is_refused(name: str) -> None:
+    text, planes, field, words = REFUSED[name]
+    with pytest.raises(InputError) as refused:
+        Scene.from_toml(text, overrides=[f"symmetry={{ {planes} }}"]).problem()
+    assert (refused.value.field or "").startswith(field)
+    assert words in str(refused.value)
+
+
+def test_a_closed_direction_and_a_row_of_another_order_are_not_cut() -> None:
+    tyre = PLANE.replace(
+        'kind = "box", lower = [-0.5, 2.0, 0.0], upper = [0.5, 2.8, 0.5]', 'kind = "ring", inner = 1.0, outer = 2.0, width = 1.0'
+    )
+    tyre = tyre.replace('family = "L", order = [2, 2, 1], elements = [4, 4, 2]', "elements = [8, 1, 2]")
+    tyre = tyre.replace('"block.w0"', '"block.v1"').replace('face = "block.w1"', 'face = "block.v0"')
+    with pytest.raises(InputError, match=r"bodies.block: is closed in u, the direction that the plane x = 0 halves"):
+        Scene.from_toml(tyre, overrides=["symmetry={ x = 0.0 }", "contacts.floor.plane.point=[0,0,-2]"]).problem()
+    raised = ["bodies.block.mesh={ order = 2, contact_order = 3, elements = [4, 4, 2] }", "symmetry={ x = 0.0 }"]
+    with pytest.raises(InputError, match=r"bodies.block.mesh.contact_order: is halved by symmetry"):
+        Scene.from_toml(PLANE, overrides=raised).problem()
+
+
+def test_results_keep_it(tmp_path: Path) -> None:
+    import isomortar
+
+    scene = Scene.from_toml(PLANE, overrides=["symmetry={ x = 0.0, y = 2.4 }"])
+    with isomortar.run(scene, tmp_path / "quarter.h5") as results:
+        force = results.curve("force", support="top", component="z")
+    np.testing.assert_allclose(force, [step.reactions[0].force[2] for step in run(PLANE)], rtol=1e-9)
+
+
+def test_advice_tries_the_planes_in_which_a_scene_is_symmetric() -> None:
+    scene = Scene.from_toml(PLANE)
+    dials = [dial for dial in cheaper_dials(scene, [wanted("force.top.z", scene.problem())]) if "beyond" in dial.name]
+    assert [dial.name for dial in dials] == ["the scene beyond x = 0", "the scene beyond y = 2.4"]
+    quarter = changed(scene, [dial.settings[0] for dial in dials])
+    assert [(plane.axis, plane.place) for plane in quarter.problem().symmetry] == [(0, 0.0), (1, 2.4)]
+    assert not [dial for dial in cheaper_dials(quarter) if "beyond" in dial.name]
+    fields = [wanted("pressure.floor", scene.problem())]
+    assert not [dial for dial in cheaper_dials(scene, fields) if "beyond" in dial.name]  # of a half, fields are no field of the whole
