@@ -121,6 +121,20 @@ def _stiffened(data: Any, chance: random.Random) -> None:
     body.pop("material", None)
 
 
+def _mirrored(data: Any, chance: random.Random) -> None:
+    """Only one side of a plane, through the middle of a box most often; elements and motions that go with it, or do not."""
+    k, body = chance.randrange(3), chance.choice(list(data["bodies"].values()))
+    lower, upper = (body["geometry"].get(end, [0.0, 0.0, 0.0]) for end in ("lower", "upper"))
+    place = chance.choice((0.0, *[0.5 * (lower[k] + upper[k])] * 4))
+    data.setdefault("symmetry", {})["xyz"[k]] = place
+    if chance.random() < 0.8:
+        for other in data["bodies"].values():
+            other.setdefault("mesh", {}).setdefault("elements", [1, 1, 1])[k] = 2
+        for stage in data["stages"]:
+            for motion in stage.get("motions", {}).values():
+                motion.setdefault("translate", [0.0, 0.0, 0.0])[k] = 0.0
+
+
 def _extreme(data: Any, chance: random.Random) -> None:
     _put(chance.choice(list(numbers(data))), chance.choice(EXTREMES))
 
@@ -167,10 +181,10 @@ def _elsewhere(data: Any, chance: random.Random) -> None:
 
 
 MUTATIONS: tuple[Callable[[Any, random.Random], None], ...] = (
-    *(_moderate, _refined, _settled, _stiffened, _extreme, _opposite),
+    *(_moderate, _refined, _settled, _stiffened, _mirrored, _extreme, _opposite),
     *(_dropped, _exchanged, _other_type, _doubled, _elsewhere),
 )
-WEIGHTS = (30, 12, 8, 6, 15, 5, 5, 4, 8, 4, 6)
+WEIGHTS = (30, 12, 8, 6, 6, 15, 5, 5, 4, 8, 4, 6)
 
 
 def _limit(data: Any) -> None:

@@ -25,7 +25,7 @@ LENGTH, MODULUS = 4.0**-7, 4.0**9
 #: Powers of the unit of length in the keys that hold one.
 LENGTHS = {
     "lower": 1, "upper": 1, "centre": 1, "half_width": 1, "bottom": 1, "rise": 1, "top": 1, "inner": 1, "outer": 1, "width": 1, "point": 1,
-    "translate": 1, "control_points": 1, "reference_area": 2, "elastic_slip": 1,
+    "translate": 1, "control_points": 1, "reference_area": 2, "elastic_slip": 1, "x": 1, "y": 1, "z": 1,
 }  # fmt: skip
 #: Keys of contacts that hold stresses.
 STRESSES = ("cohesion", "traction_max")
