@@ -196,7 +196,14 @@ def _scaled_contact(contact: Contact, length: float, stress: float) -> Contact:
     area = None if contact.reference_area is None else length**2 * contact.reference_area
     most = None if contact.traction_max is None else stress * contact.traction_max
     slip = length * contact.elastic_slip
-    scaled = replace(contact, reference_area=area, cohesion=stress * contact.cohesion, traction_max=most, elastic_slip=slip)
+    scaled = replace(
+        contact,
+        reference_area=area,
+        cohesion=stress * contact.cohesion,
+        traction_max=most,
+        elastic_slip=slip,
+        smoothing=stress * length * contact.smoothing,
+    )
     if isinstance(contact.master, Face):
         return scaled
     return replace(scaled, master=replace(contact.master, point=vector(length * np.array(contact.master.point))))

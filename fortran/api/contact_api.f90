@@ -184,8 +184,9 @@ end subroutine find_climbs
 !> - `free`: projection of covariant tractions that leaves nothing along what supports hold.
 !> - `elastic`: 1 for elastic slip: `traction_k` are stretches, L/P, and the tangential penalty is one over the largest elastic
 !>   slip, 1/L.
+!> - `smoothing`: pressure times distance of smooth contact (theory 4.18), 0 for none.
 subroutine augmented_multipliers(slave, friction, weight, square, gap, control_slip, metric, point_metric, nquad, ntest, summed, &
-    penalties, pressure_k, traction_k, slip_margin, forgiving, held, bears, free, elastic, pressure, traction, state, &
+    penalties, pressure_k, traction_k, slip_margin, forgiving, held, bears, free, elastic, smoothing, pressure, traction, state, &
     pressure_slope, traction_slope, field_slip, status)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: find
@@ -198,6 +199,7 @@ subroutine augmented_multipliers(slave, friction, weight, square, gap, control_s
   integer(c_int), intent(in) :: nquad, ntest, summed, forgiving, held(ntest), bears(ntest), elastic
   real(c_double), intent(in) :: weight(ntest), square(ntest), gap(ntest), control_slip(2, ntest), metric(3, ntest)
   real(c_double), intent(in) :: point_metric(3, nquad), penalties(2), pressure_k(ntest), traction_k(2, ntest), slip_margin
+  real(c_double), intent(in) :: smoothing
   real(c_double), intent(in) :: free(2, 2, ntest)
   real(c_double), intent(out) :: pressure(ntest), traction(2, ntest), pressure_slope(ntest), traction_slope(2, 6, ntest)
   real(c_double), intent(out) :: field_slip(2, nquad)
@@ -229,6 +231,7 @@ subroutine augmented_multipliers(slave, friction, weight, square, gap, control_s
   law%bears = bears /= 0
   law%free = free
   law%elastic = elastic /= 0
+  law%smoothing = smoothing
   call respond(side, control, law, summed /= 0, response, field_slip)
   pressure = response%multipliers%pressure
   traction = response%multipliers%traction

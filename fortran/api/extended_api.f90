@@ -46,7 +46,8 @@ end subroutine solid_difference
 !>
 !> - `slave`, `map`, `friction`, `n`, `nquad`, `ntest`, `x`, `origin`, `had`, `status`, `place`: as in `project_points`.
 !> - `xi`, `element`, `fixed`, `found`, `state`: those of the double-precision kernel.
-!> - `summed`, `penalties`, `pressure_k`, `traction_k`, `bears`, `free`, `elastic`: the law, as in `augmented_multipliers`.
+!> - `summed`, `penalties`, `pressure_k`, `traction_k`, `bears`, `free`, `elastic`, `smoothing`: the law, as in
+!>   `augmented_multipliers`.
 !> - `pressure_along`, `traction_along`: directions of its multipliers.
 !> - `pressure`, `traction`: multipliers that are held where forces are differentiated alone.
 !> - `gap`, `coordinates`, `slip`, `metric`: derivatives of <R g>, <R xi>, <R slip>, <R R a_ab>.
@@ -54,8 +55,8 @@ end subroutine solid_difference
 !> - `normal_forces`, `tangential_forces`, `forces`: those of forces with held pressures, held tractions, the law's multipliers.
 !> - `switched`: points and control points for which element, foot or state are not the same on both sides.
 subroutine contact_difference(slave, map, friction, x, along, step, n, xi, element, fixed, found, origin, had, nquad, summed, &
-    penalties, pressure_k, traction_k, bears, free, elastic, pressure_along, traction_along, pressure, traction, state, ntest, &
-    gap, coordinates, slip, metric, pressure_change, traction_change, normal_forces, tangential_forces, forces, switched, &
+    penalties, pressure_k, traction_k, bears, free, elastic, smoothing, pressure_along, traction_along, pressure, traction, state, &
+    ntest, gap, coordinates, slip, metric, pressure_change, traction_change, normal_forces, tangential_forces, forces, switched, &
     status, place)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: find
@@ -71,7 +72,7 @@ subroutine contact_difference(slave, map, friction, x, along, step, n, xi, eleme
   integer(c_int), intent(in) :: n, nquad, ntest
   integer(c_int), intent(in) :: element(2, nquad), fixed(2, nquad), found(nquad), had(nquad), summed, state(ntest), elastic
   integer(c_int), intent(in) :: bears(ntest)
-  real(c_double), intent(in) :: x(3, n), along(3, n), step, xi(2, nquad), origin(2, nquad), penalties(2)
+  real(c_double), intent(in) :: x(3, n), along(3, n), step, xi(2, nquad), origin(2, nquad), penalties(2), smoothing
   real(c_double), intent(in) :: pressure_k(ntest), traction_k(2, ntest), free(2, 2, ntest)
   real(c_double), intent(in) :: pressure_along(ntest), traction_along(2, ntest), pressure(ntest), traction(2, ntest)
   real(c_double), intent(out) :: gap(ntest), coordinates(2, ntest), slip(2, ntest), metric(3, ntest), pressure_change(ntest)
@@ -106,6 +107,7 @@ subroutine contact_difference(slave, map, friction, x, along, step, n, xi, eleme
   law%bears = bears /= 0
   law%free = real(free, wp)
   law%elastic = elastic /= 0
+  law%smoothing = real(smoothing, wp)
   h = real(step, wp)
   do side = 1, 2
     shift = (2 * side - 3) * h

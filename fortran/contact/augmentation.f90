@@ -42,6 +42,8 @@ module isomortar_contact_augmentation
     logical, allocatable :: bears(:)
     !> Projection of covariant tractions that leaves nothing along what supports hold, shape (2, 2, I).
     real(wp), allocatable :: free(:, :, :)
+    !> Pressure times distance of smooth contact (theory 4.18), F/L; 0: what is apart bears nothing.
+    real(wp) :: smoothing = 0.0_wp
     !> Slip is elastic (theory 4.15): `traction` are the stretches at the start of the increment, and the tangential penalty is one
     !> over the largest elastic slip.
     logical :: elastic = .false.
@@ -80,7 +82,7 @@ contains
     present = 1.0_wp
     call integrate_functions(slave, present, whole)
     if (summed) then
-      call active_points(control, law, whole(1, :), response%multipliers%pressure, response%multipliers%active)
+      call pressures(control, law, whole(1, :), response)
       slips = 0.0_wp
       where (spread(response%multipliers%active, 1, 2)) slips = control%slip / spread(control%weight, 1, 2)
       call integrate_slip_sum(slave, control%point_metric, slips, field_slip, totals)
@@ -95,25 +97,52 @@ contains
     end associate
   end subroutine respond
 
-  !> Active control points (theory 4.3). The pressure of the current augmentation is zero for inactive ones. `whole` is
-  !> <R^I> over all slave points. A pressure that is not a number is active, so that forces are none either.
-  pure subroutine active_points(control, law, whole, pressure, active)
+  !> Control pressures with their slopes, and which control points are active (theory 4.3, 4.18): inactive ones have no pressure.
+  !>
+  !> `whole` is <R^I> over all slave points. A pressure that is not a number is active, so that forces are none either.
+  pure subroutine pressures(control, law, whole, response)
     type(control_t), intent(in) :: control
     type(law_t), intent(in) :: law
     real(wp), intent(in) :: whole(:)
-    real(wp), intent(out) :: pressure(:)
-    logical, intent(out) :: active(:)
+    type(response_t), intent(inout) :: response
+    real(wp) :: trial, share
     integer :: i
 
-    pressure = 0.0_wp
-    active = .false.
-    do i = 1, size(pressure)
+    response%multipliers%active = .false.
+    response%multipliers%pressure = 0.0_wp
+    response%pressure_slope = 0.0_wp
+    do i = 1, size(whole)
       if (control%weight(i) <= least_weight * whole(i) .or. .not. law%bears(i)) cycle
-      pressure(i) = law%pressure(i) + law%normal_penalty * control%gap(i) / control%weight(i)
-      active(i) = .not. pressure(i) <= 0.0_wp
-      if (.not. active(i)) pressure(i) = 0.0_wp
+      trial = law%pressure(i) + law%normal_penalty * control%gap(i) / control%weight(i)
+      associate (pressure => response%multipliers%pressure(i))
+        call positive_part(trial, law%normal_penalty * law%smoothing, pressure, share)
+        response%multipliers%active(i) = .not. pressure <= 0.0_wp
+        if (response%multipliers%active(i)) response%pressure_slope(i) = share * law%normal_penalty / control%weight(i)
+      end associate
     end do
-  end subroutine active_points
+  end subroutine pressures
+
+  !> What is positive of a trial pressure, and its derivative: the larger root of p (p - trial) = `product` (theory 4.18), with
+  !> which nothing is quite zero; of `product` 0 the trial, or 0.
+  pure subroutine positive_part(trial, product, pressure, slope)
+    real(wp), intent(in) :: trial, product
+    real(wp), intent(out) :: pressure, slope
+    real(wp) :: apart
+
+    pressure = 0.0_wp
+    slope = 1.0_wp
+    if (.not. product > 0.0_wp) then
+      if (.not. trial <= 0.0_wp) pressure = trial
+      return
+    end if
+    apart = hypot(trial, 2.0_wp * sqrt(product)) ! of the two roots
+    if (trial > 0.0_wp) then
+      pressure = 0.5_wp * (trial + apart)
+    else
+      pressure = 2.0_wp * product / (apart - trial)
+    end if
+    slope = pressure / apart
+  end subroutine positive_part
 
   !> Pressures, tractions and states (theory 4.4, 4.9, 4.15). `slip_sum` is <R^I a_ab zeta^b> for the paper's form (theory 4.5),
   !> absent for the local one.
@@ -126,15 +155,13 @@ contains
     real(wp) :: metric(3), trial(2)
     integer :: i
 
-    call active_points(control, law, whole, response%multipliers%pressure, response%multipliers%active)
+    call pressures(control, law, whole, response)
     response%multipliers%traction = 0.0_wp
     response%state = state_open
-    response%pressure_slope = 0.0_wp
     response%traction_slope = 0.0_wp
     do i = 1, size(response%state)
       if (.not. response%multipliers%active(i)) cycle
       response%state(i) = state_stick
-      response%pressure_slope(i) = law%normal_penalty / control%weight(i)
       if (.not. allocated(law%friction)) cycle
       metric = control%metric(:, i) / control%square(i)
       if (present(slip_sum)) then

@@ -309,7 +309,8 @@ class Law:
     Trials above (1 - `slip_margin`) of what friction bears slip; `held` constraints (1) stick whatever their trial; `forgiving` takes
     the current traction for the radial part of the slip derivative (theory 4.14).
     With a largest `elastic_slip`, L, tractions are functions of the slips from `stretch`, shape (n, 2), L/P, on (theory 4.15), whatever
-    they were; None: Coulomb's law.
+    they were; None: Coulomb's law. With `smoothing` pressures times distances are that, force per length, wherever there is a foot
+    (theory 4.18).
     """
 
     penalties: FloatArray
@@ -324,6 +325,7 @@ class Law:
     forgiving: bool = False
     elastic_slip: float = 0.0
     stretch: FloatArray | None = None
+    smoothing: float = 0.0
 
     @property
     def elastic(self) -> bool:

@@ -135,7 +135,8 @@ def contact_difference(
         _DESCRIPTORS.handle("slave", slave, SlaveArrays), _DESCRIPTORS.handle("master", master, PlaneArrays, FaceArrays),
         _DESCRIPTORS.handle("law.friction", law.friction, FrictionArrays), positions.T, along.T, STEP, projections.xi.T,
         projections.element.T, projections.fixed.T, projections.found, origin.T, had, int(law.summed), law.factors, law.pressure,
-        law.base.T, law.bears, law.free.T, int(law.elastic), pressure_along, traction_along.T, held.pressure, held.traction.T, held.state,
+        law.base.T, law.bears, law.free.T, int(law.elastic), law.smoothing, pressure_along, traction_along.T, held.pressure,
+        held.traction.T, held.state,
     )  # fmt: skip
     _check(status, place)
     return ContactChange(*[np.ascontiguousarray(change.T) for change in changes]), switched

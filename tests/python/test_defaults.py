@@ -30,7 +30,7 @@ SOLVER = {
     "measures": ("forgiving", "margin", "reversal", "halving", "keeping", "extrapolation"),
     "path_tolerance": None,
 }
-_FRICTION = {"cohesion": 0.0, "traction_max": None, "elastic_slip": 0.0}
+_FRICTION = {"cohesion": 0.0, "traction_max": None, "elastic_slip": 0.0, "smoothing": 0.0}
 #: By entity of a problem; those that are not named have none.
 ENTITIES = {
     "Material": {"young": 10.0, "poisson": 0.3, "law": "neo-hookean"},

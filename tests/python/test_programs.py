@@ -80,6 +80,7 @@ def solid(*overrides: str) -> Problem:
         (("contacts.interface.cohesion=0.1",), "contacts.interface.cohesion"),
         (("contacts.interface.traction_max=0.1",), "contacts.interface.traction_max"),
         (("contacts.interface.elastic_slip=0.1",), "contacts.interface.elastic_slip"),
+        (("contacts.interface.smoothing=1e-4",), "contacts.interface.smoothing"),
     ],
 )
 def test_what_a_program_cannot_express_is_named(program: Program, overrides: tuple[str, ...], field: str) -> None:

@@ -227,6 +227,20 @@ WRONG = {
         "contacts.floor.elastic_slip",
         "next to round-off",
     ),
+    "smoothing from afar": (
+        PRESS,
+        "[supports.top]",
+        "smoothing = 10\n[supports.top]",
+        "contacts.floor.smoothing",
+        "pressed away from afar",
+    ),
+    "smoothing below zero": (
+        PRESS,
+        "[supports.top]",
+        "smoothing = -1\n[supports.top]",
+        "contacts.floor.smoothing",
+        "greater than or equal to 0",
+    ),
     "elastic slip below zero": (
         PRESS,
         "[supports.top]",
@@ -301,6 +315,7 @@ UNUSUAL = {
     "shrink fit": (RINGS, "", ""),
     "cohesion alone": (PRESS, "[supports.top]", "friction = 0\ncohesion = 0.2\n[supports.top]"),
     "cohesion and a largest traction": (PRESS, "[supports.top]", "cohesion = 0.2\ntraction_max = 0.5\n[supports.top]"),
+    "smoothing": (PRESS, "[supports.top]", "smoothing = 1e-3\n[supports.top]"),
     "elastic slip": (PRESS, "[supports.top]", "elastic_slip = 0.01\n[supports.top]"),
     "tyre": (TYRE, "", ""),
     "far below a plane that it is turned to": (TYRE, "normal = [0, 0, 1]", "point = [0, 0, -0.4]"),

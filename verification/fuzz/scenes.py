@@ -25,10 +25,10 @@ LENGTH, MODULUS = 4.0**-7, 4.0**9
 #: Powers of the unit of length in the keys that hold one.
 LENGTHS = {
     "lower": 1, "upper": 1, "centre": 1, "half_width": 1, "bottom": 1, "rise": 1, "top": 1, "inner": 1, "outer": 1, "width": 1, "point": 1,
-    "translate": 1, "control_points": 1, "reference_area": 2, "elastic_slip": 1, "x": 1, "y": 1, "z": 1,
+    "translate": 1, "control_points": 1, "reference_area": 2, "elastic_slip": 1, "smoothing": 1, "x": 1, "y": 1, "z": 1,
 }  # fmt: skip
 #: Keys of contacts that hold stresses.
-STRESSES = ("cohesion", "traction_max")
+STRESSES = ("cohesion", "traction_max", "smoothing")
 #: Numbers within this range have twins, in the other units, that are as far from under- and overflow.
 ORDINARY = 1e12
 #: Share by which forces, and contact conditions, may be off beyond the scene's own tolerances; and what that is of a tolerance.

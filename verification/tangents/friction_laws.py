@@ -41,7 +41,7 @@ def bounds(state: str) -> dict[str, Bound]:
 
 
 def errors(
-    law: str, pressure: tuple[float, ...], length: tuple[float, ...], short: bool, elastic_slip: float = 0.0
+    law: str, pressure: tuple[float, ...], length: tuple[float, ...], short: bool, elastic_slip: float = 0.0, smooth: float = 0.0
 ) -> tuple[dict[str, float], FloatArray]:
     """Largest relative error of each part, and the pressures of what slips over that at which the largest traction is reached."""
     problem, equilibrium, visit = scene(0.3)
@@ -49,14 +49,16 @@ def errors(
     at = coulomb.kinematics(visit.positions, visit.pairs[0].start)
     largest = float(coulomb.respond(at, visit.pairs[0].law).pressure.max())
     friction, cohesion, kink = LAWS[law]
-    contact = replace(problem.contacts[0], friction=friction, cohesion=cohesion * largest, elastic_slip=elastic_slip)
+    smoothing = smooth * largest**2 / float(visit.pairs[0].law.penalties[0])
+    contact = replace(problem.contacts[0], friction=friction, cohesion=cohesion * largest, elastic_slip=elastic_slip, smoothing=smoothing)
     if kink:
         contact = replace(contact, traction_max=contact.cohesion + friction * kink * largest)
     problem = replace(problem, contacts=(contact,))
     pair = Equilibrium(replace(problem, settings=replace(problem.settings, method="uzawa")), Ledger()).pairs[0]
     pressures, lengths = (np.resize(np.array(pattern), len(coulomb.pair.slave.point)) for pattern in (pressure, length))
     stretch = visit.pairs[0].law.traction / largest if elastic_slip else None
-    start = replace(visit.pairs[0], law=replace(visit.pairs[0].law, friction=pair.friction, elastic_slip=elastic_slip, stretch=stretch))
+    own = replace(visit.pairs[0].law, friction=pair.friction, elastic_slip=elastic_slip, stretch=stretch, smoothing=smoothing)
+    start = replace(visit.pairs[0], law=own)
     there = placed(pair, visit.positions, start, largest * pressures, lengths)
     response = pair.respond(pair.kinematics(visit.positions, there.start), there.law)
     report = measure(problem, STEP, [Visit(visit.positions, (there,))], directions=1, length=SHORT if short else 1.0)
@@ -82,6 +84,16 @@ def elastic_slip(law: str, state: str) -> dict[str, float]:
     """Largest relative error of each part."""
     pressure, length, _ = STRETCHED[state]
     return errors(law, pressure, length, short="|" in state or state == "none", elastic_slip=SLIP)[0]
+
+
+@case(
+    claim="With smooth contact, all but sharp or with pressures far beyond their trials, the tangent is the derivative.",
+    grid={"law": ("cohesion", "both"), "state": ("slip", "mixed"), "smooth": (1e-6, 1e-2)},
+    bounds=lambda law, state, smooth: bounds(state),  # noqa: ARG005
+)
+def smooth_contact(law: str, state: str, smooth: float) -> dict[str, float]:
+    """Largest relative error of each part; `smooth`: the product (theory 4.18) over the square of the largest pressure."""
+    return errors(law, *PLACED[state], short=True, smooth=smooth)[0]
 
 
 @case(

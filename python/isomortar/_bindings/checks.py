@@ -72,6 +72,7 @@ def check_law(law: Law, slave: SlaveArrays) -> None:
     if law.stretch is not None:
         check.array("law.stretch", law.stretch, np.float64, n, 2)
         check.real("law.elastic_slip", law.elastic_slip, lambda value: value > 0, "a number above 0")
+    check.real("law.smoothing", law.smoothing, lambda value: value >= 0, "a number from 0")
     check.real("law.slip_margin", law.slip_margin, lambda value: 0 <= value <= 1, "a number from 0 to 1")
 
 

@@ -28,7 +28,7 @@ def augmented_multipliers(slave: SlaveArrays, control: Control, law: Law) -> Res
     pressure, traction, state, pressure_slope, traction_slope, field_slip, status = _kernel.augmented_multipliers(
         handles.slave(slave), handles.friction("law.friction", law.friction), control.weight, control.square, control.gap, control.slip.T,
         control.metric.T, control.point_metric.T, int(law.summed), law.factors, law.pressure, law.base.T, law.slip_margin,
-        int(law.forgiving), law.held, law.bears, law.free.T, int(law.elastic),
+        int(law.forgiving), law.held, law.bears, law.free.T, int(law.elastic), law.smoothing,
     )  # fmt: skip
     if status:
         raise_status(status, -1)

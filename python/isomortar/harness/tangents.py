@@ -17,7 +17,7 @@ from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.harness.visits import PairVisit, Visit, visited_states
 from isomortar.model.entities import Problem
 from isomortar.model.numbering import patch_arrays
-from isomortar.solve.contact import PairMechanics
+from isomortar.solve.contact import PairMechanics, pressure_share
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.system import block_product
 from isomortar.solve.timing import Ledger
@@ -265,9 +265,9 @@ class PairTangent(PairState):
         pressure = length * random.standard_normal(law.pressure.shape) * np.abs(response.pressure).max()
         traction = length * random.standard_normal(law.traction.shape) * np.abs(response.traction).max()
         twin = self.twin(np.zeros_like(self.positions), pressure, traction)
-        slope = response.traction_slope
-        tractions = slope[:, 0] * pressure[:, None] + np.einsum("iba,ib->ia", slope[:, 1:3], traction)
-        ours = np.column_stack([np.where(_active(response.state), pressure, 0.0), tractions])
+        slope, pressures = response.traction_slope, pressure_share(self.kinematics.control, law, response) * pressure
+        tractions = slope[:, 0] * pressures[:, None] + np.einsum("iba,ib->ia", slope[:, 1:3], traction)
+        ours = np.column_stack([pressures, tractions])
         changed = np.column_stack([twin.pressure, twin.traction])
         owner = np.repeat(np.arange(len(ours)), np.diff(self.blocks.patterns.rows.start))
         forces = np.zeros_like(self.positions)

@@ -20,6 +20,8 @@ LEAST = 1e-12
 SAME_WAY = 0.5
 #: Least elastic slip over the extent of the slave's body: the last bits of positions then make 1e-7 of what friction bears.
 LEAST_SLIP = 1e-9
+#: Most that pressure times distance may be, over stiffness times size of the slave's body: beyond, smooth contact is no contact.
+LARGEST_SMOOTHING = 1e-2
 #: Bodies that overlap by this share of the thinner one have passed through each other.
 PASSED = 0.9
 
@@ -38,6 +40,7 @@ def check_contacts(problem: Problem) -> None:
         _check_sides(problem, contact)
         _check_friction(contact)
         _check_elastic_slip(problem, contact)
+        _check_smoothing(problem, contact)
         _check_projection(problem, contact)
         _check_enforcement(problem, contact)
         _check_subcells(contact)
@@ -98,6 +101,19 @@ def _check_elastic_slip(problem: Problem, contact: Contact) -> None:
             f"is {contact.elastic_slip:g}, next to round-off of the positions of {contact.slave.body!r}, which is {size:.3g} large; "
             f"allowed: {LEAST_SLIP * size:.3g} and more, or 0 for Coulomb's law",
             path,
+        )
+
+
+def _check_smoothing(problem: Problem, contact: Contact) -> None:
+    """Refuse what would press bodies apart from afar."""
+    body = problem.body(contact.slave.body)
+    others = [problem.body(face.body) for face in contact.master.faces] if isinstance(contact.master, Face) else []
+    most = min(other.modulus for other in (body, *others)) * body.size
+    if contact.smoothing > LARGEST_SMOOTHING * most:
+        raise InputError(
+            f"is {contact.smoothing:g}: {body.name!r} would be pressed away from afar; allowed: up to {LARGEST_SMOOTHING * most:.3g}, a "
+            "hundredth of stiffness times size, or 0 for contact alone",
+            f"contacts.{contact.name}.smoothing",
         )
 
 

@@ -146,6 +146,7 @@ class Contact:
     `by_default`: nobody asked for it, the master's C0 lines do.
     `enforcement`: which functionals of gap and slip are constrained (theory 10).
     `elastic_slip`: the most that contact slips elastically before it slides (theory 4.15), a length; 0: Coulomb's law.
+    `smoothing`: what pressure times distance is of bodies that are apart (theory 4.18), force per length; 0: nothing.
     `subcells`: how many times over slave elements are cut in each direction where the master's knot lines cross them (theory 10.9).
     """
 
@@ -162,6 +163,7 @@ class Contact:
     enforcement: Enforcement = "mortar"
     subcells: int = 0
     elastic_slip: float = 0.0
+    smoothing: float = 0.0
 
     @property
     def averaged(self) -> bool:

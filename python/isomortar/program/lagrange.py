@@ -111,5 +111,7 @@ class LagrangeProblem:
             raise self.refuse("has no friction with a cohesion", f"{place}.cohesion")
         if contact.traction_max is not None:
             raise self.refuse("is not told of a largest traction", f"{place}.traction_max")
+        if contact.smoothing:
+            raise self.refuse("is not told of smooth contact", f"{place}.smoothing")
         if contact.elastic_slip:
             raise self.refuse("is not told of elastic slip", f"{place}.elastic_slip")

@@ -188,6 +188,7 @@ def _contact(name: str, table: ContactTable, problem: Problem) -> Contact:
         enforcement=table.enforcement,
         subcells=table.subcells or 0,
         elastic_slip=table.elastic_slip,
+        smoothing=table.smoothing,
     )
     return integrated(contact, problem) if table.quadrature is None and table.subcells is None else contact
 

@@ -192,6 +192,8 @@ class ContactTable(Table):
     """Largest traction, force per area: friction bears min(cohesion + friction * pressure, traction_max); default: no largest one."""
     elastic_slip: Annotated[Real, Field(ge=0)] = 0.0
     """Length that contact slips elastically before it slides, tractions a smooth function of it; 0: it sticks or slides (Coulomb)."""
+    smoothing: Annotated[Real, Field(ge=0)] = 0.0
+    """Pressure times distance, force per length, that bodies apart keep, so that pressures are smooth; 0: contact or nothing."""
     projection: Projection | None = None
     """How slave points find theirs on a master face: the "closest" one, or along "averaged" normals, which have no kinks on C0 lines."""
     enforcement: Enforcement = "mortar"

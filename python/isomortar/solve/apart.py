@@ -48,7 +48,9 @@ class Separation:
         self._slave, self._master = pair.slave.point, pair.master
         self._spread = float(np.abs(pair.slave.shape.values).sum(axis=1).max())
         # Weights below zero could make a penetration of gaps that are none; feet beyond the edges are not between control points.
-        self._told = float(pair.slave.test.values.min()) >= 0.0 and getattr(pair.master, "brim", 0.0) == 0.0
+        # And smooth contact acts at any distance.
+        sharp = pair.contact.smoothing == 0.0
+        self._told = sharp and float(pair.slave.test.values.min()) >= 0.0 and getattr(pair.master, "brim", 0.0) == 0.0
         self._start: tuple[Box, Box] | None = None
         self._begun = False
         if isinstance(self._master, FaceArrays):

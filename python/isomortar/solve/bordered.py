@@ -18,7 +18,7 @@ from isomortar._bindings import Law, Pattern, Response
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model import constants
 from isomortar.model.supports import BoolArray
-from isomortar.solve.contact import Blocks, PairMechanics, median
+from isomortar.solve.contact import Blocks, PairMechanics, median, pressure_share
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.singular import PairConditions
 from isomortar.solve.system import Source, block_product
@@ -43,6 +43,7 @@ class Border:
     row_scale: FloatArray  # (constraints, 3)
     column_scale: FloatArray  # (3,)
     target: Response
+    pressure_share: FloatArray  # derivative of a target pressure by the multiplier: 1 where contact is sharp
     loose: BoolArray  # (constraints, 3)
 
     def sources(self, unknowns: IntArray) -> tuple[list[Source], list[FloatArray]]:
@@ -63,13 +64,14 @@ class Border:
         return sources, [self.blocks.geometric, columns, conditions, np.ascontiguousarray(own)]
 
     def _own_block(self) -> FloatArray:
-        """Derivative of multiplier - target by the multipliers, shape (constraints, 3, 3) (theory 6.3)."""
+        """Derivative of multiplier - target by the multipliers, shape (constraints, 3, 3) (theory 4.18, 6.3)."""
         active = self.target.state > 0
         own = np.zeros((len(active), 3, 3))
         own[:, [0, 1, 2], [0, 1, 2]] = 1.0
-        own[active, 0, 0] = 0.0
+        share = self.pressure_share[active]
+        own[active, 0, 0] = 1.0 - share
         slope = self.target.traction_slope[active]  # (constraints, pressure | trial | metric, component)
-        own[active, 1:, 0] = -slope[:, 0]
+        own[active, 1:, 0] = -share[:, None] * slope[:, 0]
         if not self.pair.elastic:  # else tractions are functions of slips and pressures
             own[active, 1:, 1:] -= slope[:, 1:3].transpose(0, 2, 1)
         own[:, [0, 1, 2], [0, 1, 2]] += constants.RESISTANCE * (self.loose & active[:, None])
@@ -154,7 +156,8 @@ def _border(equilibrium: Equilibrium, k: int, balance: Balance, law: Law, target
     present = control.weight > 0
     weight = np.where(present, control.weight, median(control.weight[present]))
     loose = pair.loose(balance.kinematics[k].projections.found)
-    return Border(pair, blocks, equation.ravel(), weight[:, None] / lengths, float(law.penalties[0]) * lengths, target, loose)
+    share = pressure_share(control, law, target)
+    return Border(pair, blocks, equation.ravel(), weight[:, None] / lengths, float(law.penalties[0]) * lengths, target, share, loose)
 
 
 def _right_hand_side(

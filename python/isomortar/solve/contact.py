@@ -98,6 +98,13 @@ def largest(distances: Iterable[tuple[float, float]]) -> tuple[float, float]:
     return float(first), float(second)
 
 
+def pressure_share(control: Control, law: Law, response: Response) -> FloatArray:
+    """Derivatives of a law's pressures by its multipliers, shape (n,): 1 where contact is sharp and closed (theory 4.3, 4.18)."""
+    if law.smoothing == 0.0:
+        return (response.state > 0).astype(np.float64)
+    return response.pressure_slope * control.weight / law.penalties[0]
+
+
 class PairMechanics:
     """A contact pair with what stays for a whole computation.
 
@@ -199,7 +206,7 @@ class PairMechanics:
         sticks = np.zeros(len(pressure), dtype=np.int32)
         return Law(
             penalties, self.friction, pressure, traction, self.summed, self.held.bears, self.held.free, sticks,
-            elastic_slip=self.pair.contact.elastic_slip, stretch=self._stretch,
+            elastic_slip=self.pair.contact.elastic_slip, stretch=self._stretch, smoothing=self.pair.contact.smoothing,
         )  # fmt: skip
 
     def bear(self, kinematics: Kinematics, depth: float) -> bool:

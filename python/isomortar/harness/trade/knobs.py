@@ -20,6 +20,8 @@ MESHES, STEPS = (1 / 3, 1 / 2, 2 / 3, 1.0, 4 / 3, 5 / 3, 2.0, 2.5, 3.0), (1 / 8,
 TOLERANCES, LOOSEST = (1e5, 1e3, 1.0, 1e-2), 1e-3
 #: Elastic slip over the size of the slave body.
 SLIPS = (1e-2, 1e-3)
+#: Pressure times distance of smooth contact over Young's modulus times the size of the slave body.
+SMOOTHINGS = (1e-5, 1e-7)
 #: Orders that a search goes through.
 HIGHEST = 5
 
@@ -265,6 +267,16 @@ def _elastic_slips(scene: Scene, spoils: str) -> Iterator[Dial]:
             yield _values(f"contacts.{contact.name}.elastic_slip", f"elastic slip of {contact.name}", lengths, spoils, contact.elastic_slip)
 
 
+def _smoothings(scene: Scene, spoils: str) -> Iterator[Dial]:
+    """Pressure times distance of smooth contact, in place of contact or none."""
+    for contact in scene.whole().contacts:
+        body = scene.whole().body(contact.slave.body)
+        if not body.rigid:
+            products = {float(f"{share * body.material.young * body.size:.1g}") for share in SMOOTHINGS}
+            values = sorted({contact.smoothing, *products}, reverse=True)
+            yield _values(f"contacts.{contact.name}.smoothing", f"smoothing of {contact.name}", values, spoils, contact.smoothing)
+
+
 def _values(key: str, name: str, values: Sequence[object], spoils: str, own: object, refines: bool = False) -> Dial:
     """The values of one key of a scene file."""
     settings = tuple(Setting(str(value), None if value == own else given([f"{key}={value}"])) for value in values)
@@ -321,4 +333,5 @@ KNOBS: tuple[Knob, ...] = (
     Knob("enforcement", "pressures and tractions", _enforcements),
     Knob("projection", "gaps where the master is curved", _projections),
     Knob("elastic slip", "tractions where contact sticks", _elastic_slips),
+    Knob("smoothing", "gaps, and pressures at the contact's edge", _smoothings),
 )
