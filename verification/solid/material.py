@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import get_args
 
 import mpmath
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 
 from isomortar import _bindings, _twin
 from isomortar._arrays import MaterialLaw
+from isomortar.errors import FoldedElementError
 from isomortar.geometry.patch import FloatArray, Patch
 from isomortar.geometry.primitives import box
 from isomortar.geometry.refinement import mesh
@@ -95,6 +97,29 @@ def stress_of_energy(law: str, volume_ratio: float) -> dict[str, float]:
         found = [np.abs(p - exact).max() / size for p in (stress(f, material), point)]
         worst = np.maximum(worst, found)
     return {"error": float(worst[0]), "at points": float(worst[1])}
+
+
+@case(
+    claim="A deformation that folds, or leaves no volume, is refused, by the element and at a point.",
+    tier="gate",
+    grid={"law": list(LAWED), "volume_ratio": (0.0, -1e-9, -0.5, -4.0)},
+    bounds={name: Bound(1.0, 1.0, "definition: 1 where it is refused as folded") for name in ("element", "point")},
+)
+def folded(law: str, volume_ratio: float) -> dict[str, float]:
+    """Whether diag(1, 1, J) is refused."""
+    f, material = np.diag([1.0, 1.0, volume_ratio]), LAWED[law]
+
+    def refused(compute: Callable[[], object]) -> float:
+        try:
+            compute()
+        except FoldedElementError:
+            return 1.0
+        return 0.0
+
+    return {
+        "element": refused(lambda: stress(f, material)),
+        "point": refused(lambda: _bindings.material_stress(material.arrays, (f - np.eye(3))[None])),
+    }
 
 
 def curved_element(kind: str) -> Patch:

@@ -31,8 +31,9 @@ STATES = {
     "slip": ((1.0, 0.7), (1.2, 2.0)),
     "mixed": ((-1.0, 1.0, 0.7), (0.0, 0.5, 2.0)),
 }
-#: Where the bowl is: deep and with gaps; a part of it over the master's edge; a point at next to a line, or a corner of elements.
-PLACES = ("inside", "over the rim", "line: before", "line: behind", "corner: before", "corner: behind")
+#: Where the bowl is: deep and with gaps; slid by half an element both ways; a part of it over the master's edge; a point at next to a
+#: line, or a corner of elements.
+PLACES = ("inside", "from elements beside", "over the rim", "line: before", "line: behind", "corner: before", "corner: behind")
 #: How far from a line, as a share of an element; and lengths of directions, of which some hundredths are off there.
 OFF, SHORT = 1e-8, 1e-6
 #: Parts that there are: pressures are not conservative, and tractions work in the slave's basis.
@@ -74,7 +75,8 @@ def posed(master: str, place: str, friction: float) -> Posed:
     state = equilibrium.initial_state()
     uneven = np.random.default_rng(1).standard_normal(state.positions.shape)
     pose = Posed(problem, equilibrium, state.positions + UNEVEN[order] * uneven, state.contacts[0])
-    pose = pose.moved(np.array([0.45 if place == "over the rim" else 0.07, 0.03, -0.02]))
+    slid = {"over the rim": (0.45, 0.03), "from elements beside": (0.1, 0.13)}.get(place, (0.07, 0.03))
+    pose = pose.moved(np.array([*slid, -0.02]))
     if ":" not in place:
         return pose
     side = OFF if place.endswith("behind") else -OFF
@@ -144,13 +146,20 @@ def averaged(master: str, place: str, state: str) -> dict[str, float]:
 
 
 def there(pose: Posed, place: str) -> float:
-    """Points without a foot, points at next to a line, or points with one."""
+    """Points without a foot, elements that points of one came from beside the first, points at next to a line, or points with a foot."""
     projections = pose.equilibrium.pairs[0].kinematics(pose.positions, pose.start).projections
     if place == "over the rim":
         return float(np.count_nonzero(projections.found == 0))
-    if ":" not in place:
+    if place == "inside":
         return float(np.count_nonzero(projections.found))
     lines = [direction.boundaries for direction in pose.problem.body("master").patch.face_directions("w1")]
+    if place == "from elements beside":
+        now, then = (
+            np.column_stack([np.searchsorted(line, x) for x, line in zip(xi.T, lines, strict=True)])
+            for xi in (projections.xi, pose.start.projection)
+        )
+        pairs = np.unique(np.column_stack([now, then]), axis=0)
+        return float(min(len(np.unique(pairs[:, [0, 1, 2 + a]], axis=0)) - len(np.unique(now, axis=0)) for a in range(2)))
     near = [
         np.abs(xi[:, None] - line).min(axis=1) < 2.0 * OFF * np.diff(line).min() for xi, line in zip(projections.xi.T, lines, strict=True)
     ]
