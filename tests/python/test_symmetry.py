@@ -148,6 +148,12 @@ REFUSED = {
         "supports.top.face",
         "a face beside the plane x = 0",
     ),
+    "a name": (
+        PLANE.replace("[supports.top]", "[supports.symmetry-x-block]").replace("motions.top", "motions.symmetry-x-block"),
+        "x = 0.0",
+        "supports.symmetry-x-block",
+        "is what symmetry calls a support of its own",
+    ),
     "no axis": (PLANE, "a = 0.0", "symmetry", "x"),
     "not finite": (PLANE, "x = nan", "symmetry.x", "finite"),
 }

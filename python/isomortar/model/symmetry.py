@@ -47,6 +47,9 @@ def held_on_planes(problem: Problem) -> Problem:
         for body in problem.deformable
         for face in _faces_on(body, plane)
     ]
+    taken = {support.name for support in problem.supports} & {support.name for support in held}
+    if taken:
+        raise InputError("is what symmetry calls a support of its own; allowed: any other name", f"supports.{min(taken)}")
     return replace(problem, supports=(*problem.supports, *held))
 
 
