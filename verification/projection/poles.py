@@ -132,6 +132,41 @@ def disc(order: int, elements: int) -> Surface:
     return Surface(Patch((line, line, round_it), points.reshape(-1, 3), np.ones(4 * round_it.count)), "v1", closed="w")
 
 
+def spike_in_a_bowl() -> Surface:
+    """The upper face of a bowl about the z-axis with a spike in its middle, whose tip is the pole."""
+    profile = np.array([[1.5, 3.0], [0.5, -1.0], [0.0, 0.0]])
+    along = Direction("N", 1, np.array([0.0, 0.0, 1.0, 2.0, 2.0]))
+    across = Direction("N", 1, np.array([0.0, 0.0, 1.0, 1.0]))
+    round_it = Direction("N", 2, np.pad(np.arange(13.0), 2, mode="edge"))
+    angle = 2 * np.pi * (np.arange(round_it.count) % (round_it.count - 1)) / (round_it.count - 1)
+    points = np.zeros((round_it.count, 2, 3, 3))
+    points[..., 0], points[..., 1] = (profile[:, 0] * f(angle)[:, None, None] for f in (np.cos, np.sin))
+    points[..., 2] = profile[:, 1] - np.array([0.5, 0.0])[:, None]
+    return Surface(Patch((along, across, round_it), points.reshape(-1, 3), np.ones(6 * round_it.count)), "v1", closed="w")
+
+
+@case(
+    claim="A search that starts at a pole, or comes to one that is nearest of all beside it, goes on to what is nearer elsewhere.",
+    tier="gate",
+    bounds={
+        "nearer": Bound(at_most=1e-12, reason="round-off: of points and distances, all of size one"),
+        "of the pole": Bound(at_least=1.0, reason="definition: beside it nothing is nearer to some targets, of which it is not the foot"),
+    },
+)
+def nearer_than_a_pole() -> dict[str, float]:
+    """By how much another point of a bowl is nearer than the foot from a start at the tip of its spike; targets in the tip's cone."""
+    surface = spike_in_a_bowl()
+    angle = np.random.default_rng(4).uniform(0.0, 2 * np.pi, 20)
+    targets = np.column_stack([1.1 * np.cos(angle), 1.1 * np.sin(angle), np.full(len(angle), 1.6)])
+    start = np.column_stack([np.linspace(surface.ends[0, 0], surface.ends[1, 0], len(angle)), np.full(len(angle), surface.ends[1, 1])])
+    feet = surface.project(targets, start)
+    away = np.linalg.norm(surface.points(feet.xi), axis=1) > 0.1
+    return {
+        "nearer": float(np.maximum(0.0, exhaustive(surface, targets, feet.xi)).max()),
+        "of the pole": float(np.count_nonzero(away & (feet.found > 0))),
+    }
+
+
 @case(
     claim="Feet beside a pole are found all round, however few elements there are round it.",
     grid={"order": [3, 4], "elements": [1, 2, 3]},
