@@ -44,7 +44,6 @@ def traded(scene: str) -> dict[str, Any]:
     start = time.process_time()
     steps = list(Simulation(problem).run())
     seconds = time.process_time() - start
-    images = problem.images
     grids = [slave_grid(loaded, problem, n) if len(c.slave.faces) == 1 else None for n, c in enumerate(problem.contacts)]
     fields = [_fields(problem, step, grids) for step in steps]
     phases: Counter[str] = Counter()
@@ -54,9 +53,8 @@ def traded(scene: str) -> dict[str, Any]:
         "time": stage_times(problem),
         "force": [[step.reactions[n].force for step in steps] for n in range(len(problem.supports))],
         "moment": [[step.reactions[n].moment for step in steps] for n in range(len(problem.supports))],
-        "area": np.array(
-            [[images * float(g.weights @ (p > 0)) if g else np.nan for g, p in zip(grids, f[0], strict=True)] for f in fields]
-        ).T,
+        "area": problem.images
+        * np.array([[float(g.weights @ (p > 0)) if g else np.nan for g, p in zip(grids, f[0], strict=True)] for f in fields]).T,
         "pressure": np.concatenate([np.zeros(0), *fields[-1][0]]),
         "traction": np.concatenate([np.zeros(0), *fields[-1][1]]),
         "cells": np.concatenate([np.zeros(0), *(g.weights for g in grids if g)]),
