@@ -7,7 +7,7 @@ user has set stands, and what the program around us does with libraries of its o
   factorisation, are then two to ten times slower. The right choice follows from the processor's flags.
 - One thread for OpenBLAS: more do not make the solves faster, and get in the way of the assembly's.
 - Threads of the assembly sleep when they wait: two runs on the same cores would hold each other up tenfold.
-- Memory that is freed stays with the process (`keep_memory`).
+- Memory that is freed stays with the process (`keep_memory`), that of the program around us too.
 
 Another kernel with the same interface takes its place where the environment names one (docs/programs.md).
 """
@@ -86,7 +86,8 @@ def _settings() -> Iterator[None]:
 keep_memory()
 with _settings():
     from isomortar import _kernel as kernel
-if KERNEL in os.environ:
-    kernel = kernel_at(Path(os.environ[KERNEL]), kernel)
+
+    if KERNEL in os.environ:
+        kernel = kernel_at(Path(os.environ[KERNEL]), kernel)
 
 __all__ = ["KERNEL", "kernel", "kernel_at", "processor_kind"]

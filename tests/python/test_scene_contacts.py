@@ -234,6 +234,13 @@ WRONG = {
         "contacts.floor.smoothing",
         "pressed away from afar",
     ),
+    "smoothing and cohesion": (
+        PRESS,
+        "[supports.top]",
+        "smoothing = 1e-3\ncohesion = 0.1\n[supports.top]",
+        "contacts.floor.smoothing",
+        "a cohesion, 0.1 here, would act there",
+    ),
     "smoothing below zero": (
         PRESS,
         "[supports.top]",

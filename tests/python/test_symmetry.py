@@ -13,6 +13,7 @@ from isomortar.geometry.refinement import mesh
 from isomortar.geometry.splines import Spline
 from isomortar.harness.trade.advice import cheaper_dials
 from isomortar.harness.trade.knobs import changed
+from isomortar.harness.trade.run import traded
 from isomortar.harness.trade.want import wanted
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
@@ -37,6 +38,10 @@ complementarity_tolerance = 1e-12
 name = "press"
 steps = 2
 motions.top.translate = [0, 0, -0.04]
+"""
+BESIDE = """[bodies.lower]
+geometry = { kind = "box", lower = [-0.5, 2.0, -0.6], upper = [0.5, 2.8, -0.1] }
+mesh = { elements = [4, 4, 2] }
 """
 PUSH = '[[stages]]\nname = "push"\nsteps = 2\nmotions.top.translate = [0.1, 0, 0]\n'
 TURN = '[[stages]]\nname = "turn"\nsteps = 1\nmotions.top.rotate = 20.0\n'
@@ -154,7 +159,7 @@ REFUSED = {
         "supports.symmetry-x-block",
         "is what symmetry calls a support of its own",
     ),
-    "no axis": (PLANE, "a = 0.0", "symmetry", "x"),
+    "no axis": (PLANE, "a = 0.0", "symmetry", "is 'a'; allowed: 'x', 'y' or 'z'"),
     "not finite": (PLANE, "x = nan", "symmetry.x", "finite"),
 }
 
@@ -187,6 +192,8 @@ def test_results_keep_it(tmp_path: Path) -> None:
     scene = Scene.from_toml(PLANE, overrides=["symmetry={ x = 0.0, y = 2.4 }"])
     with isomortar.run(scene, tmp_path / "quarter.h5") as results:
         force = results.curve("force", support="top", component="z")
+        assert results.problem.symmetry == scene.problem().symmetry
+    isomortar.run(scene, tmp_path / "quarter.h5", resume=True).close()  # it is the same scene, and whole
     np.testing.assert_allclose(force, [step.reactions[0].force[2] for step in run(PLANE)], rtol=1e-9)
 
 
@@ -199,3 +206,19 @@ def test_advice_tries_the_planes_in_which_a_scene_is_symmetric() -> None:
     assert not [dial for dial in cheaper_dials(quarter) if "beyond" in dial.name]
     fields = [wanted("pressure.floor", scene.problem())]
     assert not [dial for dial in cheaper_dials(scene, fields) if "beyond" in dial.name]  # of a half, fields are no field of the whole
+
+
+def test_the_area_of_a_trade_is_the_wholes(tmp_path: Path) -> None:
+    areas = []
+    for symmetry in ("{}", "{ x = 0.0, y = 2.4 }"):
+        (tmp_path / "scene.toml").write_text(Scene.from_toml(PLANE, overrides=[f"symmetry={symmetry}"]).to_toml())
+        areas.append(traded.function(str(tmp_path / "scene.toml"))["area"])
+    assert areas[0][0, -1] > 0.1
+    np.testing.assert_allclose(areas[1], areas[0], rtol=0.05)  # cells are counted, of which a part has more
+
+
+def test_a_body_that_symmetry_alone_holds_is_free() -> None:
+    text = PLANE.replace("[contacts.floor]", BESIDE + "[contacts.floor]").replace("plane = {}", 'master = "lower.w1"')
+    for planes in ("{}", "{ x = 0.0 }"):
+        with pytest.raises(InputError, match="'lower' is free: it has no support"):
+            Scene.from_toml(text, overrides=[f"symmetry={planes}"]).problem()

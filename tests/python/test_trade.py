@@ -47,6 +47,7 @@ def numbers(force=((1.0, 0.0, 0.0),) * 4, cpu=1.0, **more):
         "traction": [0.0, 0.0],
         "cells": [0.25, 0.75],
         "counts": [2],
+        "images": 1,
         "unknowns": 27.0,
         "solves": 4.0,
         "cuts": 0.0,

@@ -47,7 +47,8 @@ def upper_half(patch: Patch, axis: int, place: float) -> tuple[Patch, str]:
             f"is {direction.elements} in direction {letter}, which {plane} halves; allowed there: even numbers", "mesh.elements"
         )
     grid = np.moveaxis(homogeneous(patch), across[0], 0)
-    rises = grid[-1, ..., axis].sum() / grid[-1, ..., 3].sum() > place
+    upper = grid[(len(grid) + 1) // 2 :]
+    rises = upper[..., axis].sum() / upper[..., 3].sum() > place
     half, kept = _half(direction, grid.reshape(len(grid), -1), bool(rises))
     kept = np.moveaxis(kept.reshape(-1, *grid.shape[1:]), 0, across[0])
     weights = np.ones_like(kept[..., 3]) if np.all(patch.weights == 1.0) else kept[..., 3]
@@ -56,6 +57,8 @@ def upper_half(patch: Patch, axis: int, place: float) -> tuple[Patch, str]:
     u, v, w = (half if k == across[0] else other for k, other in enumerate(patch.directions))
     cut = Patch((u, v, w), points.reshape(-1, 3, order="F"), weights.ravel(order="F"))
     cut.control_points[cut.face_points(face), axis] = place
+    if cut.control_points[:, axis].min() < place - _SAME * _far(patch):
+        raise InputError(f"goes back and forth through {plane}; allowed: bodies of which one half is above it")
     return cut, face
 
 
@@ -87,6 +90,11 @@ def _is_mirrored(patch: Patch, direction: int, axis: int, place: float) -> bool:
     image = np.flip(grid, direction).copy()
     image[..., axis] = 2.0 * place - image[..., axis]
     weights = patch.weights.reshape(patch.shape, order="F")
-    far = max(float(np.ptp(patch.control_points, axis=0).max()), float(np.abs(patch.control_points).max()))
+    far = _far(patch)
     same = np.abs(weights - np.flip(weights, direction)) <= _SAME * weights
     return bool(np.abs(grid - image).max() <= _SAME * far and same.all())
+
+
+def _far(patch: Patch) -> float:
+    """What round-off of its points is a share of."""
+    return max(float(np.ptp(patch.control_points, axis=0).max()), float(np.abs(patch.control_points).max()))

@@ -6,7 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from isomortar.geometry.halves import upper_half
 from isomortar.geometry.patch import Direction, FloatArray, Patch
+from isomortar.geometry.refinement import mesh
 from isomortar.harness.discretisations import coarse_geometry
 from isomortar.model.entities import Problem
 from isomortar.results.bezier import functions_at, rational
@@ -38,7 +40,11 @@ def face_grid(geometry: Patch, face: str, cells: int) -> Grid:
 def slave_grid(scene: Scene, problem: Problem, contact: int) -> Grid:
     """A grid over the slave face of a contact pair, the same for all discretisations of a scene."""
     slave = problem.contacts[contact].slave
-    return face_grid(coarse_geometry(scene, slave.body), slave.face, FACE_CELLS)
+    geometry = coarse_geometry(scene, slave.body)
+    for plane in problem.symmetry:
+        orders, elements = zip(*((d.order, 2 * d.elements) for d in geometry.directions), strict=True)
+        geometry, _ = upper_half(mesh(geometry, ("N", "N", "N"), orders, elements), plane.axis, plane.place)
+    return face_grid(geometry, slave.face, FACE_CELLS)
 
 
 def body_grid(geometry: Patch, cells: int) -> Grid:

@@ -157,7 +157,7 @@ def _check_carried(problem: Problem) -> None:
 def _check_held(problem: Problem) -> None:
     """Every body needs a support, or must be glued to or touch a held body from the start."""
     whole = {body.name: piece for piece in pieces(problem) for body in piece}
-    held = {body.name for support in problem.supports for body in whole[support.place.body]}
+    held = {body.name for support in problem.given_supports for body in whole[support.place.body]}
     held |= {body.name for body in problem.bodies if body.rigid}
     touching = [c for c in problem.contacts if _touch(problem, c)]
     for _ in problem.bodies:

@@ -105,7 +105,13 @@ def _check_elastic_slip(problem: Problem, contact: Contact) -> None:
 
 
 def _check_smoothing(problem: Problem, contact: Contact) -> None:
-    """Refuse what would press bodies apart from afar."""
+    """Refuse what would press bodies apart from afar, and what acts wherever there is contact, which is everywhere then."""
+    if contact.smoothing and contact.cohesion:
+        raise InputError(
+            f"is {contact.smoothing:g}: all that is apart presses then, and a cohesion, {contact.cohesion:g} here, would act there; "
+            "allowed: one of the two",
+            f"contacts.{contact.name}.smoothing",
+        )
     body = problem.body(contact.slave.body)
     others = [problem.body(face.body) for face in contact.master.faces] if isinstance(contact.master, Face) else []
     most = min(other.modulus for other in (body, *others)) * body.size

@@ -235,6 +235,10 @@ class Plane:
     axis: int
     place: float
 
+    def holding(self, body: str) -> str:
+        """Name of the support that holds a body's points on it."""
+        return f"symmetry-{'xyz'[self.axis]}-{body}"
+
     @property
     def words(self) -> str:
         """As messages name it."""
@@ -329,6 +333,12 @@ class Problem:
     def total_steps(self) -> int:
         """Number of recorded load steps over all stages."""
         return sum(stage.steps for stage in self.stages)
+
+    @property
+    def given_supports(self) -> tuple[Support, ...]:
+        """Its supports but for those that hold planes of symmetry, which come last."""
+        of_planes = {plane.holding(body.name) for plane in self.symmetry for body in self.bodies}
+        return tuple(support for support in self.supports if support.name not in of_planes)
 
     @property
     def images(self) -> int:

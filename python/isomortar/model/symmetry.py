@@ -11,42 +11,43 @@ from isomortar.errors import InputError
 from isomortar.geometry.halves import upper_half
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
-from isomortar.model.entities import Body, Face, Motion, Plane, Problem, RigidPlane, Support
+from isomortar.model.entities import Body, Face, Motion, Plane, Problem, RigidPlane, Support, unit
 from isomortar.model.messages import located
 
+#: A face of a body that a plane has cut.
+Cut = tuple[Plane, Face]
 
-def upper_part(bodies: tuple[Body, ...], planes: tuple[Plane, ...]) -> tuple[Body, ...]:
-    """The bodies on the upper side of all planes.
+
+def upper_part(bodies: tuple[Body, ...], planes: tuple[Plane, ...]) -> tuple[tuple[Body, ...], tuple[Cut, ...]]:
+    """The bodies on the upper side of all planes, and their faces on these.
 
     Raises
     ------
     InputError
         A body is not its own mirror image, or has elements across a plane.
     """
+    cuts: list[Cut] = []
     for plane in planes:
-        bodies = tuple(_upper_half(body, plane) for body in bodies)
-    return bodies
+        halves = [_upper_half(body, plane) for body in bodies]
+        bodies = tuple(half for half, _ in halves)
+        cuts += [(plane, Face(half.name, face)) for half, face in halves]
+    return bodies, tuple(cuts)
 
 
-def held_on_planes(problem: Problem) -> Problem:
-    """The upper part of a problem, with a support for each face that lies on a plane: nothing goes through it.
+def held_on_planes(problem: Problem, cuts: tuple[Cut, ...]) -> Problem:
+    """The upper part of a problem, with a support for each face that a plane has cut: nothing goes through it.
 
     Raises
     ------
     InputError
-        What it does is not symmetric: a motion, a rigid plane, a face across a plane that is in use.
+        What it does is not symmetric: a motion, a rigid plane, a face across a plane that is in use; or a support has such a name.
     """
     for plane in problem.symmetry:
         _check_motions(problem, plane)
         _check_rigid_planes(problem, plane)
-        _check_faces(problem, plane)
-    still = tuple(Motion() for _ in problem.stages)
-    held = [
-        Support(f"symmetry-{'xyz'[plane.axis]}-{body.name}", Face(body.name, face), still, (plane.axis,))
-        for plane in problem.symmetry
-        for body in problem.deformable
-        for face in _faces_on(body, plane)
-    ]
+    _check_faces(problem, cuts)
+    still, deformable = tuple(Motion() for _ in problem.stages), {body.name for body in problem.deformable}
+    held = [Support(plane.holding(face.body), face, still, (plane.axis,)) for plane, face in cuts if face.body in deformable]
     taken = {support.name for support in problem.supports} & {support.name for support in held}
     if taken:
         raise InputError("is what symmetry calls a support of its own; allowed: any other name", f"supports.{min(taken)}")
@@ -62,27 +63,20 @@ def of_whole(problem: Problem, force: FloatArray, moment: FloatArray, centre: Fl
     return force, moment
 
 
-def _upper_half(body: Body, plane: Plane) -> Body:
+def _upper_half(body: Body, plane: Plane) -> tuple[Body, str]:
     with located(f"bodies.{body.name}"):
         if body.raised:
             raise InputError("is halved by symmetry, and its functions are of another order at a face; remove one", "mesh.contact_order")
         half, face = upper_half(body.patch, plane.axis, plane.place)
         if body.closed == face[0]:
             raise InputError(f"is closed in {face[0]}, the direction that {plane.words} halves; allowed: planes that cut another one")
-    return replace(body, patch=half)
-
-
-def _faces_on(body: Body, plane: Plane) -> Iterator[str]:
-    """Faces of the part of a body that lie on a plane."""
-    for face in ("u0", "u1", "v0", "v1", "w0", "w1"):
-        if np.all(body.patch.control_points[body.patch.face_points(face), plane.axis] == plane.place):
-            yield face
+    return replace(body, patch=half), face
 
 
 def _check_motions(problem: Problem, plane: Plane) -> None:
     across = "xyz"[plane.axis]
     for support in problem.supports:
-        along_axis = np.abs(np.delete(support.axis, plane.axis)).max() <= constants.NO_PART
+        along_axis = np.abs(np.delete(unit(support.axis), plane.axis)).max() <= constants.NO_PART
         for stage, motion in zip(problem.stages, support.motions, strict=True):
             field = f"stages.{stage.name}.motions.{support.name}"
             if motion.translate[plane.axis]:
@@ -95,16 +89,16 @@ def _check_motions(problem: Problem, plane: Plane) -> None:
 
 def _check_rigid_planes(problem: Problem, plane: Plane) -> None:
     for contact in problem.contacts:
-        if isinstance(contact.master, RigidPlane) and abs(contact.master.normal[plane.axis]) > constants.NO_PART:
+        if isinstance(contact.master, RigidPlane) and abs(unit(contact.master.normal)[plane.axis]) > constants.NO_PART:
             raise InputError(f"is not its own mirror image in {plane.words}; allowed: normals along it", f"contacts.{contact.name}.plane")
 
 
-def _check_faces(problem: Problem, plane: Plane) -> None:
+def _check_faces(problem: Problem, cuts: tuple[Cut, ...]) -> None:
     """Refuse faces that are of a halved direction: of two that mirror each other one is not there any more."""
-    halved = {body.name: {face[0] for face in _faces_on(body, plane)} for body in problem.bodies}
-    for field, face in _faces_in_use(problem):
-        if face.face[0] in halved[face.body]:
-            raise InputError(f"is {face.words!r}, a face beside {plane.words}; allowed with symmetry: faces that it cuts", field)
+    for plane, cut in cuts:
+        for field, face in _faces_in_use(problem):
+            if face.body == cut.body and face.face[0] == cut.face[0]:
+                raise InputError(f"is {face.words!r}, a face beside {plane.words}; allowed with symmetry: faces that it cuts", field)
 
 
 def _faces_in_use(problem: Problem) -> Iterator[tuple[str, Face]]:

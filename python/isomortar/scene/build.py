@@ -46,8 +46,8 @@ def build(scene: SceneTable, name: str, folder: Path) -> Problem:
     meshes = {body: _MeshPlan.of(table, coarse[body]) for body, table in scene.bodies.items()}
     _check_size(meshes)
     _check_curves(scene)
-    planes = tuple(Plane("xyz".index(axis), place) for axis, place in scene.symmetry.items())
-    bodies = upper_part(tuple(_body(body, table, coarse[body], meshes[body], scene) for body, table in scene.bodies.items()), planes)
+    planes = tuple(Plane("xyz".index(axis), place) for axis, place in sorted(scene.symmetry.items()))
+    bodies, cuts = upper_part(tuple(_body(body, table, coarse[body], meshes[body], scene) for body, table in scene.bodies.items()), planes)
     by_name = {body.name: body for body in bodies}
     problem = Problem(
         name=scene.name or name,
@@ -60,7 +60,7 @@ def build(scene: SceneTable, name: str, folder: Path) -> Problem:
         symmetry=planes,
     )
     contacts = tuple(_contact(contact, table, problem) for contact, table in scene.contacts.items())
-    return held_on_planes(replace(problem, contacts=contacts))
+    return held_on_planes(replace(problem, contacts=contacts), cuts)
 
 
 def coarse_patch(name: str, table: BodyTable, folder: Path) -> Patch:

@@ -52,11 +52,8 @@ class Yardstick:
         return self.want.size(values, self.weights) / self.size if self.size > 0.0 else math.inf
 
     def error(self, outcome: Tried) -> float:
-        """Distance of a run from the truth over the size of the truth; infinite where it failed, NaN for fields of another part."""
-        if outcome.failure:
-            return math.inf
-        values = self.values(outcome)
-        return self.norm(values - self.truth) if len(values) == len(self.truth) else math.nan
+        """Distance of a run from the truth over the size of the truth; infinite where it failed."""
+        return math.inf if outcome.failure else self.norm(self.values(outcome) - self.truth)
 
 
 class Model:

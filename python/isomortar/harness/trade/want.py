@@ -75,8 +75,7 @@ def wanted(text: str, problem: Problem) -> Want:
         number = _contact(where, problem)
         if found["component"] or found["stage"] or found["part"]:
             raise InputError(f"is {text!r}; a field is that at the end, without component, stage or part: {quantity}.{where}", "want")
-        values, cells = (lambda run, _: _share(run, quantity, number)), (lambda run: _share(run, "cells", number))
-        return Want(text, values, cells, lambda other: other.images == problem.images)
+        return _of_field(text, quantity, number, problem)
     _among(part, _PARTS, f"{text!r} has no such part")
     stages = _stages(found["stage"], problem)
     if quantity == "area":
@@ -84,7 +83,7 @@ def wanted(text: str, problem: Problem) -> Want:
             raise InputError(f"is {text!r}; an area has no components: area.{where}", "want")
         number = _contact(where, problem)
         return _of_curve(text, lambda run: np.asarray(run["area"], float)[number], stages, part, problem)
-    names = [support.name for support in problem.supports]
+    names = [support.name for support in problem.given_supports]
     _among(where, names, f"{text!r} has no such support")
     component = found["component"] or "norm"
     _among(component, _COMPONENTS, f"{text!r} has no such component")
@@ -122,6 +121,14 @@ def _of_curve(text: str, curve: Callable[[Mapping[str, Any]], FloatArray], stage
         return part != "curve" or all(other.stages[n].steps >= least for n, least in zip(stages, needed, strict=True))
 
     return Want(text, values, lambda _: np.full(count, 1.0 / count), shown)
+
+
+def _of_field(text: str, quantity: str, number: int, problem: Problem) -> Want:
+    def values(run: Mapping[str, Any], truth: Mapping[str, Any]) -> FloatArray:
+        there = _share(truth, quantity, number)
+        return _share(run, quantity, number) if run["images"] == truth["images"] else np.full_like(there, np.nan)  # on another part
+
+    return Want(text, values, lambda run: _share(run, "cells", number), lambda other: other.images == problem.images)
 
 
 def _component(vectors: FloatArray, component: str) -> FloatArray:
