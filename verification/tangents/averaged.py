@@ -159,7 +159,7 @@ def there(pose: Posed, place: str) -> float:
             for xi in (projections.xi, pose.start.projection)
         )
         pairs = np.unique(np.column_stack([now, then]), axis=0)
-        return float(min(len(np.unique(pairs[:, [0, 1, 2 + a]], axis=0)) - len(np.unique(now, axis=0)) for a in range(2)))
+        return float(np.min([len(np.unique(pairs[:, [0, 1, 2 + a]], axis=0)) - len(np.unique(now, axis=0)) for a in range(2)]))
     near = [
         np.abs(xi[:, None] - line).min(axis=1) < 2.0 * OFF * np.diff(line).min() for xi, line in zip(projections.xi.T, lines, strict=True)
     ]
