@@ -5,8 +5,7 @@ user has set stands, and what the program around us does with libraries of its o
 
 - Debian's OpenBLAS takes a processor that is younger than itself for a very old one: matrix products, and with them assembly and
   factorisation, are then two to ten times slower. The right choice follows from the processor's flags.
-- One thread for OpenBLAS: more do not make the solves faster, and get in the way of the assembly's.
-- Threads of the assembly sleep when they wait: two runs on the same cores would hold each other up tenfold.
+- One thread for OpenBLAS, and threads of the assembly that sleep when they wait (`LIBRARIES`).
 - Memory that is freed stays with the process (`keep_memory`), that of the program around us too.
 
 Another kernel with the same interface takes its place where the environment names one (docs/programs.md).
@@ -21,7 +20,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from types import ModuleType
 
-from isomortar._process import keep_memory
+from isomortar._process import LIBRARIES, keep_memory
 from isomortar.errors import InputError
 
 #: Variable of the environment that names the file of another kernel, for this process and those that it starts.
@@ -73,7 +72,7 @@ def kernel_at(path: Path, own: ModuleType) -> ModuleType:
 def _settings() -> Iterator[None]:
     """Say what libraries should read while they are loaded, where the user has not."""
     kind = processor_kind(_processor_flags())
-    said = {"OPENBLAS_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive"} | ({"OPENBLAS_CORETYPE": kind} if kind else {})
+    said = LIBRARIES | ({"OPENBLAS_CORETYPE": kind} if kind else {})
     ours = {variable: value for variable, value in said.items() if variable not in os.environ}
     os.environ.update(ours)
     try:

@@ -10,18 +10,20 @@ from contextlib import contextmanager
 
 # Parameters of glibc's mallopt, with the variables of the environment that set them too.
 _KEPT = {"MALLOC_MMAP_MAX_": (-4, 0), "MALLOC_TRIM_THRESHOLD_": (-1, -1)}
+#: What numerical libraries read of the environment while they are loaded. One thread for the linear algebra: more do not make the solves
+#: faster, and get in the way of the assembly's. Threads of the assembly sleep when they wait: two runs on the same cores would hold each
+#: other up tenfold.
+LIBRARIES = {"OPENBLAS_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive"}
 
 
 def own_process() -> None:
     """Set up a process before it loads any library; what the user's environment says stands.
 
-    One thread for the linear algebra library, NumPy's as well. Threads of the assembly sleep when they wait, whichever library is the
-    first that loads them. And Pydantic does not look through all that is installed for plugins of its own, which would have nothing to
-    do here.
+    NumPy's linear algebra is told what the kernel's is. And Pydantic does not look through all that is installed for plugins of its
+    own, which would have nothing to do here.
     """
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    os.environ.setdefault("OMP_WAIT_POLICY", "passive")
-    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
+    for variable, value in (LIBRARIES | {"PYDANTIC_DISABLE_PLUGINS": "__all__"}).items():
+        os.environ.setdefault(variable, value)
 
 
 def keep_memory() -> None:

@@ -37,29 +37,28 @@ def upper_half(patch: Patch, axis: int, place: float) -> tuple[Patch, str]:
         The patch is not its own mirror image, or the plane goes through elements (`field`: ``mesh.elements``).
     """
     plane = f"the plane {'xyz'[axis]} = {place:g}"
-    across = [k for k in range(3) if _is_mirrored(patch, k, axis, place)]
-    if not across:
+    cut = next((k for k in range(3) if _is_mirrored(patch, k, axis, place)), None)
+    if cut is None:
         raise InputError(f"is not its own mirror image in {plane}, by its control points, weights and knots")
-    direction = patch.directions[across[0]]
+    direction, letter = patch.directions[cut], "uvw"[cut]
     if direction.elements % 2:
-        letter = "uvw"[across[0]]
         raise InputError(
             f"is {direction.elements} in direction {letter}, which {plane} halves; allowed there: even numbers", "mesh.elements"
         )
-    grid = np.moveaxis(homogeneous(patch), across[0], 0)
+    grid = np.moveaxis(homogeneous(patch), cut, 0)
     upper = grid[(len(grid) + 1) // 2 :]
     rises = upper[..., axis].sum() / upper[..., 3].sum() > place
     half, kept = _half(direction, grid.reshape(len(grid), -1), bool(rises))
-    kept = np.moveaxis(kept.reshape(-1, *grid.shape[1:]), 0, across[0])
+    kept = np.moveaxis(kept.reshape(-1, *grid.shape[1:]), 0, cut)
     weights = np.ones_like(kept[..., 3]) if np.all(patch.weights == 1.0) else kept[..., 3]
     points = kept[..., :3] / weights[..., None]
-    face = f"{'uvw'[across[0]]}{0 if rises else 1}"
-    u, v, w = (half if k == across[0] else other for k, other in enumerate(patch.directions))
-    cut = Patch((u, v, w), points.reshape(-1, 3, order="F"), weights.ravel(order="F"))
-    cut.control_points[cut.face_points(face), axis] = place
-    if cut.control_points[:, axis].min() < place - _SAME * _far(patch):
+    face = f"{letter}{0 if rises else 1}"
+    u, v, w = (half if k == cut else other for k, other in enumerate(patch.directions))
+    part = Patch((u, v, w), points.reshape(-1, 3, order="F"), weights.ravel(order="F"))
+    part.control_points[part.face_points(face), axis] = place
+    if part.control_points[:, axis].min() < place - _SAME * _far(patch):
         raise InputError(f"goes back and forth through {plane}; allowed: bodies of which one half is above it")
-    return cut, face
+    return part, face
 
 
 def _half(direction: Direction, control: FloatArray, upper: bool) -> tuple[Direction, FloatArray]:

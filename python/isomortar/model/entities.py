@@ -229,7 +229,7 @@ class Support:
 
 
 @dataclass(frozen=True)
-class Plane:
+class SymmetryPlane:
     """A plane of symmetry across a coordinate `axis` (0, 1, 2), where that coordinate is `place`."""
 
     axis: int
@@ -318,7 +318,7 @@ class Problem:
     stages: tuple[Stage, ...]
     settings: SolverSettings = field(default_factory=SolverSettings)
     glue: tuple[tuple[Face, Face], ...] = ()
-    symmetry: tuple[Plane, ...] = ()
+    symmetry: tuple[SymmetryPlane, ...] = ()
 
     def body(self, name: str) -> Body:
         """The body of that name."""

@@ -11,14 +11,14 @@ from isomortar.errors import InputError
 from isomortar.geometry.halves import upper_half
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
-from isomortar.model.entities import Body, Face, Motion, Plane, Problem, RigidPlane, Support, unit
+from isomortar.model.entities import Body, Face, Motion, Problem, RigidPlane, Support, SymmetryPlane, unit
 from isomortar.model.messages import located
 
 #: A face of a body that a plane has cut.
-Cut = tuple[Plane, Face]
+Cut = tuple[SymmetryPlane, Face]
 
 
-def upper_part(bodies: tuple[Body, ...], planes: tuple[Plane, ...]) -> tuple[tuple[Body, ...], tuple[Cut, ...]]:
+def upper_part(bodies: tuple[Body, ...], planes: tuple[SymmetryPlane, ...]) -> tuple[tuple[Body, ...], tuple[Cut, ...]]:
     """The bodies on the upper side of all planes, and their faces on these.
 
     Raises
@@ -63,7 +63,7 @@ def of_whole(problem: Problem, force: FloatArray, moment: FloatArray, centre: Fl
     return force, moment
 
 
-def _upper_half(body: Body, plane: Plane) -> tuple[Body, str]:
+def _upper_half(body: Body, plane: SymmetryPlane) -> tuple[Body, str]:
     with located(f"bodies.{body.name}"):
         if body.raised:
             raise InputError("is halved by symmetry, and its functions are of another order at a face; remove one", "mesh.contact_order")
@@ -73,7 +73,7 @@ def _upper_half(body: Body, plane: Plane) -> tuple[Body, str]:
     return replace(body, patch=half), face
 
 
-def _check_motions(problem: Problem, plane: Plane) -> None:
+def _check_motions(problem: Problem, plane: SymmetryPlane) -> None:
     across = "xyz"[plane.axis]
     for support in problem.supports:
         along_axis = np.abs(np.delete(unit(support.axis), plane.axis)).max() <= constants.NO_PART
@@ -87,7 +87,7 @@ def _check_motions(problem: Problem, plane: Plane) -> None:
                 )
 
 
-def _check_rigid_planes(problem: Problem, plane: Plane) -> None:
+def _check_rigid_planes(problem: Problem, plane: SymmetryPlane) -> None:
     for contact in problem.contacts:
         if isinstance(contact.master, RigidPlane) and abs(unit(contact.master.normal)[plane.axis]) > constants.NO_PART:
             raise InputError(f"is not its own mirror image in {plane.words}; allowed: normals along it", f"contacts.{contact.name}.plane")

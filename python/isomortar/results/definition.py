@@ -14,7 +14,7 @@ import numpy as np
 from pydantic import TypeAdapter
 
 from isomortar.geometry.patch import Direction, Patch
-from isomortar.model.entities import Body, Contact, Face, Material, Plane, Problem, Raised, SolverSettings, Stage, Support
+from isomortar.model.entities import Body, Contact, Face, Material, Problem, Raised, SolverSettings, Stage, Support, SymmetryPlane
 from isomortar.results.layout import CONTROL_POINTS, KNOTS, WEIGHTS, Quantity
 
 _AXES = "uvw"
@@ -24,7 +24,7 @@ _PLAIN: dict[str, Any] = {
     "stages": tuple[Stage, ...],
     "settings": SolverSettings,
     "glue": tuple[tuple[Face, Face], ...],
-    "symmetry": tuple[Plane, ...],
+    "symmetry": tuple[SymmetryPlane, ...],
 }
 #: What earlier files of the same format do not hold, and had not.
 _LATER = ("glue", "symmetry", "rigid", "raised")

@@ -13,7 +13,20 @@ from isomortar.geometry.refinement import mesh, raised_along
 from isomortar.model import constants
 from isomortar.model.contact_checks import has_pole
 from isomortar.model.enforcement.integration import integrated
-from isomortar.model.entities import Body, Contact, Face, Faces, Material, Motion, Plane, Problem, Raised, RigidPlane, Stage, Support
+from isomortar.model.entities import (
+    Body,
+    Contact,
+    Face,
+    Faces,
+    Material,
+    Motion,
+    Problem,
+    Raised,
+    RigidPlane,
+    Stage,
+    Support,
+    SymmetryPlane,
+)
 from isomortar.model.kinks import has_kinks
 from isomortar.model.messages import located
 from isomortar.model.sheet import Sheet
@@ -46,7 +59,7 @@ def build(scene: SceneTable, name: str, folder: Path) -> Problem:
     meshes = {body: _MeshPlan.of(table, coarse[body]) for body, table in scene.bodies.items()}
     _check_size(meshes)
     _check_curves(scene)
-    planes = tuple(Plane("xyz".index(axis), place) for axis, place in sorted(scene.symmetry.items()))
+    planes = tuple(SymmetryPlane("xyz".index(axis), place) for axis, place in sorted(scene.symmetry.items()))
     bodies, cuts = upper_part(tuple(_body(body, table, coarse[body], meshes[body], scene) for body, table in scene.bodies.items()), planes)
     by_name = {body.name: body for body in bodies}
     problem = Problem(
