@@ -60,7 +60,7 @@ class Model:
     """Forecasts from the runs that are there.
 
     A choice is forecast from the run that shares most of its settings. What refines moves the result as it did alone; what coarsens adds
-    the size of what it changed alone: that errors cancel is luck, and none is counted on.
+    the size of what it changed alone: that errors cancel is luck, and a forecast that is not hopeful counts on none.
 
     Parameters
     ----------
@@ -71,10 +71,20 @@ class Model:
         All runs.
     yardsticks : sequence of Yardstick
         The largest of their errors counts.
+    hopeful : bool
+        Whether what coarsens, too, moves the result as it did alone.
     """
 
-    def __init__(self, dials: Sequence[Dial], own: Choice, outcomes: Mapping[Choice, Tried], yardsticks: Sequence[Yardstick]) -> None:
-        self._dials, self._own, self._yardsticks = dials, own, yardsticks
+    def __init__(
+        self,
+        dials: Sequence[Dial],
+        own: Choice,
+        outcomes: Mapping[Choice, Tried],
+        yardsticks: Sequence[Yardstick],
+        *,
+        hopeful: bool = False,
+    ) -> None:
+        self._dials, self._yardsticks, self._hopeful = dials, yardsticks, hopeful
         self._centres = [outcome for outcome in outcomes.values() if not outcome.failure]
         self._failed = {choice for choice, outcome in outcomes.items() if outcome.failure}
         base = outcomes[own]
@@ -108,10 +118,10 @@ class Model:
         for number in map(int, np.flatnonzero(near != wanted)):
             here, there = (number, int(near[number])), (number, int(wanted[number]))
             cost *= math.exp(self._costs[there] - self._costs[here])
-            refined = self._dials[number].refines and there[1] > here[1]
+            moves = self._hopeful or (self._dials[number].refines and there[1] > here[1])
             for k, yardstick in enumerate(self._yardsticks):
                 change = self._effects[there][k] - self._effects[here][k]
-                if refined:
+                if moves:
                     errors[k] += change
                 else:
                     lost[k] += yardstick.norm(change)

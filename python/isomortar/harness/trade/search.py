@@ -97,7 +97,7 @@ class Search:
     @property
     def model(self) -> Model:
         """Forecasts from all runs so far."""
-        return Model(self.dials, self.laboratory.own, self.laboratory.outcomes, self.yardsticks)
+        return self._forecasts(hopeful=False)
 
     @property
     def uncertainty(self) -> float:
@@ -208,15 +208,23 @@ class Search:
             if all(setting in tried.settings(number) for number, setting in kept.items()):
                 yield int(label), kept
 
+    def _forecasts(self, *, hopeful: bool) -> Model:
+        return Model(self.dials, self.laboratory.own, self.laboratory.outcomes, self.yardsticks, hopeful=hopeful)
+
     def _hunted(self, target: float, kept: Mapping[int, int]) -> Tried | None:
-        """The cheapest run within a target; what is forecast is run, and corrects the forecasts."""
+        """The cheapest run within a target; last, where nothing is kept, that of settings whose errors may cancel."""
         truths = (self.truth, self.rival)
         alike = [o for o in self.laboratory.outcomes.values() if o not in truths and all(o.choice[n] == s for n, s in kept.items())]
         best = min((o for o in alike if self.error(o) <= target), key=lambda o: o.cost, default=None)
+        best = self._pursued(target, kept, best, hopeful=False)
+        return best if kept else self._pursued(target, kept, best, hopeful=True)
+
+    def _pursued(self, target: float, kept: Mapping[int, int], best: Tried | None, *, hopeful: bool) -> Tried | None:
+        """The cheapest run within a target; what is forecast is run, and corrects the forecasts."""
         for _ in range(TRIES):
             if self._over:
                 break
-            model = self.model
+            model = self._forecasts(hopeful=hopeful)
             choice = model.cheapest(AIM * target, kept) or model.cheapest(target, kept)
             further = self._further(model, choice, target)
             if further:
