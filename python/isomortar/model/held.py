@@ -10,15 +10,23 @@ the traction across the edge of the master's face is zero. Beside a rigid body w
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
+from isomortar._arrays import Control, Pattern
+from isomortar._codes import FirstRow
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model import constants
 from isomortar.model.entities import RigidPlane, unit
 from isomortar.model.pairs import Pair
 from isomortar.model.supports import BoolArray, Supports
+
+#: Where the metric's components (11, 12, 22) stand in its matrix.
+_METRICS = np.array([[[1.0, 0.0], [0.0, 0.0]], [[0.0, 1.0], [1.0, 0.0]], [[0.0, 0.0], [0.0, 1.0]]])
+_SLIP_ROWS = slice(FirstRow.SLIP - 1, FirstRow.SLIP + 1)
+_METRIC_ROWS = slice(FirstRow.METRIC - 1, FirstRow.METRIC + 2)
 
 
 @dataclass(frozen=True)
@@ -51,6 +59,37 @@ class Held:
     rests: BoolArray
     still: IntArray
     moved: BoolArray
+
+
+    @cached_property
+    def _limited(self) -> IntArray:
+        """Test functions whose tractions are not free."""
+        return np.flatnonzero(np.any(self.free != np.eye(2), axis=(1, 2)))
+
+    @cached_property
+    def _split(self) -> FloatArray:
+        """What their metrics (11, 12, 22) are without what couples the free to the rest, shape (limited, 3, 3) (theory 4.11)."""
+        free = self.free[self._limited]
+        taken = np.eye(2) - free
+        parts = np.einsum("npq,kqr,nrs->nkps", free, _METRICS, free) + np.einsum("npq,kqr,nrs->nkps", taken, _METRICS, taken)
+        return parts.reshape(-1, 3, 4)[..., [0, 1, 3]].swapaxes(1, 2)
+
+    def mirrored(self, control: Control) -> Control:
+        """Control quantities as they are with mirror images of both sides beyond what is held (theory 4.11)."""
+        at = self._limited
+        if not at.size:
+            return control
+        slip, metric = control.slip.copy(), control.metric.copy()
+        slip[at] = np.einsum("nab,nb->na", self.free[at], slip[at])
+        metric[at] = np.einsum("nab,nb->na", self._split, metric[at])
+        return replace(control, slip=slip, metric=metric)
+
+    def mirror(self, rows: FloatArray, pattern: Pattern) -> None:
+        """The same of their derivatives, in place; `rows`, shape (blocks, kinds, 3), with the blocks of a pattern."""
+        for free, split, i in zip(self.free[self._limited], self._split, self._limited, strict=True):
+            blocks = rows[pattern.start[i] : pattern.start[i + 1]]
+            blocks[:, _SLIP_ROWS] = free @ blocks[:, _SLIP_ROWS]
+            blocks[:, _METRIC_ROWS] = split @ blocks[:, _METRIC_ROWS]
 
 
 def nothing_held(pair: Pair) -> Held:

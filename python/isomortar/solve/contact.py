@@ -182,7 +182,7 @@ class PairMechanics:
                 raise self._feet.named(error, positions) from error
         with self._ledger.phase("contact"):
             control = _bindings.control_quantities(pair.slave, pair.master, positions, projections, self.friction.acts, counts)
-        return Kinematics(projections, control)
+        return Kinematics(projections, self.held.mirrored(control))
 
     def rests(self, kinematics: Kinematics, pressure: FloatArray, traction: FloatArray) -> bool:
         """Whether all is open and stays so without a look at the kinematics: it is out of reach, and has no multipliers."""
@@ -275,6 +275,8 @@ class PairMechanics:
                 self.pair.slave, self.pair.master, positions, kinematics.projections, self.friction.acts, response,
                 patterns.rows, rows, patterns.tangent, geometric, self._ledger.work,
             )  # fmt: skip
+            if self.friction.acts:
+                self.held.mirror(rows, patterns.rows)
             changes, trial = _bindings.multiplier_rows(
                 self.pair.slave, kinematics.control, law, response, patterns.rows, rows, self.pair.neighbours, patterns.wide
             )
