@@ -155,7 +155,8 @@ end subroutine keep_plane
 !> - `averaged`: 1: of the averaged normal (isomortar_contact_gap_map_averaged), 0: of the closest point
 !>   (isomortar_contact_gap_map_closest_point).
 !> - `brim`: how far it goes on beyond its edges, as a share of the outer elements.
-subroutine keep_face(patch, axis, side, averaged, brim, handle, status)
+!> - `mirror`: component (1..3) across the plane of symmetry that each edge is on, 0: none; (start and end, direction).
+subroutine keep_face(patch, axis, side, averaged, brim, mirror, handle, status)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: descriptor_t, find, keep
   use isomortar_contact_gap_map_averaged, only: averaged_on
@@ -164,7 +165,7 @@ subroutine keep_face(patch, axis, side, averaged, brim, handle, status)
   use isomortar_nurbs_surface, only: face_of, surface_t
   implicit none
   integer(c_int64_t), intent(in) :: patch
-  integer(c_int), intent(in) :: axis, side, averaged
+  integer(c_int), intent(in) :: axis, side, averaged, mirror(2, 2)
   real(c_double), intent(in) :: brim
   integer(c_int64_t), intent(out) :: handle
   integer(c_int), intent(out) :: status
@@ -178,6 +179,7 @@ subroutine keep_face(patch, axis, side, averaged, brim, handle, status)
   if (status /= 0) return
   surface = face_of(body, axis, side)
   surface%brim = brim
+  surface%mirror = mirror
   if (averaged /= 0) then
     allocate (descriptor%map, source=averaged_on(surface, face_of(body, axis, 1 - side)))
   else

@@ -35,6 +35,9 @@ module isomortar_nurbs_surface
     logical :: closed(2) = .false.
     !> Poles at the start and the end of each direction, shape (2, directions): edges that are one control point, closed round it.
     logical :: pole(2, 2) = .false.
+    !> Component (1 to 3) across the plane of symmetry that an edge is on, beyond which is the mirror image; 0: none. Shape (2,
+    !> directions), start and end.
+    integer :: mirror(2, 2) = 0
     !> How far the functions of the outer elements go on beyond the edges, as a share of the element (theory 10.7).
     real(wp) :: brim = 0.0_wp
   end type surface_t

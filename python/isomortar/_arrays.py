@@ -6,7 +6,7 @@ Control points, elements and unknowns count from 0.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import ClassVar, Literal, Self, get_args
 
@@ -118,18 +118,21 @@ class PlaneArrays:
 class FaceArrays:
     """A face of a deformable body as a master: its patch, the axis across the face (1 to 3) and its end there (0, 1).
 
-    `brim`: how far it goes on beyond its edges, as a share of the outer elements.
+    `brim`: how far it goes on beyond its edges, as a share of the outer elements. `mirror`, shape (directions, 2), start and end:
+    component (1 to 3) across the plane of symmetry that an edge is on, 0: none (theory 3.21).
     """
 
     patch: PatchArrays
     axis: int
     side: int
     brim: float = 0.0
+    mirror: IntArray = field(default_factory=lambda: np.zeros((2, 2), np.int32))
 
     def __post_init__(self) -> None:
         check.kind("patch", self.patch, PatchArrays)
         check.face(self.axis, self.side)
         check.real("brim", self.brim, lambda value: 0 <= value <= 1, "numbers from 0 to 1")
+        check.within("mirror", check.array("mirror", self.mirror, np.int32, 2, 2), 0, 3)
 
     @property
     def highest(self) -> int:

@@ -83,7 +83,7 @@ class Descriptors:
     def _face(self, face: FaceArrays) -> tuple[int, int]:
         averaged = isinstance(face, AveragedFaceArrays)
         patch = self.handle("patch", face.patch, PatchArrays)
-        found: tuple[int, int] = self._library.keep_face(patch, face.axis, face.side, averaged, face.brim)
+        found: tuple[int, int] = self._library.keep_face(patch, face.axis, face.side, averaged, face.brim, face.mirror.T)
         return found
 
     @staticmethod

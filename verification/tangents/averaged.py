@@ -14,7 +14,7 @@ from isomortar.harness import Bound, case
 from isomortar.harness.cases import Tier
 from isomortar.harness.tangents import BOUND, PARTS, measure
 from isomortar.harness.visits import PairVisit, Visit
-from isomortar.model.entities import Problem
+from isomortar.model.entities import Face, Motion, Problem, Support
 from isomortar.scene import Scene
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.record import ContactState
@@ -31,9 +31,18 @@ STATES = {
     "slip": ((1.0, 0.7), (1.2, 2.0)),
     "mixed": ((-1.0, 1.0, 0.7), (0.0, 0.5, 2.0)),
 }
-#: Where the bowl is: deep and with gaps; slid by half an element both ways; a part of it over the master's edge; a point at next to a
-#: line, or a corner of elements.
-PLACES = ("inside", "from elements beside", "over the rim", "line: before", "line: behind", "corner: before", "corner: behind")
+#: Where the bowl is: deep and with gaps; slid by half an element both ways; a part of it over the master's edge, or over an edge with a
+#: mirror image beyond it; a point at next to a line, or a corner of elements.
+PLACES = (
+    "inside",
+    "from elements beside",
+    "over the rim",
+    "over a mirror",
+    "line: before",
+    "line: behind",
+    "corner: before",
+    "corner: behind",
+)
 #: How far from a line, as a share of an element; and lengths of directions, of which some hundredths are off there.
 OFF, SHORT = 1e-8, 1e-6
 #: Parts that there are: pressures are not conservative, and tractions work in the slave's basis.
@@ -71,11 +80,14 @@ def posed(master: str, place: str, friction: float) -> Posed:
         contacts=(replace(problem.contacts[0], projection="averaged"),),
         settings=replace(problem.settings, method="uzawa"),
     )
+    if place == "over a mirror":
+        held = Support("mirror", Face("master", "u1"), (Motion(),), components=(0,))
+        problem = replace(problem, supports=(*problem.supports, held))
     equilibrium = Equilibrium(problem, Ledger())
     state = equilibrium.initial_state()
     uneven = np.random.default_rng(1).standard_normal(state.positions.shape)
     pose = Posed(problem, equilibrium, state.positions + UNEVEN[order] * uneven, state.contacts[0])
-    slid = {"over the rim": (0.45, 0.03), "from elements beside": (0.1, 0.13)}.get(place, (0.07, 0.03))
+    slid = {"over the rim": (0.45, 0.03), "over a mirror": (0.45, 0.03), "from elements beside": (0.1, 0.13)}.get(place, (0.07, 0.03))
     pose = pose.moved(np.array([*slid, -0.02]))
     if ":" not in place:
         return pose
@@ -111,7 +123,7 @@ def bounds(master: str, place: str, state: str) -> dict[str, Bound]:  # noqa: AR
     placed_right = Bound(at_least=1.0, reason="definition: a part is tested only where it acts")
     return (
         {part: twin for part in ALONG if part not in absent.get(state, ())}
-        | dict.fromkeys(("forces", "moments"), balance)
+        | dict.fromkeys(("forces",) if place == "over a mirror" else ("forces", "moments"), balance)  # its moments are the whole's
         | {"there": placed_right}
     )
 
@@ -142,14 +154,20 @@ def averaged(master: str, place: str, state: str) -> dict[str, float]:
     report = measure(pose.problem, 1, [Visit(pose.positions, (visit,))], directions=1, length=SHORT if ":" in place else 1e-3)
     sums = (result.force_slave, result.force_master), (result.moment_slave, result.moment_master)
     forces, moments = (float(np.abs(slave + main).max() / np.abs(slave).max()) for slave, main in sums)
-    return {row.part: row.error for row in report.rows} | {"forces": forces, "moments": moments, "there": there(pose, place)}
+    errors = {row.part: row.error for row in report.rows}
+    whole = {} if place == "over a mirror" else {"moments": moments}
+    return errors | {"forces": forces, "there": there(pose, place)} | whole
 
 
 def there(pose: Posed, place: str) -> float:
     """Points without a foot, elements that points of one came from beside the first, points at next to a line, or points with a foot."""
-    projections = pose.equilibrium.pairs[0].kinematics(pose.positions, pose.start).projections
+    pair = pose.equilibrium.pairs[0]
+    projections = pair.kinematics(pose.positions, pose.start).projections
     if place == "over the rim":
         return float(np.count_nonzero(projections.found == 0))
+    if place == "over a mirror":
+        beside_it = projections.xi[:, 0] > pair.pair.master_boundaries[0][-2]
+        return float(np.count_nonzero(projections.found[beside_it]) * np.array_equal(pair.pair.master.mirror, [[0, 1], [0, 0]]))
     if place == "inside":
         return float(np.count_nonzero(projections.found))
     lines = [direction.boundaries for direction in pose.problem.body("master").patch.face_directions("w1")]

@@ -68,6 +68,7 @@ contains
     integer, allocatable :: point(:)
     real(wp), allocatable :: slope(:, :, :)
     real(wp) :: across(3, 3), total(3)
+    logical :: cancels(3)
     integer :: a, e, k
 
     self%surface = surface
@@ -81,10 +82,15 @@ contains
       do e = 1, size(facets)
         total = total + facets(e)%normal
       end do
+      cancels = cancels_at(surface, a)
+      where (cancels) total = 0.0_wp
       self%length(a) = norm2(total)
       self%normal(:, a) = total / self%length(a)
       if (contracts) call require(is_unit(self%normal(:, a)), "average: normals are unit vectors")
       call sum_slopes(facets, point, slope)
+      do k = 1, 3
+        if (cancels(k)) slope(k, :, :) = 0.0_wp
+      end do
       across = identity
       call add_product(-1.0_wp, self%normal(:, a), self%normal(:, a), across)
       self%start(a) = self%start(a - 1) + size(point)
@@ -98,6 +104,25 @@ contains
       end do
     end do
   end subroutine average
+
+  !> Components of the sum of normals at node a that those of mirror images cancel, which are beyond the edges that it is on (theory
+  !> 3.21).
+  pure function cancels_at(surface, a) result(cancels)
+    type(surface_t), intent(in) :: surface
+    integer, intent(in) :: a
+    logical :: cancels(3)
+    integer :: d, index(2), k
+
+    if (contracts) call require(all(is_index(surface%mirror + 1, 4)), "cancels_at: mirrors are across components")
+    index = [mod(a - 1, surface%direction(1)%count), (a - 1) / surface%direction(1)%count]
+    do k = 1, 3
+      cancels(k) = .false.
+      do d = 1, 2
+        if (index(d) == 0) cancels(k) = cancels(k) .or. surface%mirror(1, d) == k
+        if (index(d) == surface%direction(d)%count - 1) cancels(k) = cancels(k) .or. surface%mirror(2, d) == k
+      end do
+    end do
+  end function cancels_at
 
   !> Make room for so many entries, twice of them where there are too few.
   pure subroutine make_room(entries, self)
@@ -406,6 +431,7 @@ contains
     allocate (form(3, 3, last - first + 1, last - first + 1))
     along = dot_product(force, self%normal(:, a))
     across = (force - along * self%normal(:, a)) / self%length(a)
+    where (cancels_at(self%surface, a)) across = 0.0_wp
     do l = first, last
       do k = first, last
         associate (block => form(:, :, k - first + 1, l - first + 1))

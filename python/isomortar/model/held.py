@@ -60,7 +60,6 @@ class Held:
     still: IntArray
     moved: BoolArray
 
-
     @cached_property
     def _limited(self) -> IntArray:
         """Test functions whose tractions are not free."""

@@ -11,6 +11,7 @@ from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model import constants
 from isomortar.model.enforcement import slave_side
 from isomortar.model.entities import Contact, Face, Problem, RigidPlane
+from isomortar.model.mirrors import Edges, mirrors_at
 from isomortar.model.numbering import Numbering
 from isomortar.model.pattern import elements_about, incidence, pattern_of, surface_element_points
 from isomortar.model.sheet import Sheet
@@ -55,16 +56,17 @@ class Pair:
         side = slave_side(contact, problem, numbering)
         self.slave, self.carriers = side.arrays, side.carriers
         self.area = float(self.slave.area.sum())
-        self.master = _master_arrays(contact, problem, numbering)
         members = incidence(self.slave.test.nodes, self.slave.test.count)
         self.elements_of_point = sparse.csr_array(members.T)
         self.slave_reach = incidence(self.slave.point[self.slave.shape.nodes], numbering.count)
         self.master_reach, self.rigid_master = None, False
         self.master_face: IntArray = np.zeros(0, dtype=np.int32)
-        self.master_edges: list[tuple[int, IntArray]] = []
+        self.master_edges: Edges = []
         self.master_elements = (0, 0)
         self.master_boundaries: tuple[FloatArray, ...] = ()
-        if not isinstance(contact.master, RigidPlane):
+        if isinstance(contact.master, RigidPlane):
+            self.master: MasterArrays = _plane_arrays(contact.master)
+        else:
             sheet = Sheet.of(problem, contact.master)
             patch, face, points = sheet.patch, sheet.face, sheet.points(numbering)
             self.master_reach = incidence(surface_element_points(patch, face, points), numbering.count)
@@ -77,6 +79,7 @@ class Pair:
             self.master_face = grid.ravel()
             self.rigid_master = sheet.rigid
             self.master_edges = [(0, grid[:, 0]), (0, grid[:, -1]), (1, grid[0]), (1, grid[-1])]
+            self.master = _face_arrays(contact, sheet, numbering, mirrors_at(problem, numbering, self.master_edges))
         self.neighbour_matrix = sparse.csr_array(self.elements_of_point @ self.elements_of_point.T)
         self.neighbours: Pattern = pattern_of(self.neighbour_matrix)
         names = {face.body for side in (contact.slave, contact.master) if isinstance(side, Face) for face in side.faces}
@@ -107,10 +110,11 @@ class Pair:
         return missing
 
 
-def _master_arrays(contact: Contact, problem: Problem, numbering: Numbering) -> MasterArrays:
-    if isinstance(contact.master, RigidPlane):
-        plane = contact.master
-        return PlaneArrays(*(np.array(vector, dtype=np.float64) for vector in (plane.point, plane.normal, plane.tangent)))
+def _plane_arrays(plane: RigidPlane) -> PlaneArrays:
+    return PlaneArrays(*(np.array(vector, dtype=np.float64) for vector in (plane.point, plane.normal, plane.tangent)))
+
+
+def _face_arrays(contact: Contact, sheet: Sheet, numbering: Numbering, mirror: IntArray) -> FaceArrays:
     kind = AveragedFaceArrays if contact.averaged else FaceArrays
     brim = 0.0 if contact.of_averages else constants.BRIM
-    return kind(*Sheet.of(problem, contact.master).arrays(numbering), brim)
+    return kind(*sheet.arrays(numbering), brim, mirror)
