@@ -37,7 +37,7 @@ class LostDigits:
             if not _deforms(equilibrium.numbering.reference[own], balance.positions[own]):
                 continue
             size = float(np.ptp(equilibrium.numbering.reference[own], axis=0).max())
-            left, borne = self._left(balance, own, size), self._borne({body.name for body in piece}, size, result)
+            left, borne = problem.images * self._left(balance, own, size), self._borne({body.name for body in piece}, size, result)
             if left > LOST * borne:
                 self._told.add(number)
                 yield (
