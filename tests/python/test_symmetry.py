@@ -15,6 +15,8 @@ from isomortar.harness.trade.advice import cheaper_dials
 from isomortar.harness.trade.knobs import changed
 from isomortar.harness.trade.run import traded
 from isomortar.harness.trade.want import wanted
+from isomortar.model.numbering import Numbering
+from isomortar.model.pairs import Pair
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
 from isomortar.solve.simulation import Simulation
@@ -222,3 +224,34 @@ def test_a_body_that_symmetry_alone_holds_is_free() -> None:
     for planes in ("{}", "{ x = 0.0 }"):
         with pytest.raises(InputError, match="'lower' is free: it has no support"):
             Scene.from_toml(text, overrides=[f"symmetry={planes}"]).problem()
+
+
+GONE = [f"stages.press.motions.{name}.translate=[0.01,0,0]" for name in ("side", "under")]
+BELOW = """
+contacts.pair = { slave = "block.w0", master = "lower.w1", projection = "averaged" }
+supports.under.face = "lower.w0"
+"""
+
+
+@pytest.mark.parametrize(
+    ("support", "overrides", "mirror"),
+    [
+        ("", [], [[0, 0], [0, 0]]),
+        ("", ["symmetry={x=0.0}"], [[1, 0], [0, 0]]),
+        ("", ["symmetry={x=0.0, y=2.4}"], [[1, 0], [2, 0]]),
+        ("", ["symmetry={y=2.4}", "bodies.lower.rigid=true", "supports.under=__drop__"], [[0, 0], [2, 0]]),
+        ('supports.side = { face = "lower.u1", components = ["x"] }', [], [[0, 1], [0, 0]]),
+        ('supports.side = { face = "lower.u1", components = ["y"] }', [], [[0, 0], [0, 0]]),  # along the edge
+        ('supports.side = { face = "lower.u1" }', [], [[0, 0], [0, 0]]),  # clamped
+        ('supports.side = { face = "lower.u1", components = ["x"] }', GONE, [[0, 0], [0, 0]]),
+    ],
+)
+def test_masters_know_the_edges_that_have_mirror_images(support: str, overrides: list[str], mirror: list[list[int]]) -> None:
+    text = BELOW + support + "\n" + PLANE.replace('[contacts.floor]\nslave = "block.w0"\nplane = {}\nfriction = 0.2\n', "")
+    text = "format = 1\n" + text.replace("format = 1\n", "") + BESIDE
+    if "supports.under=__drop__" in overrides:
+        overrides = overrides[:-1]
+        text = text.replace('supports.under.face = "lower.w0"\n', "")
+    problem = Scene.from_toml(text, overrides=overrides).problem()
+    master = Pair(problem.contacts[0], problem, Numbering(problem)).master
+    assert master.mirror.tolist() == mirror
