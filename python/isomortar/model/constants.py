@@ -34,7 +34,7 @@ BRIM = 0.05
 NO_ENTRY = 1e-12
 #: Share of the largest coordinate that bodies have to be apart by, so that they are: round-off of positions is no distance.
 CLEAR = 1e-8
-#: How near to a knot line of the master, as a share of its coordinates, places count as beyond it: beside a line by less than the root of
+#: How near to a knot line of the master, as a share of its coordinates, places count as on it: beside a line by less than the root of
 #: round-off its elements are as near as each other, and chance decides.
 ON_LINE = 1e-7
 #: How near to the bounds of cells, as a share of the slave's element, knot lines of the master are left alone (theory 10.9).

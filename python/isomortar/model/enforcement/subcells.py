@@ -53,7 +53,7 @@ class Subcells:
         places = np.repeat(0.5 * (self.low + self.high)[:, None], constants.CELL_PLACES, axis=1)
         low, high = (self.low + self._margin)[:, axis], (self.high - self._margin)[:, axis]
         places[..., axis] = np.linspace(low, high, constants.CELL_PLACES, axis=1)
-        elements = self._elements(places.reshape(-1, 2)).reshape(places.shape)
+        elements = self._labels(places.reshape(-1, 2)).reshape(places.shape) // 2
         return int(np.count_nonzero(np.diff(elements, axis=1), axis=1).max())
 
     def _cut(self, axis: int) -> None:
@@ -73,25 +73,29 @@ class Subcells:
         self._margin = np.concatenate([self._margin, self._margin[here]])
 
     def _crossing(self, axis: int, low: FloatArray, high: FloatArray, line: float) -> FloatArray:
-        """Where the element below a line of each box changes next to its middle (theory 10.9), by halving; NaN where it does not."""
+        """Where what is below a line of each box changes next to its middle (theory 10.9), by halving; NaN where it does not.
+
+        A middle on a knot line, which others leave, is the place itself.
+        """
         middle = low + line * (high - low)
         middle[:, axis] = 0.5 * (low + high)[:, axis]
         start, end = middle.copy(), middle.copy()
         start[:, axis], end[:, axis] = low[:, axis], high[:, axis]
-        below = self._elements(middle)
-        before, after = (np.any(self._elements(one) != below, axis=1) for one in (start, end))
-        changes = before | after
-        near, far, below = middle[changes], np.where(before[:, None], start, end)[changes], below[changes]
+        below = self._labels(middle)
+        before, after = (self._labels(one) != below for one in (start, end))
+        on_line = np.any((before | after) & (below % 2 == 1) & (below > 0), axis=1)
+        changes = np.any(before | after, axis=1) & ~on_line
+        near, far, below = middle[changes], np.where(before.any(axis=1)[:, None], start, end)[changes], below[changes]
         for _ in range(constants.CELL_HALVINGS):
             between = 0.5 * (near + far)
-            same = np.all(self._elements(between) == below, axis=1)
+            same = np.all(self._labels(between) == below, axis=1)
             near[same], far[~same] = between[same], between[~same]
-        found = np.full(len(low), np.nan)
+        found = np.where(on_line, middle[:, axis], np.nan)
         found[changes] = 0.5 * (near + far)[:, axis]
         return found
 
-    def _elements(self, coordinates: FloatArray) -> IntArray:
-        """Elements of the master below places of the face, shape (m, 2); -1 beside it."""
+    def _labels(self, coordinates: FloatArray) -> IntArray:
+        """Twice the elements of the master below places of the face, one more on the line to the next, shape (m, 2); -1 beside it."""
         count = len(coordinates)
         if not count:
             return np.zeros((0, 2), dtype=np.int32)
@@ -102,6 +106,8 @@ class Subcells:
         points = SlaveArrays.of_points(len(reference) + np.arange(count, dtype=np.int32))
         positions = np.concatenate([reference, places])
         feet = _bindings.project_points(points, master, positions, np.zeros((count, 2)), np.zeros(count, dtype=np.int32))
-        beyond = [constants.ON_LINE * np.ptp(lines) for lines in self._face.lines]
-        below = [np.searchsorted(self._face.lines[i], feet.xi[:, i] + beyond[i], side="right") for i in (0, 1)]
+        below = []
+        for lines, xi in zip(self._face.lines, feet.xi.T, strict=True):
+            on_line = constants.ON_LINE * np.ptp(lines)
+            below.append(np.searchsorted(lines, xi + on_line, side="right") + np.searchsorted(lines, xi - on_line, side="right"))
         return np.where(feet.found[:, None] != 0, np.stack(below, axis=1), -1)
