@@ -14,7 +14,7 @@ from isomortar.harness import Bound, case
 from isomortar.harness.cases import Tier
 from isomortar.harness.tangents import BOUND, PARTS, measure
 from isomortar.harness.visits import PairVisit, Visit
-from isomortar.model.entities import Face, Motion, Problem, Support
+from isomortar.model.entities import Problem, SymmetryPlane
 from isomortar.scene import Scene
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.record import ContactState
@@ -81,8 +81,7 @@ def posed(master: str, place: str, friction: float) -> Posed:
         settings=replace(problem.settings, method="uzawa"),
     )
     if place == "over a mirror":
-        held = Support("mirror", Face("master", "u1"), (Motion(),), components=(0,))
-        problem = replace(problem, supports=(*problem.supports, held))
+        problem = replace(problem, symmetry=(SymmetryPlane(0, 0.7),))
     equilibrium = Equilibrium(problem, Ledger())
     state = equilibrium.initial_state()
     uneven = np.random.default_rng(1).standard_normal(state.positions.shape)
