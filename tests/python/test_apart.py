@@ -71,6 +71,13 @@ def test_what_is_in_front_of_a_plane_is_out_of_its_reach(height: float, apart: b
     assert Placed(onto=PLANE).holds((0, 0, -1.0), (0, 0, height)) == apart
 
 
+@pytest.mark.parametrize(("height", "apart"), [(2.8, False), (2.9, True)])
+def test_a_master_of_other_weights_across_is_no_deeper_than_its_diagonal(height: float, apart: bool) -> None:
+    placed = Placed()
+    placed.separation._same = False
+    assert placed.holds((0, 0, height), (0, 0, height)) == apart  # the diagonal is 2.87
+
+
 def test_what_bore_at_the_start_is_looked_at() -> None:
     placed = Placed()
     assert placed.holds((0, 0, 9.0), (0, 0, 9.0))

@@ -15,8 +15,10 @@ from isomortar.errors import ConvergenceError, IsomortarError
 from isomortar.geometry.patch import FloatArray
 from isomortar.scene import Scene
 from isomortar.solve.contact import largest, ratio
+from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.simulation import Simulation
 from isomortar.solve.system import CheckedSystem
+from isomortar.solve.timing import Ledger
 
 SCENE = """
 format = 1
@@ -130,3 +132,27 @@ def test_measures_of_convergence() -> None:
         distances[place] = (nan, nan)
         assert np.isnan(largest(distances)).all()
     assert largest([]) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize(("left", "refused"), [(0.05, False), (0.2, True)])
+def test_a_solution_without_a_digit_is_refused(monkeypatch: pytest.MonkeyPatch, left: float, refused: bool) -> None:
+    system = Scene.from_toml(SCENE).problem()
+    monkeypatch.setattr(CheckedSystem, "_left", lambda *_: left)
+    if refused:
+        with pytest.raises(IsomortarError):
+            list(Simulation(system).run())
+    else:
+        assert len(list(Simulation(system).run())) == 2
+
+
+def test_tractions_count_for_no_less_than_a_hundredth_of_what_friction_bears() -> None:
+    equilibrium = Equilibrium(Scene.from_toml(SCENE.replace("plane =", "friction = 0.5\nplane =")).problem(), Ledger())
+    (pair,), state = equilibrium.pairs, equilibrium.initial_state()
+    control = pair.kinematics(state.positions, state.contacts[0]).control
+    control = replace(control, square=np.ones_like(control.square), metric=np.tile([1.0, 0.0, 1.0], (len(control.square), 1)))
+    pressure = np.linspace(1.0, 2.0, len(control.weight))
+    traction = np.column_stack([pressure, -pressure])
+    assert pair.apart(control, (pressure, 3.0 * traction), (pressure, traction)) == pytest.approx((0.0, 2.0))
+    assert pair.apart(control, (1.5 * pressure, traction), (pressure, traction)) == pytest.approx((0.5, 0.0))
+    small = 1e-6 * traction  # friction bears half of the pressures: a hundredth of that counts
+    assert pair.apart(control, (pressure, 3.0 * small), (pressure, small))[1] == pytest.approx(2e-6 * 2.0**0.5 / 0.005)

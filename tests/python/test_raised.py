@@ -15,7 +15,6 @@ from isomortar.errors import InputError
 from isomortar.geometry.patch import Direction, Patch
 from isomortar.geometry.primitives import bowl
 from isomortar.geometry.refinement import mesh, raised_along
-from isomortar.harness.trade.knobs import KNOBS, changed, dials_of
 from isomortar.model.entities import Body, Material, Raised
 from isomortar.model.numbering import Numbering, check_raised
 from isomortar.model.raised import Rows
@@ -171,14 +170,6 @@ def test_a_raised_face_brings_a_coarse_mesh_nearer_to_the_truth() -> None:
     raised = ", contact_order = 3"
     truth = force(8, raised)
     assert abs(force(2, raised) - truth) < 0.5 * abs(force(2, "") - truth)
-
-
-def test_it_is_a_knob_of_the_trade() -> None:
-    scene = Scene.from_toml(GOOD.replace("elements = [2, 2, 1], contact_order = 3", "elements = [2, 2, 1]"))
-    (dial,) = dials_of(scene, knobs=[knob for knob in KNOBS if knob.name == "contact order"])
-    higher = changed(scene, [dial.settings[1]]).problem()
-    assert (dial.own, higher.body("block").raised, higher.body("base").raised) == (0, Raised("w0", (2, 2, 1)), Raised("w1", (2, 1, 1)))
-    assert not dials_of(Scene.load("tire"), knobs=[knob for knob in KNOBS if knob.name == "contact order"])
 
 
 def test_rings_and_poles_are_refused() -> None:

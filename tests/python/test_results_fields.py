@@ -243,3 +243,10 @@ def test_vtk_sees_every_field_of_every_step_at_any_place(tmp_path: Path) -> None
                     for name, values in fields.items():
                         assert found[name] == pytest.approx(field_at(directions, weights, values, places), abs=1e-12), (kind, cell, name)
                     cell += 1
+
+
+def test_files_say_how_their_numbers_stand(tmp_path: Path) -> None:
+    export(at_rest(tmp_path / "run.h5"), tmp_path)
+    for path in sorted((tmp_path / "run").glob("*.vtu")):
+        root = ElementTree.parse(path).getroot()
+        assert root.attrib == {"type": "UnstructuredGrid", "version": "2.2", "byte_order": "LittleEndian", "header_type": "UInt64"}

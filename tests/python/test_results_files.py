@@ -17,7 +17,7 @@ import pytest
 
 import isomortar
 from isomortar.errors import InputError, ResultsError
-from isomortar.results.files import claimed, sealed
+from isomortar.results.files import claimed, sealed, writing
 
 SMALL = ["bodies.block.mesh.elements=[3,3,2]", "stages.press.steps=3"]
 
@@ -188,3 +188,20 @@ def test_a_file_that_was_edited_and_sealed_again_is_refused_where_bodies_are_mis
     results.write_bytes(sealed(content.getvalue()))
     with isomortar.Results(results) as edited, pytest.raises(ResultsError, match="bodies of the scene are missing"):
         _ = edited.problem
+
+
+def test_what_cannot_be_written_leaves_no_part_of_a_new_file_and_the_old_one_as_it_was(tmp_path: Path) -> None:
+    for name, before in (("new", None), ("old", "as it was")):
+        path = tmp_path / name
+        if before:
+            path.write_text(before)
+        with pytest.raises(ResultsError, match=f"{name} cannot be written: full"):
+            _write_a_part(path)
+        assert (path.read_text() if path.exists() else None) == before
+
+
+def _write_a_part(path: Path) -> None:
+    with writing(path):
+        if not path.exists():
+            path.write_text("a part")
+        raise OSError(28, "full")

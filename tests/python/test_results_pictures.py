@@ -180,3 +180,25 @@ def test_a_surface_seen_from_its_inner_side_is_left_out() -> None:
     canvas.add_surface(square(0.1, 0.5), np.zeros((8, 8, 3)), -1, nowhere)
     canvas.add_surface(square(0.0, 1.0), np.ones((8, 8, 3)), 1, nowhere, shading=0.0)
     assert list(colour_at_centre(canvas)) == [255, 255, 255]
+
+
+def test_reactions_are_drawn_by_component_and_stages_named_above(results_path: Path) -> None:
+    with Results(results_path) as results:
+        figure = draw_reactions(results, "rim")
+        for axes, quantity in zip(figure.axes, ("force", "moment"), strict=True):
+            lines = {line.get_label(): np.asarray(line.get_ydata()) for line in axes.lines}
+            for number, name in enumerate("xyz"):
+                np.testing.assert_array_equal(lines[name], results.curve(quantity, support="rim")[:, number])
+            assert [name for name in lines if not name.startswith("_")] == ["x", "y", "z"]
+        stages = list(dict.fromkeys(results.stages))
+        assert [text.get_text() for text in figure.axes[0].texts] == stages
+        assert not figure.axes[1].texts
+
+
+def test_faces_are_drawn_in_equal_parts_of_elements() -> None:
+    directions = Direction("L", 1, np.arange(5.0)), Direction("L", 1, np.arange(21.0))
+    assert bodies.face_parts(directions, (40, 3)) == (10, 3)
+    figure = draw_bodies(problem(), quiet(1), 0)
+    assert [axes.get_xlabel() or axes.get_ylabel() for axes in figure.axes if "pressure" in axes.get_xlabel() + axes.get_ylabel()] == [
+        "contact pressure (force / area)"
+    ]

@@ -17,7 +17,7 @@ from isomortar.scene import Scene
 from isomortar.solve import bordered, monolithic
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.newton import KEPT_FACTORS
-from isomortar.solve.record import IterationRecord, Observer, StepResult
+from isomortar.solve.record import AugmentationRecord, IterationRecord, Observer, StepResult
 from isomortar.solve.simulation import Simulation
 
 TWO_BODIES = [
@@ -41,6 +41,20 @@ class Listener(Observer):
 
     def cut(self, step: int, time: float, increment: float, reason: str) -> None:
         self.cuts.append(reason)
+
+
+class Told(Observer):
+    """Keeps when iterations and augmentations were told of."""
+
+    def __init__(self) -> None:
+        self.iterations: list[tuple[int, float, int]] = []
+        self.augmentations: list[tuple[int, float, int]] = []
+
+    def iteration(self, step: int, time: float, augmentation: int, record: IterationRecord) -> None:
+        self.iterations.append((step, time, augmentation))
+
+    def augmented(self, step: int, time: float, record: AugmentationRecord) -> None:
+        self.augmentations.append((step, time, record.augmentation))
 
 
 def small_iron(**settings: object) -> Problem:
@@ -248,3 +262,30 @@ def test_units_do_not_make_the_system_singular(exponent: int) -> None:
     )
     other = run(replace(problem, bodies=bodies, supports=supports, contacts=(replace(contact, reference_area=area),)))[-1]
     assert other.reactions[0].force / (stress * length**2) == pytest.approx(first.reactions[0].force, rel=1e-9, abs=1e-9)
+
+
+def test_observers_are_told_of_the_load_step_the_load_time_and_the_augmentation() -> None:
+    told = Told()
+    problem = small_iron(method="uzawa", augmentation_tolerance=1e-2)
+    problem = replace(problem, stages=(Stage("press", 8),), supports=tuple(replace(s, motions=s.motions[:1]) for s in problem.supports))
+    run(problem, told)
+    assert sorted(set(told.iterations)) == told.augmentations
+    for step, time, augmentation in told.augmentations:
+        assert step - 1 < time <= step
+        assert augmentation == int(augmentation) >= 1
+    assert max(number for *_, number in told.augmentations) > 1
+
+
+def test_updates_are_halved_from_the_second_iteration_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[tuple[int, int]] = []
+
+    def objection(_loop: object, _now: object, _next: object, iteration: int, halving: int) -> str:
+        asked.append((iteration, halving))
+        return "no" if halving < 1 else ""
+
+    monkeypatch.setattr(monolithic._BorderedNewton, "_objection", objection)
+    problem = small_iron()
+    still = Stage("press", 8)
+    run(replace(problem, stages=(still,), supports=tuple(replace(s, motions=s.motions[:1]) for s in problem.supports)))
+    assert {(1, 0), (1, 1), (2, 0), (2, 1)} <= set(asked)
+    assert min(iteration for iteration, _ in asked) == 1

@@ -11,10 +11,6 @@ from isomortar.geometry.patch import Direction, Patch
 from isomortar.geometry.primitives import bowl, box, ring
 from isomortar.geometry.refinement import mesh
 from isomortar.geometry.splines import Spline
-from isomortar.harness.trade.advice import cheaper_dials
-from isomortar.harness.trade.knobs import changed
-from isomortar.harness.trade.run import traded
-from isomortar.harness.trade.want import wanted
 from isomortar.model.numbering import Numbering
 from isomortar.model.pairs import Pair
 from isomortar.scene import Scene
@@ -197,26 +193,6 @@ def test_results_keep_it(tmp_path: Path) -> None:
         assert results.problem.symmetry == scene.problem().symmetry
     isomortar.run(scene, tmp_path / "quarter.h5", resume=True).close()  # it is the same scene, and whole
     np.testing.assert_allclose(force, [step.reactions[0].force[2] for step in run(PLANE)], rtol=1e-9)
-
-
-def test_advice_tries_the_planes_in_which_a_scene_is_symmetric() -> None:
-    scene = Scene.from_toml(PLANE)
-    dials = [dial for dial in cheaper_dials(scene, [wanted("force.top.z", scene.problem())]) if "beyond" in dial.name]
-    assert [dial.name for dial in dials] == ["the scene beyond x = 0", "the scene beyond y = 2.4"]
-    quarter = changed(scene, [dial.settings[0] for dial in dials])
-    assert [(plane.axis, plane.place) for plane in quarter.problem().symmetry] == [(0, 0.0), (1, 2.4)]
-    assert not [dial for dial in cheaper_dials(quarter) if "beyond" in dial.name]
-    fields = [wanted("pressure.floor", scene.problem())]
-    assert not [dial for dial in cheaper_dials(scene, fields) if "beyond" in dial.name]  # of a half, fields are no field of the whole
-
-
-def test_the_area_of_a_trade_is_the_wholes(tmp_path: Path) -> None:
-    areas = []
-    for symmetry in ("{}", "{ x = 0.0, y = 2.4 }"):
-        (tmp_path / "scene.toml").write_text(Scene.from_toml(PLANE, overrides=[f"symmetry={symmetry}"]).to_toml())
-        areas.append(traded.function(str(tmp_path / "scene.toml"))["area"])
-    assert areas[0][0, -1] > 0.1
-    np.testing.assert_allclose(areas[1], areas[0], rtol=0.05)  # cells are counted, of which a part has more
 
 
 def test_a_body_that_symmetry_alone_holds_is_free() -> None:

@@ -1,0 +1,42 @@
+"""Dials of the trade and of advice, on scenes of other tests."""
+
+from pathlib import Path
+
+import numpy as np
+
+from isomortar.harness.trade.advice import cheaper_dials
+from isomortar.harness.trade.knobs import KNOBS, changed, dials_of
+from isomortar.harness.trade.run import traded
+from isomortar.harness.trade.want import wanted
+from isomortar.model.entities import Raised
+from isomortar.scene import Scene
+from test_raised import GOOD as RAISED
+from test_symmetry import PLANE
+
+
+def test_advice_tries_the_planes_in_which_a_scene_is_symmetric() -> None:
+    scene = Scene.from_toml(PLANE)
+    dials = [dial for dial in cheaper_dials(scene, [wanted("force.top.z", scene.problem())]) if "beyond" in dial.name]
+    assert [dial.name for dial in dials] == ["the scene beyond x = 0", "the scene beyond y = 2.4"]
+    quarter = changed(scene, [dial.settings[0] for dial in dials])
+    assert [(plane.axis, plane.place) for plane in quarter.problem().symmetry] == [(0, 0.0), (1, 2.4)]
+    assert not [dial for dial in cheaper_dials(quarter) if "beyond" in dial.name]
+    fields = [wanted("pressure.floor", scene.problem())]
+    assert not [dial for dial in cheaper_dials(scene, fields) if "beyond" in dial.name]  # of a half, fields are no field of the whole
+
+
+def test_the_area_of_a_trade_is_the_wholes(tmp_path: Path) -> None:
+    areas = []
+    for symmetry in ("{}", "{ x = 0.0, y = 2.4 }"):
+        (tmp_path / "scene.toml").write_text(Scene.from_toml(PLANE, overrides=[f"symmetry={symmetry}"]).to_toml())
+        areas.append(traded.function(str(tmp_path / "scene.toml"))["area"])
+    assert areas[0][0, -1] > 0.1
+    np.testing.assert_allclose(areas[1], areas[0], rtol=0.05)  # cells are counted, of which a part has more
+
+
+def test_the_order_at_the_contact_is_a_knob() -> None:
+    scene = Scene.from_toml(RAISED.replace("elements = [2, 2, 1], contact_order = 3", "elements = [2, 2, 1]"))
+    (dial,) = dials_of(scene, knobs=[knob for knob in KNOBS if knob.name == "contact order"])
+    higher = changed(scene, [dial.settings[1]]).problem()
+    assert (dial.own, higher.body("block").raised, higher.body("base").raised) == (0, Raised("w0", (2, 2, 1)), Raised("w1", (2, 1, 1)))
+    assert not dials_of(Scene.load("tire"), knobs=[knob for knob in KNOBS if knob.name == "contact order"])
