@@ -309,6 +309,7 @@ def test_what_is_not_executed_has_no_meaning():
     text = '''"""One."""\nx: int = 1\ndef f(a: int, /, b: int = 2) -> int:\n    """Two."""\n    return a + b  # three\n'''
     for same in (("One", "1"), ("Two", "2"), ("three", "3"), ("a: int", "a: str"), ("-> int", "-> str"), ("x: int", "x: str")):
         assert meaning(text.replace(*same)) == meaning(text)
+    assert meaning(text.replace('"""Two."""', "pass")) == meaning(text)
     for other in (("a + b", "a - b"), ("= 1", "= 2"), ("b: int = 2", "b: int = 3")):
         assert meaning(text.replace(*other)) != meaning(text)
 

@@ -17,6 +17,9 @@ class _Executed(ast.NodeTransformer):
         """Drop docstrings."""
         return None if isinstance(node.value, ast.Constant) else self.generic_visit(node)
 
+    def visit_Pass(self, _: ast.Pass) -> None:
+        """Drop what does nothing."""
+
     def visit_arg(self, node: ast.arg) -> ast.AST:
         """Drop the annotation of an argument."""
         return ast.arg(node.arg)
@@ -34,5 +37,5 @@ class _Executed(ast.NodeTransformer):
     def visit_If(self, node: ast.If) -> ast.AST:
         """Drop imports for type checkers."""
         if isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING":
-            node.body = [ast.Pass()]
+            node.body = []
         return self.generic_visit(node)

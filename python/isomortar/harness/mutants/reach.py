@@ -36,20 +36,15 @@ def without_lines(measurement: Measurement) -> tuple[Measurement, Lines]:
 def statements_at(text: str, lines: Iterable[int]) -> Set[int] | None:
     """Lines of the statements of a source that some lines are of.
 
-    What stands outside of functions is run when the file is imported, and used by those who run its functions; None where it has none:
-    anybody may use it.
+    None where one is outside of functions: that is run when the file is imported, once a process, and anybody may use what it makes.
     """
     statements = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.stmt)]
-    functions = [node for node in statements if isinstance(node, ast.FunctionDef)]
     found: set[int] = set()
     for line in lines:
         inside = [node for node in statements if line in _lines_of(node)]
-        if any(isinstance(node, ast.FunctionDef) for node in inside):
-            found.update(_lines_of(max(inside, key=lambda node: _lines_of(node).start)))
-        elif functions:
-            found.update(*(range(node.body[0].lineno, (node.end_lineno or 0) + 1) for node in functions))
-        else:
+        if not any(isinstance(node, ast.FunctionDef) for node in inside):
             return None
+        found.update(_lines_of(max(inside, key=lambda node: _lines_of(node).start)))
     return found
 
 
