@@ -9,6 +9,7 @@ from small_scenes import at_few_points
 from tangents.kinks import _SCENE
 from tangents.placed import placed
 
+from isomortar._bindings import FaceArrays
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, case
 from isomortar.harness.cases import Tier
@@ -165,6 +166,7 @@ def there(pose: Posed, place: str) -> float:
     if place == "over the rim":
         return float(np.count_nonzero(projections.found == 0))
     if place == "over a mirror":
+        assert isinstance(pair.pair.master, FaceArrays)
         beside_it = projections.xi[:, 0] > pair.pair.master_boundaries[0][-2]
         return float(np.count_nonzero(projections.found[beside_it]) * np.array_equal(pair.pair.master.mirror, [[0, 1], [0, 0]]))
     if place == "inside":

@@ -63,7 +63,7 @@ class Held:
     @cached_property
     def _limited(self) -> IntArray:
         """Test functions whose tractions are not free."""
-        return np.flatnonzero(np.any(self.free != np.eye(2), axis=(1, 2)))
+        return np.flatnonzero(np.any(self.free != np.eye(2), axis=(1, 2))).astype(np.int32)
 
     @cached_property
     def _split(self) -> FloatArray:
