@@ -247,6 +247,8 @@ def test_vtk_sees_every_field_of_every_step_at_any_place(tmp_path: Path) -> None
 
 def test_files_say_how_their_numbers_stand(tmp_path: Path) -> None:
     export(at_rest(tmp_path / "run.h5"), tmp_path)
-    for path in sorted((tmp_path / "run").glob("*.vtu")):
+    paths = sorted((tmp_path / "run").glob("*.vtu"))
+    assert paths
+    for path in paths:
         root = ElementTree.parse(path).getroot()
         assert root.attrib == {"type": "UnstructuredGrid", "version": "2.2", "byte_order": "LittleEndian", "header_type": "UInt64"}

@@ -52,3 +52,40 @@ def test_cells_do_not_depend_on_the_way_in_which_coordinates_run(shift: float) -
     both = replace(problem, bodies=tuple(replace(b, patch=turned(b.patch)) for b in problem.bodies))
     other = 1.0 - cells(both)[:, [2, 3, 0, 1]]
     np.testing.assert_allclose(other[np.lexsort(np.round(other, 9).T)], own, rtol=0, atol=1e-13)
+
+
+def beside(low: float, high: float, slaves: int, begin: float, end: float, masters: int, cuts: int) -> Problem:
+    """A slave from `low` to `high` along x on a master from `begin` to `end`, with so many elements each, and one across."""
+    text = SCENE.format(shift=low).replace("upper = [0.3, 0.31, 0.4]", f"upper = [{high}, 0.31, 0.4]")
+    text = text.replace("lower = [-1, -1, -0.5], upper = [1, 1, 0]", f"lower = [{begin}, -1, -0.5], upper = [{end}, 1, 0]")
+    text = text.replace("elements = [2, 3, 1]", f"elements = [{slaves}, 1, 1]").replace("[10, 9, 1]", f"[{masters}, 1, 1]")
+    return Scene.from_toml(text.replace("subcells = 2", f"subcells = {cuts}")).problem()
+
+
+def reverse(problem: Problem, *names: str) -> Problem:
+    return replace(problem, bodies=tuple(replace(b, patch=turned(b.patch)) if b.name in names else b for b in problem.bodies))
+
+
+def bounds(problem: Problem) -> FloatArray:
+    """Where cells begin along x."""
+    return np.unique(np.round(cells(problem)[:, 0], 12))
+
+
+def test_of_lines_on_both_sides_of_the_middle_the_nearer_one_is_cut() -> None:
+    problem = beside(0.0, 1.0, 1, -0.35, 2.05, 8, 2)  # lines at 0.25, 0.55, 0.85
+    np.testing.assert_allclose(bounds(problem), [0.0, 0.25, 0.55, 0.85], atol=1e-6)
+    np.testing.assert_allclose(bounds(reverse(problem, "slave")), [0.0, 0.15, 0.45, 0.75], atol=1e-6)
+
+
+def lines(problem: Problem) -> int:
+    return Subcells(SlaveFace(problem.contacts[0], problem, Numbering(problem))).lines()
+
+
+def test_lines_are_counted_the_same_from_either_end() -> None:
+    problem = beside(-0.5, 0.5, 1, 0.0, 2.0, 1, 0)  # over the master's edge
+    assert [lines(reverse(problem, *names)) for names in ((), ("master",), ("slave",), ("master", "slave"))] == [1, 1, 1, 1]
+
+
+@pytest.mark.parametrize("elements", [90, 150])
+def test_lines_along_the_bounds_of_elements_cross_none(elements: int) -> None:
+    assert lines(beside(0.0, 1.0, elements, 0.0, 1.0, elements, 0)) == 0

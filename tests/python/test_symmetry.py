@@ -11,11 +11,12 @@ from isomortar.geometry.patch import Direction, Patch
 from isomortar.geometry.primitives import bowl, box, ring
 from isomortar.geometry.refinement import mesh
 from isomortar.geometry.splines import Spline
-from isomortar.model.numbering import Numbering
-from isomortar.model.pairs import Pair
+from isomortar.model.origin import about
 from isomortar.scene import Scene
+from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.record import StepResult
 from isomortar.solve.simulation import Simulation
+from isomortar.solve.timing import Ledger
 
 PLANE = """
 format = 1
@@ -202,28 +203,80 @@ def test_a_body_that_symmetry_alone_holds_is_free() -> None:
             Scene.from_toml(text, overrides=[f"symmetry={planes}"]).problem()
 
 
-BELOW = """
-contacts.pair = { slave = "block.w0", master = "lower.w1", projection = "averaged" }
-supports.under.face = "lower.w0"
-"""
+ABOVE_ANOTHER = PLANE.replace("plane = {}", 'master = "lower.w1"\nprojection = "averaged"') + BESIDE
+UNDER = '[supports.under]\nface = "lower.w0"\n'
+ASIDE = '[supports.side]\nface = "lower.u1"\ncomponents = ["x"]\n'
 
 
 @pytest.mark.parametrize(
-    ("support", "overrides", "mirror"),
+    ("more", "overrides", "mirror"),
     [
-        ("", [], [[0, 0], [0, 0]]),
-        ("", ["symmetry={x=0.0}"], [[1, 0], [0, 0]]),
-        ("", ["symmetry={x=0.0, y=2.4}"], [[1, 0], [2, 0]]),
-        ("", ["symmetry={y=2.4}", "bodies.lower.rigid=true", "supports.under=__drop__"], [[0, 0], [2, 0]]),
-        ('supports.side = { face = "lower.u1", components = ["x"] }', [], [[0, 0], [0, 0]]),  # beyond is another body, or nothing
+        (UNDER, [], [[0, 0], [0, 0]]),
+        (UNDER, ["symmetry={x=0.0}"], [[1, 0], [0, 0]]),
+        (UNDER, ["symmetry={x=0.0, y=2.4}"], [[1, 0], [2, 0]]),
+        ("", ["symmetry={y=2.4}", "bodies.lower.rigid=true"], [[0, 0], [2, 0]]),
+        (UNDER + ASIDE, [], [[0, 0], [0, 0]]),  # beyond is another body, or nothing
     ],
 )
-def test_masters_know_the_edges_that_have_mirror_images(support: str, overrides: list[str], mirror: list[list[int]]) -> None:
-    text = BELOW + support + "\n" + PLANE.replace('[contacts.floor]\nslave = "block.w0"\nplane = {}\nfriction = 0.2\n', "")
-    text = "format = 1\n" + text.replace("format = 1\n", "") + BESIDE
-    if "supports.under=__drop__" in overrides:
-        overrides = overrides[:-1]
-        text = text.replace('supports.under.face = "lower.w0"\n', "")
-    problem = Scene.from_toml(text, overrides=overrides).problem()
-    master = Pair(problem.contacts[0], problem, Numbering(problem)).master
-    assert master.mirror.tolist() == mirror
+@pytest.mark.parametrize("far", [0.0, 64.0])
+def test_masters_know_the_edges_that_have_mirror_images(more: str, overrides: list[str], mirror: list[list[int]], far: float) -> None:
+    problem = Scene.from_toml(ABOVE_ANOTHER + more, overrides=overrides).problem()
+    problem = about(problem, np.array([0.0, -far, 0.0]))
+    equilibrium = Equilibrium(problem, Ledger())
+    assert np.any(equilibrium.origin) == (far > 0.0)
+    assert equilibrium.pairs[0].pair.master.mirror.tolist() == mirror
+
+
+BOWL = """
+format = 1
+[bodies.bowl]
+geometry = { kind = "bowl", half_width = 0.4, bottom = 0.0, rise = 0.1, top = 0.5 }
+mesh = { order = [2, 2, 1], elements = [4, 4, 1] }
+[bodies.base]
+geometry = { kind = "box", lower = [-0.8, -0.6, -0.5], upper = [0.8, 0.6, 0.0] }
+mesh = { order = [2, 2, 1], elements = [3, 4, 1] }
+[contacts.between]
+slave = "bowl.w0"
+master = "base.w1"
+friction = 0.3
+[supports]
+top.face = "bowl.w1"
+under.face = "base.w0"
+[[stages]]
+name = "press"
+steps = 1
+motions.top.translate = [0, 0, -0.06]
+"""
+
+
+@pytest.mark.parametrize(("slip_sum", "projection"), [("local", "closest"), ("paper", "closest"), ("local", "averaged")])
+def test_tangents_are_exact_beside_the_plane(slip_sum: str, projection: str) -> None:
+    """Tractions of a half, by central differences along a random direction that leaves the plane where it is."""
+    overrides = ["symmetry={y=0.0}", f'solver.slip_sum="{slip_sum}"', f'contacts.between.projection="{projection}"']
+    equilibrium = Equilibrium(Scene.from_toml(BOWL, overrides=overrides).problem(), Ledger())
+    state, (pair,) = equilibrium.initial_state(), equilibrium.pairs
+    equilibrium.begin(state, 0.5)
+    random = np.random.default_rng(3)
+    positions, direction = state.positions.copy(), random.standard_normal(state.positions.shape)
+    moved = equilibrium.numbering.points["bowl"]
+    positions[moved] += [0.02, 0.0, -0.06]
+    positions[:, [0, 2]] += 0.003 * random.standard_normal((len(positions), 2))
+    direction[equilibrium.numbering.reference[:, 1] == 0.0, 1] = 0.0
+    n = pair.pair.slave.test.count
+    law = pair.law(np.array([20.0, 0.1]), np.zeros(n), np.zeros((n, 2)))  # all that is active sticks
+
+    def tractions(length: float) -> np.ndarray:
+        return pair.respond(pair.kinematics(positions + length * direction, state.contacts[0]), law).traction
+
+    kinematics = pair.kinematics(positions, state.contacts[0])
+    response = pair.respond(kinematics, law)
+    blocks = pair.blocks(positions, kinematics, law, response)
+    wide = blocks.patterns.wide
+    row = np.repeat(np.arange(n), np.diff(wide.start))
+    changes = np.zeros((n, 2))
+    np.add.at(changes, row, np.einsum("kac,kc->ka", blocks.changes[:, 1:], direction[wide.column]))
+    at_plane = np.any(pair.held.free != np.eye(2), axis=(1, 2)) & (response.state > 0)
+    assert at_plane.any()
+    expected = (tractions(1e-6) - tractions(-1e-6)) / 2e-6
+    np.testing.assert_allclose(changes, expected, rtol=0, atol=1e-7 * np.abs(expected).max())
+    assert np.abs(expected[at_plane]).max() > 0.01 * np.abs(expected).max()

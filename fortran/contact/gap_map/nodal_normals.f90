@@ -105,8 +105,7 @@ contains
     end do
   end subroutine average
 
-  !> Components of the sum of normals at node a that those of mirror images cancel, which are beyond the edges that it is on (theory
-  !> 3.21).
+  !> Components of the sum of normals at node a that mirror images beyond its edges cancel (theory 3.21).
   pure function cancels_at(surface, a) result(cancels)
     type(surface_t), intent(in) :: surface
     integer, intent(in) :: a

@@ -34,13 +34,13 @@ BRIM = 0.05
 NO_ENTRY = 1e-12
 #: Share of the largest coordinate that bodies have to be apart by, so that they are: round-off of positions is no distance.
 CLEAR = 1e-8
-#: How near to a knot line of the master, as a share of its coordinates, places count as on it: beside a line by less than the root of
+#: How near to a knot line of the master, as a share of its shortest element, places count as on it: beside a line by less than the root of
 #: round-off its elements are as near as each other, and chance decides.
 ON_LINE = 1e-7
 #: How near to the bounds of cells, as a share of the slave's element, knot lines of the master are left alone (theory 10.9).
 CELL_MARGIN = 1e-5
-#: Lines of a cell along which these are looked for, as shares of it: the middle one counts first.
-CELL_LINES = (0.5, 0.0, 1.0)
+#: Lines of a cell along which these are looked for, as shares of it: where the middle one meets none, the edges count.
+CELL_LINES = ((0.5,), (0.0, 1.0))
 #: Places along the middle line of an element at which the lines that cross it are counted: more than 16 are not told apart.
 CELL_PLACES = 17
 #: Halvings by which a crossing is found: more than a number has bits, so that round-off ends them.

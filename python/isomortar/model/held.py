@@ -26,7 +26,6 @@ from isomortar.model.supports import BoolArray, Supports
 #: Where the metric's components (11, 12, 22) stand in its matrix.
 _METRICS = np.array([[[1.0, 0.0], [0.0, 0.0]], [[0.0, 1.0], [1.0, 0.0]], [[0.0, 0.0], [0.0, 1.0]]])
 _SLIP_ROWS = slice(FirstRow.SLIP - 1, FirstRow.SLIP + 1)
-_METRIC_ROWS = slice(FirstRow.METRIC - 1, FirstRow.METRIC + 2)
 
 
 @dataclass(frozen=True)
@@ -67,7 +66,7 @@ class Held:
 
     @cached_property
     def _split(self) -> FloatArray:
-        """What their metrics (11, 12, 22) are without what couples the free to the rest, shape (limited, 3, 3) (theory 4.11)."""
+        """Takes out of their metrics (11, 12, 22) what couples the free to the rest, shape (limited, 3, 3) (theory 4.11)."""
         free = self.free[self._limited]
         taken = np.eye(2) - free
         parts = np.einsum("npq,kqr,nrs->nkps", free, _METRICS, free) + np.einsum("npq,kqr,nrs->nkps", taken, _METRICS, taken)
@@ -84,11 +83,13 @@ class Held:
         return replace(control, slip=slip, metric=metric)
 
     def mirror(self, rows: FloatArray, pattern: Pattern) -> None:
-        """The same of their derivatives, in place; `rows`, shape (blocks, kinds, 3), with the blocks of a pattern."""
-        for free, split, i in zip(self.free[self._limited], self._split, self._limited, strict=True):
+        """The same of the slips' derivatives, in place; `rows`, shape (blocks, kinds, 3), with the blocks of a pattern.
+
+        The metrics' need none: where a slip is nothing, no traction depends on what couples it to the other one.
+        """
+        for free, i in zip(self.free[self._limited], self._limited, strict=True):
             blocks = rows[pattern.start[i] : pattern.start[i + 1]]
             blocks[:, _SLIP_ROWS] = free @ blocks[:, _SLIP_ROWS]
-            blocks[:, _METRIC_ROWS] = split @ blocks[:, _METRIC_ROWS]
 
 
 def nothing_held(pair: Pair) -> Held:

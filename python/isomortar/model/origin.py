@@ -29,6 +29,7 @@ def about(problem: Problem, origin: FloatArray) -> Problem:
         bodies=tuple(_body(body, origin) for body in problem.bodies),
         contacts=tuple(_contact(contact, origin) for contact in problem.contacts),
         supports=tuple(_support(support, origin) for support in problem.supports),
+        symmetry=tuple(replace(plane, place=plane.place - float(origin[plane.axis])) for plane in problem.symmetry),
     )
 
 

@@ -154,7 +154,7 @@ class PythonWorkshop:
         return hashlib.sha256("\0".join([self.sources, *parts]).encode()).hexdigest()
 
     def statements(self, fault: Fault, /) -> Set[int] | None:
-        """Lines of the statements that a fault is in."""
+        """Lines of the statements that a fault is in; None where one is outside of functions."""
         return statements_at(self._files[fault.file], fault.lines)
 
 

@@ -144,8 +144,12 @@ class Search:
         """The cheapest settings for a target, as a whole and by order."""
         if RESOLVED * self.uncertainty > target:
             return Recommendation(target, None, math.nan, self._needed(target))
-        by_order = {order: self._hunted(target, kept) for order, kept in self._orders()}
-        best = self._hunted(target, {})
+        orders = dict(self._orders())
+        for kept in orders.values():
+            self._pursued(target, kept, hopeful=False)
+        self._pursued(target, {}, hopeful=False)
+        best = self._pursued(target, {}, hopeful=True)
+        by_order = {order: self._cheapest(target, kept) for order, kept in orders.items()}
         if best is None:
             why = "no combination was found within the budget" if self._over else "no combination that was tried comes so near for less"
             return Recommendation(target, None, math.nan, why, "", by_order)
@@ -211,16 +215,15 @@ class Search:
     def _forecasts(self, *, hopeful: bool) -> Model:
         return Model(self.dials, self.laboratory.own, self.laboratory.outcomes, self.yardsticks, hopeful=hopeful)
 
-    def _hunted(self, target: float, kept: Mapping[int, int]) -> Tried | None:
-        """The cheapest run within a target; last, where nothing is kept, that of settings whose errors may cancel."""
+    def _cheapest(self, target: float, kept: Mapping[int, int]) -> Tried | None:
+        """The cheapest of the runs within a target, with some dials `kept` at a setting; None: there is none."""
         truths = (self.truth, self.rival)
         alike = [o for o in self.laboratory.outcomes.values() if o not in truths and all(o.choice[n] == s for n, s in kept.items())]
-        best = min((o for o in alike if self.error(o) <= target), key=lambda o: o.cost, default=None)
-        best = self._pursued(target, kept, best, hopeful=False)
-        return best if kept else self._pursued(target, kept, best, hopeful=True)
+        return min((o for o in alike if self.error(o) <= target), key=lambda o: o.cost, default=None)
 
-    def _pursued(self, target: float, kept: Mapping[int, int], best: Tried | None, *, hopeful: bool) -> Tried | None:
-        """The cheapest run within a target; what is forecast is run, and corrects the forecasts."""
+    def _pursued(self, target: float, kept: Mapping[int, int], *, hopeful: bool) -> Tried | None:
+        """The same after a search; what is forecast is run, and corrects the forecasts."""
+        best = self._cheapest(target, kept)
         for _ in range(TRIES):
             if self._over:
                 break

@@ -53,7 +53,8 @@ class Subcells:
         places = np.repeat(0.5 * (self.low + self.high)[:, None], constants.CELL_PLACES, axis=1)
         low, high = (self.low + self._margin)[:, axis], (self.high - self._margin)[:, axis]
         places[..., axis] = np.linspace(low, high, constants.CELL_PLACES, axis=1)
-        elements = self._labels(places.reshape(-1, 2)).reshape(places.shape) // 2
+        labels = self._labels(places.reshape(-1, 2)).reshape(places.shape)
+        elements = np.where(labels == 1, 2, labels) // 2  # the master's first edge is of its first element, as its last one is of the last
         return int(np.count_nonzero(np.diff(elements, axis=1), axis=1).max())
 
     def _cut(self, axis: int) -> None:
@@ -63,9 +64,11 @@ class Subcells:
         """
         at = np.full(len(self.low), np.nan)
         wide = (self.high - self.low - 2.0 * self._margin)[:, axis] > 0.0
-        for line in constants.CELL_LINES:
+        for lines in constants.CELL_LINES:
             left = wide & np.isnan(at)
-            at[left] = self._crossing(axis, self.low[left] + self._margin[left], self.high[left] - self._margin[left], line)
+            low, high = self.low[left] + self._margin[left], self.high[left] - self._margin[left]
+            found = [self._crossing(axis, low, high, line) for line in lines]
+            at[left] = _nearest(0.5 * (low + high)[:, axis], found)
         here = ~np.isnan(at)
         low, high = self.low[here].copy(), self.high.copy()
         low[:, axis] = high[here, axis] = at[here]
@@ -84,15 +87,16 @@ class Subcells:
         below = self._labels(middle)
         before, after = (self._labels(one) != below for one in (start, end))
         on_line = np.any((before | after) & (below % 2 == 1) & (below > 0), axis=1)
-        changes = np.any(before | after, axis=1) & ~on_line
-        near, far, below = middle[changes], np.where(before.any(axis=1)[:, None], start, end)[changes], below[changes]
-        for _ in range(constants.CELL_HALVINGS):
-            between = 0.5 * (near + far)
-            same = np.all(self._labels(between) == below, axis=1)
-            near[same], far[~same] = between[same], between[~same]
-        found = np.where(on_line, middle[:, axis], np.nan)
-        found[changes] = 0.5 * (near + far)[:, axis]
-        return found
+        sides = [np.where(on_line, middle[:, axis], np.nan) for _ in range(2)]
+        for side, differs, far_end in zip(sides, (before, after), (start, end), strict=True):
+            changes = np.any(differs, axis=1) & ~on_line
+            near, far = middle[changes], far_end[changes]
+            for _ in range(constants.CELL_HALVINGS):
+                between = 0.5 * (near + far)
+                same = np.all(self._labels(between) == below[changes], axis=1)
+                near[same], far[~same] = between[same], between[~same]
+            side[changes] = 0.5 * (near + far)[:, axis]
+        return _nearest(middle[:, axis], sides)
 
     def _labels(self, coordinates: FloatArray) -> IntArray:
         """Twice the elements of the master below places of the face, one more on the line to the next, shape (m, 2); -1 beside it."""
@@ -108,6 +112,14 @@ class Subcells:
         feet = _bindings.project_points(points, master, positions, np.zeros((count, 2)), np.zeros(count, dtype=np.int32))
         below = []
         for lines, xi in zip(self._face.lines, feet.xi.T, strict=True):
-            on_line = constants.ON_LINE * np.ptp(lines)
+            on_line = constants.ON_LINE * np.diff(lines).min()
             below.append(np.searchsorted(lines, xi + on_line, side="right") + np.searchsorted(lines, xi - on_line, side="right"))
         return np.where(feet.found[:, None] != 0, np.stack(below, axis=1), -1)
+
+
+def _nearest(middle: FloatArray, places: list[FloatArray]) -> FloatArray:
+    """Of several lists of places, some of which are NaN, those that are nearest to the middles; the first of two as near."""
+    found = places[0]
+    for others in places[1:]:
+        found = np.where(~(np.abs(found - middle) <= np.abs(others - middle)) & ~np.isnan(others), others, found)
+    return found
