@@ -11,7 +11,7 @@ from patch_tests.contact import ORDERS, TILTS, default_rule, errors, nested_boun
 from isomortar.geometry.patch import Direction, FloatArray
 from isomortar.harness import Bound, Shown, case
 from isomortar.harness.cases import Tier
-from isomortar.model import pairs
+from isomortar.model import constants, pairs
 from isomortar.model.enforcement import SlaveFace, slave_side
 from isomortar.model.enforcement.integration import integrated
 from isomortar.model.enforcement.subcells import Subcells
@@ -140,12 +140,19 @@ def turned(subcells: int, turn: float) -> Problem:
 
 
 def crossed(subcells: int, turn: float) -> tuple[float, float, float]:
-    """Share of the face in cells over several elements of the master; error of the sum of all areas; the least length of a cell."""
+    """Share of the face in cells over several elements of the master; error of the sum of all areas; the least length of a cell.
+
+    Of a cell counts what is twice the margin away from its bounds: lines nearer to them are left alone.
+    """
     given = turned(subcells, turn)
-    cells = Subcells(SlaveFace(given.contacts[0], given, Numbering(given)))
-    line = np.linspace(1e-3, 1.0 - 1e-3, 9)
+    face = SlaveFace(given.contacts[0], given, Numbering(given))
+    cells = Subcells(face)
+    inset = 2.0 * constants.CELL_MARGIN * np.array([1.0 / direction.elements for direction in face.directions])
+    low = cells.low + inset
+    size = np.maximum(cells.high - inset - low, 0.0)
+    line = np.linspace(0.0, 1.0, 9)
     at = np.stack(np.meshgrid(line, line), axis=-1).reshape(-1, 2)
-    places = 0.5 + SHARE * (cells.low[:, None] + (cells.high - cells.low)[:, None] * at - 0.5) @ rotation(turn).T
+    places = 0.5 + SHARE * (low[:, None] + size[:, None] * at - 0.5) @ rotation(turn).T
     below = np.floor(MASTER_ELEMENTS * places)
     several = np.any(below != below[:, :1], axis=(1, 2))
     lengths = cells.high - cells.low
