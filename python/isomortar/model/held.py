@@ -23,10 +23,6 @@ from isomortar.model.entities import RigidPlane, unit
 from isomortar.model.pairs import Pair
 from isomortar.model.supports import BoolArray, Supports
 
-#: Where the metric's components (11, 12, 22) stand in its matrix.
-_METRICS = np.array([[[1.0, 0.0], [0.0, 0.0]], [[0.0, 1.0], [1.0, 0.0]], [[0.0, 0.0], [0.0, 1.0]]])
-_SLIP_ROWS = slice(FirstRow.SLIP - 1, FirstRow.SLIP + 1)
-
 
 @dataclass(frozen=True)
 class Held:
@@ -64,22 +60,16 @@ class Held:
         """Test functions whose tractions are not free."""
         return np.flatnonzero(np.any(self.free != np.eye(2), axis=(1, 2))).astype(np.int32)
 
-    @cached_property
-    def _split(self) -> FloatArray:
-        """Takes out of their metrics (11, 12, 22) what couples the free to the rest, shape (limited, 3, 3) (theory 4.11)."""
-        free = self.free[self._limited]
-        taken = np.eye(2) - free
-        parts = np.einsum("npq,kqr,nrs->nkps", free, _METRICS, free) + np.einsum("npq,kqr,nrs->nkps", taken, _METRICS, taken)
-        return parts.reshape(-1, 3, 4)[..., [0, 1, 3]].swapaxes(1, 2)
-
     def mirrored(self, control: Control) -> Control:
         """Control quantities as they are with mirror images of both sides beyond what is held (theory 4.11)."""
         at = self._limited
         if not at.size:
             return control
         slip, metric = control.slip.copy(), control.metric.copy()
-        slip[at] = np.einsum("nab,nb->na", self.free[at], slip[at])
-        metric[at] = np.einsum("nab,nb->na", self._split, metric[at])
+        free, taken = self.free[at], np.eye(2) - self.free[at]
+        slip[at] = np.einsum("nab,nb->na", free, slip[at])
+        whole = metric[at][:, [[0, 1], [1, 2]]]
+        metric[at] = (free @ whole @ free + taken @ whole @ taken)[:, [0, 0, 1], [0, 1, 1]]
         return replace(control, slip=slip, metric=metric)
 
     def mirror(self, rows: FloatArray, pattern: Pattern) -> None:
@@ -87,9 +77,10 @@ class Held:
 
         The metrics' need none: where a slip is nothing, no traction depends on what couples it to the other one.
         """
+        first = FirstRow.SLIP - 1
         for free, i in zip(self.free[self._limited], self._limited, strict=True):
-            blocks = rows[pattern.start[i] : pattern.start[i + 1]]
-            blocks[:, _SLIP_ROWS] = free @ blocks[:, _SLIP_ROWS]
+            slips = rows[pattern.start[i] : pattern.start[i + 1], first : first + 2]
+            slips[:] = free @ slips
 
 
 def nothing_held(pair: Pair) -> Held:

@@ -14,7 +14,7 @@ Edges = list[tuple[int, IntArray]]
 
 
 def mirrors_at(problem: Problem, numbering: Numbering, edges: Edges) -> IntArray:
-    """Component (1 to 3) across the plane of symmetry that each edge is on, 0: none; shape (directions, 2)."""
+    """Component (1 to 3) across the plane of symmetry that each edge is on, 0: none; shape (directions, 2) (theory 3.21)."""
     found = np.zeros((2, 2), dtype=np.int32)
     for number, (direction, edge) in enumerate(edges):
         for plane in problem.symmetry:
