@@ -5,10 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from isomortar.errors import InputError
-from isomortar.geometry.primitives import bowl, box, ring
-from isomortar.geometry.refinement import mesh
-from isomortar.harness.measures import (
+from isomortar.accuracy.measures import (
     curve_error,
     expected_order,
     on_common_times,
@@ -16,7 +13,10 @@ from isomortar.harness.measures import (
     relative_error,
     roughness,
 )
-from isomortar.harness.sampling import body_grid, face_grid, values_at
+from isomortar.accuracy.sampling import body_grid, face_grid, values_at
+from isomortar.errors import InputError
+from isomortar.geometry.primitives import bowl, box, ring
+from isomortar.geometry.refinement import mesh
 from isomortar.results.bezier import functions_at
 
 

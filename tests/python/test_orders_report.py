@@ -13,11 +13,11 @@ from orders.analysis import analyse
 from orders.plan import Plan
 from typer.testing import CliRunner
 
+from isomortar.accuracy.discretisations import Discretisation, discretisation, mesh_overrides, overrides, sweep_of
 from isomortar.cli.commands import app
 from isomortar.errors import InputError
 from isomortar.geometry.primitives import bowl
 from isomortar.geometry.refinement import mesh
-from isomortar.harness.discretisations import Discretisation, discretisation, mesh_overrides, overrides, sweep_of
 from isomortar.harness.measurement import Measurement
 from isomortar.scene import Scene, bundled_scenes
 from isomortar.scene.geometry_file import patch_table

@@ -11,13 +11,13 @@ import pytest
 
 from isomortar.errors import InputError, IsomortarError
 from isomortar.harness.runner import local_processes
-from isomortar.harness.trade import page
-from isomortar.harness.trade.advice import CheaperSearch, cheaper_dials
-from isomortar.harness.trade.knobs import KNOBS, Dial, Knob, Setting, changed, dials_of
-from isomortar.harness.trade.laboratory import Laboratory, Tried
-from isomortar.harness.trade.search import Search
-from isomortar.harness.trade.want import wanted, wishes
 from isomortar.scene import Scene
+from isomortar.trade import page
+from isomortar.trade.advice import CheaperSearch, cheaper_dials
+from isomortar.trade.knobs import KNOBS, Dial, Knob, Setting, changed, dials_of
+from isomortar.trade.laboratory import Laboratory, Tried
+from isomortar.trade.search import Search
+from isomortar.trade.want import wanted, wishes
 
 TINY = """
 format = 1

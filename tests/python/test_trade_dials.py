@@ -4,12 +4,12 @@ from pathlib import Path
 
 import numpy as np
 
-from isomortar.harness.trade.advice import cheaper_dials
-from isomortar.harness.trade.knobs import KNOBS, changed, dials_of
-from isomortar.harness.trade.run import traded
-from isomortar.harness.trade.want import wanted
 from isomortar.model.entities import Raised
 from isomortar.scene import Scene
+from isomortar.trade.advice import cheaper_dials
+from isomortar.trade.knobs import KNOBS, changed, dials_of
+from isomortar.trade.run import traded
+from isomortar.trade.want import wanted
 from test_raised import GOOD as RAISED
 from test_symmetry import PLANE
 

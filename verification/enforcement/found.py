@@ -10,8 +10,8 @@ import numpy as np
 from enforcement.known import STRIPS
 from enforcement.plan import MORTAR, REFERENCE, Planned
 
+from isomortar.accuracy.measures import roughness
 from isomortar.geometry.patch import FloatArray
-from isomortar.harness.measures import roughness
 from isomortar.harness.runs import ByMethod, Computed
 
 

@@ -14,10 +14,10 @@ from enforcement.plan import AUGMENTED, MORTAR
 from numpy.typing import NDArray
 from patch_tests.subcells import SUBCELLS
 
+from isomortar.accuracy.measures import relative_error, roughness
 from isomortar.errors import ConvergenceError
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness.cases import Bound, Cell, Shown, Words, measured
-from isomortar.harness.measures import relative_error, roughness
 from isomortar.model.enforcement import slave_side
 from isomortar.model.entities import Contact, Problem, Stage
 from isomortar.model.numbering import Numbering

@@ -12,7 +12,7 @@ from paper.plans import AVERAGED, CLOSEST, DRAG, averaged, nurbs
 from paper.sections import Section, Variant
 from programs.run import computed
 
-from isomortar.harness.discretisations import Elements
+from isomortar.accuracy.discretisations import Elements
 from isomortar.harness.study import Run
 from isomortar.program.getfem import GetFEM
 

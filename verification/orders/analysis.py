@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 from orders.plan import Plan
 
+from isomortar.accuracy.discretisations import Discretisation, parse_kind
+from isomortar.accuracy.measures import curve_error, expected_order, reference_uncertainty, relative_error, roughness
 from isomortar.geometry.patch import FloatArray
-from isomortar.harness.discretisations import Discretisation, parse_kind
 from isomortar.harness.measurement import Measurement
-from isomortar.harness.measures import curve_error, expected_order, reference_uncertainty, relative_error, roughness
 from isomortar.harness.orders import Convergence, OrderEstimate, estimate_order
 
 CURVES, FIELDS = ("force", "moment"), ("pressure", "displacement")

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 from orders.analysis import Analysis, Point, curve
 
-from isomortar.harness.discretisations import Discretisation, parse_kind
+from isomortar.accuracy.discretisations import Discretisation, parse_kind
 from isomortar.harness.figures import look, page_style, svg_text
 from isomortar.results import style
 

@@ -10,11 +10,11 @@ from itertools import count
 
 from orders import run
 
+from isomortar.accuracy.discretisations import Discretisation, Sweep, discretisation, lowest_order, overrides, parse_kind, refined, sweep_of
+from isomortar.accuracy.sampling import Grid, slave_grid
 from isomortar.errors import InputError
 from isomortar.harness.cases import LAGRANGE, NURBS
-from isomortar.harness.discretisations import Discretisation, Sweep, discretisation, lowest_order, overrides, parse_kind, refined, sweep_of
 from isomortar.harness.orders import SMALLEST_RATIO, WINDOW
-from isomortar.harness.sampling import Grid, slave_grid
 from isomortar.model.entities import Problem
 from isomortar.scene.scene import Scene
 

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from isomortar.accuracy.discretisations import coarse_geometry
+from isomortar.accuracy.sampling import Grid, body_grid, slave_grid, values_at
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness.cases import Bound, Shown, measured
-from isomortar.harness.discretisations import coarse_geometry
-from isomortar.harness.sampling import Grid, body_grid, slave_grid, values_at
 from isomortar.model.entities import Problem
 from isomortar.results.fields import body_points, contact_surfaces
 from isomortar.scene.scene import Scene

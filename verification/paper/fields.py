@@ -9,8 +9,8 @@ import numpy as np
 from paper.figures.flat import CONTACT_ZONE
 from paper.outcome import Outcome
 
+from isomortar.accuracy.sampling import Grid, slave_grid, values_at
 from isomortar.geometry.patch import FloatArray
-from isomortar.harness.sampling import Grid, slave_grid, values_at
 from isomortar.results.fields import contact_surfaces
 from isomortar.scene.scene import Scene
 

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from paper.outcome import Outcome
 
+from isomortar.accuracy.measures import curve_error, relative_error, roughness
 from isomortar.geometry.patch import FloatArray
-from isomortar.harness.measures import curve_error, relative_error, roughness
 
 
 def rms_second_difference(outcome: Outcome) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from paper.sections import Quantity, Section, Variant
 
-from isomortar.harness.discretisations import Elements
+from isomortar.accuracy.discretisations import Elements
 
 FORCE, MOMENT, DRAG, TORQUE = (
     Quantity("pressing force", "force", "z"),

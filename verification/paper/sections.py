@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Literal, get_args
 
-from isomortar.harness.discretisations import Discretisation, Elements, overrides, sweep_of
+from isomortar.accuracy.discretisations import Discretisation, Elements, overrides, sweep_of
 from isomortar.scene.scene import Scene
 
 Method = Literal["monolithic", "paper"]
@@ -32,7 +32,7 @@ class Variant:
     name : str
         Within its section.
     kind : str
-        ``N3``, ``L2`` of the body that the section varies (`isomortar.harness.discretisations`).
+        ``N3``, ``L2`` of the body that the section varies (`isomortar.accuracy.discretisations`).
     elements : tuple of int
         Of that body.
     title : str

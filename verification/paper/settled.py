@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 from paper.outcome import Outcome
 
+from isomortar.accuracy.measures import curve_error
 from isomortar.geometry.patch import FloatArray
-from isomortar.harness.measures import curve_error
 from isomortar.harness.references import Reference
 
 #: Folder below the references, and the dataset of a section there (``verification/paper_curves``).

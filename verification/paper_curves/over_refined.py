@@ -8,10 +8,10 @@ import numpy as np
 from paper.plans import FULL
 from paper.sections import Section, Variant
 
+from isomortar.accuracy.discretisations import Elements
+from isomortar.accuracy.measures import expected_order, reference_uncertainty
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, Matches, case
-from isomortar.harness.discretisations import Elements
-from isomortar.harness.measures import expected_order, reference_uncertainty
 from isomortar.solve.simulation import Simulation
 
 #: By study: its highest order that is smooth enough, and three meshes, each twice as fine as the one before in the studied directions.

@@ -11,8 +11,8 @@ from unittest.mock import patch
 import numpy as np
 from scipy import sparse
 
+from isomortar.accuracy.discretisations import Discretisation, overrides, sweep_of
 from isomortar.geometry.patch import FloatArray
-from isomortar.harness.discretisations import Discretisation, overrides, sweep_of
 from isomortar.model.entities import Problem
 from isomortar.scene import Scene
 from isomortar.solve.condensed import Bodies

@@ -8,7 +8,7 @@ from typing import Literal
 
 from programs.run import PROGRAMS, computed
 
-from isomortar.harness.discretisations import Elements, parse_kind
+from isomortar.accuracy.discretisations import Elements, parse_kind
 from isomortar.harness.study import Run
 from isomortar.scene.scene import Scene
 

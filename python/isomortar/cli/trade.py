@@ -15,11 +15,11 @@ from isomortar.cli.options import Overrides, RunsOption, SceneArgument
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from isomortar.harness.trade.knobs import Dial
-    from isomortar.harness.trade.laboratory import Tried
-    from isomortar.harness.trade.search import Search
-    from isomortar.harness.trade.want import Want
     from isomortar.scene import Scene
+    from isomortar.trade.knobs import Dial
+    from isomortar.trade.laboratory import Tried
+    from isomortar.trade.search import Search
+    from isomortar.trade.want import Want
 
 
 WantOption = Annotated[
@@ -59,9 +59,9 @@ def trade(
     - `isomortar trade iron-round --want force.top.x@drag --within 5% --within 1% --budget 120 -j 2`
     - `isomortar trade my_scene.toml --want pressure.floor --want area.floor:end --within 2%`
     """
-    from isomortar.harness.trade.knobs import dials_of
-    from isomortar.harness.trade.search import Search
     from isomortar.scene import Scene
+    from isomortar.trade.knobs import dials_of
+    from isomortar.trade.search import Search
 
     loaded = Scene.load(scene, overrides or ())
     wants = _wants(loaded, want)
@@ -89,8 +89,8 @@ def advise(
 
     - `isomortar advise iron-round --want force.top.x@drag --within 1%`
     """
-    from isomortar.harness.trade.advice import CheaperSearch, cheaper_dials
     from isomortar.scene import Scene
+    from isomortar.trade.advice import CheaperSearch, cheaper_dials
 
     loaded = Scene.load(scene, overrides or ())
     wants = _wants(loaded, want)
@@ -101,7 +101,7 @@ def advise(
 
 def _wants(scene: Scene, texts: list[str]) -> list[Want]:
     """What is wanted of the scene."""
-    from isomortar.harness.trade.want import wanted
+    from isomortar.trade.want import wanted
 
     return [wanted(text, scene.problem()) for text in texts]
 
@@ -118,8 +118,8 @@ def _conduct(
 ) -> None:
     """Search, write the page, say the answers."""
     from isomortar.harness.runner import local_processes
-    from isomortar.harness.trade import page
-    from isomortar.harness.trade.laboratory import Laboratory
+    from isomortar.trade import page
+    from isomortar.trade.laboratory import Laboratory
 
     targets = sorted((_share(text) for text in within), reverse=True)
     started = datetime.now().astimezone()

@@ -11,7 +11,7 @@ from typing import Any
 import matplotlib as mpl
 from matplotlib.figure import Figure
 
-from isomortar.harness.discretisations import parse_kind
+from isomortar.accuracy.discretisations import parse_kind
 from isomortar.results import style
 
 _COLOURS = ("#E69F00", style.BLUE, style.GREEN, style.VERMILION, "#CC79A7")

@@ -26,7 +26,7 @@ _PACKAGE = Path(__file__).parent.parent
 #: Names what cases declare themselves with.
 _ENTRANCE = _PACKAGE / "harness" / "__init__.py"
 #: What of the package does not touch a case's numbers.
-_ASIDE = (_PACKAGE / "harness", _PACKAGE / "program", _PACKAGE / "cli", _PACKAGE / "__main__.py")  # but what a case imports of it
+_ASIDE = tuple(_PACKAGE / name for name in ("accuracy", "cli", "harness", "program", "trade", "__main__.py"))  # but what a case imports
 
 
 class Store:

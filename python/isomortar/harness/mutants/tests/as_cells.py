@@ -9,8 +9,8 @@ from pathlib import Path
 from isomortar.errors import InputError
 from isomortar.harness.cases import Bound, Cell, case
 
-#: What tests of the harness and of its studies import: no fault is put there.
-_HARNESS = re.compile(r"isomortar\.harness|^from (measures|orders|paper|sampling)\b", re.MULTILINE)
+#: What tests of the harness, of what measures with it, and of its studies import: no fault is put there.
+_HARNESS = re.compile(r"isomortar\.(accuracy|harness|trade)\b|^from (measures|orders|paper|sampling)\b", re.MULTILINE)
 
 
 @case(

@@ -33,7 +33,7 @@ class Want:
     text : str
         As it was asked for: ``force.top.x``, ``moment.top.z@twist:peak``, ``pressure.floor``.
     values : callable
-        From the numbers of a run (`isomortar.harness.trade.run.traded`) and of the truth to what is compared, shape (n,). How far a curve
+        From the numbers of a run (`isomortar.trade.run.traded`) and of the truth to what is compared, shape (n,). How far a curve
         is from the truth is known where the run has a load step, and linear between them; the truth alone is linear itself.
     weights : callable
         From the numbers of a run to what each value counts, shape (n,).

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from isomortar.accuracy.discretisations import coarse_geometry
 from isomortar.geometry.halves import upper_half
 from isomortar.geometry.patch import Direction, FloatArray, Patch
 from isomortar.geometry.refinement import mesh
-from isomortar.harness.discretisations import coarse_geometry
 from isomortar.model.entities import Problem
 from isomortar.results.bezier import functions_at, rational
 from isomortar.scene.scene import Scene

@@ -15,9 +15,9 @@ from isomortar.harness.measurement import Measurement
 from isomortar.harness.runner import Result, Submit, run, start
 from isomortar.harness.store import Store
 from isomortar.harness.study import Run
-from isomortar.harness.trade.knobs import Dial, changed
-from isomortar.harness.trade.run import traded
 from isomortar.scene.scene import Scene
+from isomortar.trade.knobs import Dial, changed
+from isomortar.trade.run import traded
 
 #: The number of a setting, by dial.
 Choice = tuple[int, ...]

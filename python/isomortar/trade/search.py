@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from isomortar.errors import IsomortarError
-from isomortar.harness.trade.knobs import Dial
-from isomortar.harness.trade.laboratory import Choice, Laboratory, Tried
-from isomortar.harness.trade.model import Model, Yardstick
-from isomortar.harness.trade.want import Want
+from isomortar.trade.knobs import Dial
+from isomortar.trade.laboratory import Choice, Laboratory, Tried
+from isomortar.trade.model import Model, Yardstick
+from isomortar.trade.want import Want
 
 #: Where over-refined runs differ by this share of what is wanted, it is round-off or nothing they have in common.
 NOTHING = 0.5

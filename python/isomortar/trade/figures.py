@@ -12,10 +12,10 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from isomortar.harness.figures import page_style, svg_text
 from isomortar.harness.report import percent
-from isomortar.harness.trade.laboratory import Tried
-from isomortar.harness.trade.model import Yardstick
-from isomortar.harness.trade.search import RESOLVED, Recommendation, Search
 from isomortar.results import style
+from isomortar.trade.laboratory import Tried
+from isomortar.trade.model import Yardstick
+from isomortar.trade.search import RESOLVED, Recommendation, Search
 
 _COLOURS = {2: style.BLUE, 3: style.GREEN, 4: style.VERMILION, 5: "#CC79A7"}
 _SOFT = "#5C6670"

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from isomortar.geometry.patch import FloatArray
-from isomortar.harness.trade.knobs import Dial
-from isomortar.harness.trade.laboratory import Choice, Tried
-from isomortar.harness.trade.want import Want
+from isomortar.trade.knobs import Dial
+from isomortar.trade.laboratory import Choice, Tried
+from isomortar.trade.want import Want
 
 #: CPU seconds of the same work differ by about this share, on a machine with other work: what differs by less costs the same.
 NOISE = 0.05

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from isomortar.accuracy.sampling import Grid, slave_grid, values_at
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness.cases import Bound, Shown, measured
-from isomortar.harness.sampling import Grid, slave_grid, values_at
 from isomortar.model.entities import Problem
 from isomortar.results.fields import contact_surfaces
 from isomortar.scene.scene import Scene

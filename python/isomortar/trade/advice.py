@@ -7,11 +7,11 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from isomortar.harness.trade.knobs import KNOBS, Changes, Dial, Knob, Setting, dials_of, directions, faces_in_contact, given, stated
-from isomortar.harness.trade.search import Recommendation, Search
-from isomortar.harness.trade.want import Want
 from isomortar.model.entities import RigidPlane
 from isomortar.scene.scene import Scene
+from isomortar.trade.knobs import KNOBS, Changes, Dial, Knob, Setting, dials_of, directions, faces_in_contact, given, stated
+from isomortar.trade.search import Recommendation, Search
+from isomortar.trade.want import Want
 
 
 class CheaperSearch(Search):

@@ -11,14 +11,14 @@ from typing import Any
 
 from isomortar.harness.report import percent, plain, template
 from isomortar.harness.store import identity, write_whole
-from isomortar.harness.trade import figures
-from isomortar.harness.trade.advice import CheaperSearch
-from isomortar.harness.trade.laboratory import Tried
-from isomortar.harness.trade.model import Yardstick
-from isomortar.harness.trade.search import Recommendation, Search
-from isomortar.harness.trade.want import wanted, wishes
 from isomortar.scene.scene import Scene
 from isomortar.solve.timing import PHASES
+from isomortar.trade import figures
+from isomortar.trade.advice import CheaperSearch
+from isomortar.trade.laboratory import Tried
+from isomortar.trade.model import Yardstick
+from isomortar.trade.search import Recommendation, Search
+from isomortar.trade.want import wanted, wishes
 
 
 def sentence(search: Search, answer: Recommendation) -> str:

@@ -6,13 +6,13 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from isomortar.accuracy.discretisations import coarse_geometry, lowest_order
 from isomortar.errors import InputError
 from isomortar.geometry.patch import MAX_ORDER, Direction
 from isomortar.geometry.quadrature import volume_points
-from isomortar.harness.discretisations import coarse_geometry, lowest_order
-from isomortar.harness.trade.want import Want
 from isomortar.model.entities import Body, Contact, Face, Projection, RigidPlane
 from isomortar.scene.scene import Scene
+from isomortar.trade.want import Want
 
 #: Numbers of elements over the scene's own, and of load steps.
 MESHES, STEPS = (1 / 3, 1 / 2, 2 / 3, 1.0, 4 / 3, 5 / 3, 2.0, 2.5, 3.0), (1 / 8, 1 / 4, 1 / 2, 1.0, 2.0, 3.0, 4.0)
