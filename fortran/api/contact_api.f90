@@ -358,7 +358,7 @@ subroutine multiplier_rows(slave, weight, square, control_slip, metric, point_me
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: find
   use isomortar_base_status, only: status_ok, status_pattern
-  use isomortar_contact_augmentation, only: combine => multiplier_rows, law_t, response_t, trial_rows, trial_rows_summed
+  use isomortar_contact_augmentation, only: law_t, make_rows => multiplier_rows, response_t
   use isomortar_contact_control, only: control_t
   use isomortar_contact_rows, only: rows_of, rows_t
   use isomortar_contact_slave, only: slave_t
@@ -398,12 +398,7 @@ subroutine multiplier_rows(slave, weight, square, control_slip, metric, point_me
   there = rows_of(nkinds)
   status = status_pattern
   if (.not. there%slip_sum .and. any(of_rows%start /= of_trial%start)) return
-  if (there%slip_sum) then
-    call trial_rows_summed(side, control, law, state /= 0, of_rows, rows, of_neighbours, of_trial, trial, place)
-  else if (there%friction) then
-    call trial_rows(control, law, state /= 0, of_rows, rows, trial)
-  end if
-  if (place == 0) call combine(control, response, of_rows, rows, of_trial, trial, changes, place)
+  call make_rows(side, control, law, response, of_rows, rows, of_neighbours, of_trial, trial, changes, place)
   status = merge(status_pattern, status_ok, place > 0)
 end subroutine multiplier_rows
 

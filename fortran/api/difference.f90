@@ -1,11 +1,13 @@
 !> Everything of a contact pair whose derivatives the tangent is made of, as a function of positions and multipliers: projected,
 !> integrated and put through the law anew. The twin forms differences of it.
 module isomortar_api_difference
+  use iso_c_binding, only: c_double, c_int
   use isomortar_base_kinds, only: wp
   use isomortar_base_status, only: status_ok
   use isomortar_contact_augmentation, only: law_t, respond, response_t
   use isomortar_contact_blocks, only: integrate_forces
   use isomortar_contact_control, only: control_quantities, control_t, project_points
+  use isomortar_contact_friction_law, only: friction_t
   use isomortar_contact_gap_map_map, only: gap_map_t, projections_at, projections_t
   use isomortar_contact_sample, only: multipliers_t
   use isomortar_contact_slave, only: slave_t
@@ -13,7 +15,7 @@ module isomortar_api_difference
   implicit none
   private
 
-  public :: difference, evaluate_contact
+  public :: difference, evaluate_contact, fixed_of, integrate_and_respond, law_of
 
   !> What stays while positions and multipliers move.
   type, public :: fixed_t
@@ -35,11 +37,51 @@ module isomortar_api_difference
     type(projections_t) :: projections
     type(control_t) :: control
     type(response_t) :: response
+    !> Field of control slips of the paper's slip sum, else zero.
+    real(wp), allocatable :: field_slip(:, :)
     real(wp), allocatable :: coordinates(:, :)
     real(wp), allocatable :: normal_forces(:, :), tangential_forces(:, :), forces(:, :)
   end type quantities_t
 
 contains
+
+  !> What stays, from what Python hands over.
+  !> - `slave`, `map`: the slave side, and its master's gap map. `summed`: 1 for the paper's slip sum.
+  !> - `xi` (2, points), `origin` (2, points): starts of the projections, and those at the last converged load step, P.
+  !> - `had` (points): 1 where there was one.
+  function fixed_of(slave, map, xi, origin, had, summed) result(fixed)
+    type(slave_t), intent(in) :: slave
+    class(gap_map_t), intent(in) :: map
+    real(c_double), intent(in) :: xi(:, :), origin(:, :)
+    integer(c_int), intent(in) :: had(:), summed
+    type(fixed_t) :: fixed
+
+    fixed%slave = slave
+    allocate (fixed%map, source=map)
+    fixed%start = real(xi, wp)
+    fixed%origin = real(origin, wp)
+    fixed%had = had /= 0
+    fixed%summed = summed /= 0
+  end function fixed_of
+
+  !> The law without its multipliers, likewise.
+  !> - `friction`: null where there is none. `penalties`: normal and tangential, F/L^3.
+  !> - `bears` (test functions): which bear pressure. `free` (2, 2, test functions): what of their tractions supports leave.
+  !> - `elastic`: 1 where slip is elastic. `smoothing`: pressure times distance of smooth contact, F/L.
+  function law_of(friction, penalties, bears, free, elastic, smoothing) result(law)
+    class(friction_t), pointer, intent(in) :: friction
+    real(c_double), intent(in) :: penalties(2), free(:, :, :), smoothing
+    integer(c_int), intent(in) :: bears(:), elastic
+    type(law_t) :: law
+
+    if (associated(friction)) allocate (law%friction, source=friction)
+    law%normal_penalty = real(penalties(1), wp)
+    law%tangential_penalty = real(penalties(2), wp)
+    law%bears = bears /= 0
+    law%free = real(free, wp)
+    law%elastic = elastic /= 0
+    law%smoothing = real(smoothing, wp)
+  end function law_of
 
   !> Central difference (`upper` - `lower`) / (2 `step`), theory 9.4.
   elemental function difference(upper, lower, step) result(slope)
@@ -63,28 +105,15 @@ contains
     type(multipliers_t) :: pressures, tractions
     type(control_t) :: coordinates
     type(projections_t) :: absolute
-    real(wp), allocatable :: field_slip(:, :)
-    logical, allocatable :: started(:)
     type(work_t) :: work
-    integer :: n, points
 
-    n = fixed%slave%test%count
-    points = size(fixed%slave%area)
-    allocate (field_slip(2, points))
-    quantities%projections = projections_at(fixed%start)
-    allocate (started(points), source=.true.)
-    call project_points(fixed%slave, fixed%map, positions, started, fixed%origin, fixed%had, .true., quantities%projections, &
-      status, place, work)
+    call integrate_and_respond(fixed, positions, law, quantities, status, place)
     if (status /= status_ok) return
-
-    call reserve(n, points, quantities%control)
-    call control_quantities(fixed%slave, fixed%map, positions, quantities%projections, .true., quantities%control, work)
-    call reserve(n, points, coordinates)
+    call reserve(fixed%slave%test%count, size(fixed%slave%area), coordinates)
     absolute = quantities%projections
     absolute%slip = absolute%xi
     call control_quantities(fixed%slave, fixed%map, positions, absolute, .true., coordinates, work)
     quantities%coordinates = coordinates%slip
-    call respond(fixed%slave, quantities%control, law, fixed%summed, quantities%response, field_slip)
 
     pressures = fixed%frozen
     pressures%traction = 0.0_wp
@@ -94,6 +123,30 @@ contains
     call contact_forces(fixed, positions, quantities%projections, law, tractions, quantities%tangential_forces)
     call contact_forces(fixed, positions, quantities%projections, law, quantities%response%multipliers, quantities%forces)
   end subroutine evaluate_contact
+
+  !> Of the quantities: projections, control quantities and what the law makes of these.
+  !> - `fixed`, `positions` (3, control points), `law`, `quantities`, `status`, `place`: as in `evaluate_contact`.
+  subroutine integrate_and_respond(fixed, positions, law, quantities, status, place)
+    type(fixed_t), intent(in) :: fixed
+    real(wp), intent(in) :: positions(:, :)
+    type(law_t), intent(in) :: law
+    type(quantities_t), intent(out) :: quantities
+    integer, intent(out) :: status, place
+    logical, allocatable :: started(:)
+    type(work_t) :: work
+    integer :: points
+
+    points = size(fixed%slave%area)
+    quantities%projections = projections_at(fixed%start)
+    allocate (started(points), source=.true.)
+    call project_points(fixed%slave, fixed%map, positions, started, fixed%origin, fixed%had, .true., quantities%projections, &
+      status, place, work)
+    if (status /= status_ok) return
+    call reserve(fixed%slave%test%count, points, quantities%control)
+    call control_quantities(fixed%slave, fixed%map, positions, quantities%projections, .true., quantities%control, work)
+    allocate (quantities%field_slip(2, points))
+    call respond(fixed%slave, quantities%control, law, fixed%summed, quantities%response, quantities%field_slip)
+  end subroutine integrate_and_respond
 
   !> Contact forces alone.
   subroutine contact_forces(fixed, positions, projections, law, multipliers, forces)

@@ -60,7 +60,7 @@ subroutine contact_difference(slave, map, friction, x, along, step, n, xi, eleme
     status, place)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: find
-  use isomortar_api_difference, only: difference, evaluate_contact, fixed_t, quantities_t
+  use isomortar_api_difference, only: difference, evaluate_contact, fixed_of, fixed_t, law_of, quantities_t
   use isomortar_base_kinds, only: wp
   use isomortar_contact_augmentation, only: law_t
   use isomortar_contact_friction_law, only: friction_t
@@ -94,20 +94,9 @@ subroutine contact_difference(slave, map, friction, x, along, step, n, xi, eleme
   call find(map, onto, status)
   call find(friction, rubs, status)
   if (status /= 0) return
-  if (associated(rubs)) allocate (law%friction, source=rubs)
-  kept%slave = slave_side
-  allocate (kept%map, source=onto)
-  kept%start = real(xi, wp)
-  kept%origin = real(origin, wp)
-  kept%had = had /= 0
+  kept = fixed_of(slave_side, onto, xi, origin, had, summed)
   kept%frozen = multipliers_t(real(pressure, wp), real(traction, wp), state /= 0)
-  kept%summed = summed /= 0
-  law%normal_penalty = real(penalties(1), wp)
-  law%tangential_penalty = real(penalties(2), wp)
-  law%bears = bears /= 0
-  law%free = real(free, wp)
-  law%elastic = elastic /= 0
-  law%smoothing = real(smoothing, wp)
+  law = law_of(rubs, penalties, bears, free, elastic, smoothing)
   h = real(step, wp)
   do side = 1, 2
     shift = (2 * side - 3) * h
@@ -129,6 +118,56 @@ subroutine contact_difference(slave, map, friction, x, along, step, n, xi, eleme
   tangential_forces = real(difference(sides(2)%tangential_forces, sides(1)%tangential_forces, h), c_double)
   forces = real(difference(sides(2)%forces, sides(1)%forces, h), c_double)
 end subroutine contact_difference
+
+!> The tangent of a contact pair, multipliers condensed, as the kernel assembles it (isomortar_api_assembled).
+!>
+!> - `slave`, `map`, `friction`, `n`, `nquad`, `ntest`, `x`, `xi`, `origin`, `had`, `status`, `place`: as in `contact_difference`.
+!> - `summed`, `penalties`, `pressure_k`, `traction_k`, `bears`, `free`, `elastic`, `smoothing`: likewise.
+!> - `row_pattern`, `neighbours`, `wide`, `pattern`, `nkinds`, `nblocks`, `tangent`: as in `contact_blocks` and `multiplier_rows`.
+subroutine contact_tangent(slave, map, friction, x, n, xi, origin, had, nquad, summed, penalties, pressure_k, traction_k, bears, &
+    free, elastic, smoothing, ntest, row_pattern, neighbours, wide, pattern, nkinds, nblocks, tangent, status, place)
+  use iso_c_binding, only: c_double, c_int, c_int64_t
+  use isomortar_api_assembled, only: assemble_tangent, patterns_t
+  use isomortar_api_descriptors, only: find
+  use isomortar_api_difference, only: fixed_of, fixed_t, law_of
+  use isomortar_base_kinds, only: wp
+  use isomortar_contact_augmentation, only: law_t
+  use isomortar_contact_friction_law, only: friction_t
+  use isomortar_contact_gap_map_map, only: gap_map_t
+  use isomortar_contact_slave, only: slave_t
+  implicit none
+  integer(c_int64_t), intent(in) :: slave, map, friction, row_pattern, neighbours, wide, pattern
+  integer(c_int), intent(in) :: n, nquad, ntest, nkinds, nblocks, had(nquad), summed, bears(ntest), elastic
+  real(c_double), intent(in) :: x(3, n), xi(2, nquad), origin(2, nquad), penalties(2), pressure_k(ntest), traction_k(2, ntest)
+  real(c_double), intent(in) :: free(2, 2, ntest), smoothing
+  real(c_double), intent(out) :: tangent(3, 3, nblocks)
+  integer(c_int), intent(out) :: status, place
+  type(slave_t), pointer :: slave_side
+  class(gap_map_t), pointer :: onto
+  class(friction_t), pointer :: rubs
+  type(patterns_t) :: patterns
+  type(fixed_t) :: kept
+  type(law_t) :: law
+  real(wp) :: sum_of_blocks(3, 3, nblocks)
+
+  status = 0
+  place = 0
+  tangent = 0.0_c_double
+  call find(slave, slave_side, status)
+  call find(map, onto, status)
+  call find(friction, rubs, status)
+  call find(row_pattern, patterns%rows, status)
+  call find(neighbours, patterns%neighbours, status)
+  call find(wide, patterns%wide, status)
+  call find(pattern, patterns%tangent, status)
+  if (status /= 0) return
+  kept = fixed_of(slave_side, onto, xi, origin, had, summed)
+  law = law_of(rubs, penalties, bears, free, elastic, smoothing)
+  law%pressure = real(pressure_k, wp)
+  law%traction = real(traction_k, wp)
+  call assemble_tangent(kept, real(x, wp), law, patterns, nkinds, sum_of_blocks, status, place)
+  tangent = real(sum_of_blocks, c_double)
+end subroutine contact_tangent
 
 !> Feet of every slave quadrature point (isomortar_contact_control). `xi` holds starts at first.
 !>

@@ -21,7 +21,7 @@ module isomortar_contact_augmentation
   implicit none
   private
 
-  public :: condense, multiplier_rows, respond, trial_rows, trial_rows_summed
+  public :: condense, multiplier_rows, respond
 
   !> A control point whose weight w^I is below this share of what it has with all slave points has left the master.
   real(wp), parameter :: least_weight = 1.0e-10_wp
@@ -329,9 +329,36 @@ contains
     lacking = 0
   end subroutine pair_metric
 
-  !> Rows of the multipliers p, t_1, t_2 (theory 4.8, 4.9) on the pattern `wide` of the trial rows: `result` (component, multiplier,
-  !> block), F/L^3 and F/(L^2 P).
-  pure subroutine multiplier_rows(control, response, pattern, rows, wide, trial, result, lacking)
+  !> Rows of the multipliers p, t_1, t_2 (theory 4.8, 4.9), and of the trial tractions: on `wide`, which is `pattern` but with the
+  !> paper's slip sum.
+  !>
+  !> - `result` (component, multiplier, block): F/L^3 and F/(L^2 P).
+  pure subroutine multiplier_rows(slave, control, law, response, pattern, rows, neighbours, wide, trial, result, lacking)
+    type(slave_t), intent(in) :: slave
+    type(control_t), intent(in) :: control
+    type(law_t), intent(in) :: law
+    type(response_t), intent(in) :: response
+    type(pattern_t), intent(in) :: pattern, neighbours, wide
+    real(wp), intent(in) :: rows(:, :, :)
+    real(wp), intent(out) :: trial(:, :, :), result(:, :, :)
+    integer, intent(out) :: lacking
+    type(rows_t) :: there
+
+    there = rows_of(size(rows, 2))
+    trial = 0.0_wp
+    result = 0.0_wp
+    lacking = 0
+    if (there%slip_sum) then
+      call trial_rows_summed(slave, control, law, response%state /= state_open, pattern, rows, neighbours, wide, trial, lacking)
+      if (lacking > 0) return
+    else if (there%friction) then
+      call trial_rows(control, law, response%state /= state_open, pattern, rows, trial)
+    end if
+    call rows_of_law(control, response, pattern, rows, wide, trial, result, lacking)
+  end subroutine multiplier_rows
+
+  !> Rows of the multipliers from those of the trial tractions.
+  pure subroutine rows_of_law(control, response, pattern, rows, wide, trial, result, lacking)
     type(control_t), intent(in) :: control
     type(response_t), intent(in) :: response
     type(pattern_t), intent(in) :: pattern, wide
@@ -344,8 +371,8 @@ contains
 
     there = rows_of(size(rows, 2))
     allocate (columns(max(maxval(pattern%column), maxval(wide%column))))
-    if (contracts) call require(size(rows, 3) == size(pattern%column), "multiplier_rows: rows are those of a pattern")
-    if (contracts) call require(size(result, 3) == size(wide%column), "multiplier_rows: results are those of a pattern")
+    if (contracts) call require(size(rows, 3) == size(pattern%column), "rows_of_law: rows are those of a pattern")
+    if (contracts) call require(size(result, 3) == size(wide%column), "rows_of_law: results are those of a pattern")
     columns = 0
     result = 0.0_wp
     do i = 1, size(response%state)
@@ -368,7 +395,7 @@ contains
       end do
     end do
     lacking = 0
-  end subroutine multiplier_rows
+  end subroutine rows_of_law
 
   !> Add sum_I <R^I dg> Dp^I + <R^I ds^a> Dt_a^I (theory 4.8) to a matrix of blocks.
   !>

@@ -20,6 +20,7 @@ from isomortar._bindings import (
     MasterArrays,
     MaterialArrays,
     PatchArrays,
+    Pattern,
     PlaneArrays,
     Projections,
     Response,
@@ -140,6 +141,47 @@ def contact_difference(
     )  # fmt: skip
     _check(status, place)
     return ContactChange(*[np.ascontiguousarray(change.T) for change in changes]), switched
+
+
+def contact_tangent(
+    slave: SlaveArrays,
+    master: MasterArrays,
+    positions: FloatArray,
+    projections: Projections,
+    origin: FloatArray,
+    had: np.ndarray,
+    law: Law,
+    kinds: int,
+    row_pattern: Pattern,
+    neighbours: Pattern,
+    wide: Pattern,
+    pattern: Pattern,
+) -> FloatArray:
+    """The tangent of a contact pair as the kernel assembles it, multipliers condensed, shape (blocks of `pattern`, 3, 3).
+
+    Parameters
+    ----------
+    kinds : int
+        Of constraint rows.
+    row_pattern, neighbours, wide, pattern : Pattern
+        As the kernel has them (`isomortar._bindings.contact_blocks`, `multiplier_rows`).
+
+    Others: see `contact_difference`.
+
+    Raises
+    ------
+    KernelError
+        A projection is lost, or a pattern lacks a block.
+    """
+    tangent, status, place = _extended.contact_tangent(
+        _DESCRIPTORS.handle("slave", slave, SlaveArrays), _DESCRIPTORS.handle("master", master, PlaneArrays, FaceArrays),
+        _DESCRIPTORS.handle("law.friction", law.friction, FrictionArrays), positions.T, projections.xi.T, origin.T, had,
+        int(law.summed), law.factors, law.pressure, law.base.T, law.bears, law.free.T, int(law.elastic), law.smoothing,
+        *(_DESCRIPTORS.handle("pattern", arrays, Pattern) for arrays in (row_pattern, neighbours, wide, pattern)),
+        kinds, len(pattern.column),
+    )  # fmt: skip
+    _check(status, place)
+    return np.ascontiguousarray(tangent.T)
 
 
 def project_points(slave: SlaveArrays, master: MasterArrays, positions: FloatArray, origin: FloatArray, had: IntArray) -> Projections:

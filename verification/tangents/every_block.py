@@ -53,22 +53,21 @@ PARTS = (
 _ROUND_OFF = Bound(at_most=BOUND, reason="round-off: a block of double precision against differences of a twin in extended precision")
 
 
-def all_blocks(slip_sum: str) -> list[PartBlocks]:
-    """Blocks of the scene, uneven by random moves of all control points, with open, sticking and slipping ones in turn.
+def uneven(*overrides: str) -> tuple[Equilibrium, Visit]:
+    """The scene, uneven by random moves of all control points, with open, sticking and slipping ones in turn.
 
     Every third quadrature point has no history, as where it comes over the master's edge: no slip is counted there.
     """
-    problem = Scene.from_toml(_SCENE, overrides=[f"solver.slip_sum={slip_sum}"]).problem()
+    problem = Scene.from_toml(_SCENE, overrides=overrides).problem()
     equilibrium = Equilibrium(replace(problem, settings=replace(problem.settings, method="uzawa")), Ledger())
     pair, state = equilibrium.pairs[0], equilibrium.initial_state()
     positions = state.positions + 0.01 * np.random.default_rng(1).standard_normal(state.positions.shape)
-    n = len(pair.pair.slave.point)
+    n = pair.pair.slave.test.count
     begun = state.contacts[0]
     begun = replace(begun, projected=np.resize(np.array([1, 0, 1], np.int32), len(begun.projected)))
     law = pair.law(np.array([20.0, 10.0]), np.zeros(n), np.zeros((n, 2)))
     pressure, length = (np.resize(np.array(pattern), n) for pattern in ((-1.0, 1.0, 0.7), (0.0, 0.5, 2.0)))
-    visit = placed(pair, positions, PairVisit(begun, law), pressure, length)
-    return tangent_blocks(equilibrium, Visit(positions, (visit,)))
+    return equilibrium, Visit(positions, (placed(pair, positions, PairVisit(begun, law), pressure, length),))
 
 
 def planted(blocks: PartBlocks) -> list[bool]:
@@ -97,7 +96,7 @@ def every_block(slip_sum: str) -> dict[str, float | list[float]]:
 
     Then, part by part: derivatives without a block, and the numbers of planted faults within and beyond the bound.
     """
-    blocks = all_blocks(slip_sum)
+    blocks = tangent_blocks(*uneven(f"solver.slip_sum={slip_sum}"))
     seen = [planted(part) for part in blocks]
     return {part.part: float(part.errors.max()) for part in blocks} | {
         "outside": [part.outside for part in blocks],

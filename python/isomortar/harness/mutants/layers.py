@@ -73,6 +73,7 @@ LAYERS = {
                 "base/status.f90": "names of status codes: any numbers do",
                 "sparse/cholmod.f90": "declarations of a C library",
                 "sparse/umfpack.f90": "declarations of a C library",
+                "api/assembled.f90": "of the extended-precision twin alone",
                 "api/difference.f90": "of the extended-precision twin alone",
                 "api/extended_api.f90": "of the extended-precision twin alone",
                 "api/precision_api.f90": "what a kernel says about itself",
