@@ -1,0 +1,64 @@
+"""Write what a results file holds into docs/results.md, as a file itself says it: ``python tools/document_results.py``."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import h5py
+
+import isomortar
+
+PAGE = Path(__file__).parent.parent / "docs" / "results.md"
+_BEGIN, _END = "<!-- tables: python tools/document_results.py -->\n", "<!-- end of the tables -->\n"
+#: Friction, so that all there is of contact is written; two steps, so that there are rates; Uzawa's method, for its augmentations.
+_SCENE = """
+format = 1
+solver.method = "uzawa"
+bodies.block.geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }
+contacts.floor = { slave = "block.w0", plane = { point = [0, 0, 0], normal = [0, 0, 1] }, friction = 0.5 }
+supports.top.face = "block.w1"
+stages = [{ name = "press", steps = 2, motions.top.translate = [0, 0, -0.1] }]
+"""
+#: Names that a scene gives.
+_GIVEN = {"top": "SUPPORT", "floor": "CONTACT", "0": "BODY"}
+
+
+def tables() -> str:
+    """A table for each group of a results file: datasets with type, unit and meaning, in alphabetical order."""
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "results.h5"
+        isomortar.run(isomortar.Scene.from_toml(_SCENE), path)
+        with h5py.File(path) as file:
+            rows: dict[str, list[str]] = {}
+            file.visititems(lambda name, entry: _note(rows, name, entry))
+    return "\n".join(
+        "\n".join([f"### `/{group}`", "", "| dataset | type | unit | what |", "|---|---|---|---|", *rows[group], ""]) for group in rows
+    )
+
+
+def _note(rows: dict[str, list[str]], name: str, entry: h5py.Group | h5py.Dataset) -> None:
+    if not isinstance(entry, h5py.Dataset):
+        return
+    *groups, last = name.split("/")
+    group = "/".join(_GIVEN.get(part, part) for part in groups)
+    text = f"| `{last}` | {_type(entry)} | {entry.attrs['unit']} | {entry.attrs['description']} |"
+    rows.setdefault(group, []).append(text)
+
+
+def _type(entry: h5py.Dataset) -> str:
+    """Type of an entry, and how many make a row where that does not depend on the scene; of tables their columns."""
+    if entry.dtype.names:
+        return ", ".join(f"`{name}`" for name in entry.dtype.names)
+    kind = "text" if entry.dtype.kind in "OS" else str(entry.dtype)
+    return kind + "".join(f" × {size}" for size in entry.shape[1:] if size in (2, 3))
+
+
+def page(text: str) -> str:
+    """The page with tables as they are now."""
+    return re.sub(f"(?s){_BEGIN}.*{_END}", lambda _: f"{_BEGIN}\n{tables()}\n{_END}", text)
+
+
+if __name__ == "__main__":
+    PAGE.write_text(page(PAGE.read_text()))
