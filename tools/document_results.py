@@ -52,7 +52,7 @@ def _type(entry: h5py.Dataset) -> str:
     if entry.dtype.names:
         return ", ".join(f"`{name}`" for name in entry.dtype.names)
     kind = "text" if entry.dtype.kind in "OS" else str(entry.dtype)
-    return kind + "".join(f" × {size}" for size in entry.shape[1:] if size in (2, 3))
+    return kind + "".join(f" x {size}" for size in entry.shape[1:] if size in (2, 3))
 
 
 def page(text: str) -> str:

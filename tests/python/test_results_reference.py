@@ -10,7 +10,8 @@ TOOL = Path(__file__).parents[2] / "tools" / "document_results.py"
 
 def test_the_reference_of_results_files_is_what_a_file_says() -> None:
     spec = importlib.util.spec_from_file_location("document_results", TOOL)
-    assert spec and spec.loader
+    assert spec
+    assert spec.loader
     tool = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(tool)
     text = tool.PAGE.read_text()
