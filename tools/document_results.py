@@ -9,6 +9,7 @@ from tempfile import TemporaryDirectory
 import h5py
 
 import isomortar
+from isomortar.solve.timing import COUNTERS
 
 PAGE = Path(__file__).parent.parent / "docs" / "results.md"
 _BEGIN, _END = "<!-- tables: python tools/document_results.py -->\n", "<!-- end of the tables -->\n"
@@ -43,7 +44,8 @@ def _note(rows: dict[str, list[str]], name: str, entry: h5py.Group | h5py.Datase
         return
     *groups, last = name.split("/")
     group = "/".join(_GIVEN.get(part, part) for part in groups)
-    text = f"| `{last}` | {_type(entry)} | {entry.attrs['unit']} | {entry.attrs['description']} |"
+    what = COUNTERS[last] if group == "counters" else entry.attrs["description"]  # a file has one sentence for all that is counted
+    text = f"| `{last}` | {_type(entry)} | {entry.attrs['unit']} | {what} |"
     rows.setdefault(group, []).append(text)
 
 
