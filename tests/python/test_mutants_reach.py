@@ -6,7 +6,7 @@ import pytest
 
 from isomortar.harness.collection import collect
 from isomortar.harness.mutants.bench import Bench, freeze
-from isomortar.harness.mutants.reach import statements_at, without_lines
+from isomortar.harness.mutants.reach import statements_at, that_may_run, without_lines
 
 STATEMENTS = """LIMIT = (
     1
@@ -53,6 +53,14 @@ def line_of(number):
 def test_lines_are_of_all_their_statements():
     assert statements_at(STATEMENTS, [9, 15]) == {*range(8, 17)}
     assert statements_at(STATEMENTS, [15, 1]) is None
+
+
+def test_what_no_cell_runs_may_run_at_an_import():
+    ran = {"one": {"a.py": [1, 2], "b.py": [7]}, "two": {"a.py": [2, 3]}}
+    assert that_may_run(ran, "a.py", {1}) == {"one"}
+    assert that_may_run(ran, "a.py", {2, 9}) == {"one", "two"}
+    assert that_may_run(ran, "b.py", None) == {"one", "two"}
+    assert that_may_run(ran, "b.py", {8}) == {"one", "two"}
 
 
 RUN_CASE = """

@@ -206,8 +206,7 @@ class Campaign:
 
     def _able(self, fault: Fault) -> set[str]:
         """Cells that may be red on a fault."""
-        lines = self._workshop.statements(fault)
-        return {name for name, ran in self._ran.items() if lines is None or not lines.isdisjoint(ran.get(fault.file, ()))}
+        return that_may_run(self._ran, fault.file, self._workshop.statements(fault))
 
     def _remember(self, program: str, finding: Finding) -> None:
         entry = {"killer": finding.killer, "found": finding.found, "passed": {name: self._keys[name] for name in finding.passed}}

@@ -48,6 +48,15 @@ def statements_at(text: str, lines: Iterable[int]) -> Set[int] | None:
     return found
 
 
+def that_may_run(ran: Mapping[str, Lines], file: str, lines: Set[int] | None) -> set[str]:
+    """Cells, of those with the lines that they `ran`, that may run some lines of a file; all, where these are none in a function.
+
+    So may all where no cell runs any of them: functions are called when files are imported, too, before a cell begins.
+    """
+    run_it = {name for name, files in ran.items() if lines is None or not lines.isdisjoint(files.get(file, ()))}
+    return run_it or set(ran)
+
+
 def _lines_of(node: ast.stmt) -> range:
     """Lines of a statement, decorators included."""
     first = min((decorator.lineno for decorator in getattr(node, "decorator_list", [])), default=node.lineno)

@@ -1,0 +1,284 @@
+"""What the program says, word by word, where `test_sentences.py` does not hear it: refusals, causes, words on figures."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+import splinepy
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+
+from isomortar import Results, Scene, plot
+from isomortar._codes import Status
+from isomortar.errors import FoldedElementError
+from isomortar.geometry import primitives
+from isomortar.geometry.halves import upper_half
+from isomortar.geometry.patch import Direction, Patch
+from isomortar.geometry.refinement import mesh
+from isomortar.model import checks
+from isomortar.model.contact_checks import check_contacts
+from isomortar.model.enforcement.face import SlaveFace
+from isomortar.model.enforcement.side import pointwise
+from isomortar.model.entities import Body
+from isomortar.model.numbering import Numbering
+from isomortar.model.raised import lowered
+from isomortar.results import files
+from isomortar.results.writer import ResultsWriter
+from isomortar.scene.source import apply_overrides
+from isomortar.solve import doubts, feet, singular, system
+from isomortar.solve.advice import by_default
+from isomortar.solve.equilibrium import Equilibrium
+from isomortar.solve.simulation import Simulation
+from isomortar.solve.singular import PairConditions, explain
+from isomortar.solve.timing import Ledger
+from results_samples import problem, step_result
+from test_advice import warnings
+from test_causes import said
+from test_causes import scene as causes
+from test_feet import cone, loaded, on_the_axis, ridge
+from test_poles import drawn_together
+from test_scene_contacts import LAGRANGE, PAIR, PRESS
+from test_sentences import SENTENCES, Told, refusal, without_digits
+from test_sides import ALL
+from test_sides import GOOD as SIDES
+from test_sides import PAIR as ROW
+from test_singular import BLOCK, CORNER, FROM_BESIDE, error
+from test_symmetry import PLANE, REFUSED
+
+
+def of_geometry(_: pytest.MonkeyPatch) -> Told:
+    """Directions, primitives, meshes and halves that there are not."""
+    line = np.array([0.0, 0.0, 1.0, 1.0])
+    yield "family", refusal(lambda: Direction("B", 1, line))  # type: ignore[arg-type]
+    yield "order", refusal(lambda: Direction("L", 5, line))
+    yield "knots: few", refusal(lambda: Direction("N", 2, line))
+    yield "knots: not a list", refusal(lambda: Direction("N", 1, np.array([line])))
+    yield "knots: fall", refusal(lambda: Direction("N", 1, np.array([0.0, 0.0, 0.7, 0.4, 1.0, 1.0])))
+    yield "knots: not open", refusal(lambda: Direction("N", 1, np.array([0.0, 0.1, 0.9, 1.0])))
+    yield "knots: torn", refusal(lambda: Direction("N", 1, np.array([0.0, 0.0, 0.5, 0.5, 1.0, 1.0])))
+    yield "boundaries", refusal(lambda: Direction("L", 1, line))
+    yield "box", refusal(lambda: primitives.box((0, 0, 0), (1, 1, 0)))
+    yield "box far away", refusal(lambda: primitives.box((1e16, 0, 0), (1e16, 1, 1)))
+    yield "bowl: width", refusal(lambda: primitives.bowl((0, 0), 0.0, 0, 0, 1))
+    yield "bowl: top", refusal(lambda: primitives.bowl((0, 0), 1.0, 0, 0.25, 0.5))
+    yield "ring: inner", refusal(lambda: primitives.ring((0, 0, 0), 0.0, 1, 1))
+    yield "ring: outer", refusal(lambda: primitives.ring((0, 0, 0), 1.0, 1, 1))
+    yield "ring: width", refusal(lambda: primitives.ring((0, 0, 0), 1.0, 2, -1))
+    box = primitives.box((0, 0, 0), (1, 1, 1))
+    meshed = mesh(box, ("L", "N", "N"), (1, 1, 1), (2, 2, 2))
+    yield "mesh of a mesh", refusal(lambda: mesh(meshed, ("L", "N", "N"), (2, 1, 1), (2, 2, 2)))
+    ring = primitives.ring((0, 0, 0), 1, 2, 1)
+    yield "elements", refusal(lambda: mesh(ring, ("N", "N", "N"), (2, 1, 1), (6, 1, 1)))
+    yield "half", refusal(lambda: upper_half(meshed, 0, 0.4))
+    row = mesh(box, ("L", "L", "L"), (1, 1, 1), (4, 1, 1))
+    points = row.control_points.copy()
+    points[:, 0] = np.resize([-2.0, 0.5, 0.0, -0.5, 2.0], len(points))
+    yield "half that is folded", refusal(lambda: upper_half(replace(row, control_points=points), 0, 0.0))
+    points = np.where(np.arange(24).reshape(8, 3) == 5, np.nan, box.control_points)
+    yield "points", refusal(lambda: Patch(box.directions, points, box.weights))
+    yield "few points", refusal(lambda: Patch(box.directions, points[:7], box.weights))
+    yield "few weights", refusal(lambda: Patch(box.directions, box.control_points, box.weights[:7]))
+    yield "no weight", refusal(lambda: Patch(box.directions, box.control_points, 0.0 * box.weights))
+    raised = Direction("N", 2, np.array([0.0, 0, 0, 0.5, 1, 1, 1]))
+    yield "raised", refusal(lambda: lowered(raised, 1))
+    Path("bad.json").write_text("{")
+    flat = splinepy.BSpline([1, 1], [line, line], np.zeros((4, 2)))
+    splinepy.io.json.export("flat.json", [flat, flat])
+    yield "no volume", _of(_FILE.replace("bad", "flat"))
+    yield "file", re.sub(r"format\): .*", "format): #", _of(_FILE))
+
+
+_FILE = """
+format = 1
+bodies.a.file = "bad.json"
+supports.top.face = "a.w1"
+stages = [{ name = "pull", steps = 1, motions.top.translate = [0, 0, 0.1] }]
+"""
+
+
+def of_problems(patch: pytest.MonkeyPatch) -> Told:
+    """Bodies and contacts that cannot be meant, or that no number holds."""
+    yield "digits", _of(PRESS, "bodies.block.geometry.centre=[1e15,0]", "contacts.floor.plane.point=[1e15,0,0]")
+    pair = Scene.from_toml(PAIR).problem()
+    for name, body, face, change in (
+        ("averaged normals at a pole", "lower", "w1", {"projection": "averaged"}),
+        ("points at a pole", "upper", "w0", {"enforcement": "knots"}),
+    ):
+        asked = replace(pair, contacts=(replace(pair.contacts[0], **change),))  # type: ignore[arg-type]
+        yield name, refusal(partial(check_contacts, drawn_together(asked, body, face, np.s_[0, :])))
+    averaged = ["contacts.pair.projection=averaged", "contacts.pair.friction=0.1"]
+    yield "averaged normals and the paper's sum", _of(PAIR, *averaged, "solver.slip_sum=paper")
+    yield "averaged normals of a plane", _of(PRESS, "contacts.floor.projection=averaged")
+    yield "abscissae", _of(LAGRANGE, "contacts.pair.enforcement=demko")
+    yield "conditions", _of(PAIR, "contacts.pair.enforcement=kts")
+    dual = "contacts.pair.enforcement=dual"
+    yield "dual: points", _of(PAIR, dual, "contacts.pair.quadrature=[3,2]")
+    yield "dual: sum", _of(PAIR, dual, "solver.slip_sum=paper", "contacts.pair.friction=0.1")
+    yield "cells on a plane", _of(PRESS, "contacts.floor.subcells=1")
+    yield "cells at points", _of(PAIR, "contacts.pair.subcells=1", "contacts.pair.enforcement=greville")
+    face = SlaveFace(replace(pair.contacts[0], enforcement="greville"), pair, Numbering(pair))
+    yield "areas", refusal(lambda: pointwise(face, np.array([[0.25, 0.5]]), np.array([-1e-3])))
+    joints = '["a.v1", "c.v0"], ["b.v1", "d.v0"]]'
+    yield "torn side", _of(SIDES.replace(ROW, ALL).replace('["a.v1", "c.v0"]]', joints))
+    block = Scene.from_toml(PAIR, overrides=["bodies.lower.mesh={ order = 2, contact_order = 3, elements = 2 }"]).problem()
+    lower = block.body("lower")
+    bent = replace(lower.patch, control_points=lower.patch.control_points + 0.01 * np.sin(7.0 * lower.patch.control_points[:, ::-1]))
+    changed = replace(block, bodies=tuple(replace(b, patch=bent) if b.name == "lower" else b for b in block.bodies))
+    yield "raised", refusal(lambda: Simulation(changed))
+    upper = pair.body("upper").patch
+    points = upper.control_points.copy()
+    points[4] += [0.5, 0.5, 0.5]
+    torn = replace(
+        pair, bodies=tuple(replace(b, patch=replace(upper, control_points=points)) if b.name == "upper" else b for b in pair.bodies)
+    )
+    yield "folded", refusal(lambda: Simulation(torn))
+    for name, (text, planes, *_) in REFUSED.items():
+        yield f"symmetry: {name}", _of(text, f"symmetry={{ {planes} }}")
+    raised = "bodies.block.mesh={ order = 2, contact_order = 3, elements = [4, 4, 2] }"
+    yield "symmetry: raised", _of(PLANE, raised, "symmetry={ x = 0.0 }")
+    yield "symmetry: closed", _of(_TYRE, "symmetry={ x = 0.0 }")
+    patch.setattr(checks, "memory_of_machine", lambda: 1e3)
+    yield "memory", re.sub(r"[\d.e-]+ GB", "# GB", _of(PRESS))
+
+
+_TYRE = """
+format = 1
+bodies.tyre.geometry = { kind = "ring", inner = 1.0, outer = 2.0, width = 1.0 }
+bodies.tyre.mesh.elements = [8, 1, 2]
+contacts.floor = { slave = "tyre.v1", plane = { point = [0, 0, -2] } }
+supports.rim.face = "tyre.v0"
+stages = [{ name = "press", steps = 1, motions.rim.translate = [0, 0, -0.1] }]
+"""
+
+
+def _of(text: str, *overrides: str) -> str:
+    return refusal(lambda: Scene.from_toml(text, overrides=overrides).problem())
+
+
+def of_files(_: pytest.MonkeyPatch) -> Told:
+    """Files that are no scene, or no results, and places where nothing can be written."""
+    for name, content in {"UTF-16": "# a".encode("utf-16"), "Latin-1": "# ä".encode("latin-1")}.items():
+        Path("scene.toml").write_bytes(content)
+        yield name, refusal(lambda: Scene.load("scene.toml"))
+    Path("scene.toml").write_text("format = = 1")
+    yield "no TOML", refusal(lambda: Scene.load("scene.toml"))
+    yield "value", refusal(lambda: apply_overrides({"solver": {}}, ["solver.max_cuts=[1"]))
+    writer = ResultsWriter("run.h5", problem(), "", "0", states="last")
+    yield "plotted: no step", refusal(lambda: plot("run.h5", "figures"))
+    yield "contact: no step", refusal(lambda: Results("run.h5").contact("tread"))
+    writer.recorded(step_result(1))
+    writer.recorded(step_result(2))
+    yield "not kept", refusal(lambda: Results("run.h5").step(1))
+    for name, key, value in (("another format", "format", "waves"), ("of another version", "format_version", 1)):
+        Path("other.h5").write_bytes(Path("run.h5").read_bytes())
+        with h5py.File("other.h5", "r+") as file:
+            file.attrs[key] = value
+        Path("other.h5").write_bytes(files.sealed(Path("other.h5").read_bytes()))
+        yield name, refusal(lambda: Results("other.h5"))
+    Path("cut.h5").write_bytes(Path("run.h5").read_bytes()[:-1])
+    yield "damaged", refusal(lambda: files.read(Path("cut.h5")))
+    yield "gone", refusal(lambda: files.read(Path("gone.h5")))
+    with h5py.File("other.h5", "r+") as file:
+        file.attrs["format_version"] = 3
+        del file["curves/time"]
+    Path("other.h5").write_bytes(files.sealed(Path("other.h5").read_bytes()))
+    yield "without a curve", re.sub(r"\(.*?\),", "(#),", refusal(lambda: Results("other.h5").curve("time")))
+    Path("there").mkdir()
+    yield "kept", refusal(lambda: files.replace(Path("there"), b""))
+    Path("file").touch()
+    yield "no folder", refusal(lambda: files.make_folder(Path("file/folder")))
+    yield "not written", refusal(lambda: files.replace(Path("file/new.h5"), b""))
+    with files.claimed(Path("run.h5")):
+        yield "claimed", refusal(lambda: files.claimed(Path("run.h5")).__enter__())
+
+
+def on_the_way(patch: pytest.MonkeyPatch) -> Told:
+    """What stops a run."""
+    yield "foot on an axis", refusal(lambda: loaded(on_the_axis()))
+    yield "foot on a line", refusal(lambda: loaded(ridge(0.3, 0.41)))
+    yield "foot beside a pole", refusal(lambda: loaded(cone(0.3)))
+    with pytest.MonkeyPatch.context() as within:
+        within.setitem(feet._DOUBTS, int(Status.DEGENERATE_SURFACE), feet._DOUBTS[Status.LOST_PROJECTION])
+        yield "foot that does not settle", refusal(lambda: loaded(on_the_axis()))
+    drag = "stages.press.motions.top.translate=[0.2,0,-0.1]"
+    few = ["solver.path_tolerance=1e-9", "solver.max_cuts=0", "contacts.pair.friction=0.3", drag]
+    yield "path", without_digits(_stopped(PAIR, *few))
+    few = ["solver.max_iterations=1", "solver.max_cuts=0"]
+    yield "Newton", without_digits(_stopped(PRESS, *few))
+    patch.setattr(system.constants, "REFUSED_ABOVE", -1.0)
+    patch.setattr(system.constants, "REFINED_ABOVE", -1.0)
+    yield "digits", without_digits(_stopped(PRESS, "solver.max_cuts=0"))
+
+
+def _stopped(text: str, *overrides: str) -> str:
+    return refusal(lambda: list(Simulation(Scene.from_toml(text, overrides=overrides).problem()).run()))
+
+
+def of_causes(patch: pytest.MonkeyPatch) -> Told:
+    """What may be behind it, and warnings that no other test hears."""
+    simulation = causes()
+    positions = simulation.state.positions.copy()
+    positions[np.unique(simulation.equilibrium.numbering.points["lower"]), 2] *= 0.05
+    simulation.state = replace(simulation.state, positions=positions)
+    (yield "pressed flat", *said(simulation))
+    yield "turns", re.sub(r"\(.*?\)", "(#)", error(BLOCK + 'supports.top = { face = "block.w1", components = ["z"] }'))
+    yield "over an edge", error(FROM_BESIDE).partition("to iteration. ")[2]
+    same = ["contacts.wall.slave='block.w0'", "contacts.wall.plane={ point = [1, 0, 0] }"]
+    yield "repeat others", re.sub(r"\d+|'\w+'", "#", error(CORNER, *same).partition("the first of them ")[2])
+    equilibrium = Equilibrium(Scene.from_toml(BLOCK + 'supports.top.face = "block.w1"').problem(), Ledger())
+    reference, numbering = equilibrium.numbering.reference, equilibrium.numbering
+    yield "nothing", str(explain(0.0, np.full(3, np.nan), np.arange(3), reference, numbering, []))
+    pair, start = equilibrium.pairs[0], equilibrium.initial_state().contacts[0]
+    conditions = PairConditions(pair, np.full(3 * pair.pair.slave.test.count, -1), pair.kinematics(reference, start))
+    held = np.zeros(reference.size, dtype=np.bool_)
+    held[3 * pair.pair.slave.point[0]] = True
+    yield "prescribed", str(singular._repeated("singular", conditions, np.arange(9), [conditions], held))
+    (yield "kinks", *by_default(Scene.from_toml(LAGRANGE).problem().contacts[0]))
+    (yield "spans", *warnings(_GRADED))
+    die = "bodies.lower.rigid=true"
+    yield "nothing moves", warnings(PAIR, [die, "supports.top.face=upper.w0"])[0]
+
+    def fold(body: Body) -> float:
+        raise FoldedElementError(f"element 0 of {body.name} is folded", 0)
+
+    patch.setattr(doubts, "quadrature_error", fold)
+    (yield "between Gauss points", *warnings(PRESS))
+
+
+_GRADED = """
+format = 1
+bodies.a.patch.order = [1, 1, 1]
+bodies.a.patch.knots = [[0, 0, 1e-9, 1, 1], [0, 0, 1, 1], [0, 0, 1, 1]]
+bodies.a.patch.control_points = [[0, 0, 0], [1e-9, 0, 0], [1, 0, 0], [0, 1, 0], [1e-9, 1, 0], [1, 1, 0],
+                                 [0, 0, 1], [1e-9, 0, 1], [1, 0, 1], [0, 1, 1], [1e-9, 1, 1], [1, 1, 1]]
+supports = { top.face = "a.w1", base.face = "a.w0" }
+stages = [{ name = "pull", steps = 1, motions.top.translate = [0, 0, 0.1] }]
+"""
+
+
+def on_figures(patch: pytest.MonkeyPatch) -> Told:
+    """All words on figures."""
+    found: dict[str, set[str]] = {}
+
+    def read(figure: Figure, path: Path, **_: object) -> None:
+        found.setdefault(Path(path).stem, set()).update(text.get_text() for text in figure.findobj(Text))
+
+    writer = ResultsWriter("drawn.h5", problem(), "", "0")
+    writer.recorded(step_result(1))
+    patch.setattr(Figure, "savefig", read)
+    plot("drawn.h5", "figures")
+    for name, texts in found.items():
+        yield name, " | ".join(sorted(text for text in texts if re.search("[a-z]", text)))
+
+
+@pytest.mark.parametrize("kind", [of_geometry, of_problems, of_files, on_the_way, of_causes, on_figures], ids=lambda kind: kind.__name__)
+def test_every_word(kind: Callable[[pytest.MonkeyPatch], Told], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert dict(kind(monkeypatch)) == SENTENCES[kind.__name__]
