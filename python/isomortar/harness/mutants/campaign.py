@@ -20,7 +20,7 @@ from isomortar.harness.mutants.build import content, workshop_of
 from isomortar.harness.mutants.faults import Fault
 from isomortar.harness.mutants.gate import Finding, Gate
 from isomortar.harness.mutants.layers import Layer
-from isomortar.harness.mutants.reach import Lines, without_lines
+from isomortar.harness.mutants.reach import Lines, that_may_run, without_lines
 from isomortar.harness.report import sentence
 from isomortar.harness.store import cell_key
 
