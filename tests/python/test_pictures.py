@@ -1,4 +1,4 @@
-"""Pictures look as they did when somebody looked at them: `pictures/`, without words. To make them anew: python tests/python/test_pictures.py"""
+"""Pictures look as they did when somebody looked at them: `pictures/`, without words. Run as a program this draws them anew."""
 
 from __future__ import annotations
 

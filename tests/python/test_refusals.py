@@ -65,6 +65,7 @@ def of_geometry(_: pytest.MonkeyPatch) -> Told:
     yield "knots: torn", refusal(lambda: Direction("N", 1, np.array([0.0, 0.0, 0.5, 0.5, 1.0, 1.0])))
     yield "boundaries", refusal(lambda: Direction("L", 1, line))
     yield "box", refusal(lambda: primitives.box((0, 0, 0), (1, 1, 0)))
+    yield "box upside down", refusal(lambda: primitives.box((0, 0, 0), (-0.5, -0.5, -0.5)))
     yield "box far away", refusal(lambda: primitives.box((1e16, 0, 0), (1e16, 1, 1)))
     yield "bowl: width", refusal(lambda: primitives.bowl((0, 0), 0.0, 0, 0, 1))
     yield "bowl: top", refusal(lambda: primitives.bowl((0, 0), 1.0, 0, 0.25, 0.5))

@@ -1,5 +1,6 @@
 """Scenes that are their own mirror images: a half or a quarter is computed, and forces are the whole's."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,9 @@ from isomortar.geometry.patch import Direction, Patch
 from isomortar.geometry.primitives import bowl, box, ring
 from isomortar.geometry.refinement import mesh
 from isomortar.geometry.splines import Spline
+from isomortar.model.entities import Face
 from isomortar.model.origin import about
+from isomortar.model.symmetry import _faces_in_use
 from isomortar.scene import Scene
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.record import StepResult
@@ -280,3 +283,13 @@ def test_tangents_are_exact_beside_the_plane(slip_sum: str, projection: str) -> 
     expected = (tractions(1e-6) - tractions(-1e-6)) / 2e-6
     np.testing.assert_allclose(changes, expected, rtol=0, atol=1e-7 * np.abs(expected).max())
     assert np.abs(expected[at_plane]).max() > 0.01 * np.abs(expected).max()
+
+
+def test_faces_in_use_are_named_by_their_keys() -> None:
+    """Of slaves, masters, supports and glue."""
+    problem = replace(Scene.from_toml(ABOVE_ANOTHER).problem(), glue=((Face("block", "u1"), Face("lower", "u0")),))
+    keys = [(key, face.words) for key, face in _faces_in_use(problem)]
+    assert ("contacts.floor.slave", "block.w0") in keys
+    assert ("contacts.floor.master", "lower.w1") in keys
+    assert ("supports.top.face", "block.w1") in keys
+    assert ("glue.0", "block.u1") in keys
