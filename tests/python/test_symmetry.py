@@ -287,7 +287,7 @@ def test_tangents_are_exact_beside_the_plane(slip_sum: str, projection: str) -> 
 
 def test_faces_in_use_are_named_by_their_keys() -> None:
     """Of slaves, masters, supports and glue."""
-    problem = replace(Scene.from_toml(ABOVE_ANOTHER).problem(), glue=((Face("block", "u1"), Face("lower", "u0")),))
+    problem = replace(Scene.from_toml(ABOVE_ANOTHER + UNDER).problem(), glue=((Face("block", "u1"), Face("lower", "u0")),))
     keys = [(key, face.words) for key, face in _faces_in_use(problem)]
     assert ("contacts.floor.slave", "block.w0") in keys
     assert ("contacts.floor.master", "lower.w1") in keys
