@@ -53,15 +53,16 @@ PARTS = (
 _ROUND_OFF = Bound(at_most=BOUND, reason="round-off: a block of double precision against differences of a twin in extended precision")
 
 
-def uneven(*overrides: str) -> tuple[Equilibrium, Visit]:
-    """The scene, uneven by random moves of all control points, with open, sticking and slipping ones in turn.
+def uneven(*overrides: str, rough: float = 0.01, lift: float = 0.0) -> tuple[Equilibrium, Visit]:
+    """The scene, `rough` by random moves of all control points, the slave lifted, with open, sticking and slipping ones in turn.
 
     Every third quadrature point has no history, as where it comes over the master's edge: no slip is counted there.
     """
     problem = Scene.from_toml(_SCENE, overrides=overrides).problem()
     equilibrium = Equilibrium(replace(problem, settings=replace(problem.settings, method="uzawa")), Ledger())
     pair, state = equilibrium.pairs[0], equilibrium.initial_state()
-    positions = state.positions + 0.01 * np.random.default_rng(1).standard_normal(state.positions.shape)
+    positions = state.positions + rough * np.random.default_rng(1).standard_normal(state.positions.shape)
+    positions[equilibrium.numbering.points["slave"], 2] += lift
     n = pair.pair.slave.test.count
     begun = state.contacts[0]
     begun = replace(begun, projected=np.resize(np.array([1, 0, 1], np.int32), len(begun.projected)))

@@ -25,8 +25,8 @@ from isomortar.harness.measurement import Measurement
 _PACKAGE = Path(__file__).parent.parent
 #: Names what cases declare themselves with.
 _ENTRANCE = _PACKAGE / "harness" / "__init__.py"
-#: What of the package does not touch a case's numbers.
-_ASIDE = tuple(_PACKAGE / name for name in ("accuracy", "cli", "harness", "program", "trade", "__main__.py"))  # but what a case imports
+#: What of the package does not touch the numbers of a case that does not import it.
+_ASIDE = tuple(_PACKAGE / name for name in ("accuracy", "cli", "harness", "program", "trade", "__main__.py"))
 
 
 class Store:
@@ -94,7 +94,7 @@ def program_hash() -> str:
 
 @functools.cache
 def package_hash() -> str:
-    """Hash of the package's own sources, bundled scenes included, without the harness, and of the libraries it runs with."""
+    """Hash of the package's own sources, bundled scenes included, but for those aside, and of the libraries it runs with."""
     sources = sorted(p for p in _PACKAGE.rglob("*") if p.suffix in (".py", ".toml") and not any(p.is_relative_to(a) for a in _ASIDE))
     return _hash([*(path.read_bytes() for path in sources), *(path.read_bytes() for path in linked()), json.dumps(versions()).encode()])
 

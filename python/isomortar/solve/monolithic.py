@@ -77,7 +77,7 @@ class _BorderedIterate(Iterate):
     @property
     def left(self) -> str:
         """What is left to solve, in words."""
-        return f"{super().left} and {max(self.gap_pressure, self.gap_traction):.2e} off the contact conditions"
+        return f"{super().left} and {np.max([self.gap_pressure, self.gap_traction]):.2e} off the contact conditions"
 
     @property
     def multipliers(self) -> list[Multipliers]:

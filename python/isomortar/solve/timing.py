@@ -16,7 +16,7 @@ PHASES = ("solid", "projection", "contact", "factor", "solve")
 #: What is counted, by name. Orders are those of derivatives.
 COUNTERS = {
     "solid residuals": "internal forces of all bodies, those that are at hand still included",
-    "solid tangents": "their tangents, those that are at hand still included",
+    "solid tangents": "tangents of all bodies, those that are at hand still included",
     "solid points": "quadrature points of bodies, each time that a stress is computed there",
     "contact tangents": "tangents of contacts",
     "contact points": "quadrature points of contacts, each time that a foot or kinematics are computed there",
@@ -28,11 +28,11 @@ COUNTERS = {
         for name in WORK
         if name.startswith("evaluations")
     },
-    "analyses": "orderings of a linear system",
-    "factorisations": "factors of one",
-    "solves": "solutions by these",
-    "system non-zeros": "entries of the largest system",
-    "factor non-zeros": "entries of its factors L and U",
+    "analyses": "orderings of linear systems",
+    "factorisations": "factors of linear systems",
+    "solves": "solutions of linear systems",
+    "system non-zeros": "entries of the largest linear system",
+    "factor non-zeros": "entries of the largest factors, dense blocks of faces included",
     "history bytes": "what states take in the results file",
 }
 #: Counts that are sizes: of several the largest is told, not the sum.

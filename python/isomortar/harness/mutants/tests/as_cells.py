@@ -9,7 +9,7 @@ from pathlib import Path
 from isomortar.errors import InputError
 from isomortar.harness.cases import Bound, Cell, case
 
-#: What tests of the harness, of what measures with it, and of its studies import: no fault is put there.
+#: What tests of the harness, and of what is above and just below it, and of studies import: no fault is put there.
 _HARNESS = re.compile(r"isomortar\.(accuracy|harness|trade)\b|^from (measures|orders|paper|sampling)\b", re.MULTILINE)
 
 
