@@ -1,4 +1,4 @@
-"""Write what a results file holds into docs/results.md, as a file itself says it: ``python tools/document_results.py``."""
+"""Write what a results file holds into docs/results.md: ``python tools/document_results.py``."""
 
 from __future__ import annotations
 
@@ -13,10 +13,9 @@ from isomortar.solve.timing import COUNTERS
 
 PAGE = Path(__file__).parent.parent / "docs" / "results.md"
 _BEGIN, _END = "<!-- tables: python tools/document_results.py -->\n", "<!-- end of the tables -->\n"
-#: Friction, so that all there is of contact is written; two steps, so that there are rates; Uzawa's method, for its augmentations.
+#: Friction, so that all there is of contact is written; two steps, so that there are rates; few elements, so that systems are general.
 _SCENE = """
 format = 1
-solver.method = "uzawa"
 bodies.block.geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }
 contacts.floor = { slave = "block.w0", plane = { point = [0, 0, 0], normal = [0, 0, 1] }, friction = 0.5 }
 supports.top.face = "block.w1"
@@ -27,30 +26,30 @@ _GIVEN = {"top": "SUPPORT", "floor": "CONTACT", "0": "BODY"}
 
 
 def tables() -> str:
-    """A table for each group of a results file: datasets with type, unit and meaning, in alphabetical order."""
+    """A table for each group of a results file in alphabetical order: datasets with type, unit and meaning."""
     with TemporaryDirectory() as folder:
         path = Path(folder) / "results.h5"
         isomortar.run(isomortar.Scene.from_toml(_SCENE), path)
         with h5py.File(path) as file:
-            rows: dict[str, list[str]] = {}
+            rows: dict[str, dict[str, str]] = {}
             file.visititems(lambda name, entry: _note(rows, name, entry))
-    return "\n".join(
-        "\n".join([f"### `/{group}`", "", "| dataset | type | unit | what |", "|---|---|---|---|", *rows[group], ""]) for group in rows
-    )
+    rows["counters"] = {name: rows["counters"][name] for name in COUNTERS}  # they explain each other
+    heads = "| dataset | type, or columns | unit | what |", "|---|---|---|---|"
+    return "\n".join("\n".join([f"### `/{group}`", "", *heads, *rows[group].values(), ""]) for group in sorted(rows))
 
 
-def _note(rows: dict[str, list[str]], name: str, entry: h5py.Group | h5py.Dataset) -> None:
+def _note(rows: dict[str, dict[str, str]], name: str, entry: h5py.Group | h5py.Dataset) -> None:
     if not isinstance(entry, h5py.Dataset):
         return
     *groups, last = name.split("/")
     group = "/".join(_GIVEN.get(part, part) for part in groups)
+    last = "NUMBER" if last.isdigit() else last
     what = COUNTERS[last] if group == "counters" else entry.attrs["description"]  # a file has one sentence for all that is counted
-    text = f"| `{last}` | {_type(entry)} | {entry.attrs['unit']} | {what} |"
-    rows.setdefault(group, []).append(text)
+    rows.setdefault(group, {})[last] = f"| `{last}` | {_type(entry)} | {entry.attrs['unit']} | {what} |"
 
 
 def _type(entry: h5py.Dataset) -> str:
-    """Type of an entry, and how many make a row where that does not depend on the scene; of tables their columns."""
+    """Type of an entry, and of vectors how long they are; of tables their columns."""
     if entry.dtype.names:
         return ", ".join(f"`{name}`" for name in entry.dtype.names)
     kind = "text" if entry.dtype.kind in "OS" else str(entry.dtype)
@@ -58,8 +57,17 @@ def _type(entry: h5py.Dataset) -> str:
 
 
 def page(text: str) -> str:
-    """The page with tables as they are now."""
-    return re.sub(f"(?s){_BEGIN}.*{_END}", lambda _: f"{_BEGIN}\n{tables()}\n{_END}", text)
+    """The page with tables as they are now.
+
+    Raises
+    ------
+    ValueError
+        It has no place for them.
+    """
+    made, places = re.subn(f"(?s){re.escape(_BEGIN)}.*{re.escape(_END)}", lambda _: f"{_BEGIN}\n{tables()}\n{_END}", text)
+    if places != 1:
+        raise ValueError(f"{PAGE.name} has {places} places for tables; allowed: one, between {_BEGIN.strip()} and {_END.strip()}")
+    return made
 
 
 if __name__ == "__main__":

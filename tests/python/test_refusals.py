@@ -169,8 +169,8 @@ def of_files(_: pytest.MonkeyPatch) -> Told:
         Path("scene.toml").write_bytes(content)
         yield name, refusal(lambda: Scene.load("scene.toml"))
     Path("scene.toml").write_text("format = = 1")
-    yield "no TOML", refusal(lambda: Scene.load("scene.toml"))
-    yield "value", refusal(lambda: apply_overrides({"solver": {}}, ["solver.max_cuts=[1"]))
+    yield "no TOML", _but_the_end(refusal(lambda: Scene.load("scene.toml")))
+    yield "value", _but_the_end(refusal(lambda: apply_overrides({"solver": {}}, ["solver.max_cuts=[1"])))
     writer = ResultsWriter("run.h5", problem(), "", "0", states="last")
     yield "plotted: no step", refusal(lambda: plot("run.h5", "figures"))
     yield "contact: no step", refusal(lambda: Results("run.h5").contact("tread"))
@@ -185,19 +185,24 @@ def of_files(_: pytest.MonkeyPatch) -> Told:
         yield name, refusal(lambda: Results("other.h5"))
     Path("cut.h5").write_bytes(Path("run.h5").read_bytes()[:-1])
     yield "damaged", refusal(lambda: files.read(Path("cut.h5")))
-    yield "gone", refusal(lambda: files.read(Path("gone.h5")))
+    yield "gone", _but_the_end(refusal(lambda: files.read(Path("gone.h5"))))
     with h5py.File("other.h5", "r+") as file:
         file.attrs["format_version"] = 3
         del file["curves/time"]
     Path("other.h5").write_bytes(files.sealed(Path("other.h5").read_bytes()))
     yield "without a curve", re.sub(r"\(.*?\),", "(#),", refusal(lambda: Results("other.h5").curve("time")))
     Path("there").mkdir()
-    yield "kept", refusal(lambda: files.replace(Path("there"), b""))
+    yield "kept", re.sub(r"written: [^;]*", "written: #", refusal(lambda: files.replace(Path("there"), b"")))
     Path("file").touch()
-    yield "no folder", refusal(lambda: files.make_folder(Path("file/folder")))
-    yield "not written", refusal(lambda: files.replace(Path("file/new.h5"), b""))
+    yield "no folder", _but_the_end(refusal(lambda: files.make_folder(Path("file/folder"))))
+    yield "not written", _but_the_end(refusal(lambda: files.replace(Path("file/new.h5"), b"")))
     with files.claimed(Path("run.h5")):
         yield "claimed", refusal(lambda: files.claimed(Path("run.h5")).__enter__())
+
+
+def _but_the_end(text: str) -> str:
+    """Without the words of the system, or of Python, after the last colon."""
+    return f"{text.rpartition(': ')[0]}: #"
 
 
 def on_the_way(patch: pytest.MonkeyPatch) -> Told:
@@ -279,7 +284,10 @@ def on_figures(patch: pytest.MonkeyPatch) -> Told:
         yield name, " | ".join(sorted(text for text in texts if re.search("[a-z]", text)))
 
 
-@pytest.mark.parametrize("kind", [of_geometry, of_problems, of_files, on_the_way, of_causes, on_figures], ids=lambda kind: kind.__name__)
+KINDS = (of_geometry, of_problems, of_files, on_the_way, of_causes, on_figures)
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.__name__)
 def test_every_word(kind: Callable[[pytest.MonkeyPatch], Told], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     assert dict(kind(monkeypatch)) == SENTENCES[kind.__name__]
