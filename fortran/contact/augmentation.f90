@@ -329,8 +329,8 @@ contains
     lacking = 0
   end subroutine pair_metric
 
-  !> Rows of the multipliers p, t_1, t_2 (theory 4.8, 4.9), and of the trial tractions: on `wide`, which is `pattern` but with the
-  !> paper's slip sum.
+  !> Rows of the multipliers p, t_1, t_2 (theory 4.8, 4.9), and of the trial tractions: on `wide`, which is `pattern` unless there
+  !> is the paper's slip sum.
   !>
   !> - `result` (component, multiplier, block): F/L^3 and F/(L^2 P).
   pure subroutine multiplier_rows(slave, control, law, response, pattern, rows, neighbours, wide, trial, result, lacking)
@@ -357,7 +357,7 @@ contains
     call rows_of_law(control, response, pattern, rows, wide, trial, result, lacking)
   end subroutine multiplier_rows
 
-  !> Rows of the multipliers from those of the trial tractions.
+  !> Rows of the multipliers (theory 4.8, 4.9) from those of the trial tractions.
   pure subroutine rows_of_law(control, response, pattern, rows, wide, trial, result, lacking)
     type(control_t), intent(in) :: control
     type(response_t), intent(in) :: response

@@ -55,6 +55,30 @@ def test_lines_are_of_all_their_statements():
     assert statements_at(STATEMENTS, [15, 1]) is None
 
 
+ONCE = """from functools import cache, lru_cache
+def _made(text):
+    return 1, text
+def plain(x):
+    return 2, x
+@cache
+def kept(x):
+    return 3, x
+@functools.lru_cache(maxsize=5)
+def few(x):
+    return 4, x
+TABLE = {"a": _made("b")}
+class C:
+    def _made(self):
+        return plain(5)
+"""
+
+
+@pytest.mark.parametrize(("line", "once"), [(3, True), (5, False), (8, True), (11, True), (12, True), (13, True), (15, True)])
+def test_what_runs_once_a_process_anybody_may_use(line, once):
+    """By its name: a method that is called like a function that an import calls is taken for it."""
+    assert (statements_at(ONCE, [line]) is None) == once
+
+
 def test_what_no_cell_runs_may_run_at_an_import():
     ran = {"one": {"a.py": [1, 2], "b.py": [7]}, "two": {"a.py": [2, 3]}}
     assert that_may_run(ran, "a.py", {1}) == {"one"}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -15,7 +15,8 @@ from isomortar.errors import ConvergenceError, IsomortarError
 from isomortar.geometry.patch import FloatArray
 from isomortar.scene import Scene
 from isomortar.solve.contact import largest, ratio
-from isomortar.solve.equilibrium import Equilibrium
+from isomortar.solve.equilibrium import Balance, Equilibrium
+from isomortar.solve.monolithic import _BorderedIterate
 from isomortar.solve.simulation import Simulation
 from isomortar.solve.system import CheckedSystem
 from isomortar.solve.timing import Ledger
@@ -156,3 +157,10 @@ def test_tractions_count_for_no_less_than_a_hundredth_of_what_friction_bears() -
     assert pair.apart(control, (1.5 * pressure, traction), (pressure, traction)) == pytest.approx((0.5, 0.0))
     small = 1e-6 * traction  # friction bears half of the pressures: a hundredth of that counts
     assert pair.apart(control, (pressure, 3.0 * small), (pressure, small))[1] == pytest.approx(2e-6 * 2.0**0.5 / 0.005)
+
+
+@pytest.mark.parametrize(("pressure", "traction"), [(np.nan, 1.0), (1.0, np.nan)])
+def test_what_is_left_of_contact_conditions_is_no_number_where_one_is_none(pressure: float, traction: float) -> None:
+    iterate = _BorderedIterate(cast(Balance, None), 0.1, (), (), pressure, traction)
+    assert np.isnan(iterate.merit)
+    assert "nan off the contact conditions" in iterate.left

@@ -1,1 +1,1 @@
-"""How accurate results are: a scene in other discretisations, fields of different meshes at the same material points, and how far apart they are."""
+"""How accurate results are: a scene in other discretisations, fields at the same material points, and how far apart they are."""

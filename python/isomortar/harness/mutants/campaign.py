@@ -151,6 +151,7 @@ class Campaign:
                 unused.append(f"{cell.name}: {red}")
             else:
                 seconds[cell.name] = taken
+        self._ran = {name: self._ran[name] for name in seconds}
         if not seconds:
             raise InputError(f"no cell is green on the sound program: {unused[0]}", "gate")
         return seconds, tuple(unused)

@@ -21,6 +21,8 @@ from isomortar.harness.worker import serve
 
 #: Under this name among the numbers of a measurement.
 _LINES = "lines run"
+#: Decorators of functions that run once for the same arguments.
+_KEPT = {"cache", "lru_cache"}
 #: Lines that were run, by file below the folder.
 Lines = Mapping[str, list[int]]
 
@@ -36,22 +38,38 @@ def without_lines(measurement: Measurement) -> tuple[Measurement, Lines]:
 def statements_at(text: str, lines: Iterable[int]) -> Set[int] | None:
     """Lines of the statements of a source that some lines are of.
 
-    None where one is outside of functions: that is run when the file is imported, once a process, and anybody may use what it makes.
+    None where one is run once a process, and anybody may use what it makes: outside of functions, which is run when the file is imported;
+    in a function that is called from there; in one whose results are kept.
     """
-    statements = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.stmt)]
+    tree = ast.parse(text)
+    statements = [node for node in ast.walk(tree) if isinstance(node, ast.stmt)]
+    once = _called_outside(tree)
     found: set[int] = set()
     for line in lines:
         inside = [node for node in statements if line in _lines_of(node)]
-        if not any(isinstance(node, ast.FunctionDef) for node in inside):
+        functions = [node for node in inside if isinstance(node, ast.FunctionDef)]
+        if not functions or any(node.name in once or _KEPT & _named(node.decorator_list) for node in functions):
             return None
         found.update(_lines_of(max(inside, key=lambda node: _lines_of(node).start)))
     return found
 
 
-def that_may_run(ran: Mapping[str, Lines], file: str, lines: Set[int] | None) -> set[str]:
-    """Cells, of those with the lines that they `ran`, that may run some lines of a file; all, where these are none in a function.
+def _called_outside(tree: ast.Module) -> Set[str]:
+    """Names of what a source calls outside of functions and classes."""
+    outside = [node for node in tree.body if not isinstance(node, ast.FunctionDef | ast.ClassDef)]
+    return _named(node.func for statement in outside for node in ast.walk(statement) if isinstance(node, ast.Call))
 
-    So may all where no cell runs any of them: functions are called when files are imported, too, before a cell begins.
+
+def _named(expressions: Iterable[ast.expr]) -> Set[str]:
+    """Names that some expressions are, calls of them, or attributes."""
+    bare = (node.func if isinstance(node, ast.Call) else node for node in expressions)
+    return {node.attr if isinstance(node, ast.Attribute) else node.id for node in bare if isinstance(node, ast.Attribute | ast.Name)}
+
+
+def that_may_run(ran: Mapping[str, Lines], file: str, lines: Set[int] | None) -> set[str]:
+    """Cells, of those with the lines that they `ran`, that may run some lines of a file; all of them where the lines are None.
+
+    So may all where no cell runs any of them: other files may, when they are imported, before a cell begins.
     """
     run_it = {name for name, files in ran.items() if lines is None or not lines.isdisjoint(files.get(file, ()))}
     return run_it or set(ran)

@@ -33,13 +33,23 @@ def cells_of_tests(folder: Path) -> list[Cell]:
     InputError
         There are no tests in the folder.
     """
-    helpers = tuple(sorted(path for path in folder.iterdir() if path.is_file() and not path.name.startswith("test_")))
+    others = [path for path in folder.rglob("*") if path.is_file() and "__pycache__" not in path.parts]
+    helpers = sorted(path for path in others if path.parent != folder or not path.name.startswith("test_"))
     files = [path for path in sorted(folder.glob("test_*.py")) if not _HARNESS.search(path.read_text())]
     if not files:
         raise InputError(f"there are none in {folder}", "tests")
-    return [Cell(replace(passed, files=(path, *_imported(path), *helpers)), {"of": path.as_posix()}) for path in files]
+    return [Cell(replace(passed, files=(path, *_imported(path), *helpers, *_pages(path))), {"of": path.as_posix()}) for path in files]
 
 
 def _imported(path: Path) -> list[Path]:
     """Other files of tests that one takes things from."""
-    return [other for other in sorted(path.parent.glob("test_*.py")) if f"from {other.stem} import" in path.read_text()]
+    return [
+        other for other in sorted(path.parent.glob("test_*.py")) if re.search(rf"^(from|import) {other.stem}\b", path.read_text(), re.M)
+    ]
+
+
+def _pages(path: Path) -> list[Path]:
+    """Files of other folders of the checkout, where a test names the folder."""
+    root, text = path.parent.parent.parent, path.read_text()
+    found = [other for name in ("docs", "tools") if f'"{name}"' in text for other in (root / name).glob("*")]
+    return sorted(other for other in found if other.is_file())
