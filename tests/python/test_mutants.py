@@ -214,14 +214,14 @@ def test_a_file_of_tests_that_passed_says_nothing_of_the_others(cells, tmp_path)
 def test_a_file_of_tests_is_another_when_what_it_reads_is(tmp_path):
     """Files that it imports, others below its folder, and those of folders that it names."""
     (tmp_path / "docs").mkdir()
-    (tmp_path / "docs" / "page.md").write_text("")
+    (tmp_path / "docs" / "page.html").write_text("")
     tests = tmp_path / "tests/python"
     (tests / "pictures").mkdir(parents=True)
     for name, text in {"test_one.py": 'import test_two\nDOCS = "docs"', "test_two.py": "", "pictures/a.png": "", "samples.py": ""}.items():
         (tests / name).write_text(text)
     one, two = (set(cell.case.files) for cell in cells_of_tests(tests))
     assert two == {tests / "test_two.py", tests / "pictures/a.png", tests / "samples.py"}
-    assert one == two | {tests / "test_one.py", tmp_path / "docs" / "page.md"}
+    assert one == two | {tests / "test_one.py", tmp_path / "docs" / "page.html"}
 
 
 def test_cells_that_are_named_like_the_faulty_file_come_first(tmp_path):
