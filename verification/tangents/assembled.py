@@ -57,7 +57,7 @@ def assembled(way: str) -> dict[str, float]:
         pair.pair.slave, pair.pair.master, visit.positions, projections, start.projection, start.projected, law,
         tangent.blocks.rows.shape[1], patterns.rows, pair.pair.neighbours, patterns.wide, patterns.tangent,
     )  # fmt: skip
-    kinds = [projections.found * start.projected, projections.found * (1 - start.projected), state]
+    kinds: list[np.ndarray] = [projections.found * start.projected, projections.found * (1 - start.projected), state]
     if pair.friction.acts:
         kinds += [state == 1, state == 2]
     if way == "on lines":
