@@ -61,9 +61,9 @@ def assembled(way: str) -> dict[str, float]:
     if pair.friction.acts:
         kinds += [state == 1, state == 2]
     if way == "on lines":
-        kinds.append(projections.fixed.any(axis=1))
+        kinds.append(projections.fixed[:, 0] + projections.fixed[:, 1])
     if "rim" in way:
-        kinds.append(projections.found == 0)
+        kinds.append(np.equal(projections.found, 0))
     return {
         "tangent": float(np.abs(tangent.condensed - twin).max() / np.abs(twin).max()),
         "there": float(np.min([np.count_nonzero(kind) for kind in kinds])),
