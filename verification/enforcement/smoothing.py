@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from decimal import Decimal, localcontext
 from typing import Final, Literal
 
 import numpy as np
 from friction.sliding import block
 from scipy.optimize import brentq
 
+from isomortar import _bindings
 from isomortar.geometry.primitives import box
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
@@ -134,3 +136,35 @@ def to_sharp() -> dict[str, float]:
 def smooth_order() -> dict[str, list[float]]:
     """Observed orders of the load steps of the press."""
     return {"order": [result.newton_order for result in pressed(1e-4, keeping=False)[:2]]}
+
+
+def root(trial: float, product: float) -> float:
+    """The larger root of p (p - trial) = product (theory 4.18), by 60 digits."""
+    with localcontext(prec=60):
+        half = Decimal(trial) / 2
+        return float(half + (half * half + Decimal(product)).sqrt())
+
+
+@case(
+    claim="Pressures have all their digits from far apart to far inside, and so has their slope.",
+    bounds={
+        name: Bound(at_most=2e-15, reason="round-off: a product, a sum, a root and a quotient of positive numbers")
+        for name in ("pressure", "slope")
+    },
+)
+def digits_of_smooth_contact() -> dict[str, float]:
+    """Largest relative errors over trial pressures from -1e12 to 1e12."""
+    simulation = Simulation(prism("uzawa"))
+    pair, state = simulation.equilibrium.pairs[0], simulation.state
+    kinematics = pair.kinematics(state.positions, state.contacts[0])
+    control = replace(kinematics.control, gap=np.zeros_like(kinematics.control.gap))
+    penalty, n = 8.0, len(control.gap)
+    errors = []
+    for size in 10.0 ** np.arange(-12, 13):
+        for trial in (-size, size):
+            law = pair.law(np.array([penalty, 1.0]), np.full(n, trial), np.zeros((n, 2)))
+            response = _bindings.augmented_multipliers(pair.pair.slave, control, law)
+            pressure = root(trial, penalty * PRODUCT)
+            share = pressure / (2.0 * pressure - trial)
+            errors.append([response.pressure[0] / pressure - 1.0, response.pressure_slope[0] * control.weight[0] / penalty / share - 1.0])
+    return dict(zip(("pressure", "slope"), np.abs(errors).max(axis=0).tolist(), strict=True))
