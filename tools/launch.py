@@ -1,11 +1,13 @@
 """The command `isomortar` of a working copy. Its import builds what has changed, and that can be interrupted, or refused."""
 
+import signal
 import sys
 
+hears = signal.getsignal(signal.SIGINT)
+if hears is signal.default_int_handler:
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # ends the process, wherever it comes: nothing is open yet
 try:
     from isomortar.cli import main
-except KeyboardInterrupt:
-    sys.exit(130)
 except ImportError as error:
     print(f"isomortar: {error}", *getattr(error, "__notes__", ()), sep="\n", file=sys.stderr)
     sys.exit(1)
@@ -16,4 +18,5 @@ except OSError as error:
         file=sys.stderr,
     )
     sys.exit(1)
+signal.signal(signal.SIGINT, hears)
 main()

@@ -5,8 +5,11 @@ from __future__ import annotations
 import ctypes
 import gc
 import os
+import signal
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from threading import Timer, main_thread
 
 # Parameters of glibc's mallopt, with the variables of the environment that set them too.
 _KEPT = {"MALLOC_MMAP_MAX_": (-4, 0), "MALLOC_TRIM_THRESHOLD_": (-1, -1)}
@@ -19,11 +22,12 @@ LIBRARIES = {"OPENBLAS_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive"}
 def own_process() -> None:
     """Set up a process before it loads any library; what the user's environment says stands.
 
-    NumPy's linear algebra is told what the kernel's is. And Pydantic does not look through all that is installed for plugins of its
+    Ctrl-C that comes where Python drops what is raised (destructors, callbacks of weak references) comes again. NumPy's linear algebra is told what the kernel's is. And Pydantic does not look through all that is installed for plugins of its
     own, which would have nothing to do here.
     """
     for variable, value in (LIBRARIES | {"PYDANTIC_DISABLE_PLUGINS": "__all__"}).items():
         os.environ.setdefault(variable, value)
+    sys.unraisablehook = _heard_again
 
 
 def keep_memory() -> None:
@@ -51,6 +55,14 @@ def loading() -> Iterator[None]:
     finally:
         gc.freeze()
         gc.enable()
+
+
+def _heard_again(dropped: sys.UnraisableHookArgs) -> None:
+    """Interrupt once more a moment later, out of what was being destroyed."""
+    if dropped.exc_type is KeyboardInterrupt:
+        Timer(0.01, signal.pthread_kill, [main_thread().ident, signal.SIGINT]).start()
+    else:
+        sys.__unraisablehook__(dropped)
 
 
 def give_back_memory() -> None:

@@ -70,7 +70,31 @@ def test_ctrl_c_while_the_program_loads(tmp_path: Path) -> None:
             process.send_signal(signal.SIGINT)
             _, said = process.communicate(timeout=60)
         assert "Traceback" not in said
-        assert process.returncode in (0, 1, 2, 130)
+        assert process.returncode in (0, 1, 2, 130, -signal.SIGINT)
+
+
+@pytest.mark.parametrize("lost", ["def __del__(self): wait()", "weak = True"])
+def test_ctrl_c_is_heard_where_python_drops_it(lost: str) -> None:
+    """What is raised in a destructor, or when something is found to be gone, is printed by Python, and forgotten."""
+    program = (
+        "import signal, time, weakref; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+        "from isomortar.cli.endings import told\n"
+        "import isomortar.cli\n"
+        "def wait(*_): print('ready', flush=True); time.sleep(20)\n"
+        f"class Goes:\n    {lost}\n"
+        "with told():\n"
+        "    goes = Goes()\n"
+        "    seen = weakref.ref(goes, wait) if hasattr(Goes, 'weak') else None\n"
+        "    del goes\n"
+        "    time.sleep(30)\n"
+    )
+    with subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        process.stdout.readline()
+        process.send_signal(signal.SIGINT)
+        _, said = process.communicate(timeout=15)
+    assert said == "isomortar: interrupted\n"
+    assert process.returncode == 130
 
 
 def test_a_name_longer_than_any_path_is_shortened_in_its_sentence(tmp_path: Path) -> None:
