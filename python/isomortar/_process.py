@@ -22,8 +22,9 @@ LIBRARIES = {"OPENBLAS_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive"}
 def own_process() -> None:
     """Set up a process before it loads any library; what the user's environment says stands.
 
-    Ctrl-C that comes where Python drops what is raised (destructors, callbacks of weak references) comes again. NumPy's linear algebra is told what the kernel's is. And Pydantic does not look through all that is installed for plugins of its
-    own, which would have nothing to do here.
+    Ctrl-C that comes where Python drops what is raised (destructors, callbacks of weak references) comes again. NumPy's linear algebra is
+    told what the kernel's is. And Pydantic does not look through all that is installed for plugins of its own, which would have nothing to
+    do here.
     """
     for variable, value in (LIBRARIES | {"PYDANTIC_DISABLE_PLUGINS": "__all__"}).items():
         os.environ.setdefault(variable, value)

@@ -13,10 +13,10 @@ from pathlib import Path
 from typing import Protocol
 
 from isomortar.errors import IsomortarError
+from isomortar.harness.mutants import lines_of_kernel, lines_of_python
 from isomortar.harness.mutants.faults import Fault
 from isomortar.harness.mutants.layers import Layer
 from isomortar.harness.mutants.meaning import meaning
-from isomortar.harness.mutants.reach import statements_at
 from isomortar.harness.store import kernel_hash, package_hash
 from isomortar.program.process import output_of, tools_first
 
@@ -35,7 +35,8 @@ class Workshop(Protocol):
     rest: str
     #: The program without a fault.
     sound: Path
-    #: Measures cells on it, and notes what lines they run where `statements` asks for these.
+    #: It as it is for `scout`, the program that measures cells on it and notes what lines of the sources they run.
+    scouted: Path
     scout: str
 
     def build(self, fault: Fault) -> Path | None:
@@ -44,8 +45,8 @@ class Workshop(Protocol):
     def identity(self, program: Path) -> str:
         """Hash of what a program does: two faults with one hash are one."""
 
-    def statements(self, fault: Fault, /) -> Set[int] | None:
-        """Lines of the statements that a fault is in: who runs none of them can not see it; None: anybody may."""
+    def places(self, fault: Fault, /) -> list[Set[int]]:
+        """Lines around a fault, narrowest first: who runs none of the first that anybody runs can not see it."""
 
 
 class KernelWorkshop:
@@ -62,7 +63,7 @@ class KernelWorkshop:
         Where to work.
     """
 
-    scout = "isomortar.harness.worker"
+    scout = lines_of_kernel.__name__
 
     def __init__(self, project: Path, folder: Path) -> None:
         self._programs = folder / "programs"
@@ -76,10 +77,12 @@ class KernelWorkshop:
             copy(project / part, self._sound / part)
         self.sources = _hash_of_files(self._sound)
         self.rest = package_hash()
-        _run(["meson", "setup", "build", "--buildtype=release", "-Db_lto=false"], self._sound)  # linked in a second
+        counting = _that_counts(self._sound, folder / "counting")
+        _set_up(self._sound)
         targets = [line.split(":")[0] for line in _run(["ninja", "-C", "build", "-t", "targets", "all"], self._sound)]
         self._targets = [t for t in targets if t.startswith(("fortran/_kernel.", "fortran/_extended.")) and t.endswith(".so")]
         self.sound = self._made(self._sound, folder / "sound")
+        self.scouted = self._made(counting, folder / "scouted")
 
     def build(self, fault: Fault) -> Path | None:
         """The kernels with a fault, a folder; None where the compiler rejects it."""
@@ -99,9 +102,9 @@ class KernelWorkshop:
         """Hash of the compiled kernels."""
         return _hash_of_files(program)
 
-    def statements(self, _: Fault, /) -> Set[int] | None:
-        """Nobody follows lines of the kernel."""
-        return None
+    def places(self, fault: Fault, /) -> list[Set[int]]:
+        """Lines of the statements that a fault is in, and of the procedures."""
+        return lines_of_kernel.places((self._sound / "fortran" / fault.file).read_text(), fault.lines)
 
     def _made(self, sources: Path, program: Path) -> Path:
         """Build the kernels of some sources, and put them into a folder."""
@@ -126,13 +129,13 @@ class PythonWorkshop:
         Where the sources stand.
     """
 
-    scout = "isomortar.harness.mutants.reach"
+    scout = lines_of_python.__name__
 
     def __init__(self, project: Path, folder: Path, layer: Layer) -> None:
         self._programs, self._package = folder / "programs", project / layer.folder
         self._files = layer.read(project)
         self.sources, self.rest = package_hash(), kernel_hash()
-        self.sound = folder / "sound"
+        self.sound = self.scouted = folder / "sound"
         self.sound.mkdir(parents=True, exist_ok=True)
 
     def build(self, fault: Fault) -> Path | None:
@@ -153,9 +156,9 @@ class PythonWorkshop:
         parts = [f"{file}\0{text}" for file, text in changed.items() if text != meaning(self._files[file])]
         return hashlib.sha256("\0".join([self.sources, *parts]).encode()).hexdigest()
 
-    def statements(self, fault: Fault, /) -> Set[int] | None:
-        """Lines of the statements that a fault is in; None where one is outside of functions."""
-        return statements_at(self._files[fault.file], fault.lines)
+    def places(self, fault: Fault, /) -> list[Set[int]]:
+        """Lines of the statements that a fault is in."""
+        return lines_of_python.places(self._files[fault.file], fault.lines)
 
 
 def workshop_of(layer: Layer, project: Path, folder: Path) -> Workshop:
@@ -167,6 +170,22 @@ def content(workshop: Workshop, fault: Fault) -> str:
     """Hash of all that a program with a fault is made from."""
     change = "\0".join((workshop.sources, fault.file, str(fault.position), fault.old, fault.new))
     return hashlib.sha256(change.encode()).hexdigest()
+
+
+def _set_up(sources: Path, *options: str) -> None:
+    """Set up the build of a copy of the sources; linked in a second, without optimisation across files."""
+    _run(["meson", "setup", "build", "--buildtype=release", "-Db_lto=false", *options], sources)
+
+
+def _that_counts(sound: Path, sources: Path) -> Path:
+    """Set up a copy of the sources so that its kernels count which lines they run, not one of them lost to what is inlined."""
+    shutil.rmtree(sources, ignore_errors=True)
+    shutil.copytree(sound, sources)
+    (sources / "counts.c").write_text(lines_of_kernel.COUNTS)
+    _run(["cc", "-fPIC", "-c", "counts.c"], sources)
+    linked = f"-Dfortran_link_args=['{sources.resolve() / 'counts.o'}', '--coverage']"
+    _set_up(sources, "-Doptimization=1", "-Db_coverage=true", "-Dfortran_args=-fno-inline", linked)
+    return sources
 
 
 def _hash_of_files(folder: Path) -> str:

@@ -129,14 +129,13 @@ class Campaign:
 
     def _sound_seconds(self) -> tuple[dict[str, float], tuple[str, ...]]:
         """CPU seconds of the cells that are green on the sound program, and the others in words; notes which lines of it they run."""
-        program = self._workshop.sound
-        sound = self._workshop.identity(program)[:20]
+        sound = f"{self._workshop.identity(self._workshop.sound)[:20]}-{self._workshop.scout}"
 
         def measured(scout: Bench, cell: Cell) -> tuple[float, str]:
             key = f"{self._keys[cell.name]}-{sound}"
             known = self._sound.get(key)
             if known is None:
-                measurement, lines = without_lines(scout.measure(program, cell, TIMEOUTS[cell.tier]))
+                measurement, lines = without_lines(scout.measure(self._workshop.scouted, cell, TIMEOUTS[cell.tier]))
                 red = [sentence(check) for check in judge(cell, measurement, self._lookup) if check.state != "passed"]
                 known = {"cell": cell.name, "seconds": measurement.cpu_seconds, "red": next(iter(red), ""), "lines": lines}
                 if measurement.lasts:
@@ -207,7 +206,7 @@ class Campaign:
 
     def _able(self, fault: Fault) -> set[str]:
         """Cells that may be red on a fault."""
-        return that_may_run(self._ran, fault.file, self._workshop.statements(fault))
+        return that_may_run(self._ran, fault.file, self._workshop.places(fault))
 
     def _remember(self, program: str, finding: Finding) -> None:
         entry = {"killer": finding.killer, "found": finding.found, "passed": {name: self._keys[name] for name in finding.passed}}
