@@ -345,14 +345,17 @@ contains
     type(rows_t) :: there
 
     there = rows_of(size(rows, 2))
-    trial = 0.0_wp
-    result = 0.0_wp
-    lacking = 0
+    if (contracts) call require(there%slip_sum .or. all(wide%start == pattern%start), "multiplier_rows: one pattern is the other")
     if (there%slip_sum) then
       call trial_rows_summed(slave, control, law, response%state /= state_open, pattern, rows, neighbours, wide, trial, lacking)
-      if (lacking > 0) return
+      if (lacking > 0) then
+        result = 0.0_wp
+        return
+      end if
     else if (there%friction) then
       call trial_rows(control, law, response%state /= state_open, pattern, rows, trial)
+    else
+      trial = 0.0_wp
     end if
     call rows_of_law(control, response, pattern, rows, wide, trial, result, lacking)
   end subroutine multiplier_rows
@@ -373,6 +376,7 @@ contains
     allocate (columns(max(maxval(pattern%column), maxval(wide%column))))
     if (contracts) call require(size(rows, 3) == size(pattern%column), "rows_of_law: rows are those of a pattern")
     if (contracts) call require(size(result, 3) == size(wide%column), "rows_of_law: results are those of a pattern")
+    if (contracts) call require(size(trial, 3) == size(wide%column), "rows_of_law: so are rows of the trial tractions")
     columns = 0
     result = 0.0_wp
     do i = 1, size(response%state)

@@ -83,7 +83,7 @@ contains
     self%start(:) = int(indptr, c_int)
     self%column(:) = int(indices, c_int)
     associate (n => int(self%unknowns, c_int))
-      code = umfpack_symbolic(n, n, self%start, self%column, c_null_ptr, self%symbolic, settings(self, 0), info)
+      code = umfpack_symbolic(n, n, self%start, self%column, c_null_ptr, self%symbolic, settings(self), info)
     end associate
   end subroutine order_narrow
 
@@ -103,7 +103,7 @@ contains
     self%wide_start(:) = indptr
     self%wide_column(:) = indices
     associate (n => int(self%unknowns, c_int64_t))
-      code = umfpack_symbolic(n, n, self%wide_start, self%wide_column, c_null_ptr, self%symbolic, settings(self, 0), info)
+      code = umfpack_symbolic(n, n, self%wide_start, self%wide_column, c_null_ptr, self%symbolic, settings(self), info)
     end associate
   end subroutine order_wide
 
@@ -117,10 +117,10 @@ contains
     call forget_factors(self)
     if (allocated(self%start)) then
       if (contracts) call require(size(values) == size(self%column), "eliminate: entries are those of the pattern")
-      code = umfpack_numeric(self%start, self%column, values, self%symbolic, self%numeric, settings(self, 0), info)
+      code = umfpack_numeric(self%start, self%column, values, self%symbolic, self%numeric, settings(self), info)
     else
       if (contracts) call require(size(values) == size(self%wide_column), "eliminate: entries are those of the pattern")
-      code = umfpack_numeric(self%wide_start, self%wide_column, values, self%symbolic, self%numeric, settings(self, 0), info)
+      code = umfpack_numeric(self%wide_start, self%wide_column, values, self%symbolic, self%numeric, settings(self), info)
     end if
   end subroutine eliminate
 
@@ -132,15 +132,15 @@ contains
     integer, intent(in) :: refine
     real(c_double), contiguous, intent(out) :: x(:)
     integer(c_int64_t), intent(out) :: code
-    real(c_double) :: info(0:info_last)
+    real(c_double) :: control(0:control_last), info(0:info_last)
 
     if (contracts) call require(size(b) == self%unknowns .and. size(x) == size(b), "substitute: vectors are those of the matrix")
+    control = settings(self)
+    control(control_irstep) = refine
     if (allocated(self%start)) then
-      code = umfpack_solve(int(umfpack_at, c_int), self%start, self%column, values, x, b, self%numeric, &
-        settings(self, refine), info)
+      code = umfpack_solve(int(umfpack_at, c_int), self%start, self%column, values, x, b, self%numeric, control, info)
     else
-      code = umfpack_solve(int(umfpack_at, c_int64_t), self%wide_start, self%wide_column, values, x, b, self%numeric, &
-        settings(self, refine), info)
+      code = umfpack_solve(int(umfpack_at, c_int64_t), self%wide_start, self%wide_column, values, x, b, self%numeric, control, info)
     end if
   end subroutine substitute
 
@@ -199,9 +199,8 @@ contains
   end subroutine forget
 
   !> UMFPACK's settings for matrices of elements: nearly symmetric pattern, few rows that are really dense.
-  recursive function settings(self, refine) result(control)
+  recursive function settings(self) result(control)
     type(lu_t), intent(in) :: self
-    integer, intent(in) :: refine
     real(c_double) :: control(0:control_last)
 
     call umfpack_defaults(control)
@@ -212,7 +211,6 @@ contains
     control(control_dense_col) = dense_limit
     control(control_pivot_tolerance) = pivot_tolerance
     control(control_sym_pivot_tolerance) = pivot_tolerance
-    control(control_irstep) = refine
   end function settings
 
 end module isomortar_sparse_lu
