@@ -19,7 +19,7 @@ NUMBERS, MOST = range(-2, 8), 5
 
 
 @case(
-    claim="A law is kept where there is one of that number with so many parameters; otherwise it is refused as no such law, without a handle.",
+    claim="A law is kept where there is one of that number with so many parameters; otherwise it is refused as no such law.",
     grid={"kind": list(KEEP)},
     bounds={
         "accepted": Bound(0.0, 0.0, "definition: laws that are not there and are not refused, or for another reason, or have a handle"),

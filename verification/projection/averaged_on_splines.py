@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 from friction.virtual_work import Surface, areas, relative
 
@@ -13,18 +15,19 @@ from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.record import ContactState
 from isomortar.solve.timing import Ledger
 
-#: Inner knots of both directions: elements of very different lengths, with abscissae near their bounds; kinks among smooth lines, one
-#: where the mean of three knots is not the knot, by round-off.
+#: Inner knots of both directions: elements of very different lengths, with abscissae near their bounds; the first of them a kink,
+#: one where the mean of three knots is not the knot, by round-off.
 INNER = {
-    "graded": lambda order: ([0.02, 0.1, 0.5], [0.6, 0.9, 0.97]),
-    "a kink": lambda order: ([0.1] * order + [0.3, 0.6], [0.45] * order + [0.8]),
+    "graded": ([0.02, 0.1, 0.5], [0.6, 0.9, 0.97]),
+    "kinks": ([0.1, 0.3, 0.6], [0.45, 0.8]),
 }
 #: What is beside a line: so far from it, as a share of the face.
 BESIDE = 1e-13
 
 
-def _direction(order: int, inner: list[float]) -> Direction:
-    return Direction("N", order, np.array([0.0] * (order + 1) + inner + [1.0] * (order + 1)))
+def _direction(order: int, inner: list[float], kink: bool = False) -> Direction:
+    first = [inner[0]] * (order if kink else 1)
+    return Direction("N", order, np.array([0.0] * (order + 1) + first + inner[1:] + [1.0] * (order + 1)))
 
 
 def greville(direction: Direction) -> FloatArray:
@@ -35,7 +38,7 @@ def greville(direction: Direction) -> FloatArray:
 
 def block_over_splines(order: int, knots: str) -> Problem:
     """A block over a hilly master with weights of its own."""
-    one, two = (_direction(order, inner) for inner in INNER[knots](order))
+    one, two = (_direction(order, inner, knots == "kinks") for inner in INNER[knots])
     line, random = Direction("N", 1, np.repeat([0.0, 1.0], 2)), np.random.default_rng(5)
     x, y, z = (a.ravel(order="F") for a in np.meshgrid(greville(one), greville(two), [-1.0, 0.0], indexing="ij"))
     hills = np.where(z < 0.0, 0.0, 0.01 * random.standard_normal(x.shape) + 0.1 * np.sin(4.0 * x + 1.0) * np.cos(3.0 * y))
@@ -103,7 +106,7 @@ class Master:
         shares = sorted({0.0, 1.0, *(cut for axis in cuts for cut in axis if 0.0 < cut < 1.0)})
         points, weights = np.polynomial.legendre.leggauss(16)
         total = 0.0
-        for left, right in zip(shares, shares[1:], strict=False):
+        for left, right in pairwise(shares):
             functions = self.surface.functions(start + (left + (right - left) * 0.5 * (points + 1.0))[:, None] * way)
             normal = functions[0] @ self.normals
             along = way[0] * (functions[1] @ self.points) + way[1] * (functions[2] @ self.points)

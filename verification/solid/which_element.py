@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
+from solid.material import CUBE, forces
 
 from isomortar.errors import FoldedElementError
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
-from solid.material import CUBE, forces
 
 #: Elements in each direction, no two alike.
 ELEMENTS = (4, 3, 2)
