@@ -2,6 +2,7 @@
 
 import json
 import math
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -94,6 +95,13 @@ def test_the_faults_planted_by_hand_fit_the_sources(layer):
     found = read_planted(ROOT / "verification/planted_faults.toml", layer.read(ROOT), layer.suffix)
     assert len(found) >= 10
     assert len({fault.key for fault in found}) == len(found)
+
+
+def test_survivors_that_are_classified_stand_in_the_sources():
+    sources = {file: text for layer in LAYERS.values() for file, text in layer.read(ROOT).items()}
+    entries = tomllib.loads((ROOT / "verification/surviving_mutants.toml").read_text())["survivor"]
+    gone = [entry["key"] for entry in entries if entry["old"] not in sources[entry["place"].partition(":")[0]]]
+    assert not gone
 
 
 @pytest.mark.parametrize("layer", LAYERS.values(), ids=LAYERS)
