@@ -189,6 +189,13 @@ def test_default_gauss_points_are_those_of_table_1() -> None:
             assert (volume_points(direction), contact_points(direction)) == (volume_count, contact_count)
 
 
+@pytest.mark.parametrize(("family", "highest"), [("N", 10), ("L", 4)])
+def test_orders_that_there_are(family: str, highest: int) -> None:
+    for order in (-1, 0, highest + 1):
+        with pytest.raises(InputError, match=f"order is {order}; allowed for {family}: 1 to {highest}"):
+            Direction(family, order, np.repeat([0.0, 1.0], max(order, 0) + 1) if family == "N" else np.array([0.0, 1.0]))
+
+
 @pytest.mark.parametrize("boundaries", [[], [0.0], [0.0, 0.0], [0.0, 1.0, 0.5], [0.0, float("nan")]])
 def test_elements_of_a_lagrange_direction_need_two_ends_in_order(boundaries: list[float]) -> None:
     with pytest.raises(InputError, match=r"knots: (element boundaries|must be one list of finite numbers)"):

@@ -30,11 +30,15 @@ TWO_BODIES = [
 
 
 class Listener(Observer):
-    """Keeps warnings and cuts."""
+    """Keeps warnings and cuts, how many load steps there are and the first one that is computed."""
 
     def __init__(self) -> None:
+        self.begun = (0, 0)
         self.warnings: list[str] = []
         self.cuts: list[str] = []
+
+    def started(self, total_steps: int, first_step: int) -> None:
+        self.begun = (total_steps, first_step)
 
     def warned(self, message: str) -> None:
         self.warnings.append(message)
@@ -230,8 +234,10 @@ def test_stiff_and_fine_slave_is_warned_about() -> None:
 def test_resuming_gives_the_same_numbers() -> None:
     problem = small_iron()
     whole = run(problem)
-    rest = list(Simulation(problem, resume_from=whole[8]).run())
+    listener = Listener()
+    rest = list(Simulation(problem, listener, resume_from=whole[8]).run())
     np.testing.assert_allclose(rest[-1].state.positions, whole[-1].state.positions, atol=1e-12)
+    assert listener.begun == (len(whole), 10)
 
 
 def test_far_from_the_origin_resuming_gives_the_same_numbers_and_centres_are_the_scenes() -> None:
