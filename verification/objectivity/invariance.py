@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from small_scenes import bowl
+from small_scenes import at_few_points, bowl
 from transforms import mirrored, moved, relabelled, scaled, turned, with_knots, with_weights
 
 from isomortar.geometry.patch import FloatArray
@@ -37,7 +37,11 @@ Measured = dict[str, FloatArray]
 
 def measure(problem: Problem) -> Measured:
     """Run a problem; pressures, traction norms and states are sorted, so that numbering does not count."""
-    results = list(Simulation(problem).run())
+    return measured(list(Simulation(problem).run()))
+
+
+def measured(results: list[StepResult]) -> Measured:
+    """What is compared of the results of a run."""
     return {
         "forces": np.array([[reaction.force for reaction in result.reactions] for result in results]),
         "moments": np.array([[reaction.moment for reaction in result.reactions] for result in results]),
@@ -57,7 +61,7 @@ def change(
 
     The problem is the bowl on its master unless another one is given.
     """
-    problem = problem or bowl(master)
+    problem = problem or at_few_points(bowl(master))
     before, after = measure(problem), back(measure(transform(problem)))
     return {name: float(np.abs(after[name] - value).max() / np.abs(value).max()) for name, value in before.items()}
 
@@ -94,11 +98,11 @@ def _last_bits(distance: float) -> dict[str, Bound]:
 )
 def place(master: str, distance: float) -> dict[str, float]:
     """Everything moved, but what moves; moments of contact forces taken back to where they were. Distances are in lengths of the body."""
-    problem, by = bowl(master), distance * np.array([1.0, 0.7, -0.3])
-    away = moved(problem, by)
-    before, after = measure(problem), measure(away)
+    problem, by = at_few_points(bowl(master)), distance * np.array([1.0, 0.7, -0.3])
+    runs = [list(Simulation(one).run()) for one in (problem, moved(problem, by))]
+    before, after = (measured(results) for results in runs)
     found = {name: float(np.abs(after[name] - value).max() / np.abs(value).max()) for name, value in before.items()}
-    near, far = (np.array([_contact_wrench(result) for result in Simulation(p).run()]) for p in (problem, away))
+    near, far = (np.array([_contact_wrench(result) for result in results]) for results in runs)
     back = far[:, 1] - np.cross(by, far[:, 0])
     return found | {"contact": float(np.abs(back - near[:, 1]).max() / distance / np.abs(near[:, 0]).max())}
 
@@ -134,7 +138,7 @@ def _contact_wrench(result: StepResult) -> tuple[FloatArray, FloatArray]:
 )
 def units(master: str, length: float, stress: float) -> dict[str, float]:
     """Lengths and stresses in other units, those of a cohesion and a largest traction too; results taken back to the first ones."""
-    problem = bowl(master)
+    problem = at_few_points(bowl(master))
     contact = replace(problem.contacts[0], cohesion=0.05, traction_max=0.3)
     return change(
         master,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from small_scenes import bowl
+from small_scenes import at_few_points, bowl
 
 from isomortar.errors import ConvergenceError
 from isomortar.harness import Bound, case
@@ -60,7 +60,7 @@ EITHER = Bound(at_least=0.0, at_most=1.0, reason="definition: where the penalty 
 )
 def penalties(factor: float) -> dict[str, float]:
     """The default is 100; the tangential one is a tenth."""
-    problem = bowl("plane")
+    problem = at_few_points(bowl("plane"))
     settings = replace(problem.settings, penalty_normal=factor, penalty_tangential=0.1 * factor)
     return against_monolithic(replace(problem, settings=settings))
 
@@ -73,5 +73,5 @@ def penalties(factor: float) -> dict[str, float]:
 )
 def frictions(friction: float) -> dict[str, float]:
     """From none to more than any traction asks for."""
-    problem = bowl("plane")
+    problem = at_few_points(bowl("plane"))
     return against_monolithic(replace(problem, contacts=tuple(replace(c, friction=friction) for c in problem.contacts)))

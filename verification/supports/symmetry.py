@@ -77,7 +77,7 @@ def solved(
         bodies=(Body("block", block(symmetric), Material(), (4, 4, 4)),),
         contacts=(replace(base, enforcement=enforcement),),
         supports=(Support("top", Face("block", "w1"), (Motion((0.0, 0.0, -0.04)), Motion(push))), *planes),
-        stages=(Stage("press", 2), Stage("push", 2)),
+        stages=(Stage("press", 1), Stage("push", 1)),
         settings=SolverSettings(**settings),  # type: ignore[arg-type]
     )
     return list(Simulation(problem).run())
