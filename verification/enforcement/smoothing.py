@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
 from decimal import Decimal, localcontext
 from typing import Final, Literal
@@ -153,18 +154,18 @@ def root(trial: float, product: float) -> float:
     },
 )
 def digits_of_smooth_contact() -> dict[str, float]:
-    """Largest relative errors over trial pressures from -1e12 to 1e12."""
+    """Largest relative errors over trial pressures from -1e12 to 1e12, with that product of the scene and one far below."""
     simulation = Simulation(prism("uzawa"))
     pair, state = simulation.equilibrium.pairs[0], simulation.state
     kinematics = pair.kinematics(state.positions, state.contacts[0])
     control = replace(kinematics.control, gap=np.zeros_like(kinematics.control.gap))
     penalty, n = 8.0, len(control.gap)
     errors = []
-    for size in 10.0 ** np.arange(-12, 13):
+    for product, size in itertools.product((1e-12 * PRODUCT, PRODUCT), 10.0 ** np.arange(-12, 13)):
         for trial in (-size, size):
-            law = pair.law(np.array([penalty, 1.0]), np.full(n, trial), np.zeros((n, 2)))
+            law = replace(pair.law(np.array([penalty, 1.0]), np.full(n, trial), np.zeros((n, 2))), smoothing=product)
             response = _bindings.augmented_multipliers(pair.pair.slave, control, law)
-            pressure = root(trial, penalty * PRODUCT)
+            pressure = root(trial, penalty * product)
             share = pressure / (2.0 * pressure - trial)
             errors.append([response.pressure[0] / pressure - 1.0, response.pressure_slope[0] * control.weight[0] / penalty / share - 1.0])
     return dict(zip(("pressure", "slope"), np.abs(errors).max(axis=0).tolist(), strict=True))

@@ -79,3 +79,38 @@ def missing_blocks(master: str, routine: str) -> dict[str, float]:
         lost += int(full[block])
         changed = float(np.maximum(changed, np.abs(left - np.delete(whole, block, axis=0)).max(initial=0.0)))
     return {"lost": lost, "changed": changed, "refused": refused}
+
+
+def elsewhere(pattern: Pattern, block: int) -> Pattern | None:
+    """A pattern that has another block of the row in the place of one; none where the row is full."""
+    row = int(np.searchsorted(pattern.start, block, side="right")) - 1
+    own = slice(pattern.start[row], pattern.start[row + 1])
+    free = np.setdiff1d(np.arange(pattern.highest + 1, dtype=np.int32), pattern.column[own])
+    if not len(free):
+        return None
+    column = pattern.column.copy()
+    column[block] = free[0]
+    column[own] = np.sort(column[own])
+    return Pattern(pattern.start, column)
+
+
+@case(
+    claim="A pattern that has another block in the place of one that is filled is refused: rows of the same length are not taken for it.",
+    grid={"master": list(MASTERS), "routine": [f"{routine}, {pattern}" for routine, pattern in ADDED]},
+    bounds={"lost": Bound(at_most=0.0, reason="definition: what belongs into a block that there is not must not go into another one")},
+)
+def other_blocks(master: str, routine: str) -> dict[str, float]:
+    """Blocks with something in them whose want was not refused."""
+    routine, _, pattern = routine.partition(", ")
+    name = ADDED[routine, pattern]
+    arguments = sound(master)[routine][1]
+    full = np.any(added(master, routine, name, arguments) != 0.0, axis=(1, 2))
+    lost = 0
+    for block in _spread(np.flatnonzero(full)):
+        other = elsewhere(arguments[pattern], int(block))
+        try:
+            added(master, routine, name, arguments | {pattern: other or arguments[pattern]})
+        except KernelError:
+            continue
+        lost += other is not None
+    return {"lost": lost}

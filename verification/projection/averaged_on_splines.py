@@ -15,11 +15,11 @@ from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.record import ContactState
 from isomortar.solve.timing import Ledger
 
-#: Inner knots of both directions: elements of very different lengths, with abscissae near their bounds; the first of them a kink,
-#: one where the mean of three knots is not the knot, by round-off.
+#: Inner knots of both directions: elements of very different lengths, with abscissae near their bounds; the first of them a kink
+#: where the mean of three knots is not the knot, by round-off, but beyond it or before.
 INNER = {
     "graded": ([0.02, 0.1, 0.5], [0.6, 0.9, 0.97]),
-    "kinks": ([0.1, 0.3, 0.6], [0.45, 0.8]),
+    "kinks": ([0.1, 0.3, 0.6], [0.7, 0.85]),
 }
 #: What is beside a line: so far from it, as a share of the face.
 BESIDE = 1e-13
