@@ -87,6 +87,7 @@ def of_geometry(_: pytest.MonkeyPatch) -> Told:
     yield "few points", refusal(lambda: Patch(box.directions, points[:7], box.weights))
     yield "few weights", refusal(lambda: Patch(box.directions, box.control_points, box.weights[:7]))
     yield "no weight", refusal(lambda: Patch(box.directions, box.control_points, 0.0 * box.weights))
+    yield "light weight", refusal(lambda: Patch(box.directions, box.control_points, np.array([1.0] * 7 + [1e-160])))
     raised = Direction("N", 2, np.array([0.0, 0, 0, 0.5, 1, 1, 1]))
     yield "raised", refusal(lambda: lowered(raised, 1))
     Path("bad.json").write_text("{")

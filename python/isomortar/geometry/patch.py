@@ -22,6 +22,8 @@ FACES = ("u0", "u1", "v0", "v1", "w0", "w1")
 
 #: Knots and weights within this power of two of one are taken as they are.
 _USUAL = 64
+#: Share of the heaviest control point's weight below which one moves nothing but itself: its functions are round-off of the others.
+_LIGHTEST = float(np.finfo(np.float64).eps)
 
 
 def _usual(values: ArrayLike) -> FloatArray:
@@ -150,7 +152,7 @@ class Patch:
     Raises
     ------
     InputError
-        Wrong counts, NaN, weights that are not positive.
+        Wrong counts, NaN, weights that are not positive, or too light to count beside the others.
     """
 
     directions: tuple[Direction, Direction, Direction]
@@ -174,6 +176,10 @@ class Patch:
         if not np.all(np.isfinite(weights) & (weights > 0)):
             where = int(np.argmin(np.isfinite(weights) & (weights > 0)))
             raise InputError(f"weight {where} is {weights[where]:g}; weights must be positive and finite", "weights")
+        if weights.min() < _LIGHTEST * weights.max():
+            where, share = int(np.argmin(weights)), weights.min() / weights.max()
+            message = f"weight {where} is {share:.1e} of the largest; allowed: {_LIGHTEST:.1e} of it or more, for double precision"
+            raise InputError(message, "weights")
 
     @property
     def shape(self) -> tuple[int, int, int]:
