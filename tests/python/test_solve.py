@@ -186,6 +186,34 @@ def test_contact_conditions_after_every_step() -> None:
         assert result.cuts == 0
 
 
+@pytest.mark.parametrize("overhang", [0.16, 0.37])
+def test_a_slave_beside_its_master_penetrates_nothing(overhang: float) -> None:
+    """Of quadratic Lagrange functions what is left of a weight beyond the master's edge may be negative: their gaps are no gaps."""
+    scene = Scene.from_toml(f"""
+format = 1
+[bodies.upper]
+geometry = {{ kind = "box", lower = [0.0, 0.0, 0.01], upper = [1.0, 0.5, 0.5] }}
+mesh = {{ family = "L", order = 2, elements = [2, 2, 1] }}
+[bodies.lower]
+geometry = {{ kind = "box", lower = [0.0, {overhang}, -0.5], upper = [1.0, 1.0, 0.0] }}
+[contacts.pair]
+slave = "upper.w0"
+master = "lower.w1"
+[supports.top]
+face = "upper.w1"
+[supports.base]
+face = "lower.w0"
+[[stages]]
+name = "hang"
+steps = 1
+motions.top.translate = [0.0, 0.0, -0.001]
+""")
+    (step,) = run(scene.problem())
+    (contact,) = step.contacts
+    assert contact.excluded > 0
+    np.testing.assert_allclose(contact.gap[contact.gap != 0.0], -0.009, rtol=1e-12)
+
+
 def test_momentum_balance_at_the_interface() -> None:
     for result in run(small_iron()):
         contact = result.contacts[0]

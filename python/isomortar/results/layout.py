@@ -112,7 +112,7 @@ CONTACT_STATE = {
 CONTACT_VALUES = {
     "traction_norm": _of_friction("force/area", "metric norm of the tractions"),
     "status": _flag("constraints: 0 open, 1 stick, 2 slip"),
-    "gap": _real("length", "gap g^J of the constraints, positive is penetration"),
+    "gap": _real("length", "gap g^J of the constraints, positive is penetration; 0 where the slave has left its master"),
 }
 
 STATE_STEP = _count("number of the load step whose state this row is")

@@ -412,7 +412,7 @@ class PairMechanics:
         slave_forces[self.pair.slave.point] = forces[self.pair.slave.point]
         master_forces = forces - slave_forces
         field = self.pair.field(response.pressure)[projections.found > 0]
-        weight = np.where(control.weight > 0, control.weight, 1.0)
+        present = control.weight > 0  # with functions of both signs what is left of a weight may be negative
         return ContactResult(
             force_slave=slave_forces.sum(axis=0),
             force_master=master_forces.sum(axis=0),
@@ -422,7 +422,7 @@ class PairMechanics:
             slip=int(np.count_nonzero(response.state == PointState.SLIP)),
             traction_norm=self.traction_norms(control, response.traction),
             status=response.state,
-            gap=control.gap / weight,
+            gap=np.where(present, control.gap, 0.0) / np.where(present, control.weight, 1.0),
             pressure_field=np.array([field.min(), field.max()]) if field.size else np.zeros(2),
             excluded=int(np.count_nonzero(projections.found == 0)),
             friction_work=float(work[0]),
