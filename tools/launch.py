@@ -3,8 +3,8 @@
 import signal
 import sys
 
-hears = signal.getsignal(signal.SIGINT)
-if hears is signal.default_int_handler:
+heard = signal.getsignal(signal.SIGINT) is signal.default_int_handler
+if heard:
     signal.signal(signal.SIGINT, signal.SIG_DFL)  # ends the process, wherever it comes: nothing is open yet
 try:
     from isomortar.cli import main
@@ -18,5 +18,6 @@ except OSError as error:
         file=sys.stderr,
     )
     sys.exit(1)
-signal.signal(signal.SIGINT, hears)
+if heard:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 main()

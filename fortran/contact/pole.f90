@@ -21,7 +21,7 @@ module isomortar_contact_pole
 
   !> Share of the distance by which it has to fall along a tangent from the pole: less is round-off.
   real(wp), parameter :: least_fall = 16.0_wp * epsilon(1.0_wp)
-  !> The distance rises from the pole as from a vertex if it rises by more than this share all round; else it is smooth there.
+  !> The pole is a vertex if the distance rises by more than this share all round, or is off the normal by more; else it is smooth.
   real(wp), parameter :: sharp = sqrt(epsilon(1.0_wp))
 
   !> What a point sees of a surface from its pole.
@@ -34,7 +34,7 @@ module isomortar_contact_pole
     real(wp) :: xi(2)
     !> Least curvature of the distance along those tangents: one near the surface, zero or less beyond its centre of curvature.
     real(wp) :: bend
-    !> Whether the distance rises along all of them, as from a vertex.
+    !> Whether it is a vertex where the distance falls along none of them.
     logical :: vertex
   end type view_t
 
@@ -168,7 +168,8 @@ contains
     view%across = view%across / norm2(view%across)
     associate (distance => norm2(x - view%centre))
       if (view%fall < least_fall * distance) view%fall = min(view%fall, 0.0_wp)
-      view%vertex = view%fall < -sharp * distance
+      ! on the boundary of a vertex's cone it is level along one line alone: then the way is not that of the normals all round
+      view%vertex = max(-view%fall, norm2(cross(x - view%centre, view%across))) > sharp * distance
     end associate
   end subroutine look_from_pole
 

@@ -13,15 +13,16 @@ module isomortar_contact_projection
   use isomortar_contact_hulls, only: hulls_t, is_farther, nearest_sample
   use isomortar_contact_search, only: descend, search_element, search_t
   use isomortar_contact_work, only: evaluate, work_t
-  use isomortar_nurbs_surface, only: homogeneous_net, surface_element_count, surface_element_of, surface_point, &
+  use isomortar_nurbs_surface, only: element_span, homogeneous_net, surface_element_count, surface_element_of, surface_point, &
     surface_t
   implicit none
   private
 
   public :: find_too_deep, look_round, shallow_depth, square_depth, start_nearest
 
-  !> Two feet that are at the same distance but for this share are equally near: the one in the lower element is taken.
-  real(wp), parameter :: tie = epsilon(1.0_wp)**0.75_wp
+  !> Two feet that are at the same distance but for this share are equally near: the one in the lower element is taken, or of lower
+  !> coordinates in it if those differ by more than a share of it: about a centre of curvature places side by side are equally near.
+  real(wp), parameter :: tie = epsilon(1.0_wp)**0.75_wp, tie_apart = 0.01_wp
   !> Distance times largest curvature up to which an element holds one near point alone.
   real(wp), parameter :: safe_bend = 0.5_wp
   !> Share of the least depth between control points within which a point is not asked how deep the master's body is.
@@ -120,7 +121,7 @@ contains
 
     there = start
     call search_element(surface, positions, x, there, work)
-    if (.not. is_preferred(there, here)) return
+    if (.not. is_preferred(surface, there, here)) return
     here = there
     call descend(surface, positions, x, here, work)
   end subroutine go_on
@@ -189,17 +190,31 @@ contains
     grid_size = surface%direction(direction)%order + 6
   end function grid_size
 
-  !> Whether a foot is nearer than another one, or as near and in a lower element.
-  pure logical function is_preferred(there, here)
+  !> Whether a foot is nearer than another one, or as near and lower.
+  pure logical function is_preferred(surface, there, here)
+    type(surface_t), intent(in) :: surface
     type(search_t), intent(in) :: there, here
-    logical :: lower
 
-    lower = there%place(2) < here%place(2) .or. (there%place(2) == here%place(2) .and. there%place(1) < here%place(1))
     is_preferred = there%distance < here%distance * (1.0_wp - tie)
-    if (.not. is_preferred .and. lower .and. there%settled .and. all(there%pressing == 0)) then
+    if (.not. is_preferred .and. there%settled .and. all(there%pressing == 0)) then
       is_preferred = there%distance <= here%distance * (1.0_wp + tie)
+      if (is_preferred) is_preferred = is_lower(surface, there, here)
     end if
   end function is_preferred
+
+  !> Whether a foot is in a lower element than another one, or in the same at lower coordinates; the second direction counts first.
+  pure logical function is_lower(surface, there, here)
+    type(surface_t), intent(in) :: surface
+    type(search_t), intent(in) :: there, here
+    real(wp) :: low(2), length(2), off(2)
+    integer :: a
+
+    call element_span(surface, here%place, low, length)
+    off = merge(there%xi - here%xi, 0.0_wp, abs(there%xi - here%xi) > tie_apart * length)
+    where (there%place /= here%place) off = real(there%place - here%place, wp)
+    a = merge(2, 1, abs(off(2)) > 0.0_wp)
+    is_lower = off(a) < 0.0_wp
+  end function is_lower
 
   !> Whether a point is behind the surface by more than its body's depth below the foot: `deep` (theory 3.19).
   pure subroutine find_too_deep(surface, opposite, positions, here, deep, work)

@@ -95,8 +95,7 @@ class Master:
             turned = [(slope - (slope * normal).sum(axis=1)[:, None] * normal) / length for slope in slopes]
             sides = [tangent - gap[:, None] * turn for tangent, turn in zip(tangents, turned, strict=True)]
             step = np.linalg.solve(np.stack([*sides, -normal], axis=2), (x - s + gap[:, None] * normal)[..., None])[..., 0]
-            new = np.clip(xi + step[:, :2], low, high)
-            xi, gap = new, gap + step[:, 2]
+            xi, gap = np.clip(xi + step[:, :2], low, high), gap + step[:, 2]
         return xi, gap, np.abs(step).max(axis=1) < 1e-10
 
     def climb(self, start: FloatArray, end: FloatArray) -> float:

@@ -6,6 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 from projection.closest_points import Surface
+from projection.poles import OUTER, turned
+from projection.poles import face as dome_face
 
 from isomortar import _bindings
 from isomortar._bindings import SlaveArrays
@@ -35,6 +37,14 @@ def beside(share: float) -> FloatArray:
     return np.delete(np.stack(np.meshgrid(*ends), axis=-1).reshape(-1, 2), 4, axis=0)
 
 
+def feet(face: Surface, targets: FloatArray, brim: float) -> _bindings.Projections:
+    """Projections of targets onto a face with a brim, from no start."""
+    own, n = len(face.patch.weights), len(targets)
+    slave = SlaveArrays.of_points(np.arange(own, own + n, dtype=np.int32))
+    positions = np.concatenate([face.patch.control_points, targets])
+    return _bindings.project_points(slave, replace(face.master(), brim=brim), positions, np.zeros((n, 2)), np.zeros(n, dtype=np.int32))
+
+
 @case(
     claim="Beyond each edge and corner of a face there are feet up to its brim and none farther out.",
     bounds={
@@ -47,18 +57,49 @@ def beside(share: float) -> FloatArray:
 def brim() -> dict[str, float]:
     """Largest distance from the feet; shares found within the brim, beyond it, and without one."""
     face = plate()
-    own = len(face.patch.weights)
 
-    def feet(share: float, brim: float) -> _bindings.Projections:
-        places = np.column_stack([beside(share), np.full(8, 0.1)])
-        slave = SlaveArrays.of_points(np.arange(own, own + 8, dtype=np.int32))
-        positions = np.concatenate([face.patch.control_points, places])
-        return _bindings.project_points(slave, replace(face.master(), brim=brim), positions, np.zeros((8, 2)), np.zeros(8, dtype=np.int32))
+    def at(share: float) -> FloatArray:
+        return np.column_stack([beside(share), np.full(8, 0.1)])
 
-    within, beyond, without = feet(WITHIN, BRIM), feet(BEYOND, BRIM), feet(WITHIN, 0.0)
+    within, beyond, without = feet(face, at(WITHIN), BRIM), feet(face, at(BEYOND), BRIM), feet(face, at(WITHIN), 0.0)
     return {
         "foot": float(np.abs(within.xi - beside(WITHIN)).max()),
         "within": float(np.mean(within.found)),
         "beyond": float(np.mean(beyond.found)),
         "without": float(np.mean(without.found)),
+    }
+
+
+@case(
+    claim="A dome has a brim beyond its open edge alone: none round the pole, none at the seam, and none between its elements.",
+    grid={"way": ["high first", "low first", "high second", "low second"]},
+    bounds={
+        "foot": Bound(at_most=2e-14, reason="round-off: of the sphere's points; an arc goes on beyond its end as the same circle"),
+        "elsewhere": Bound(at_most=0.0, reason="definition: feet that differ, off the edge, from those without a brim"),
+        "within": Bound(at_least=1.0, at_most=1.0, reason="definition: share of targets that have a foot on the brim"),
+        "beyond": Bound(at_most=0.0, reason="definition: share of targets farther out that have one"),
+        "without": Bound(at_most=0.0, reason="definition: share of targets that have one where there is no brim"),
+    },
+)
+def brim_of_a_dome(way: str) -> dict[str, float]:
+    """Largest distance from the feet on the brim; feet that it changes elsewhere; shares found within it, beyond it, and without one."""
+    face, random = turned(dome_face("N2"), way), np.random.default_rng(3)
+    edge = float(np.arcsin(face.patch.control_points[face.patch.face_points(face.face), 2].min() / OUTER))  # the lowest latitude
+    angle = np.concatenate([random.uniform(0.0, 2 * np.pi, 40), np.arange(8) * np.pi / 4])
+
+    def ring(latitude: float | FloatArray) -> FloatArray:
+        return np.column_stack([np.cos(latitude) * np.cos(angle), np.cos(latitude) * np.sin(angle), np.sin(latitude) * np.ones(len(angle))])
+
+    on_it, too_far = ring(edge - 0.01), ring(edge - 0.2)
+    within = feet(face, 1.1 * OUTER * on_it, BRIM)
+    own = np.concatenate(
+        [ring(random.uniform(edge, np.pi / 2, len(angle))), ring(np.pi / 2 - 1e-9), ring(random.uniform(edge, 1.5, len(angle)))]
+    )
+    same, other = (feet(face, 1.1 * OUTER * own, brim) for brim in (BRIM, 0.0))
+    return {
+        "foot": float(np.linalg.norm(face.points(within.xi) - OUTER * on_it, axis=1).max()),
+        "elsewhere": float(np.count_nonzero(np.any(same.xi != other.xi, axis=1) | (same.found != other.found))),
+        "within": float(np.mean(within.found)),
+        "beyond": float(np.mean(feet(face, 1.1 * OUTER * too_far, BRIM).found)),
+        "without": float(np.mean(feet(face, 1.1 * OUTER * on_it, 0.0).found)),
     }

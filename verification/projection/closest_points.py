@@ -8,6 +8,7 @@ import numpy as np
 from shapes import cylinder_sector, turned_sector
 
 from isomortar import _bindings
+from isomortar._arguments import LongArray
 from isomortar._bindings import FaceArrays, Projections, SlaveArrays
 from isomortar.geometry.patch import FloatArray, Patch
 from isomortar.geometry.refinement import mesh
@@ -54,14 +55,17 @@ class Surface:
         nodes, values = _bindings.surface_functions(arrays, "uvw".index(self.face[0]) + 1, int(self.face[1]), np.ascontiguousarray(xi))
         return values, self.patch.control_points[self.patch.face_points(self.face)][nodes]
 
-    def project(self, targets: FloatArray, starts: FloatArray | None = None) -> Projections:
-        """The kernel's projections: each target is a slave of one quadrature point; without starts from its coarse search."""
+    def project(self, targets: FloatArray, starts: FloatArray | None = None, counts: LongArray | None = None) -> Projections:
+        """The kernel's projections: each target is a slave of one quadrature point; without starts from its coarse search.
+
+        What that takes is added to `counts`.
+        """
         n, own = len(targets), len(self.patch.weights)
         slave = SlaveArrays.of_points(np.arange(own, own + n, dtype=np.int32))
         positions = np.ascontiguousarray(np.concatenate([self.patch.control_points, targets]))
         had = np.full(n, starts is not None, dtype=np.int32)
         origin = np.zeros((n, 2)) if starts is None else np.ascontiguousarray(starts)
-        return _bindings.project_points(slave, self.master(), positions, origin, had)
+        return _bindings.project_points(slave, self.master(), positions, origin, had, counts=counts)
 
     def master(self) -> FaceArrays:
         """The face as the kernel's master."""
