@@ -9,8 +9,6 @@ from projection.closest_points import Surface
 from projection.poles import OUTER, turned
 from projection.poles import face as dome_face
 
-from isomortar import _bindings
-from isomortar._bindings import SlaveArrays
 from isomortar.geometry.patch import FloatArray
 from isomortar.geometry.primitives import box
 from isomortar.geometry.refinement import mesh
@@ -37,14 +35,6 @@ def beside(share: float) -> FloatArray:
     return np.delete(np.stack(np.meshgrid(*ends), axis=-1).reshape(-1, 2), 4, axis=0)
 
 
-def feet(face: Surface, targets: FloatArray, brim: float) -> _bindings.Projections:
-    """Projections of targets onto a face with a brim, from no start."""
-    own, n = len(face.patch.weights), len(targets)
-    slave = SlaveArrays.of_points(np.arange(own, own + n, dtype=np.int32))
-    positions = np.concatenate([face.patch.control_points, targets])
-    return _bindings.project_points(slave, replace(face.master(), brim=brim), positions, np.zeros((n, 2)), np.zeros(n, dtype=np.int32))
-
-
 @case(
     claim="Beyond each edge and corner of a face there are feet up to its brim and none farther out.",
     bounds={
@@ -61,7 +51,8 @@ def brim() -> dict[str, float]:
     def at(share: float) -> FloatArray:
         return np.column_stack([beside(share), np.full(8, 0.1)])
 
-    within, beyond, without = feet(face, at(WITHIN), BRIM), feet(face, at(BEYOND), BRIM), feet(face, at(WITHIN), 0.0)
+    with_brim = replace(face, brim=BRIM)
+    within, beyond, without = with_brim.project(at(WITHIN)), with_brim.project(at(BEYOND)), face.project(at(WITHIN))
     return {
         "foot": float(np.abs(within.xi - beside(WITHIN)).max()),
         "within": float(np.mean(within.found)),
@@ -91,15 +82,16 @@ def brim_of_a_dome(way: str) -> dict[str, float]:
         return np.column_stack([np.cos(latitude) * np.cos(angle), np.cos(latitude) * np.sin(angle), np.sin(latitude) * np.ones(len(angle))])
 
     on_it, too_far = ring(edge - 0.01), ring(edge - 0.2)
-    within = feet(face, 1.1 * OUTER * on_it, BRIM)
+    with_brim = replace(face, brim=BRIM)
+    within = with_brim.project(1.1 * OUTER * on_it)
     own = np.concatenate(
         [ring(random.uniform(edge, np.pi / 2, len(angle))), ring(np.pi / 2 - 1e-9), ring(random.uniform(edge, 1.5, len(angle)))]
     )
-    same, other = (feet(face, 1.1 * OUTER * own, brim) for brim in (BRIM, 0.0))
+    same, other = (one.project(1.1 * OUTER * own) for one in (with_brim, face))
     return {
         "foot": float(np.linalg.norm(face.points(within.xi) - OUTER * on_it, axis=1).max()),
         "elsewhere": float(np.count_nonzero(np.any(same.xi != other.xi, axis=1) | (same.found != other.found))),
         "within": float(np.mean(within.found)),
-        "beyond": float(np.mean(feet(face, 1.1 * OUTER * too_far, BRIM).found)),
-        "without": float(np.mean(feet(face, 1.1 * OUTER * on_it, 0.0).found)),
+        "beyond": float(np.mean(with_brim.project(1.1 * OUTER * too_far).found)),
+        "without": float(np.mean(face.project(1.1 * OUTER * on_it).found)),
     }

@@ -29,11 +29,15 @@ PATCHES = {
 
 @dataclass(frozen=True)
 class Surface:
-    """A face with the kernel's view of it; along `closed` (u, v or w) the last row of control points is the first one."""
+    """A face with the kernel's view of it; along `closed` (u, v or w) the last row of control points is the first one.
+
+    `brim`: share of its outer elements by which it goes on beyond its edges.
+    """
 
     patch: Patch
     face: str
     closed: str | None = None
+    brim: float = 0.0
 
     @property
     def ends(self) -> FloatArray:
@@ -70,7 +74,7 @@ class Surface:
     def master(self) -> FaceArrays:
         """The face as the kernel's master."""
         arrays = patch_arrays(self.patch, same_points(self.patch, self.closed))
-        return FaceArrays(arrays, "uvw".index(self.face[0]) + 1, int(self.face[1]))
+        return FaceArrays(arrays, "uvw".index(self.face[0]) + 1, int(self.face[1]), brim=self.brim)
 
     def sampled_distance(self, targets: FloatArray, count: int = 81) -> FloatArray:
         """Least distance of each target to a grid of points, shape (n,)."""

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 from projection.closest_points import Surface
+from projection.in_extended_precision import given
 from projection.poles import INNER, starts, turned
 from projection.poles import face as dome_face
 from scipy.interpolate import BSpline
@@ -40,7 +41,7 @@ def unequal(order: int) -> FloatArray:
 
 
 def nearest(order: int, rim: FloatArray, target: FloatArray) -> tuple[FloatArray, bool]:
-    """The cone's nearest point, and whether it is plain: not near its end, nor as near as another line of the cone (theory 3.15)."""
+    """The cone's nearest point, and whether it is plain: not near its end, nor as near as another line of the cone."""
     count = len(rim) + 1
     knots = np.pad(np.arange(count - order + 1.0), order, mode="edge")
     curve = BSpline(knots, np.vstack([rim, rim[:1]]), order)
@@ -97,10 +98,8 @@ def of_unequal_sectors(order: int, way: str) -> dict[str, float]:
 
 def gaps_of(face: Surface, targets: FloatArray, projections: _bindings.Projections) -> FloatArray:
     """Gaps of targets, each of which is a slave of one point, shape (n,)."""
-    own, n = len(face.patch.weights), len(targets)
-    slave = _bindings.SlaveArrays.of_points(np.arange(own, own + n, dtype=np.int32))
-    positions = np.concatenate([face.patch.control_points, targets])
-    return _bindings.control_quantities(slave, face.master(), positions, projections).gap
+    slave, master, positions, *_ = given(face, targets, 1.0, None)
+    return _bindings.control_quantities(slave, master, positions, projections).gap
 
 
 @case(

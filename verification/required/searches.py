@@ -47,8 +47,8 @@ def searches(master: str) -> dict[str, float]:
     targets, (low, high) = targets_of(face, TARGETS), face.ends
     feet, numbers = _searched(face, targets, None, "none")
     targets, there = targets[feet.found == 1], feet.xi[feet.found == 1]  # from a start, what is deeper than the body is refused as a whole
-    any_, other = random.uniform(low, high, (2, len(targets), 2))
-    starts = {"any": any_, "near": np.clip(there + NEAR * (other - low), low, high), "end": np.where([0, 1], high, any_)}
+    anywhere, other = random.uniform(low, high, (2, len(targets), 2))
+    starts = {"any": anywhere, "near": np.clip(there + NEAR * (other - low), low, high), "end": np.where([0, 1], high, anywhere)}
     for start, xi in starts.items():
         numbers |= _searched(face, targets, xi, start)[1]
     return numbers
