@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from projection.closest_points import Surface
 
 from isomortar.errors import LostProjectionError
+from isomortar.geometry.primitives import box
 from isomortar.harness import Bound, case
 from isomortar.scene import Scene
 from isomortar.solve.equilibrium import Equilibrium
@@ -60,3 +62,23 @@ def thin_body(projection: str, order: int) -> dict[str, float]:
         "behind": float(np.max([found(equilibrium, THICKNESS * share, 0) for share in BEHIND])),
         "through": float(np.max([found(equilibrium, THICKNESS * share, 1) for share in BEHIND])),
     }
+
+
+@case(
+    claim="Of many points the one that has passed through is named, whichever it is.",
+    bounds={"other": Bound(0.0, 0.0, "definition: points behind the body where none is named, or another")},
+)
+def which_point() -> dict[str, float]:
+    """How many of the points, each alone behind the body, in reach before."""
+    plate = Surface(box((0, 0, -THICKNESS), (1, 1, 0)), "w1")
+    places = np.random.default_rng(5).uniform(0.1, 0.9, (9, 2))
+    other = 0
+    for q in range(len(places)):
+        targets = np.column_stack([places, np.where(np.arange(len(places)) == q, -2.0 * THICKNESS, 0.0)])
+        try:
+            plate.project(targets, places)
+        except LostProjectionError as error:
+            other += error.place != q
+        else:
+            other += 1
+    return {"other": float(other)}

@@ -18,10 +18,10 @@ INNER, OUTER = 0.4, 0.7
 OFF = (1e-1, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-14)
 
 
-def face(kind: str, side: str = "v1", raised: float = 0.0) -> Surface:
-    """The outer (v1) or inner face of a dome; `raised`: its pole, which is a cone's vertex then."""
+def face(kind: str, side: str = "v1", raised: float = 0.0, rows: int = 3) -> Surface:
+    """The outer (v1) or inner face of a dome of so many rows of elements; `raised`: its pole, which is a cone's vertex then."""
     family, order = kind[0], int(kind[1:])
-    patch = mesh(dome(INNER, OUTER, -0.3), (family, family, family), (order, 1, order), (3, 1, 8))  # type: ignore[arg-type]
+    patch = mesh(dome(INNER, OUTER, -0.3), (family, family, family), (order, 1, order), (rows, 1, 8))  # type: ignore[arg-type]
     points = patch.control_points.copy()
     points[patch.face_points("u1"), 2] += raised
     return Surface(replace(patch, control_points=points), side, closed="w")
@@ -92,18 +92,18 @@ def beside_a_pole(kind: str, side: str, off: float) -> dict[str, float]:
 
 @case(
     claim="A pole is found at either end of either direction: feet beside it are those of the exact sphere, on a cone's vertex those of "
-    "all that is in its cone of normals.",
-    grid={"way": ["high first", "low first", "high second", "low second"], "side": ["v0", "v1"]},
+    "all that is in its cone of normals. Of more rows up to it than there are elements round it, too.",
+    grid={"way": ["high first", "low first", "high second", "low second"], "side": ["v0", "v1"], "rows": [3, 24]},
     bounds={
         "foot": Bound(at_most=2e-14, reason="round-off: of the surface's points; Newton's method ends below it"),
         "followed": Bound(at_least=1.0, at_most=1.0, reason="definition: the sphere is smooth at its pole, a foot beside it follows"),
         "vertex": Bound(at_most=2e-16, reason="round-off: of the vertex, which is the nearest point of all in its cone of normals"),
     },
 )
-def at_any_end(way: str, side: str) -> dict[str, float]:
+def at_any_end(way: str, side: str, rows: int) -> dict[str, float]:
     """Largest distance from the exact foot, share followed, and distance from the vertex of a cone; from any start and from none."""
     random = np.random.default_rng(8)
-    smooth, cone = (turned(face("N2", side, raised), way) for raised in (0.0, 0.1))
+    smooth, cone = (turned(face("N2", side, raised, rows), way) for raised in (0.0, 0.1))
     radius = INNER if side == "v0" else OUTER
     angle, off = random.uniform(0.0, 2 * np.pi, 24), 10.0 ** random.uniform(-11.0, -0.5, 24)
     normals = np.column_stack([np.sin(off) * np.cos(angle), np.sin(off) * np.sin(angle), np.cos(off)])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import get_args
 
 import mpmath
@@ -186,6 +187,22 @@ def rigid_motion(kind: str, law: str) -> dict[str, float]:
     before, after, rigid = (forces(patch, np.ascontiguousarray(place), points, LAWED[law]) for place in places)
     size = np.abs(before).max()
     return {"objectivity": float(np.abs(after - before @ turn.T).max() / size), "rigid": float(np.abs(rigid).max() / size)}
+
+
+@case(
+    claim="Far from the origin, along any axis, a body has the same forces to the last digit.",
+    grid={"kind": ["N2", "L2"], "axis": [0, 1, 2]},
+    bounds={"change": Bound(0.0, 0.0, "definition: of places whose digits all fit the shift too, only differences count")},
+)
+def far_away(kind: str, axis: int) -> dict[str, float]:
+    """Largest change of the forces by a shift of both configurations by 2^20, of control points that are multiples of 2^-20."""
+    patch = curved_element(kind)
+    here = np.round(patch.control_points * 2.0**20) / 2.0**20
+    strained = np.round(here @ random_gradients(1.0)[0].T * 2.0**20) / 2.0**20
+    shift = 2.0**20 * np.eye(3)[axis]
+    points = int(kind[1:]) + 1
+    near, far = (forces(replace(patch, control_points=here + off), strained + off, points) for off in (0.0, shift))
+    return {"change": float(np.abs(far - near).max())}
 
 
 def many_digits(f: mpmath.matrix, material: Material) -> mpmath.matrix:
