@@ -7,6 +7,7 @@ the normals by differences.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 from friction.virtual_work import PATTERNS, Surface, areas, relative, response_of
@@ -27,12 +28,19 @@ UNEVEN = {1: 0.03, 2: 0.007}
 MOVED = {"inside": (0.07, 0.03, -0.02), "over the rim": (0.45, 0.03, -0.02)}
 
 
-def lagrange(order: int, t: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Nodal functions on [0, 1] and their derivatives, each of shape (points, order + 1)."""
+@cache
+def polynomials(order: int) -> tuple[tuple[np.polynomial.Polynomial, ...], tuple[np.polynomial.Polynomial, ...]]:
+    """Nodal functions on [0, 1] and their derivatives."""
     nodes = np.linspace(0.0, 1.0, order + 1)
-    polynomials = [np.polynomial.Polynomial.fromroots(np.delete(nodes, j)) for j in range(order + 1)]
-    polynomials = [polynomial / polynomial(node) for polynomial, node in zip(polynomials, nodes, strict=True)]
-    return np.stack([f(t) for f in polynomials], axis=-1), np.stack([f.deriv()(t) for f in polynomials], axis=-1)
+    zeros = [np.polynomial.Polynomial.fromroots(np.delete(nodes, j)) for j in range(order + 1)]
+    functions = tuple(function / function(node) for function, node in zip(zeros, nodes, strict=True))
+    return functions, tuple(function.deriv() for function in functions)
+
+
+def lagrange(order: int, t: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Values and derivatives of the nodal functions at t, each of shape (points, order + 1)."""
+    functions, derivatives = polynomials(order)
+    return np.stack([f(t) for f in functions], axis=-1), np.stack([f(t) for f in derivatives], axis=-1)
 
 
 @dataclass(frozen=True)
@@ -74,24 +82,35 @@ class Master:
         count, size = len(x), np.linalg.norm(np.ptp(self.nodes.reshape(-1, 3), axis=0))
         best = Feet(np.zeros((count, 2), int), np.zeros((count, 2)), np.full(count, np.inf), np.zeros((count, 3)), np.zeros(count, bool))
         for e in np.ndindex(self.elements):
-            t, gap = np.full((count, 2), 0.5), np.zeros(count)
+            t, gap, last = np.full((count, 2), 0.5), np.zeros(count), np.full(count, np.inf)
             with np.errstate(all="ignore"):
                 for _ in range(40):
-                    s, first, second = self.at(self.nodes, e, t)
-                    m, *slopes = self.at(self.normals, e, t)
-                    length = np.linalg.norm(m, axis=1)[:, None]
-                    normal = m / length
-                    turned = [(slope - (slope * normal).sum(axis=1)[:, None] * normal) / length for slope in slopes]
-                    matrix = np.stack([first - gap[:, None] * turned[0], second - gap[:, None] * turned[1], -normal], axis=2)
-                    step = np.linalg.solve(matrix, (x - s + gap[:, None] * normal)[..., None])[..., 0]
-                    step /= np.maximum(1.0, np.abs(step[:, :2]).max(axis=1))[:, None]
-                    t, gap = np.clip(t + step[:, :2], -3.0, 4.0), gap + step[:, 2]
-                here = np.all((t >= 0.0) & (t <= 1.0), axis=1) & (np.abs(step).max(axis=1) < 1e-12)
+                    moving = np.flatnonzero(~(last < 1e-13))
+                    if not len(moving):
+                        break
+                    step = self.step(e, t[moving], gap[moving], x[moving])
+                    t[moving] = np.clip(t[moving] + step[:, :2], -3.0, 4.0)
+                    gap[moving] += step[:, 2]
+                    last[moving] = np.abs(step).max(axis=1)
+                normal = self.at(self.normals, e, t)[0]
+                normal /= np.linalg.norm(normal, axis=1)[:, None]
+                here = np.all((t >= 0.0) & (t <= 1.0), axis=1) & (last < 1e-12)
                 here &= (gap <= 0.1 * size) & (gap >= -0.5 * size) & (-(normal * across).sum(axis=1) > 0.2)
                 here &= np.abs(gap) < np.abs(best.gap)
             best.element[here], best.t[here], best.gap[here] = e, t[here], gap[here]
             best.normal[here], best.found[here] = normal[here], True
         return best
+
+    def step(self, e: tuple[int, ...], t: FloatArray, gap: FloatArray, x: FloatArray) -> FloatArray:
+        """Newton's step of feet in element e, shape (points, 3): coordinates, each by at most 1, and gap."""
+        s, first, second = self.at(self.nodes, e, t)
+        m, *slopes = self.at(self.normals, e, t)
+        length = np.linalg.norm(m, axis=1)[:, None]
+        normal = m / length
+        turned = [(slope - (slope * normal).sum(axis=1)[:, None] * normal) / length for slope in slopes]
+        matrix = np.stack([first - gap[:, None] * turned[0], second - gap[:, None] * turned[1], -normal], axis=2)
+        step = np.linalg.solve(matrix, (x - s + gap[:, None] * normal)[..., None])[..., 0]
+        return step / np.maximum(1.0, np.abs(step[:, :2]).max(axis=1))[:, None]
 
     def values(self, field: FloatArray, feet: Feet, kind: int = 0) -> FloatArray:
         """A field of the nodes at the feet, or its derivative along the first or second direction, shape (points, 3); zero without one."""
