@@ -24,6 +24,8 @@ GAP = ".{0,200}"
 #: Sentences without an example: they are not said to people, or are about what a test can not bring about.
 UNSAID = {
     "bodies of the scene are missing": "of a file that is told to be damaged",
+    "body  has no volume": "of a file that is told to be damaged",
+    "pressures of contact  are not finite": "of a file that is told to be damaged",
     "a general system has found it singular": "an assertion",
 }
 #: Where else sentences are read by people.

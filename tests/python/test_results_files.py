@@ -11,8 +11,10 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import h5py
+import numpy as np
 import pytest
 
 import isomortar
@@ -188,6 +190,26 @@ def test_a_file_that_was_edited_and_sealed_again_is_refused_where_bodies_are_mis
     results.write_bytes(sealed(content.getvalue()))
     with isomortar.Results(results) as edited, pytest.raises(ResultsError, match="bodies of the scene are missing"):
         _ = edited.problem
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "words"),
+    [
+        ("states/positions", np.ones(3), "body 'block' has no volume"),
+        ("states/positions", np.array([1.0, 1.0, 0.0]), "body 'block' has no volume"),
+        ("states/positions", np.array([np.nan, 1.0, 1.0]), "cannot be read"),
+        ("states/contacts/floor/pressure", np.inf, "pressures of contact 'floor' are not finite"),
+        ("states/contacts/floor/traction", np.nan, "pressures of contact 'floor' are not finite"),
+    ],
+)
+def test_states_that_nothing_computes_are_refused_by_whoever_reads_them(results: Path, name: str, value: Any, words: str) -> None:
+    content = io.BytesIO(results.read_bytes())
+    with h5py.File(content, "a") as file:
+        kept = file[name][()]
+        file[name][...] = kept * value if np.ndim(value) and 0.0 in value else np.broadcast_to(value, kept.shape)
+    results.write_bytes(sealed(content.getvalue()))
+    with isomortar.Results(results) as edited, pytest.raises(ResultsError, match=words):
+        edited.last_step()
 
 
 def test_what_cannot_be_written_leaves_no_part_of_a_new_file_and_the_old_one_as_it_was(tmp_path: Path) -> None:

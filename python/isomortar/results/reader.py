@@ -19,6 +19,7 @@ from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model.entities import Contact, Problem
 from isomortar.results import layout
 from isomortar.results.definition import read_problem
+from isomortar.results.fields import body_points
 from isomortar.results.files import is_marked, is_whole
 from isomortar.solve.record import (
     AugmentationRecord,
@@ -33,6 +34,9 @@ from isomortar.solve.record import (
 )
 
 Value = TypeVar("Value")
+
+#: Of a body's extents the smallest by the largest, below which it has no volume: round-off of its control points.
+_FLAT = 1e-14
 
 
 @dataclass(frozen=True)
@@ -241,13 +245,15 @@ def _step_result(file: h5py.File, problem: Problem, number: int, row: int, kept:
     curves = [f"curves/contacts/{contact.name}" for contact in problem.contacts]
     values = _get(file, "curves", layout.STEP, row)
     values["stage"] = values["stage"].decode()
+    state = State(
+        positions=file["states/positions"][kept],
+        contacts=tuple(ContactState(**_get(file, state, layout.CONTACT_STATE, kept)) for state in states),
+        rates=_rates(file, problem, kept),
+    )
+    _check_state(problem, state)
     return StepResult(
         **values,
-        state=State(
-            positions=file["states/positions"][kept],
-            contacts=tuple(ContactState(**_get(file, state, layout.CONTACT_STATE, kept)) for state in states),
-            rates=_rates(file, problem, kept),
-        ),
+        state=state,
         reactions=tuple(Reaction(**_get(file, f"curves/supports/{s.name}", layout.REACTION, row)) for s in problem.supports),
         contacts=tuple(
             ContactResult(**_get(file, curve, layout.CONTACT, row), **_get(file, state, layout.CONTACT_VALUES, kept))
@@ -258,6 +264,17 @@ def _step_result(file: h5py.File, problem: Problem, number: int, row: int, kept:
         counters={name: int(data[row]) for name, data in file["counters"].items() if data[row] >= 0},
         orderings={int(matrices): data.asstr()[row] for matrices, data in file["orderings"].items() if data[row]},
     )
+
+
+def _check_state(problem: Problem, state: State) -> None:
+    """What no computation comes to, and nobody can draw or go on from."""
+    for name, points in body_points(problem, state.positions).items():
+        extents = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+        if not extents[2] > _FLAT * extents[0]:
+            raise ValueError(f"body {name!r} has no volume")
+    for contact, values in zip(problem.contacts, state.contacts, strict=True):
+        if not (np.isfinite(values.pressure).all() and np.isfinite(values.traction).all()):
+            raise ValueError(f"pressures of contact {contact.name!r} are not finite")
 
 
 def _rates(file: h5py.File, problem: Problem, kept: int) -> Rates | None:
