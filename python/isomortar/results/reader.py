@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 from isomortar.errors import ResultsError
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model.entities import Contact, Problem
+from isomortar.model.numbering import Numbering
 from isomortar.results import layout
 from isomortar.results.definition import read_problem
-from isomortar.results.fields import body_points
 from isomortar.results.files import is_marked, is_whole
 from isomortar.solve.record import (
     AugmentationRecord,
@@ -268,10 +268,12 @@ def _step_result(file: h5py.File, problem: Problem, number: int, row: int, kept:
 
 def _check_state(problem: Problem, state: State) -> None:
     """What no computation comes to, and nobody can draw or go on from."""
-    for name, points in body_points(problem, state.positions).items():
+    numbering = Numbering(problem)
+    for body in problem.bodies:
+        points = numbering.of_patch(body.name, state.positions)
         extents = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
         if not extents[2] > _FLAT * extents[0]:
-            raise ValueError(f"body {name!r} has no volume")
+            raise ValueError(f"body {body.name!r} has no volume")
     for contact, values in zip(problem.contacts, state.contacts, strict=True):
         if not (np.isfinite(values.pressure).all() and np.isfinite(values.traction).all()):
             raise ValueError(f"pressures of contact {contact.name!r} are not finite")
