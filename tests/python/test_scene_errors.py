@@ -175,6 +175,24 @@ CASES = {
         "stages.turn.motions.top.rotate",
         "turns support 'top' 2.78e+17 times in 2 load steps; allowed: 10 times in each",
     ),
+    "way without end": (
+        "motions.top.translate = [0, 0, -0.2]",
+        "motions.top.translate = [0, 1e20, -0.2]",
+        "stages.press.motions.top.translate",
+        "has gone 1e+20 by the end of the stage, where the coordinates of body 'upper' have no digits left",
+    ),
+    "way beyond numbers": (
+        "motions.top.translate = [0, 0, -0.2]",
+        "motions.top.translate = [0, 0, -1e308]\n[[stages]]\nname = 'more'\nsteps = 1\nmotions.top.translate = [0, 0, -1e308]",
+        "stages.press.motions.top.translate",
+        "has gone 1e+308 by the end of the stage",
+    ),
+    "centre without digits": (
+        'face = "upper.w1"',
+        'face = "upper.w1"\ncentre = [-1e15, 0, 0]',
+        "supports.top.centre",
+        "is 1e+15 from the origin, where the coordinates of body 'upper' have no digits left",
+    ),
     "stage twice": ('name = "turn"', 'name = "press"', "stages.1.name", "is the name of two stages"),
     "free body": ('[supports.top]\nface = "upper.w1"', '[supports.top]\nface = "lower.u0"', "bodies.upper", "body 'upper' is free"),
     "conflict": (

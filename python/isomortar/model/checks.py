@@ -40,9 +40,9 @@ def check(problem: Problem) -> None:
     ------
     InputError
         Settings of the solver that are not allowed; units that no number holds; more memory than there is; glue of faces that do not
-        conform; a support that turns too often in a load step; a rigid body that supports contradict each other on, or leave
-        components to; a body that nothing holds; supports that contradict each other; contacts that cannot be meant; too few Gauss points
-        for a body's weights.
+        conform; a support that turns too often in a load step, goes or turns too far from the origin; a rigid body that supports contradict
+        each other on, or leave components to; a body that nothing holds; supports that contradict each other; contacts that cannot be
+        meant; too few Gauss points for a body's weights.
     """
     _check_settings(problem.settings)
     for body in problem.bodies:
@@ -54,6 +54,7 @@ def check(problem: Problem) -> None:
     check_glue(problem)
     check_contacts(problem)
     _check_turns(problem)
+    _check_ways(problem)
     _check_carried(problem)
     _check_held(problem)
     numbering = Numbering(problem)
@@ -129,6 +130,28 @@ def _check_turns(problem: Problem) -> None:
                     f"turns support {support.name!r} {turns:.3g} times in {stage.steps} load steps; allowed: {MOST_TURNS} times in each. "
                     "Angles are degrees; a longer way takes more steps",
                     f"stages.{stage.name}.motions.{support.name}.rotate",
+                )
+
+
+def _check_ways(problem: Problem) -> None:
+    """A support that goes, or turns about a centre, so far from the origin that its body is lost in the last bits there."""
+    for support in problem.supports:
+        name = support.place.body
+        most = LAST_BIT * problem.body(name).size
+        centre = float(np.abs(support.centre).max())
+        if not np.spacing(centre) <= most:
+            raise InputError(
+                f"is {centre:.3g} from the origin, where the coordinates of body {name!r} have no digits left; move it nearer to the body",
+                f"supports.{support.name}.centre",
+            )
+        with np.errstate(over="ignore"):  # inf has no digits either
+            ways = np.abs(np.cumsum([motion.translate for motion in support.motions], axis=0)).max(axis=1)
+        for stage, way in zip(problem.stages, ways.tolist(), strict=True):
+            if not np.spacing(way) <= most:
+                raise InputError(
+                    f"support {support.name!r} has gone {way:.3g} by the end of the stage, where the coordinates of body {name!r} have "
+                    "no digits left; take a shorter way (units?)",
+                    f"stages.{stage.name}.motions.{support.name}.translate",
                 )
 
 
