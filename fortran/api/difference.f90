@@ -10,7 +10,7 @@ module isomortar_api_difference
   use isomortar_contact_friction_law, only: friction_t
   use isomortar_contact_gap_map_map, only: gap_map_t, projections_at, projections_t
   use isomortar_contact_sample, only: multipliers_t
-  use isomortar_contact_slave, only: slave_t
+  use isomortar_contact_slave, only: integrate_functions, slave_t
   use isomortar_contact_work, only: work_t
   implicit none
   private
@@ -103,17 +103,13 @@ contains
     type(quantities_t), intent(out) :: quantities
     integer, intent(out) :: status, place
     type(multipliers_t) :: pressures, tractions
-    type(control_t) :: coordinates
-    type(projections_t) :: absolute
-    type(work_t) :: work
 
     call integrate_and_respond(fixed, positions, law, quantities, status, place)
     if (status /= status_ok) return
-    call reserve(fixed%slave%test%count, size(fixed%slave%area), coordinates)
-    absolute = quantities%projections
-    absolute%slip = absolute%xi
-    call control_quantities(fixed%slave, fixed%map, positions, absolute, .true., coordinates, work)
-    quantities%coordinates = coordinates%slip
+    allocate (quantities%coordinates(2, fixed%slave%test%count))
+    associate (feet => quantities%projections)
+      call integrate_functions(fixed%slave, merge(feet%xi, 0.0_wp, spread(feet%found, 1, 2)), quantities%coordinates)
+    end associate
 
     pressures = fixed%frozen
     pressures%traction = 0.0_wp

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
 
@@ -58,14 +59,12 @@ class Net:
         row = 1 - axis
         return Net(self.letters, (first, second), np.flip(self.numbers, row), np.flip(self.points, row), np.flip(self.weights, row))
 
-    def turned(self) -> list[Net]:
-        """All eight ways to look at it: either order of the coordinates, each of them either way."""
-        nets = []
+    def turned(self) -> Iterator[Net]:
+        """All eight ways to look at it: either order of the coordinates, each of them either way. One by one: mostly the first is it."""
         for swap, first, second in product((False, True), repeat=3):
             net = self.swapped() if swap else self
             net = net.reversed(0) if first else net
-            nets.append(net.reversed(1) if second else net)
-        return nets
+            yield net.reversed(1) if second else net
 
     @property
     def corners(self) -> FloatArray:

@@ -67,36 +67,37 @@ class Subcells:
         for lines in constants.CELL_LINES:
             left = wide & np.isnan(at)
             low, high = self.low[left] + self._margin[left], self.high[left] - self._margin[left]
-            found = [self._crossing(axis, low, high, line) for line in lines]
-            at[left] = _nearest(0.5 * (low + high)[:, axis], found)
+            many = np.repeat(lines, len(low))[:, None]
+            found = self._crossing(axis, np.tile(low, (len(lines), 1)), np.tile(high, (len(lines), 1)), many)
+            at[left] = _nearest(0.5 * (low + high)[:, axis], np.split(found, len(lines)))
         here = ~np.isnan(at)
         low, high = self.low[here].copy(), self.high.copy()
         low[:, axis] = high[here, axis] = at[here]
         self.low, self.high = np.concatenate([self.low, low]), np.concatenate([high, self.high[here]])
         self._margin = np.concatenate([self._margin, self._margin[here]])
 
-    def _crossing(self, axis: int, low: FloatArray, high: FloatArray, line: float) -> FloatArray:
+    def _crossing(self, axis: int, low: FloatArray, high: FloatArray, line: FloatArray) -> FloatArray:
         """Where what is below a line of each box changes next to its middle (theory 10.9), by halving; NaN where it does not.
 
-        A middle on a knot line, which others leave, is the place itself.
+        `line`: where it lies across, shape (m, 1). A middle on a knot line, which others leave, is the place itself. Both sides are
+        halved together: a search for feet costs what it learns of the master first, however few these are.
         """
         middle = low + line * (high - low)
         middle[:, axis] = 0.5 * (low + high)[:, axis]
         start, end = middle.copy(), middle.copy()
         start[:, axis], end[:, axis] = low[:, axis], high[:, axis]
-        below = self._labels(middle)
-        before, after = (self._labels(one) != below for one in (start, end))
-        on_line = np.any((before | after) & (below % 2 == 1) & (below > 0), axis=1)
-        sides = [np.where(on_line, middle[:, axis], np.nan) for _ in range(2)]
-        for side, differs, far_end in zip(sides, (before, after), (start, end), strict=True):
-            changes = np.any(differs, axis=1) & ~on_line
-            near, far = middle[changes], far_end[changes]
-            for _ in range(constants.CELL_HALVINGS):
-                between = 0.5 * (near + far)
-                same = np.all(self._labels(between) == below[changes], axis=1)
-                near[same], far[~same] = between[same], between[~same]
-            side[changes] = 0.5 * (near + far)[:, axis]
-        return _nearest(middle[:, axis], sides)
+        below, *ends = np.split(self._labels(np.concatenate([middle, start, end])), 3)
+        differs = np.stack([labels != below for labels in ends])
+        on_line = np.any(differs.any(axis=0) & (below % 2 == 1) & (below > 0), axis=1)
+        changes = np.any(differs, axis=2) & ~on_line
+        near, far, here = np.stack([middle, middle])[changes], np.stack([start, end])[changes], np.stack([below, below])[changes]
+        for _ in range(constants.CELL_HALVINGS):
+            between = 0.5 * (near + far)
+            same = np.all(self._labels(between) == here, axis=1)
+            near[same], far[~same] = between[same], between[~same]
+        sides = np.where(on_line, middle[:, axis], np.full((2, 1), np.nan))
+        sides[changes] = 0.5 * (near + far)[:, axis]
+        return _nearest(middle[:, axis], list(sides))
 
     def _labels(self, coordinates: FloatArray) -> IntArray:
         """Twice the elements of the master below places of the face, one more on the line to the next, shape (m, 2); -1 beside it."""
