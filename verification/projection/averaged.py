@@ -23,6 +23,8 @@ from isomortar.solve.timing import Ledger
 
 #: Step of the differences.
 STEP = 1e-5
+#: Newton's of a foot from the middle of its element; who is not there by then has none in it.
+ITERATIONS = 15
 #: How uneven the master is, and how far the bowl is moved: all of it over the master, or a part of it beyond its edge.
 UNEVEN = {1: 0.03, 2: 0.007}
 MOVED = {"inside": (0.07, 0.03, -0.02), "over the rim": (0.45, 0.03, -0.02)}
@@ -84,7 +86,7 @@ class Master:
         for e in np.ndindex(self.elements):
             t, gap, last = np.full((count, 2), 0.5), np.zeros(count), np.full(count, np.inf)
             with np.errstate(all="ignore"):
-                for _ in range(40):
+                for _ in range(ITERATIONS):
                     moving = np.flatnonzero(~(last < 1e-13))
                     if not len(moving):
                         break

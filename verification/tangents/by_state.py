@@ -26,6 +26,8 @@ OFF = 1e-12
 #: How far from a knot line, as a share of an element. The projection compares squared distances: closer by than about 1e-8 of the
 #: distance it may stay on the line.
 OFF_LINE = 1e-8
+#: How much nearer than that a point is put to where it is wanted.
+SETTLED = 1e-3
 #: Length of the directions next to an edge: with the twin's step of 1e-11 no difference reaches across.
 SHORT = 1e-6
 #: The next number above the cone 0.5.
@@ -99,6 +101,8 @@ def near_knot_line(problem: Problem, equilibrium: Equilibrium, visit: Visit, off
     slope = (at(1e-6)[1][q] - at(0.0)[1][q]) / 1e-6
     for _ in range(30):
         positions, xi = at(shift)
+        if abs(xi[q] - target) < SETTLED * abs(target - knot):
+            break
         shift -= (xi[q] - target) / slope
     return Visit(positions, visit.pairs)
 

@@ -92,7 +92,7 @@ def beside_a_pole(off: float, height: float) -> dict[str, float]:
     """Largest relative error of each part; distance of the foot from the pole over that asked for."""
     given = problem(0.0)
     visit, feet = placed_over(given, np.array([ANGLE, 1.0 - off]), height)
-    report = measure(given, 1, [visit], directions=2, length=min(1.0, 1e-3 * off))
+    report = measure(given, 1, [visit], directions=1, length=min(1.0, 1e-3 * off))
     return {row.part: row.error for row in report.rows if row.part in (*PARTS, "symmetry")} | {"off": float((1 - feet[POINT, 1]) / off)}
 
 
@@ -106,5 +106,5 @@ def at_a_vertex(height: float) -> dict[str, float]:
     """Largest relative error of each part; distance of the foot from the pole."""
     given = problem(0.05)
     visit, feet = placed_over(given, np.array([ANGLE, 1.0]), height)
-    report = measure(given, 1, [visit], directions=2, length=1e-3 * height)
+    report = measure(given, 1, [visit], directions=1, length=1e-3 * height)
     return {row.part: row.error for row in report.rows if row.part in (*PARTS, "symmetry")} | {"off": float(1 - feet[POINT, 1])}
