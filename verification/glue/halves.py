@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import replace
 
 import numpy as np
@@ -139,6 +140,13 @@ def as_one_body(load: str, family: str, order: int, method: str) -> dict[str, fl
     }
 
 
+@functools.cache
+def alike(family: str) -> tuple[Problem, StepResult]:
+    """The bent block of two halves that are named alike, and its end: what one of every orientation is compared with."""
+    cut = graded(halves("bent", family, 2, "monolithic"))
+    return cut, solved(cut)
+
+
 @case(
     claim="A glued body may name its directions in any order and run them either way.",
     tier="gate",
@@ -151,9 +159,9 @@ def as_one_body(load: str, family: str, order: int, method: str) -> dict[str, fl
 def any_orientation(way: int, family: str) -> dict[str, float]:
     """Distance of the bent block's control points from those of the block with both halves named alike; difference of unknowns."""
     order, axes = orientations()[way]
-    cut = graded(halves("bent", family, 2, "monolithic"))
+    cut, one = alike(family)
     turned = oriented(cut, "upper", order, axes)
-    one, other = solved(cut), solved(turned)
+    other = solved(turned)
     points = [body_points(problem, result.state.positions)["upper"] for problem, result in ((cut, one), (turned, other))]
     back = (
         np.lexsort(np.round(cut.body("upper").patch.control_points, 9).T),

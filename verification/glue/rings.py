@@ -10,6 +10,7 @@ from small_scenes import TIGHT
 
 from isomortar.geometry.patch import Direction, Patch
 from isomortar.harness import Bound, case
+from isomortar.harness.cases import Tier
 from isomortar.model.entities import Face, Faces, Problem
 from isomortar.scene import Scene
 
@@ -78,9 +79,15 @@ def cut(patch: Patch, at: float) -> tuple[Patch, Patch]:
     return one, other
 
 
+def tier(side: str, projection: str, method: str) -> Tier:
+    """The gate has half of the products: every two settings in every choice."""
+    others = (side == "master", projection == "averaged", method == "uzawa")
+    return "nightly" if sum(others) % 2 else "gate"
+
+
 @case(
     claim="Two half rings that are glued at both ends are the closed ring, as slave and as master.",
-    tier="gate",
+    tier=tier,
     grid={"side": ("slave", "master"), "projection": ("closest", "averaged"), "method": ("monolithic", "uzawa")},
     bounds={
         "positions": Bound(at_most=1e-9, reason="theory: the same functions on the same unknowns; lengths are 1, and tolerances are left"),
