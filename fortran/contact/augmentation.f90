@@ -10,7 +10,7 @@ module isomortar_contact_augmentation
   use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
   use isomortar_base_predicate, only: is_compressed
-  use isomortar_contact_control, only: control_t, integrate_slip_sum
+  use isomortar_contact_control, only: control_t, integrate_slip_sum, least_weight
   use isomortar_contact_friction_elastic_slip, only: elastic_return
   use isomortar_contact_friction_law, only: friction_t
   use isomortar_contact_friction_return_map, only: metric_matrix, return_map, state_open, state_stick
@@ -22,9 +22,6 @@ module isomortar_contact_augmentation
   private
 
   public :: condense, multiplier_rows, respond
-
-  !> A control point whose weight w^I is below this share of what it has with all slave points has left the master.
-  real(wp), parameter :: least_weight = 1.0e-10_wp
 
   !> The law: multipliers of the current augmentation, penalties (force per volume), law of friction (not allocated: none).
   type, public :: law_t

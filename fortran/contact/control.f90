@@ -18,6 +18,9 @@ module isomortar_contact_control
 
   public :: control_quantities, find_climbs, integrate_slip_sum, project_points
 
+  !> A control point whose weight w^I at the points with a foot is below this share of what it has with all has left the master.
+  real(wp), parameter, public :: least_weight = 1.0e-10_wp
+
   !> Control quantities of every test function, and what they were integrated from.
   type, public :: control_t
     !> w^I = <R^I> and <R^I R^I>.
@@ -108,7 +111,9 @@ contains
     if (contracts) call require(size(projections%found) == size(slave%area), "control_quantities: points are the slave's")
     if (contracts) call require(size(control%weight) == slave%test%count, "control_quantities: functions are the slave's")
     call map%extend(positions, normals, extended, work)
-    allocate (fields(4, size(slave%area)), totals(4, slave%test%count))
+    associate (wanted => merge(5, 4, map%counts_all_points))
+      allocate (fields(wanted, size(slave%area)), totals(wanted, slave%test%count))
+    end associate
     allocate (coefficients(map%bearing(), map%vectors(for_gap)))
     fields = 0.0_wp
     control%point_metric = 0.0_wp
@@ -121,31 +126,19 @@ contains
       if (.not. projections%found(q)) cycle
       call count_points(1, work)
       call map%at(slave, extended, projections, q, for_gap, point, points, coefficients, work)
-      fields(:, q) = [1.0_wp, point%gap, projections%slip(:, q)]
+      fields(:4, q) = [1.0_wp, point%gap, projections%slip(:, q)]
+      if (map%counts_all_points) fields(5, q) = 1.0_wp
       if (with_friction) control%point_metric(:, q) = [point%metric(1, 1), point%metric(1, 2), point%metric(2, 2)]
     end do
     call integrate_functions(slave, fields, totals)
     control%weight(:) = totals(1, :)
-    if (map%counts_all_points) where (.not. has_foot(slave, projections)) control%weight = 0.0_wp
+    if (map%counts_all_points) where (totals(5, :) <= least_weight * totals(1, :)) control%weight = 0.0_wp
     control%gap(:) = totals(2, :)
     control%slip(:, :) = totals(3:4, :)
     control%square = 0.0_wp
     control%metric = 0.0_wp
     if (with_friction) call integrate_squares(slave, fields(1, :), control)
   end subroutine control_quantities
-
-  !> Which control points have a foot of a quadrature point within their reach.
-  pure function has_foot(slave, projections) result(has)
-    type(slave_t), intent(in) :: slave
-    type(projections_t), intent(in) :: projections
-    logical :: has(slave%test%count)
-    integer :: e
-
-    has = .false.
-    do e = 1, size(slave%test%nodes, 2)
-      if (any(projections%found((e - 1) * slave%per_element + 1:e * slave%per_element))) has(slave%test%nodes(:, e)) = .true.
-    end do
-  end function has_foot
 
   !> <R^I R^I> and <R^I R^I a_ab> over the points whose `present` is 1 (theory 4.2).
   pure subroutine integrate_squares(slave, present, control)
