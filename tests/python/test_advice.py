@@ -256,6 +256,28 @@ WRONG_FACE = PAIR.replace('"lower.w1"', '"lower.w0"')
 OTHER_FACE = PRESS.replace('slave = "block.w0"', 'slave = "block.w1"').replace(
     'face = "block.w1"', 'face = "block.w0"\naxis = [0, 1, 0]\ncentre = [0, 0, 0.8]'
 )
+#: Forces on control points at corners are negative where their functions are, though all of the pressure presses.
+DIE = """
+format = 1
+[bodies.block]
+geometry = { kind = "box", lower = [-0.5, -0.3, 0.0], upper = [0.5, 0.3, 0.4] }
+mesh = { family = "L", order = [2, 2, 1], elements = [2, 2, 1] }
+[bodies.die]
+rigid = true
+geometry = { kind = "bowl", half_width = 0.6, bottom = 0.4, rise = 0.1, top = 0.8 }
+[contacts.die]
+slave = "block.w1"
+master = "die.w0"
+friction = 0.0
+[supports.floor]
+face = "block.w0"
+[supports.die]
+face = "die.w1"
+[[stages]]
+name = "press"
+steps = 1
+motions.die.translate = [0, 0, -0.04]
+"""
 DOWN, UP, STAY = "[0, 0, -0.1]", "[0, 0, 0.3]", "[0, 0, 0]"
 #: Scene, and the contact's and words of the warnings of a run of it: none for sound ones.
 RUNS = {
@@ -279,6 +301,8 @@ RUNS = {
     ),
     "outside of a ring": (RINGS.replace('"outside.v0"', '"outside.v1"'), ["it pulls"]),
     "shrink fit": (RINGS, []),
+    "quadratic Lagrange elements pressed within": (DIE, []),
+    "pressed within, averaged normals": (DIE.replace("friction", 'projection = "averaged"\nfriction'), []),
 }
 
 

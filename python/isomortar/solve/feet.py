@@ -77,7 +77,7 @@ class Feet:
         return LostProjectionError(f"contact {self._pair.contact.name!r}: {error}{where}", error.place)
 
     def _place(self, positions: FloatArray, q: int) -> str:
-        point = _points(self._pair, positions)[q]
+        point = slave_points(self._pair, positions)[q]
         point[np.abs(point) <= 1e-12 * np.abs(positions).max()] = 0.0  # round-off is no place
         return "({:.4g}, {:.4g}, {:.4g})".format(*(point + self._origin))
 
@@ -87,12 +87,18 @@ def gaps(pair: Pair, positions: FloatArray, projections: Projections) -> FloatAr
 
     The kernel gives averages: here each point is the only one of a control point of its own.
     """
-    points = _points(pair, positions)
+    slave, everywhere = point_by_point(pair, positions)
+    return _bindings.control_quantities(slave, pair.master, everywhere, projections).gap
+
+
+def point_by_point(pair: Pair, positions: FloatArray) -> tuple[SlaveArrays, FloatArray]:
+    """A slave whose quadrature points are control points of their own, and positions of all control points with these after them."""
+    points = slave_points(pair, positions)
     slave = SlaveArrays.of_points(np.arange(len(positions), len(positions) + len(points), dtype=np.int32))
-    return _bindings.control_quantities(slave, pair.master, np.vstack([positions, points]), projections).gap
+    return slave, np.vstack([positions, points])
 
 
-def _points(pair: Pair, positions: FloatArray) -> FloatArray:
+def slave_points(pair: Pair, positions: FloatArray) -> FloatArray:
     """Positions of the slave quadrature points, shape (points, 3)."""
     nodes = np.repeat(pair.slave.shape.nodes, pair.slave.per_element, axis=0)
     points: FloatArray = np.einsum("qa,qai->qi", pair.slave.shape.values, positions[pair.slave.point[nodes]])

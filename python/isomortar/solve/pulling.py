@@ -7,10 +7,13 @@ from collections.abc import Iterator
 import numpy as np
 
 from isomortar import _bindings
-from isomortar.geometry.patch import FloatArray, IntArray, opposite
+from isomortar._bindings import Response
+from isomortar._codes import PointState
+from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Contact, RigidPlane
-from isomortar.model.sheet import Sheet
+from isomortar.model.pairs import Pair
 from isomortar.solve.equilibrium import Balance, Equilibrium
+from isomortar.solve.feet import point_by_point
 
 #: Share of a contact's normal forces that may pull: beside an edge the normals of both sides can be a right angle apart.
 PULLING = 0.1
@@ -21,7 +24,6 @@ class Pulling:
 
     def __init__(self, equilibrium: Equilibrium) -> None:
         self._equilibrium = equilibrium
-        self._outward = [_Outward(equilibrium, contact) for contact in equilibrium.problem.contacts]
         self._told = set[str]()
 
     def after_step(self, balance: Balance, step: int) -> Iterator[str]:
@@ -32,34 +34,37 @@ class Pulling:
                 yield _sentence(contact, step)
 
     def _pulls(self, balance: Balance, number: int) -> bool:
-        """Whether normal forces of a contact act out of its slave's body."""
-        pair, outward = self._equilibrium.pairs[number].pair, self._outward[number]
-        forces = np.zeros_like(balance.positions)  # without friction, whose part along the slave's own normal has any sign
-        projections, response = balance.kinematics[number].projections, balance.responses[number]
-        _bindings.contact_forces(pair.slave, pair.master, balance.positions, projections, response, forces)
-        on_slave = -forces[outward.points]
-        out = np.einsum("ij,ij->i", on_slave, outward.normals(balance.positions))
+        """Whether normal forces of a contact act out of its slave's body.
+
+        They are looked at point by point, the pressure there as if it pressed: what functions of both signs make of it at control points,
+        and a field of theirs below zero, tell nothing of where the slave's face looks.
+        """
+        pair, response = self._equilibrium.pairs[number].pair, balance.responses[number]
+        if not np.any(response.state):
+            return False
+        slave, everywhere = point_by_point(pair, balance.positions)
+        loads = pair.slave.area * np.abs(pair.field(response.pressure))
+        forces = np.zeros_like(everywhere)  # without friction, whose part along the slave's own normal has any sign
+        _bindings.contact_forces(slave, pair.master, everywhere, balance.kinematics[number].projections, _pressing(loads), forces)
+        on_slave = -forces[slave.point]
+        out = np.einsum("ij,ij->i", on_slave, _outward(pair, balance.positions))
         return bool(np.maximum(out, 0.0).sum() > PULLING * np.linalg.norm(on_slave, axis=1).sum())
 
 
-class _Outward:
-    """Normals of a contact's slave face, out of its body, from the net of its control points, whose numbers are `points`."""
+def _pressing(loads: FloatArray) -> Response:
+    """What presses with some loads and rubs nowhere."""
+    count = len(loads)
+    states = np.full(count, PointState.STICK, dtype=np.int32)
+    return Response(loads, np.zeros((count, 2)), states, np.zeros(count), np.zeros((count, 6, 2)), np.zeros((count, 2)))
 
-    def __init__(self, equilibrium: Equilibrium, contact: Contact) -> None:
-        sheet, reference = Sheet.of(equilibrium.problem, contact.slave), equilibrium.numbering.reference
-        patch, face, numbers = sheet.patch, sheet.face, sheet.points(equilibrium.numbering)
-        first, second = sheet.directions
-        self.points: IntArray = numbers[patch.face_points(face)]
-        self._shape, self._sign = (second.count, first.count, 3), 1.0
-        inward = reference[numbers[patch.face_points(opposite(face))]] - reference[self.points]
-        self._sign = -1.0 if np.einsum("ij,ij->", self.normals(reference), inward) > 0.0 else 1.0
 
-    def normals(self, positions: FloatArray) -> FloatArray:
-        """Unit vectors at the control points, shape (n, 3); zero at a pole."""
-        net = positions[self.points].reshape(self._shape)
-        across = self._sign * np.cross(np.gradient(net, axis=1), np.gradient(net, axis=0)).reshape(-1, 3)
-        length = np.linalg.norm(across, axis=1, keepdims=True)
-        return np.divide(across, length, out=np.zeros_like(across), where=length > 0.0)
+def _outward(pair: Pair, positions: FloatArray) -> FloatArray:
+    """Unit normals of a pair's slave at its quadrature points, out of its body, shape (points, 3); zero where it has none."""
+    nodes = positions[pair.slave.point[np.repeat(pair.slave.shape.nodes, pair.slave.per_element, axis=0)]]
+    first, second = np.einsum("qka,qai->kqi", pair.slave.slopes, nodes)
+    across = pair.slave.outward * np.cross(first, second)
+    length = np.linalg.norm(across, axis=1, keepdims=True)
+    return np.divide(across, length, out=np.zeros_like(across), where=length > 0.0)
 
 
 def _sentence(contact: Contact, step: int) -> str:
