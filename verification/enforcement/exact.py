@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from enforcement.collocated import collocated_press
 from enforcement.contact import IN_CELLS, MESHES, METHODS, constraints, enforcement_of, patch_test
 from enforcement.mixed import work
 from enforcement.two_rules import mixed_rule
@@ -43,6 +44,12 @@ REFUSED = (
         "mixed rule: the master's forces by the master's quadrature points",
         "forces on both bodies are not opposite: their sum over one of them; take subcells, which keep the balance and pass the patch test",
         tuple(Cell(mixed_rule, {"points": points, "order": REFUSED_ORDER}) for points in ("slave", "master")),
+        "forces",
+    ),
+    Refused(
+        "collocated contact surface: stresses of the bulk in place of virtual work",
+        "forces on both bodies are not opposite: their sum over one of them; take subcells, which pass the patch test as well",
+        tuple(Cell(collocated_press, {"form": form, "order": REFUSED_ORDER}) for form in ("mortar", "one field")),
         "forces",
     ),
 )
