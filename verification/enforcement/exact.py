@@ -9,6 +9,7 @@ from typing import Any
 from enforcement.collocated import collocated_press
 from enforcement.contact import IN_CELLS, MESHES, METHODS, constraints, enforcement_of, patch_test
 from enforcement.mixed import work
+from enforcement.spline import spline_scenes
 from enforcement.two_rules import mixed_rule
 from patch_tests.contact import ORDERS
 
@@ -51,6 +52,12 @@ REFUSED = (
         "forces on both bodies are not opposite: their sum over one of them; take subcells, which pass the patch test as well",
         tuple(Cell(collocated_press, {"form": form, "order": REFUSED_ORDER}) for form in ("mortar", "one field")),
         "forces",
+    ),
+    Refused(
+        "spline surface: closest points on sums of the nodes of linear elements",
+        "forces stay those of linear elements: pressing force of the block, off that on order 3; take order 2 on as many elements",
+        tuple(Cell(spline_scenes, {"surface": surface, "scene": "block"}) for surface in ("order 2", "spline")),
+        "force",
     ),
 )
 
