@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import sparse
 
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
@@ -60,12 +61,12 @@ class PieceMeasures:
         _, tangent = self._solid.forces_and_tangent(positions)
         pattern = self._solid.pattern
         diagonal = np.einsum("kii->ki", tangent[self._solid.diagonal])
-        last_bits = np.spacing(np.maximum(np.abs(positions), np.abs(self._numbering.reference)))[pattern.column]
-        forces = tangent * last_bits[:, None]
-        size = _power_of_two(forces)
-        forces /= size
-        shares = np.add.reduceat(np.einsum("kij,kij->ki", forces, forces), pattern.start[:-1])
-        round_off = constants.ROUND_OFF * self.free_norms(np.sqrt(shares) * size)
+        last_bits = np.spacing(np.maximum(np.abs(positions), np.abs(self._numbering.reference))).ravel()
+        size, length = _power_of_two(diagonal), _power_of_two(last_bits)
+        squares = tangent * (1.0 / size)
+        squares *= squares
+        shares = sparse.bsr_array((squares, pattern.column, pattern.start)) @ (last_bits / length) ** 2
+        round_off = constants.ROUND_OFF * self.free_norms(np.sqrt(shares).reshape(-1, 3) * (size * length))
         return Scales(np.maximum.reduceat(diagonal.max(axis=1), self._starts), round_off)
 
 
