@@ -16,6 +16,7 @@ from isomortar.trade import page
 from isomortar.trade.advice import CheaperSearch, cheaper_dials
 from isomortar.trade.knobs import KNOBS, Dial, Knob, Setting, changed, dials_of
 from isomortar.trade.laboratory import Laboratory, Tried
+from isomortar.trade.model import Yardstick
 from isomortar.trade.search import Search
 from isomortar.trade.want import wanted, wishes
 
@@ -46,6 +47,7 @@ def numbers(force=((1.0, 0.0, 0.0),) * 4, cpu=1.0, **more):
         "pressure": [1.0, 3.0],
         "traction": [0.0, 0.0],
         "cells": [0.25, 0.75],
+        "gap": [0.001],
         "counts": [2],
         "images": 1,
         "unknowns": 27.0,
@@ -107,6 +109,10 @@ def test_a_curve_wants_load_steps_that_show_it(scene):
         ("pressure.wall", "no contact 'wall'; allowed: floor"),
         ("pressure.floor:peak", "a field is that at the end"),
         ("area.floor.x", "has no components"),
+        ("force.top.x:roughness", "the 2 load steps of stage 'press' are not rough or smooth"),
+        ("area.floor:roughness", "counted in cells"),
+        ("edge.floor:end", "a field is that at the end"),
+        ("gap.wall", "no contact 'wall'; allowed: floor"),
     ],
 )
 def test_what_a_scene_does_not_have_is_named(scene, text, said):
@@ -116,8 +122,37 @@ def test_what_a_scene_does_not_have_is_named(scene, text, said):
 
 def test_wishes_are_wants(scene):
     assert [wanted(text, scene.problem()).text for text in wishes(scene.problem())] == [
-        "force.top", "moment.top", "area.floor", "pressure.floor", "traction.floor",
+        "force.top", "moment.top", "area.floor", "pressure.floor", "traction.floor", "edge.floor", "gap.floor",
     ]  # fmt: skip
+    three = Scene.from_toml(TINY, overrides=["stages.press.steps=3", "stages.drag.steps=3"])
+    assert wishes(three.problem())[:4] == ("force.top", "force.top:roughness", "moment.top", "moment.top:roughness")
+
+
+def test_the_roughness_of_a_curve_is_that_of_its_bends_and_not_of_its_load_steps():
+    """Of a parabola in each stage the second derivative squared, whatever its slope; the kink between them is the scene's own."""
+    found = []
+    for steps in (3, 8):
+        scene = Scene.from_toml(TINY, overrides=[f"stages.press.steps={steps}", f"stages.drag.steps={steps}"])
+        shares = np.arange(1, steps + 1) / steps
+        press, drag = 3.0 * shares**2 - shares, 5.0 - shares + 0.5 * shares**2
+        run = numbers([(f, 0.0, 0.0) for f in (*press, *drag)]) | {"time": [*shares, *(1.0 + shares)]}
+        found += [wanted(f"force.top.x{stage}:roughness", scene.problem()).values(run, run) for stage in ("", "@press", "@drag")]
+    np.testing.assert_allclose(np.ravel(found), 2 * [37.0, 36.0, 1.0], rtol=1e-10)
+    few = wanted("force.top.x@drag:roughness", scene.problem())
+    assert [few.shown(Scene.from_toml(TINY, overrides=[f"stages.drag.steps={n}"]).problem()) for n in (2, 4, 5)] == [False, False, True]
+
+
+def test_the_edge_is_off_by_the_area_that_is_in_contact_in_one_run_alone(scene):
+    truth, other = numbers(pressure=[1.0, 0.0, 2.0]), numbers(pressure=[0.0, 3.0, 9.0])
+    for run in (truth, other):
+        run |= {"traction": [0.0] * 3, "cells": [0.1, 0.3, 0.5], "counts": [3]}
+    tried = [Tried((), "", run, "", 1.0, 0.0) for run in (truth, other)]
+    assert Yardstick(wanted("edge.floor", scene.problem()), *tried).uncertainty == pytest.approx(0.4 / 0.6)
+
+
+def test_a_gap_is_a_share_of_the_body_and_not_of_what_is_left_of_it_in_the_truth(scene):
+    tried = [Tried((), "", numbers(gap=[gap]), "", 1.0, 0.0) for gap in (1e-7, 3e-3)]
+    assert Yardstick(wanted("gap.floor", scene.problem()), *tried).uncertainty == pytest.approx(3e-3, rel=1e-4)
 
 
 # Knobs

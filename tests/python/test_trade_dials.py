@@ -5,7 +5,10 @@ from pathlib import Path
 import numpy as np
 
 from isomortar.model.entities import Raised
+from isomortar.results.bezier import functions_at
+from isomortar.results.fields import contact_surfaces
 from isomortar.scene import Scene
+from isomortar.solve.simulation import Simulation
 from isomortar.trade.advice import cheaper_dials
 from isomortar.trade.knobs import KNOBS, changed, dials_of
 from isomortar.trade.run import traded
@@ -40,3 +43,17 @@ def test_the_order_at_the_contact_is_a_knob() -> None:
     higher = changed(scene, [dial.settings[1]]).problem()
     assert (dial.own, higher.body("block").raised, higher.body("base").raised) == (0, Raised("w0", (2, 2, 1)), Raised("w1", (2, 1, 1)))
     assert not dials_of(Scene.load("tire"), knobs=[knob for knob in KNOBS if knob.name == "contact order"])
+
+
+def test_the_gap_of_a_trade_is_how_deep_the_face_is_below_its_plane(tmp_path: Path) -> None:
+    scene = Scene.load("press", ["bodies.block.mesh.elements=[4,4,2]", "stages.press.steps=2"])
+    (tmp_path / "scene.toml").write_text(scene.to_toml())
+    found = traded.function(str(tmp_path / "scene.toml"))["gap"]
+    problem = scene.problem()
+    *_, last = Simulation(problem).run()
+    (surface,) = contact_surfaces(problem, last)
+    dense = tuple(functions_at(d, np.linspace(d.knots[0], d.knots[-1], 301))[0] for d in surface.directions)
+    heights = surface.fields(dense)[0][:, 2]
+    size = np.ptp(problem.body("block").patch.control_points, axis=0).max()
+    np.testing.assert_allclose(found, [-heights.min() / size], rtol=0.02)
+    assert found[0] > 1e-6

@@ -19,6 +19,8 @@ from isomortar.scene.scene import Scene
 from isomortar.trade.knobs import Dial, changed
 from isomortar.trade.run import traded
 
+#: Numbers that are not told of every contact: a face of several has no grid, and points may have no foot.
+UNTOLD = ("area", "gap")
 #: The number of a setting, by dial.
 Choice = tuple[int, ...]
 
@@ -133,7 +135,7 @@ class Laboratory:
         return found
 
     def _tried(self, choice: Choice, measurement: Measurement) -> Tried:
-        broken = [n for n, v in measurement.numbers.items() if n != "area" and not np.isfinite(np.asarray(v, float)).all()]
+        broken = [n for n, v in measurement.numbers.items() if n not in UNTOLD and not np.isfinite(np.asarray(v, float)).all()]
         failure = "" if measurement.ending == "measured" else measurement.reason
         failure = failure or (f"not finite: {', '.join(broken)}" if broken else "")
         return Tried(choice, self.name(choice), measurement.numbers, failure, measurement.cpu_seconds, measurement.peak_memory)

@@ -40,7 +40,7 @@ class Yardstick:
         self.want, self._truth = want, truth.numbers
         self.truth = self.values(truth)
         self.weights = want.weights(truth.numbers)
-        self.size = want.size(self.truth, self.weights)
+        self.size = want.size(self.truth, self.weights) if math.isnan(want.whole) else want.whole
         self.uncertainty = self.error(rival)
 
     def values(self, outcome: Tried) -> FloatArray:
@@ -48,7 +48,7 @@ class Yardstick:
         return self.want.values(outcome.numbers, self._truth)
 
     def norm(self, values: FloatArray) -> float:
-        """Norm of some values over that of the truth."""
+        """Norm of some values over that of the truth, or what else errors are a share of."""
         return self.want.size(values, self.weights) / self.size if self.size > 0.0 else math.inf
 
     def error(self, outcome: Tried) -> float:

@@ -9,10 +9,12 @@ from typing import Any
 import numpy as np
 
 from isomortar.accuracy.sampling import Grid, slave_grid, values_at
+from isomortar.errors import LostProjectionError
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness.cases import Bound, Shown, measured
 from isomortar.model.entities import Problem
-from isomortar.results.fields import contact_surfaces
+from isomortar.results.fields import ContactSurface, contact_surfaces
+from isomortar.results.gaps import gaps
 from isomortar.scene.scene import Scene
 from isomortar.solve.record import StepResult
 from isomortar.solve.simulation import Simulation
@@ -29,6 +31,7 @@ from isomortar.solve.timing import PHASES
         "pressure": Shown("at the end on the cells of all slave faces"),
         "traction": Shown("its magnitude, likewise"),
         "cells": Shown("areas of these cells"),
+        "gap": Shown("largest penetration of each contact at the end, at the middle of these cells, over the size of the slave's body"),
         "counts": Shown("cells of each contact"),
         "images": Bound(at_least=1, reason="definition: how many parts the whole has by symmetry, one of which is computed"),
         "unknowns": Bound(at_least=1, reason="definition: three a control point"),
@@ -59,6 +62,7 @@ def traded(scene: str) -> dict[str, Any]:
         "pressure": np.concatenate([np.zeros(0), *fields[-1][0]]),
         "traction": np.concatenate([np.zeros(0), *fields[-1][1]]),
         "cells": np.concatenate([np.zeros(0), *(g.weights for g in grids if g)]),
+        "gap": [_penetration(problem, steps[-1], s, g) for s, g in zip(contact_surfaces(problem, steps[-1]), grids, strict=True)],
         "counts": [len(g.weights) if g else 0 for g in grids],
         "images": problem.images,
         "unknowns": 3 * len(steps[-1].state.positions),
@@ -83,3 +87,15 @@ def _fields(problem: Problem, step: StepResult, grids: list[Grid | None]) -> tup
         for of_one, column in zip(found, values.T, strict=True):
             of_one.append(column)
     return found
+
+
+def _penetration(problem: Problem, step: StepResult, surface: ContactSurface, grid: Grid | None) -> float:
+    """Largest penetration on the cells of a slave face over the size of its body; NaN where it cannot be told."""
+    if grid is None:
+        return float("nan")
+    points = values_at(surface.directions, surface.weights, surface.points, grid)
+    try:
+        found = gaps(problem, surface.contact, step.state.positions, points)
+    except LostProjectionError:
+        return float("nan")
+    return float(np.nanmax(found, initial=0.0)) / problem.body(surface.contact.slave.body).size

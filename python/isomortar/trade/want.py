@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from isomortar.accuracy.measures import roughness
 from isomortar.errors import InputError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Problem
@@ -20,8 +22,11 @@ PLACES = 200
 FEWEST = 5
 _PATTERN = re.compile(r"(?P<quantity>\w+)\.(?P<where>[\w-]+)(\.(?P<component>\w+))?(@(?P<stage>[\w-]+))?(:(?P<part>\w+))?")
 _FORM = "QUANTITY.NAME[.COMPONENT][@STAGE][:PART]"
-_SUPPORT, _CURVES, _FIELDS = ("force", "moment"), ("force", "moment", "area"), ("pressure", "traction")
-_COMPONENTS, _PARTS = ("x", "y", "z", "norm"), ("curve", "end", "peak")
+_SUPPORT, _CURVES = ("force", "moment"), ("force", "moment", "area")
+_FIELDS = ("pressure", "traction", "edge", "gap")  # at the end
+_COMPONENTS, _PARTS = ("x", "y", "z", "norm"), ("curve", "end", "peak", "roughness")
+#: Load steps of a stage that have a second difference.
+_BENDS = 3
 
 
 @dataclass(frozen=True)
@@ -39,16 +44,22 @@ class Want:
         From the numbers of a run to what each value counts, shape (n,).
     shown : callable
         Whether a problem has the load steps, or the whole face, that show it.
+    power : int
+        Of the norm that errors are measured in.
+    whole : float
+        What errors are a share of; NaN: the size of the truth.
     """
 
     text: str
     values: Callable[[Mapping[str, Any], Mapping[str, Any]], FloatArray]
     weights: Callable[[Mapping[str, Any]], FloatArray]
     shown: Callable[[Problem], bool] = lambda _: True
+    power: int = 2
+    whole: float = math.nan
 
     def size(self, values: FloatArray, weights: FloatArray) -> float:
         """Weighted norm of some values."""
-        return float(np.sqrt(weights @ values**2))
+        return float((weights @ np.abs(values) ** self.power) ** (1.0 / self.power))
 
 
 def wanted(text: str, problem: Problem) -> Want:
@@ -58,7 +69,9 @@ def wanted(text: str, problem: Problem) -> Want:
     ----------
     text : str
         ``force.SUPPORT.x``, ``moment.SUPPORT.norm``, ``area.CONTACT``: a curve over the load history, of one stage with ``@STAGE``, its
-        last value with ``:end``, its largest size with ``:peak``. ``pressure.CONTACT``, ``traction.CONTACT``: a field at the end.
+        last value with ``:end``, its largest size with ``:peak``, how rough it is with ``:roughness`` (not of an area).
+        ``pressure.CONTACT``, ``traction.CONTACT``, ``edge.CONTACT``, ``gap.CONTACT``: fields, where contact ends, and what penetrates at
+        the end.
     problem : Problem
 
     Raises
@@ -75,25 +88,32 @@ def wanted(text: str, problem: Problem) -> Want:
         number = _contact(where, problem)
         if found["component"] or found["stage"] or found["part"]:
             raise InputError(f"is {text!r}; a field is that at the end, without component, stage or part: {quantity}.{where}", "want")
-        return _of_field(text, quantity, number, problem)
+        if quantity == "gap":
+            return _of_gap(text, number)
+        return _of_edge(text, number, problem) if quantity == "edge" else _of_field(text, quantity, number, problem)
     _among(part, _PARTS, f"{text!r} has no such part")
     stages = _stages(found["stage"], problem)
     if quantity == "area":
         if found["component"]:
             raise InputError(f"is {text!r}; an area has no components: area.{where}", "want")
+        if part == "roughness":
+            raise InputError(f"is {text!r}; areas are counted in cells, and would be as rough as these: area.{where}", "want")
         number = _contact(where, problem)
         return _of_curve(text, lambda run: np.asarray(run["area"], float)[number], stages, part, problem)
     names = [support.name for support in problem.given_supports]
     _among(where, names, f"{text!r} has no such support")
     component = found["component"] or "norm"
     _among(component, _COMPONENTS, f"{text!r} has no such component")
+    if part == "roughness":
+        _bent(text, stages, problem)
     return _of_curve(text, lambda run: _component(np.asarray(run[quantity], float)[names.index(where)], component), stages, part, problem)
 
 
 def wishes(problem: Problem) -> tuple[str, ...]:
-    """What users look at: force and moment of supports that move, area, pressure and traction of contacts."""
+    """What users look at: force and moment of supports that move; area, pressure, traction, edge and gap of contacts."""
     moving = [s.name for s in problem.supports if s.moves]
-    curves = [f"{quantity}.{name}" for name in moving for quantity in _SUPPORT]
+    parts = ("", ":roughness") if all(stage.steps >= _BENDS for stage in problem.stages) else ("",)
+    curves = [f"{quantity}.{name}{part}" for name in moving for quantity in _SUPPORT for part in parts]
     single = [c.name for c in problem.contacts if len(c.slave.faces) == 1]
     fields = [f"{quantity}.{name}" for name in single for quantity in ("area", *_FIELDS)]
     return (*curves, *fields)
@@ -114,11 +134,13 @@ def _of_curve(text: str, curve: Callable[[Mapping[str, Any]], FloatArray], stage
             return np.array([np.interp(last, times, heights)])
         if part == "peak":
             return np.array([np.abs(heights[(times >= first) & (times <= last)]).max()])
+        if part == "roughness":
+            return np.array([sum(_roughness(times[1:], heights[1:], number) for number in stages)])  # as measured: without the rest
         right = recorded(truth)
         return np.interp(places, *right) + np.interp(places, times, heights - np.interp(times, *right))
 
     def shown(other: Problem) -> bool:
-        return part != "curve" or all(other.stages[n].steps >= least for n, least in zip(stages, needed, strict=True))
+        return part in ("end", "peak") or all(other.stages[n].steps >= least for n, least in zip(stages, needed, strict=True))
 
     return Want(text, values, lambda _: np.full(count, 1.0 / count), shown)
 
@@ -129,6 +151,39 @@ def _of_field(text: str, quantity: str, number: int, problem: Problem) -> Want:
         return _share(run, quantity, number) if run["images"] == truth["images"] else np.full_like(there, np.nan)  # on another part
 
     return Want(text, values, lambda run: _share(run, "cells", number), lambda other: other.images == problem.images)
+
+
+def _of_edge(text: str, number: int, problem: Problem) -> Want:
+    """Where there is pressure: the area that has some in one run alone, over that which has some in the truth."""
+    field = _of_field(text, "pressure", number, problem)
+
+    def values(run: Mapping[str, Any], truth: Mapping[str, Any]) -> FloatArray:
+        pressures = field.values(run, truth)
+        return np.where(np.isnan(pressures), np.nan, pressures > 0.0)
+
+    return replace(field, values=values, power=1)
+
+
+def _of_gap(text: str, number: int) -> Want:
+    """The largest penetration at the end, over the size of the slave's body: of the truth it is next to nothing."""
+    return Want(text, lambda run, _: np.array([float(run["gap"][number])]), lambda _: np.ones(1), whole=1.0)
+
+
+def _roughness(times: FloatArray, heights: FloatArray, stage: int) -> float:
+    """Second-difference energy of a curve in a stage, by second difference: the same of a smooth curve however many load steps show it."""
+    inside = (times > stage + 1e-9) & (times < stage + 1 + 1e-9)
+    count = int(np.count_nonzero(inside))
+    return roughness(times[inside], heights[inside], np.zeros(count)) / (count + 1 - _BENDS)
+
+
+def _bent(text: str, stages: range, problem: Problem) -> None:
+    """Refuse the roughness of what has no second difference."""
+    for stage in (problem.stages[n] for n in stages):
+        if stage.steps < _BENDS:
+            raise InputError(
+                f"is {text!r}; the {stage.steps} load steps of stage {stage.name!r} are not rough or smooth: three are, of another @STAGE",
+                "want",
+            )
 
 
 def _component(vectors: FloatArray, component: str) -> FloatArray:
