@@ -59,6 +59,9 @@ def warnings(text: str, overrides: list[str] | None = None) -> list[str]:
 
 AVERAGED = PAIR.replace('master = "lower.w1"', 'master = "lower.w1"\nprojection = "averaged"')
 
+#: Strains of the law are those of small turns.
+_LINEAR = PRESS.replace("[bodies.block]", '[materials.steel]\nlaw = "linear-elastic"\n[bodies.block]')
+
 # Scene, what is replaced, by what, and words of the one warning.
 DOUBTFUL = {
     "overlap": (PRESS, "point = [0, 0, 0]", "point = [0, 0, 0.3]", "overlap by 0.3 at the start"),
@@ -93,6 +96,12 @@ DOUBTFUL = {
         'face = "block.w1"',
         'face = "block.w1"\ncomponents = ["x", "y"]',
         "is to move along z in stage 'press', but prescribes only x, y",
+    ),
+    "turn of small strains": (
+        _LINEAR,
+        "rotate = 0",
+        "rotate = -20",
+        "turns body 'block' by up to 20 degrees",
     ),
     "nothing moves": (PRESS, "[0, 0, -0.1]", "[0, 0, 0]", "no support moves in any stage"),
     "ring that is not closed": (SLIT, "", "", "faces u0 and u1 lie on each other, but are not joined"),
@@ -228,7 +237,14 @@ def _of_weights(body: Body) -> list[str]:
 _CAPPED = PRESS.replace("[supports.top]", "friction = 30\ntraction_max = 0.2\n[supports.top]")
 
 
-@pytest.mark.parametrize("text", [PRESS, PAIR, TYRE, PRESS.replace("point = [0, 0, 0]", "point = [0, 0, -0.05]"), _CAPPED])
+#: Small strains of a body that turns a little; smooth contact, which presses before anything moves.
+_TURNED = _LINEAR.replace("rotate = 0", "rotate = 2")
+_SMOOTH = PRESS.replace("[supports.top]", "smoothing = 1e-3\n[supports.top]").replace("[0, 0, -0.1]", "[0, 0, 0]")
+
+
+@pytest.mark.parametrize(
+    "text", [PRESS, PAIR, TYRE, PRESS.replace("point = [0, 0, 0]", "point = [0, 0, -0.05]"), _CAPPED, _TURNED, _SMOOTH]
+)
 def test_sound_scenes_have_none(text: str) -> None:
     assert warnings(text) == []
 
