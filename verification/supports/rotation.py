@@ -18,7 +18,7 @@ supports.base = { face = "rod.u0" }
 solver.newton_tolerance = 1e-10
 """
 #: Degrees of a load step of the slow turn.
-SLOW = 30.0
+SLOW = 15.0
 
 
 def turned(angle: float, steps: int) -> list[StepResult]:

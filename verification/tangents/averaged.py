@@ -134,10 +134,13 @@ def bounds(master: str, place: str, state: str) -> dict[str, Bound]:  # noqa: AR
 
 
 def tier(master: str, place: str, state: str) -> Tier:
-    """The gate has every place, state and master, not all of their products; of lines and corners each side once along curved elements."""
+    """The gate has every place and state, and masters up to N3, not all of their products.
+
+    Of lines and corners of curved elements it has one side each.
+    """
     chosen = master in ("L1", "L2") and (state == "mixed" or place == "inside")
-    spared = master == "L2" and place in ("line: behind", "corner: before")
-    return "gate" if (chosen and not spared) or (place, state) == ("inside", "mixed") else "nightly"
+    spared = master == "L3" or (master == "L2" and place in ("line: behind", "corner: before"))
+    return "gate" if (chosen or (place, state) == ("inside", "mixed")) and not spared else "nightly"
 
 
 @case(
