@@ -4,22 +4,30 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
+import numpy as np
 from enforcement.collocated import collocated_press
-from enforcement.contact import IN_CELLS, MESHES, METHODS, constraints, enforcement_of, patch_test
+from enforcement.contact import MESHES, METHODS, constraints, enforcement_of, patch_test
 from enforcement.mixed import work
+from enforcement.passes import PASSES, constraints_of_passes, patch_test_of_passes
+from enforcement.patches import CURVED_ORDERS, PROJECTIONS, ROWS, averaged_patch_test, curved_patch_test
 from enforcement.spline import spline_scenes
 from enforcement.two_rules import mixed_rule
 from patch_tests.contact import ORDERS
 
+from isomortar import model
 from isomortar.harness.cases import Cell
 from isomortar.harness.runner import Result
 from isomortar.harness.runs import Computed
 
-ROWS: tuple[str, ...] = ("mortar", IN_CELLS, *METHODS[1:])
 #: Of the constraints; they are those of the mortar method in cells too.
 COUNTS = ("too many", "too few", "inf-sup", "condition")
+
+#: Patch tests on curved faces by projection, and all of them: flat by closest points, flat along averaged normals, curved.
+CURVED = {"closest": "curved", "averaged": "curved, averaged"}
+TESTS = (*MESHES, "averaged", *CURVED.values())
 
 
 @dataclass(frozen=True)
@@ -59,12 +67,20 @@ REFUSED = (
         tuple(Cell(spline_scenes, {"surface": surface, "scene": "block"}) for surface in ("order 2", "spline")),
         "force",
     ),
+    Refused(
+        "two passes: each face is slave once",
+        "constraints are too many, by all pressures that both faces hold, of meshes that match; with multipliers as unknowns the system is "
+        "singular, and by augmentations each pass bears half; take averaged normals, or cells",
+        tuple(Cell(constraints_of_passes, {"passes": passes, "order": REFUSED_ORDER, "meshes": "matching"}) for passes in PASSES),
+        "too many",
+    ),
 )
 
 
 def cells() -> Iterator[Cell]:
     """Those of the patch test, of the constraints, and of what is refused."""
-    yield from patch_test.cells
+    for case in (patch_test, averaged_patch_test, curved_patch_test, patch_test_of_passes):
+        yield from case.cells
     for entry in REFUSED:
         yield from entry.cells
     yield from constraints.cells
@@ -97,7 +113,7 @@ class Exact(Computed):
 
 
 def table(results: Sequence[Result]) -> list[dict[str, Any]]:
-    """By method and order: errors of the pressure on both meshes, and what is counted; NaN: not measured."""
+    """By method and order: errors of the pressure of all patch tests, and what is counted; NaN: not measured."""
     by_name = {result.cell.name: Exact(result) for result in results}
     return [_row(by_name, method, order) for method in ROWS for order in ORDERS]
 
@@ -112,8 +128,21 @@ def refused(results: Sequence[Result]) -> list[dict[str, Any]]:
     return rows
 
 
+def sizes() -> list[dict[str, Any]]:
+    """Lines that are not blank of every file of `isomortar.model.enforcement`: what each method adds, and what all share."""
+    folder = Path(model.__file__).parent / "enforcement"
+    files = {path.stem: path.read_text(encoding="utf-8").splitlines() for path in sorted(folder.glob("*.py"))}
+    return [
+        {"file": f"{name}.py", "method": name in METHODS, "lines": sum(map(bool, map(str.strip, text)))} for name, text in files.items()
+    ]
+
+
 def _row(by_name: dict[str, Exact], method: str, order: int) -> dict[str, Any]:
     tested = {meshes: by_name[Cell(patch_test, {"method": method, "order": order, "meshes": meshes}).name] for meshes in MESHES}
     counted = by_name[Cell(constraints, {"method": enforcement_of(method), "order": order}).name]
-    errors = {meshes: cell.number("pressure") for meshes, cell in tested.items()}
+    tested["averaged"] = by_name[Cell(averaged_patch_test, {"method": method, "order": order}).name]
+    for projection in PROJECTIONS if order in CURVED_ORDERS else ():
+        settings = {"method": method, "projection": projection, "order": order}
+        tested[CURVED[projection]] = by_name[Cell(curved_patch_test, settings).name]
+    errors = dict.fromkeys(TESTS, np.nan) | {name: cell.number("pressure") for name, cell in tested.items()}
     return {"method": method, "order": order, **errors, **{name: counted.number(name) for name in COUNTS}}

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 from analytic.mindlin import CONTACT
-from enforcement.contact import IN_CELLS, MESHES
-from enforcement.exact import ROWS
+from enforcement.contact import IN_CELLS
+from enforcement.exact import ROWS, TESTS
 from enforcement.found import Found, Known
 from enforcement.plan import REFERENCE
 from matplotlib.figure import Figure
@@ -22,16 +22,21 @@ from isomortar.results import style
 LOOKS = {
     "mortar": (style.BLUE, "-", "o"),
     "mortar, averaged": (style.BLUE, "--", "s"),
-    "mortar, swapped": (style.BLUE, ":", "D"),
-    "mortar, elastic slip": (style.BLUE, "-.", "P"),
+    "mortar, swapped": ("#5E6B7A", ":", "D"),
+    "mortar, two passes": ("#5E6B7A", "-.", "d"),
     IN_CELLS: (style.BLUE, ":", "D"),
+    "mortar, elastic slip": ("#4FA3C7", "-.", "P"),
+    "mortar, smooth": ("#4FA3C7", "--", "<"),
     "dual": ("#B04A7A", "-", "h"),
     "dual, averaged": ("#B04A7A", "--", "p"),
     "greville": (style.GREEN, "-", "^"),
     "greville, averaged": (style.GREEN, "--", "v"),
     "demko": ("#8C6BB1", "-", "P"),
+    "demko, averaged": ("#8C6BB1", "--", ">"),
     "knots": (style.VERMILION, "-", "X"),
+    "knots, averaged": (style.VERMILION, "--", "x"),
     "kts": ("#B8860B", "-", "*"),
+    "kts, averaged": ("#B8860B", "--", "+"),
 }
 
 
@@ -99,14 +104,16 @@ def exact(rows: Sequence[Mapping[str, Any]]) -> str:
         shown = {
             "matching": "error, matching meshes",
             "other": "error, other meshes",
+            "curved": "error, curved",
             "inf-sup": "inf-sup constant",
             "condition": "condition",
         }
-        errors, others, stable, condition = figure.subplots(1, 4)
+        errors, others, curved, stable, condition = figure.subplots(1, 5)
         others.sharey(errors)
-        for axes, (key, label) in zip((errors, others, stable, condition), shown.items(), strict=True):
+        curved.sharey(errors)
+        for axes, (key, label) in zip((errors, others, curved, stable, condition), shown.items(), strict=True):
             for method in ROWS:
-                if key in MESHES or method != IN_CELLS:
+                if key in TESTS or method != IN_CELLS:
                     colour, line, mark = LOOKS[method]
                     values = [row[key] for row in rows if row["method"] == method]
                     axes.plot(ORDERS, values, color=colour, linestyle=line, marker=mark, markersize=4.2, linewidth=1.1, label=method)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
-from enforcement.known import STRIPS
+from enforcement.known import KIND, STRIPS
 from enforcement.plan import MORTAR, REFERENCE, Planned
 
 from isomortar.accuracy.measures import roughness
@@ -51,7 +52,7 @@ class Found(Computed):
         return float(roughness(np.arange(len(self.curve)), self.curve, number) / (self.curve @ self.curve)) if len(self.curve) else np.nan
 
     def off(self, reference: Found) -> float:
-        """Distance of the curve from the reference's, over the norm of that; NaN where one is not whole."""
+        """Distance of the curve from another one's, over the norm of that; NaN where one is not whole."""
         if self.ending != "measured" or reference.ending != "measured":
             return np.nan
         return float(np.linalg.norm(self.curve - reference.curve) / np.linalg.norm(reference.curve))
@@ -67,6 +68,11 @@ class Known(Computed):
         return str(self.result.cell.settings["scene"])
 
     @property
+    def kind(self) -> str:
+        """Family and order across the contact."""
+        return str(self.result.cell.settings["kind"])
+
+    @property
     def method(self) -> str:
         """The way of enforcement."""
         return str(self.result.cell.settings["way"])
@@ -74,9 +80,10 @@ class Known(Computed):
 
 @dataclass(frozen=True)
 class Evidence(ByMethod[Found]):
-    """The runs by one way of enforcement, beside those by the others, and those whose tractions are known."""
+    """The runs by one way of enforcement, beside those by the others, those of known tractions, and what is exact by method and order."""
 
     known: Sequence[Known] = ()
+    table: Sequence[Mapping[str, Any]] = ()
 
     @property
     def _known(self) -> list[Known]:
@@ -84,12 +91,36 @@ class Evidence(ByMethod[Found]):
 
     def beside_strip(self) -> dict[str, float]:
         """Distance of the tractions from the exact ones over what a root at every edge costs, by scene."""
-        self.left_out.extend(f"{run.name}: {run.words}" for run in self._known if run.ending != "measured")
-        return {run.name: run.number("off") / STRIPS[run.name] for run in self._known if run.ending == "measured"}
+        runs = [run for run in self._known if run.kind == KIND]
+        self.left_out.extend(f"{run.name}: {run.words}" for run in runs if run.ending != "measured")
+        return {run.name: run.number("off") / STRIPS[run.name] for run in runs if run.ending == "measured"}
+
+    def rougher_than_mortar(self) -> dict[str, float]:
+        """Roughness of the tractions over that by the mortar method, by scene and kind."""
+        mortar = {(run.name, run.kind): run.number("roughness") for run in ByMethod(self.known, MORTAR).by(MORTAR)}
+        return {f"{run.name} {run.kind}": run.number("roughness") / mortar[run.name, run.kind] for run in self._known}
+
+    def counted(self, key: str, least: int = 1) -> dict[str, float]:
+        """A number of what is exact, by order, from an order on."""
+        return {f"order {row['order']}": row[key] for row in self.table if row["method"] == self.method and row["order"] >= least}
+
+    def stable_beside_mortar(self, least: int) -> dict[str, float]:
+        """Inf-sup constant over that of the mortar method, by order, from an order on."""
+        mortar = Evidence(self.runs, MORTAR, table=self.table).counted("inf-sup", least)
+        return {order: value / mortar[order] for order, value in self.counted("inf-sup", least).items()}
+
+    def solves_beside_mortar(self, edges: str) -> dict[str, float]:
+        """Linear solves over those by the mortar method, of one scene."""
+        return {run.name: run.number("solves") / mortar.number("solves") for run, mortar, _ in self._compared() if run.name == edges}
+
+    def costs_beside_mesh(self) -> dict[str, float]:
+        """Distance from the mortar method on the same mesh over that of the mortar method from the reference, by scene."""
+        return {run.name: run.off(mortar) / mortar.off(reference) for run, mortar, reference in self._compared() if mortar.off(reference)}
 
     def missing(self) -> dict[str, float]:
         """Load steps that are missing, by scene."""
-        return {run.name: run.number("missing") for run in (*self.by(self.method), *self._known)}
+        known = {f"{run.name} {run.kind}": run.number("missing") for run in self._known}
+        return {run.name: run.number("missing") for run in self.by(self.method)} | known
 
     def beside_mortar(self) -> dict[str, float]:
         """Distance from the reference over that of the mortar method on the same meshes, by scene."""

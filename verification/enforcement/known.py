@@ -8,7 +8,7 @@ from time import process_time
 from typing import Any
 
 import numpy as np
-from analytic.mindlin import CONTACT, FINE, FRICTION, SETTINGS, Theory, cap, sheared, theory
+from analytic.mindlin import CONTACT, FINE, FRICTION, MATERIAL, RADIUS, SETTINGS, Theory, cap, sheared, theory
 from enforcement.contact import IN_CELLS, enforcement_of
 from enforcement.plan import AUGMENTED, MORTAR
 from numpy.typing import NDArray
@@ -17,6 +17,7 @@ from patch_tests.subcells import SUBCELLS
 from isomortar.accuracy.measures import relative_error, roughness
 from isomortar.errors import ConvergenceError
 from isomortar.geometry.patch import FloatArray
+from isomortar.geometry.quadrature import contact_points, volume_points
 from isomortar.harness.cases import Bound, Cell, Shown, Words, measured
 from isomortar.model.enforcement import slave_side
 from isomortar.model.entities import Contact, Problem, Stage
@@ -24,13 +25,25 @@ from isomortar.model.numbering import Numbering
 from isomortar.solve.record import StepResult
 from isomortar.solve.simulation import Simulation
 
-WAYS: tuple[str, ...] = (MORTAR, "mortar, averaged", IN_CELLS, "dual", "greville", "demko", "knots", "kts")
+#: Ways at order two; at the others those that stand for a method.
+WAYS: tuple[str, ...] = (
+    MORTAR, "mortar, averaged", IN_CELLS, "mortar, elastic slip", "mortar, smooth", "dual", "dual, averaged",
+    "greville", "greville, averaged", "demko", "demko, averaged", "knots", "knots, averaged", "kts",
+)  # fmt: skip
+OF_ORDERS: tuple[str, ...] = (MORTAR, IN_CELLS, "dual", "greville", "demko", "knots")
+#: Families and orders across the contact; Lagrange elements have no abscissae of Demko's.
+KINDS = ("L1", "N2", "N3", "N4", "N5")
+KIND = "N2"
 SCENES = {
     "hertz": "Hertz: two cylinders, pressed; meshes that do not match",
     "mindlin": "Cattaneo and Mindlin: two cylinders, pressed and sheared; meshes that match",
 }
 #: Half of the elements of `analytic/mindlin`: eight over the contact radius.
 COARSE = replace(SETTINGS["cylinder"], elements=10, growing=4)
+#: Elastic slip over the contact radius, and pressure times distance over that and Hertz's peak pressure: as much as in the scenes.
+SMOOTH = 1e-3
+#: Hertz's peak pressure where the contact radius is CONTACT.
+PEAK = MATERIAL.young / (1.0 - MATERIAL.poisson**2) / 2.0 * CONTACT / RADIUS
 #: Elements of Hertz's master over those of the slave.
 FINER = (4, 3)
 #: Roughness is measured up to this share of the contact radius, and of the stick radius: beyond them the exact tractions have kinks.
@@ -40,21 +53,36 @@ STRIPS = {scene: share * FINE / COARSE.elements for scene, share in (("hertz", 1
 
 
 def cells(scenes: Sequence[str] = tuple(SCENES)) -> Iterator[Cell]:
-    """Scenes by every way."""
+    """Scenes by every way, those of one kind after the other."""
     for scene in scenes:
-        for way in WAYS:
-            yield Cell(tractions, {"scene": scene, "way": way})
+        for kind in KINDS:
+            for way in WAYS if kind == KIND else OF_ORDERS:
+                if (kind[0], way) != ("L", "demko") and (scene, way) != ("hertz", "mortar, elastic slip"):  # there is no friction
+                    yield Cell(tractions, {"scene": scene, "way": way, "kind": kind})
 
 
-def problem(scene: str, way: str) -> Problem:
+def of_kind(given: Problem, kind: str) -> Problem:
+    """The same cylinders of another family and order."""
+    found = cap(COARSE)
+    patches = {body.name: found.cylinder(kind, CONTACT, below=body.name == "master") for body in given.bodies}
+    bodies = tuple(
+        replace(body, patch=patches[body.name], quadrature=tuple(volume_points(d) for d in patches[body.name].directions))
+        for body in given.bodies
+    )
+    along, across = patches["slave"].face_directions("w0")
+    points = contact_points(along), contact_points(across)
+    return replace(given, bodies=bodies, contacts=(replace(given.contacts[0], quadrature=points),))
+
+
+def problem(scene: str, way: str, kind: str = KIND) -> Problem:
     """A scene, enforced in some way."""
-    given = sheared("cylinder", COARSE)
+    given = of_kind(sheared("cylinder", COARSE), kind)
     contact, settings = given.contacts[0], given.settings
     if scene == "hertz":
         finer = replace(COARSE, elements=COARSE.elements * FINER[0] // FINER[1], growing=COARSE.growing * FINER[0] // FINER[1])
         slave, master = given.bodies
         supports = tuple(replace(support, motions=support.motions[:1]) for support in given.supports)
-        bodies = (slave, replace(master, patch=cap(finer).cylinder("N2", CONTACT, below=True)))
+        bodies = (slave, replace(master, patch=cap(finer).cylinder(kind, CONTACT, below=True)))
         given = replace(given, bodies=bodies, supports=supports, stages=(Stage("press", 3),))
         contact = replace(contact, friction=0.0)
     if way == "kts":
@@ -67,6 +95,10 @@ def enforced(contact: Contact, way: str) -> Contact:
     changed = replace(contact, enforcement=enforcement_of(way))
     if way == IN_CELLS:
         return replace(changed, subcells=SUBCELLS)
+    if way.endswith("elastic slip"):
+        return replace(changed, elastic_slip=SMOOTH * CONTACT)
+    if way.endswith("smooth"):
+        return replace(changed, smoothing=SMOOTH * CONTACT * PEAK)
     return replace(changed, projection="averaged") if way.endswith("averaged") else changed
 
 
@@ -137,9 +169,9 @@ def shear(given: Problem, result: StepResult, exact: Theory) -> dict[str, Any]:
         "cpu_seconds": Shown("of the computation"),
     },
 )
-def tractions(scene: str, way: str) -> dict[str, Any]:
+def tractions(scene: str, way: str, kind: str) -> dict[str, Any]:
     """Tractions at the end, beside those of theory for the forces that were found."""
-    given = problem(scene, way)
+    given = problem(scene, way, kind)
     words, steps, start = "", list[StepResult](), process_time()
     try:
         steps.extend(Simulation(given).run())

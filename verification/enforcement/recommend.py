@@ -8,7 +8,10 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
+from enforcement.exact import CURVED, ROWS
 from enforcement.found import Found, Known
+from enforcement.known import KIND
+from enforcement.patches import CURVED_ORDERS
 from enforcement.plan import MORTAR, REFERENCE
 
 from isomortar.harness.report import stated
@@ -44,34 +47,45 @@ class Advice:
 
 def advice(runs: Sequence[Found], known: Sequence[Known], table: Sequence[Mapping[str, Any]]) -> list[Advice]:
     """All purposes, of the curves of scenes, of known tractions, and of what is exact."""
-    patches: dict[str, dict[str, float]] = {}
-    for row in table:
-        patches.setdefault(row["method"], {})[f"order {row['order']}"] = row["other"]
-    tractions = by_way(known, {id(run): run.number("off") for run in known})
+    patches, curved = (
+        {
+            method: {f"order {row['order']}": row[key] for row in table if row["method"] == method and row["order"] >= least}
+            for method in ROWS
+        }
+        for key, least in (("other", 1), (CURVED["closest"], CURVED_ORDERS[0]))
+    )
+    at_order = [run for run in known if run.kind == KIND]
+    tractions = by_way(at_order, {id(run): run.number("off") for run in at_order})
     failing: dict[str, float] = {}
     for row in table:
         if row["matching"] > PASSED:
             failing[row["method"]] = max(row["matching"], failing.get(row["method"], 0.0))
-    smooth = [run for run in runs if not run.planned.setup.kinks]
-    kinked = [run for run in runs if run.planned.setup.kinks]
+    at_one = [run for run in runs if not run.planned.setup.order]
+    smooth = [run for run in at_one if not run.planned.setup.kinks]
+    kinked = [run for run in at_one if run.planned.setup.kinks]
+    high = [run for run in runs if run.planned.setup.order > ORDER]
     return [
         *of_scenes(smooth, "of splines", failing),
         *of_scenes(kinked, "of a master with kinks", failing),
+        *of_scenes(high, "of higher orders", failing),
         best("Pressures and tractions", "distance of the tractions from those of theory", tractions, percent=True),
         best("Flat interfaces, patch test", "error of the patch test on meshes that do not match", patches, percent=True),
+        best("Curved interfaces, patch test", "error of the curved patch test on meshes that do not match", curved, percent=True),
         comparison(known, table),
     ]
 
 
-def of_scenes(runs: Sequence[Found], which: str, failing: Mapping[str, float]) -> tuple[Advice, Advice]:
-    """For resultants and for speed, of some of the scenes."""
+def of_scenes(runs: Sequence[Found], which: str, failing: Mapping[str, float]) -> tuple[Advice, ...]:
+    """For resultants, for speed and for few solves, of some of the scenes."""
     references = {run.name: run for run in runs if run.method == REFERENCE}
     others = [run for run in runs if run.method != REFERENCE]
     off = by_way(others, {id(run): run.off(references[run.name]) for run in others})
+    solves = by_way(others, {id(run): run.number("solves") if run.ending == "measured" else np.nan for run in others})
     cost = by_way(others, {id(run): run.number("cpu_seconds") if run.ending == "measured" else np.nan for run in others})
     return (
         best(f"Resultants {which}", "distance of the curves from those of finer meshes", off, percent=True, failing=failing),
         best(f"Speed {which}", "CPU seconds of runs that come to their end", cost, unit=" s", failing=failing),
+        best(f"Robustness {which}", "linear solves of runs that come to their end", solves, failing=failing),
     )
 
 
@@ -127,7 +141,7 @@ def _ratio(value: float, least: float) -> float:
 def comparison(known: Sequence[Known], table: Sequence[Mapping[str, Any]]) -> Advice:
     """What each of the paper's four ways shows, at one order."""
     rows = {row["method"]: row for row in table if row["order"] == ORDER}
-    peaks = {run.method: run.number("peak") for run in known if run.name == "hertz"}
+    peaks = {run.method: run.number("peak") for run in known if (run.name, run.kind) == ("hertz", KIND)}
     words = []
     for way, key, noun in (("kts", "too many", "too many constraints"), ("knots", "too few", "too few")):
         if all(np.isfinite((rows[way][key], peaks.get(way, np.nan)))):

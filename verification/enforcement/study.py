@@ -1,4 +1,4 @@
-"""The study of enforcement: the paper's ways of Section 3.2 and others, by both projections, on its scenes."""
+"""The study of enforcement: the paper's ways of Section 3.2 and all others, by both projections, on its scenes."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 
 from enforcement import exact, known, page
 from enforcement.found import Evidence, Found, Known
-from enforcement.plan import SETUPS, Planned, planned
+from enforcement.plan import BY_ORDER, SETUPS, Planned, planned
 from enforcement.statements import STATEMENTS
 
 from isomortar.errors import InputError
@@ -25,10 +25,11 @@ def study(scenes: Sequence[str] = ()) -> Study:
     InputError
         There is no such scene in it.
     """
-    names = [*known.SCENES, *(setup.name for setup in SETUPS)]
+    setups = (*SETUPS, *BY_ORDER)
+    names = [*known.SCENES, *(setup.name for setup in setups)]
     if unknown := set(scenes) - set(names):
         raise InputError(f"names {', '.join(sorted(unknown))}; allowed: {', '.join(names)}", "scenes")
-    plan = tuple(planned(tuple(setup for setup in SETUPS if not scenes or setup.name in scenes)))
+    plan = tuple(planned(tuple(setup for setup in setups if not scenes or setup.name in scenes)))
     others = [*exact.cells(), *known.cells([scene for scene in known.SCENES if not scenes or scene in scenes])]
     return Study((*others, *(entry.run for entry in plan)), partial(_written, plan))
 
@@ -38,5 +39,8 @@ def _written(plan: Sequence[Planned], folder: Path, results: Sequence[Result], s
     first, last = len(list(exact.cells())), len(results) - len(plan)
     runs = [Found(result, entry) for entry, result in zip(plan, results[last:], strict=True)]
     tractions = [Known(result) for result in results[first:last]]
-    judgements = [statement.judged([Evidence(runs, method, known=tractions) for method in statement.methods]) for statement in STATEMENTS]
+    table = exact.table(results[:first])
+    judgements = [
+        statement.judged([Evidence(runs, method, known=tractions, table=table) for method in statement.methods]) for statement in STATEMENTS
+    ]
     return page.write(folder, results[:first], tractions, runs, judgements, started)
