@@ -12,7 +12,7 @@ from enforcement.collocated import collocated_press
 from enforcement.contact import MESHES, METHODS, constraints, enforcement_of, patch_test
 from enforcement.mixed import work
 from enforcement.passes import PASSES, constraints_of_passes, patch_test_of_passes
-from enforcement.patches import CURVED_ORDERS, PROJECTIONS, ROWS, averaged_patch_test, curved_patch_test
+from enforcement.patches import AVERAGED_ORDERS, CURVED_ORDERS, PROJECTIONS, ROWS, averaged_patch_test, curved_patch_test
 from enforcement.spline import spline_scenes
 from enforcement.two_rules import mixed_rule
 from patch_tests.contact import ORDERS
@@ -140,7 +140,8 @@ def sizes() -> list[dict[str, Any]]:
 def _row(by_name: dict[str, Exact], method: str, order: int) -> dict[str, Any]:
     tested = {meshes: by_name[Cell(patch_test, {"method": method, "order": order, "meshes": meshes}).name] for meshes in MESHES}
     counted = by_name[Cell(constraints, {"method": enforcement_of(method), "order": order}).name]
-    tested["averaged"] = by_name[Cell(averaged_patch_test, {"method": method, "order": order}).name]
+    if order in AVERAGED_ORDERS:
+        tested["averaged"] = by_name[Cell(averaged_patch_test, {"method": method, "order": order}).name]
     for projection in PROJECTIONS if order in CURVED_ORDERS else ():
         settings = {"method": method, "projection": projection, "order": order}
         tested[CURVED[projection]] = by_name[Cell(curved_patch_test, settings).name]

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 from analytic.mindlin import CONTACT
 from enforcement.contact import IN_CELLS
-from enforcement.exact import ROWS, TESTS
+from enforcement.exact import TESTS
 from enforcement.found import Found, Known
+from enforcement.patches import ROWS
 from enforcement.plan import REFERENCE
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, NullFormatter

@@ -98,7 +98,9 @@ class Evidence(ByMethod[Found]):
     def rougher_than_mortar(self) -> dict[str, float]:
         """Roughness of the tractions over that by the mortar method, by scene and kind."""
         mortar = {(run.name, run.kind): run.number("roughness") for run in ByMethod(self.known, MORTAR).by(MORTAR)}
-        return {f"{run.name} {run.kind}": run.number("roughness") / mortar[run.name, run.kind] for run in self._known}
+        self.left_out.extend(f"{run.name} {run.kind}: {run.words}" for run in self._known if run.ending != "measured")
+        whole = [run for run in self._known if run.ending == "measured"]
+        return {f"{run.name} {run.kind}": run.number("roughness") / mortar[run.name, run.kind] for run in whole}
 
     def counted(self, key: str, least: int = 1) -> dict[str, float]:
         """A number of what is exact, by order, from an order on."""
@@ -115,7 +117,9 @@ class Evidence(ByMethod[Found]):
 
     def costs_beside_mesh(self) -> dict[str, float]:
         """Distance from the mortar method on the same mesh over that of the mortar method from the reference, by scene."""
-        return {run.name: run.off(mortar) / mortar.off(reference) for run, mortar, reference in self._compared() if mortar.off(reference)}
+        whole = [found for found in self._compared() if all(run.ending == "measured" for run in found)]
+        self.left_out.extend(run.name for run, *_ in self._compared() if run.name not in {run.name for run, *_ in whole})
+        return {run.name: run.off(mortar) / mortar.off(reference) for run, mortar, reference in whole}
 
     def missing(self) -> dict[str, float]:
         """Load steps that are missing, by scene."""

@@ -65,10 +65,8 @@ def of_kind(given: Problem, kind: str) -> Problem:
     """The same cylinders of another family and order."""
     found = cap(COARSE)
     patches = {body.name: found.cylinder(kind, CONTACT, below=body.name == "master") for body in given.bodies}
-    bodies = tuple(
-        replace(body, patch=patches[body.name], quadrature=tuple(volume_points(d) for d in patches[body.name].directions))
-        for body in given.bodies
-    )
+    points_of = {name: tuple(volume_points(d) for d in patch.directions) for name, patch in patches.items()}
+    bodies = tuple(replace(body, patch=patches[body.name], quadrature=points_of[body.name]) for body in given.bodies)  # type: ignore[arg-type]
     along, across = patches["slave"].face_directions("w0")
     points = contact_points(along), contact_points(across)
     return replace(given, bodies=bodies, contacts=(replace(given.contacts[0], quadrature=points),))

@@ -1,4 +1,4 @@
-"""Two passes, in which each face is slave once: how many constraints are too many, and what becomes of the pressures (theory 10.15)."""
+"""Two passes, in which each face is slave once: how many constraints are too many, and what becomes of the pressures (theory 10.17)."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def patch(passes: str, order: int, meshes: str) -> Problem:
 
 
 def too_many(passes: str, order: int, elements: int) -> int:
-    """Constraints beyond their rank, by exact integrals of the functions of both faces."""
+    """Constraints beyond their rank, by exact integrals of the functions of both faces (theory 10.17)."""
     own, other = masses(order, SLAVE_ELEMENTS, SLAVE_ELEMENTS), masses(order, SLAVE_ELEMENTS, elements)
     first, second = np.hstack([own, -other]), np.hstack([other.T, -masses(order, elements, elements)])
     matrix = first if passes == "one" else np.vstack([first, second])

@@ -16,6 +16,8 @@ from isomortar.model.entities import Problem, Projection
 from isomortar.solve.simulation import Simulation
 
 ROWS: tuple[str, ...] = ("mortar", IN_CELLS, *METHODS[1:])
+#: At order 5 averaged normals take as long as all other orders.
+AVERAGED_ORDERS = ORDERS[:-1]
 #: No spline of order 1 is curved.
 CURVED_ORDERS = ORDERS[1:]
 #: Of the cylinders: so far behind their master points have feet along averaged normals too.
@@ -41,7 +43,7 @@ def averaged_bounds(method: str, order: int) -> dict[str, Bound | Shown]:
 @case(
     claim="Along averaged normals flat faces whose meshes do not match pass the patch test as by closest points, whatever is constrained.",
     tier=lambda method, order: "gate" if order == 2 else "nightly",  # noqa: ARG005
-    grid={"method": ROWS, "order": ORDERS},
+    grid={"method": ROWS, "order": AVERAGED_ORDERS},
     bounds=averaged_bounds,
 )
 def averaged_patch_test(method: str, order: int) -> dict[str, float]:

@@ -8,10 +8,10 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
-from enforcement.exact import CURVED, ROWS
+from enforcement.exact import CURVED
 from enforcement.found import Found, Known
 from enforcement.known import KIND
-from enforcement.patches import CURVED_ORDERS
+from enforcement.patches import CURVED_ORDERS, ROWS
 from enforcement.plan import MORTAR, REFERENCE
 
 from isomortar.harness.report import stated
@@ -139,7 +139,7 @@ def _ratio(value: float, least: float) -> float:
 
 
 def comparison(known: Sequence[Known], table: Sequence[Mapping[str, Any]]) -> Advice:
-    """What each of the paper's four ways shows, at one order."""
+    """What each of the ways that the paper names shows, at one order."""
     rows = {row["method"]: row for row in table if row["order"] == ORDER}
     peaks = {run.method: run.number("peak") for run in known if (run.name, run.kind) == ("hertz", KIND)}
     words = []

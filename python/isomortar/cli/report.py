@@ -100,10 +100,11 @@ def enforcement(
     out: Annotated[Path, typer.Option(file_okay=False, help="Folder of the report and its runs.")] = Path("results/enforcement"),
     cases: CasesOption = CASES,
 ) -> None:
-    """The ways of enforcing contact, those that the paper names and others, beside each other: error, roughness and cost.
+    """Every way of enforcing contact, the four that the paper names and all others, beside each other: error, roughness and cost.
 
-    What was run already is not run again. Exit code 1 if a run failed; the others are in the report all the same. Run it in a checkout,
-    from its folder: the study stands in verification/enforcement.
+    What was run already is not run again; all of it takes about half an hour. A run that stops is shown with the load step and the reason:
+    some ways do. Exit code 1 if a statement could not be measured. Run it in a checkout, from its folder: the study stands in
+    verification/enforcement.
 
     For example: `isomortar report enforcement --scenes twist`
     """
