@@ -184,6 +184,8 @@ def given_up(_: pytest.MonkeyPatch) -> Told:
     (yield "points", *said(scene(SLAVE=1, MASTER=8)))
     yield "slides", without_digits(error(BLOCK + 'supports.top = { face = "block.w1", components = ["y", "z"] }'))
     yield "held", explained([4], [])
+    sole = "stages.press.motions={top={translate=[0, 0, -0.02]}, sole={translate=[0, 0, -0.02]}}"
+    yield "all held", without_digits(error(BLOCK + 'supports.top = { face = "block.w1" }\nsupports.sole = { face = "block.w0" }', sole))
     yield "repeated", explained([], [3, 5])
     yield "left", explained([], [3, 5], found=0)
     states = [np.array(s, dtype=np.int32).tobytes() for s in ([0, 1, 2], [0, 2, 2])]

@@ -76,6 +76,13 @@ def test_held_body_is_not_said_to_move() -> None:
     assert "freely" not in said
 
 
+def test_a_body_of_which_all_is_held_and_pushed_into_its_master_says_so() -> None:
+    """There are multipliers then, and no unknowns of bodies."""
+    motions = "stages.press.motions={top={translate=[0, 0, -0.02]}, sole={translate=[0, 0, -0.02]}}"
+    said = error(BLOCK + 'supports.top = { face = "block.w1" }\nsupports.sole = { face = "block.w0" }', motions)
+    assert "supports hold all control points, also where they put them into a master" in said
+
+
 def test_repeated_conditions_name_their_contact() -> None:
     said = explained([], [3, 5])
     assert "contact 'base': the conditions of 2 constraints, the first of them 3, repeat each other" in said

@@ -252,6 +252,8 @@ class Equilibrium:
             return LinearSystem(size, sources, self.ledger, self._solid_entries, self.orderings.get(len(sources)))
 
         free = len(self.supports.free)
+        if free == 0:  # multipliers alone
+            return general()
         if self._bodies is None:
             self._bodies = Bodies(self.solid_source, self._solid_entries, self.ledger)
         self._bodies.act_on(touched(sources[1:], free))

@@ -45,6 +45,11 @@ def explain(
     positions : ndarray, shape (control points, 3)
     """
     said = f"the tangent is singular (reciprocal condition {rcond:.1e})"
+    if not len(free):
+        return SingularSystemError(
+            f"{said}: supports hold all control points, also where they put them into a master, and contact has nothing that could give "
+            "way. Hold fewer components, or end the motion at the master"
+        )
     if not np.isfinite(null).all():
         return SingularSystemError(f"{said}, and nothing can be said of what it leaves free")
     shares = [_of_pair(contact, null) for contact in contacts]
