@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import get_args
 
 import pytest
 
+from isomortar._arrays import MaterialLaw
 from isomortar.errors import InputError
 from isomortar.model.entities import Face, Problem, Support
 from isomortar.scene import Scene
@@ -85,3 +87,13 @@ def test_what_a_scene_is_refused_for_a_problem_is(change: Callable[[Problem], Pr
     Simulation(sound)
     with pytest.raises(InputError, match=said):
         Simulation(change(sound))
+
+
+@pytest.mark.parametrize("scene", [PAIR, "press"])
+@pytest.mark.parametrize("law", get_args(MaterialLaw))
+def test_a_problem_without_stages_is_at_rest(scene: str, law: MaterialLaw) -> None:
+    """As other programs are given one, to tell what they take to start."""
+    given = (Scene.load(scene) if scene == "press" else Scene.from_toml(scene)).problem()
+    bodies = tuple(replace(body, material=replace(body.material, law=law)) for body in given.bodies)
+    supports = tuple(replace(support, motions=()) for support in given.supports)
+    assert list(Simulation(replace(given, bodies=bodies, supports=supports, stages=())).run()) == []

@@ -145,7 +145,7 @@ def _check_ways(problem: Problem) -> None:
                 f"supports.{support.name}.centre",
             )
         with np.errstate(over="ignore"):  # inf has no digits either
-            ways = np.abs(np.cumsum([motion.translate for motion in support.motions], axis=0)).max(axis=1)
+            ways = np.abs(np.cumsum(np.reshape([motion.translate for motion in support.motions], (-1, 3)), axis=0)).max(axis=1)
         for stage, way in zip(problem.stages, ways.tolist(), strict=True):
             if not np.spacing(way) <= most:
                 raise InputError(

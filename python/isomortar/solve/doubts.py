@@ -138,7 +138,7 @@ def _idle_motions(problem: Problem, support: Support) -> Iterator[str]:
 
 def _turns_of_small_strains(problem: Problem, support: Support) -> Iterator[str]:
     """Turns of bodies whose law takes them for strains."""
-    angle = float(np.abs(np.cumsum([motion.rotate for motion in support.motions])).max())
+    angle = float(np.abs(np.cumsum([motion.rotate for motion in support.motions])).max(initial=0.0))
     strain = float(1.0 - np.cos(np.radians(min(angle, 180.0))))
     (piece,) = (piece for piece in pieces(problem) if support.place.body in {body.name for body in piece})
     turned = [body.name for body in piece if not body.rigid and body.material.law == "linear-elastic"]
@@ -160,7 +160,7 @@ def _pushed_in(problem: Problem) -> Iterator[str]:
             points = points[np.all(supports.held[points] | (np.abs(normal) < constants.NO_PART), axis=1)]
             ends = np.cumsum([stage.steps for stage in problem.stages])
             depths = [-((supports.place(float(end))[points] - contact.master.point) @ normal).min(initial=np.inf) for end in ends]
-            if max(depths) > constants.NO_PART * sheet.size:
+            if max(depths, default=0.0) > constants.NO_PART * sheet.size:
                 stage = problem.stages[int(np.argmax(depths))].name
                 yield (
                     f"contact {contact.name!r}: supports put {len(points)} of its slave control points behind the plane, by "
