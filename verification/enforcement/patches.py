@@ -42,7 +42,7 @@ def averaged_bounds(method: str, order: int) -> dict[str, Bound | Shown]:
 
 @case(
     claim="Along averaged normals flat faces whose meshes do not match pass the patch test as by closest points, whatever is constrained.",
-    tier=lambda method, order: "gate" if order == 2 else "nightly",  # noqa: ARG005
+    tier="nightly",
     grid={"method": ROWS, "order": AVERAGED_ORDERS},
     bounds=averaged_bounds,
 )

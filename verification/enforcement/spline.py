@@ -152,7 +152,7 @@ def smooth_errors(given: Problem) -> float:
 
 @case(
     claim="A uniform pressure passes the spline surface of linear elements, to its rim, as it passes order 2; in cells to round-off.",
-    tier="gate",
+    tier="nightly",
     grid={"elements": ELEMENTS, "integration": ("whole", "cells")},
     bounds=lambda elements, integration: {
         "spline": _IN_CELLS

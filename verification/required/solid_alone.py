@@ -112,7 +112,7 @@ def solid_alone() -> dict[str, float]:
     positions = plain.run()
     ours = {name: sum(step.counters[name] for step in steps) for name in SHARED}
     return {
-        "more": sum(max(0, ours[name] - plain.ledger.counts[name]) for name in SHARED),
+        "more": float(np.max([ours[name] - plain.ledger.counts[name] for name in SHARED])),
         "apart": float(np.abs(steps[-1].state.positions - positions).max()),
         "solved": ours["solves"],
     }
