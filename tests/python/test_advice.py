@@ -59,8 +59,10 @@ def warnings(text: str, overrides: list[str] | None = None) -> list[str]:
 
 AVERAGED = PAIR.replace('master = "lower.w1"', 'master = "lower.w1"\nprojection = "averaged"')
 
-#: Strains of the law are those of small turns.
+#: A law of small strains.
 _LINEAR = PRESS.replace("[bodies.block]", '[materials.steel]\nlaw = "linear-elastic"\n[bodies.block]')
+
+_FLOOR = PRESS[PRESS.index("[contacts.floor]") : PRESS.index("[supports.top]")]
 
 # Scene, what is replaced, by what, and words of the one warning.
 DOUBTFUL = {
@@ -97,13 +99,8 @@ DOUBTFUL = {
         'face = "block.w1"\ncomponents = ["x", "y"]',
         "is to move along z in stage 'press', but prescribes only x, y",
     ),
-    "turn of small strains": (
-        _LINEAR,
-        "rotate = 0",
-        "rotate = -20",
-        "turns body 'block' by up to 20 degrees",
-    ),
     "nothing moves": (PRESS, "[0, 0, -0.1]", "[0, 0, 0]", "no support moves in any stage"),
+    "all rigid": (PRESS.replace(_FLOOR, ""), "[bodies.block]", "[bodies.block]\nrigid = true", "all bodies are rigid"),
     "ring that is not closed": (SLIT, "", "", "faces u0 and u1 lie on each other, but are not joined"),
     "both ways": (*UNUSUAL["both ways"], "are the same one, both ways"),
 }
@@ -317,6 +314,9 @@ RUNS = {
     ),
     "outside of a ring": (RINGS.replace('"outside.v0"', '"outside.v1"'), ["it pulls"]),
     "shrink fit": (RINGS, []),
+    "small strains": (_LINEAR, []),
+    "small strains that are large": (_LINEAR.replace("-0.1]", "-0.3]"), ["load step 1: its law, linear-elastic"]),
+    "small strains, turned": (staged(_LINEAR, (3, "[0, 0, 0.1]", "-9")), ["load step 2: its law, linear-elastic", "never closed"]),
     "quadratic Lagrange elements pressed within": (DIE, []),
     "pressed within, averaged normals": (DIE.replace("friction", 'projection = "averaged"\nfriction'), []),
 }

@@ -22,7 +22,7 @@ from isomortar.solve.advice import StepAdvice
 from isomortar.solve.simulation import Simulation
 from isomortar.solve.trail import toggling
 from results_samples import problem, step_result
-from test_advice import DOUBTFUL, PLATE, PRESS, Warned, _of_weights, material, rational, warnings
+from test_advice import DOUBTFUL, PLATE, PRESS, RUNS, Warned, _of_weights, material, rational, warnings
 from test_causes import said, scene
 from test_glue import WRONG as UNGLUED
 from test_raised import WRONG as UNRAISED
@@ -161,6 +161,9 @@ def along_the_way(_: pytest.MonkeyPatch) -> Told:
     observer = Warned()
     list(Simulation(Scene.from_toml(text.replace("MOTION", "motions.tip.translate = [0, 0, 1e-7]")).problem(), observer).run())
     yield "lost in round-off", without_digits(observer.said[0])
+    observer = Warned()
+    list(Simulation(Scene.from_toml(RUNS["small strains, turned"][0]).problem(), observer).run())
+    yield "small strains", observer.said[0]
 
 
 def _before_the_first_step(simulation: Simulation) -> str:

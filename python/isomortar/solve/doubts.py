@@ -14,7 +14,6 @@ from isomortar.geometry.patch import MAX_ORDER, FloatArray, IntArray
 from isomortar.model import constants
 from isomortar.model.contrasts import element_lengths
 from isomortar.model.entities import Body, Contact, Face, Problem, RigidPlane, Support, unit
-from isomortar.model.glue import pieces
 from isomortar.model.memory import memory_needed, memory_of_machine
 from isomortar.model.numbering import Numbering, ends_apart
 from isomortar.model.pairs import Pair
@@ -37,8 +36,6 @@ HIGH_FRICTION = 10.0
 LOCKING = 10.0
 #: Lengths of elements along a direction further apart cost pressures at the short ones all digits but two: 1e-16 times their square.
 SPANS = 1e7
-#: What a turn alone makes of strains that are those of small turns, 1 - cos of its angle, above which it is told.
-STRAIN_OF_TURN = 0.005
 
 
 def doubts(problem: Problem, state: State) -> Iterator[str]:
@@ -58,10 +55,11 @@ def doubts(problem: Problem, state: State) -> Iterator[str]:
         yield from _spans(body)
         yield from _seam(body)
         yield from _weights(body)
+    if not problem.deformable:
+        yield "all bodies are rigid: nothing deforms, and all forces are zero. Let one of them deform"
     for support in problem.supports:
         yield from _far_steps(problem, support)
         yield from _idle_motions(problem, support)
-        yield from _turns_of_small_strains(problem, support)
     yield from _pushed_in(problem)
     stances = [stance(problem, contact) for contact in problem.contacts]
     travel = _travel(problem)
@@ -134,19 +132,6 @@ def _idle_motions(problem: Problem, support: Support) -> Iterator[str]:
                 f"support {support.name!r} is to move along {', '.join(idle)} in stage {stage.name!r}, but prescribes only {held}: "
                 "that motion does nothing"
             )
-
-
-def _turns_of_small_strains(problem: Problem, support: Support) -> Iterator[str]:
-    """Turns of bodies whose law takes them for strains."""
-    angle = float(np.abs(np.cumsum([motion.rotate for motion in support.motions])).max(initial=0.0))
-    strain = float(1.0 - np.cos(np.radians(min(angle, 180.0))))
-    (piece,) = (piece for piece in pieces(problem) if support.place.body in {body.name for body in piece})
-    turned = [body.name for body in piece if not body.rigid and body.material.law == "linear-elastic"]
-    if turned and strain > STRAIN_OF_TURN:
-        yield (
-            f"support {support.name!r} turns body {turned[0]!r} by up to {angle:g} degrees, but its law, linear-elastic, is for small "
-            f'turns: to it this one alone is a strain of {strain:.2g}. Take law = "neo-hookean" or "neo-hookean-j"'
-        )
 
 
 def _pushed_in(problem: Problem) -> Iterator[str]:

@@ -25,6 +25,7 @@ from isomortar.solve.monolithic import Monolithic
 from isomortar.solve.pulling import Pulling
 from isomortar.solve.record import AugmentationRecord, ContactResult, Observer, Reaction, State, StepResult, history_bytes
 from isomortar.solve.sharing import Sharing
+from isomortar.solve.small_strains import SmallStrains
 from isomortar.solve.timing import Ledger
 from isomortar.solve.uzawa import Uzawa
 
@@ -70,6 +71,7 @@ class Simulation:
         self._method = _METHODS[problem.settings.method](self.equilibrium, self._observer)
         self._extrapolates = problem.settings.method == "monolithic" and "extrapolation" in problem.settings.measures
         self._lost, self._pulling, self._sharing = LostDigits(self.equilibrium), Pulling(self.equilibrium), Sharing(self.equilibrium)
+        self._small_strains = SmallStrains(self.equilibrium)
         self._step = resume_from.step if resume_from else 0
         self._increment = resume_from.next_increment if resume_from else 1.0
         self.equilibrium.orderings = dict(resume_from.orderings) if resume_from else {}
@@ -128,6 +130,7 @@ class Simulation:
         self._warn(self._lost.after_step(parts[-1].balance, result))
         self._warn(self._pulling.after_step(parts[-1].balance, step))
         self._warn(self._sharing.after_step(result))
+        self._warn(self._small_strains.after_step(parts[-1].balance, step))
         return result
 
     def _advance(self, state: State, time: float, target: float, step: int) -> list[Increment]:
