@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from fuzz.child import Wrong, ending_of, program, tried
+from forked import program
+from fuzz.child import Wrong, ending_of, tried
 
 from isomortar import Scene
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import functools
-import sys
+import json
+import os
+import signal
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -12,14 +14,16 @@ from tempfile import TemporaryDirectory
 
 import h5py
 import numpy as np
+from forked import forked
+from forked import program as program_within
 
 from isomortar.geometry.patch import FloatArray
 from isomortar.program.process import ONE_THREAD, Limits, Process
 
 #: What one run may take: seconds of the processor (of the clock a few times that, as the machine may be busy), bytes of address space.
 SECONDS, PATIENCE, MEMORY = 60, 10, 4 << 30
-#: Whatever kernel this process has found, the program that it starts finds too.
-_START = "import sys; sys.path[:] = {path!r}; sys.argv[0] = 'isomortar'; from isomortar.cli import main; main()"
+#: What is asked of the program.
+_WORDS = ("run", "scene.toml", "--output", "results.h5", "--quiet")
 
 _program: tuple[str, ...] = ()
 
@@ -73,26 +77,41 @@ def program(command: Sequence[str]) -> Iterator[None]:
 
 def run(scene: str, seconds: int = SECONDS, memory: int = MEMORY) -> Trial:
     """Run the text of a scene file; what was run in this process before is not run again."""
-    return _run(scene, _program or _this_program(), seconds, memory)
-
-
-def _this_program() -> tuple[str, ...]:
-    flags = ("-S",) if sys.flags.no_site else ()
-    return (sys.executable, *flags, "-c", _START.format(path=sys.path))
+    return _run(scene, _program, seconds, memory)
 
 
 @functools.lru_cache(maxsize=256)
 def _run(scene: str, command: tuple[str, ...], seconds: int, memory: int) -> Trial:
-    with TemporaryDirectory() as folder:
-        (Path(folder) / "scene.toml").write_text(scene, encoding="utf-8")
-        command = (*command, "run", "scene.toml", "--output", "results.h5", "--quiet")
-        with Process(command, Limits(seconds, memory), Path(folder), ONE_THREAD | {"COLUMNS": "1000"}) as process:
-            end, said = process.wait(PATIENCE * seconds), process.said()
-        if end.ending == "timed out":
-            return Trial(None, end.words)
-        held = _read(Path(folder) / "results.h5")
-        steps = None if held is None else len(held["curves/step"])
-        return Trial(end.status, said, held or {}, steps)
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "scene.toml").write_text(scene, encoding="utf-8")
+        code, said = _of_another(command, folder, seconds, memory) if command else _of_this_one(folder, seconds, memory)
+        if code is None:
+            return Trial(None, said)
+        held = _read(folder / "results.h5")
+        return Trial(code, said, held or {}, None if held is None else len(held["curves/step"]))
+
+
+def _of_this_one(folder: Path, seconds: int, memory: int) -> tuple[int | None, str]:
+    """Exit status and words of this program, with whatever kernel this process has found; None: it came to no end in its time."""
+
+    def compute() -> bytes:
+        os.chdir(folder)
+        os.environ["COLUMNS"] = "1000"
+        return json.dumps(program_within(*_WORDS, folder=folder)).encode()
+
+    gone = forked(compute, seconds, PATIENCE * seconds, memory)
+    if gone.status is None or gone.status == -signal.SIGXCPU:
+        return None, "no end within its seconds"
+    code, said = json.loads(gone.said) if gone.said else (gone.status, "")
+    return code, said
+
+
+def _of_another(command: tuple[str, ...], folder: Path, seconds: int, memory: int) -> tuple[int | None, str]:
+    """The same of another program."""
+    with Process((*command, *_WORDS), Limits(seconds, memory), folder, ONE_THREAD | {"COLUMNS": "1000"}) as process:
+        end, said = process.wait(PATIENCE * seconds), process.said()
+    return end.status, end.words if end.ending == "timed out" else said
 
 
 def _read(path: Path) -> dict[str, FloatArray] | None:

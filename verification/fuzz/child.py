@@ -1,30 +1,17 @@
-"""Something tried in a process of its own: a signal, a hang, a traceback end the child and are told, not met.
-
-By a fork, and not by the harness's runner of processes: a child that begins with all modules loaded costs 0.014 s of the processor, a
-new interpreter that loads them 1.6 s. The scenes, 11 a second on two cores, would take ten times as long. A measuring process that lives on
-from try to try would be as quick, but a limit of time or memory is of a process, and what one try leaves behind must not meet the next.
-"""
+"""Something tried in a process of its own, and in what way it ended."""
 
 from __future__ import annotations
 
-import contextlib
-import functools
-import importlib
 import json
-import os
-import resource
-import select
 import signal
-import sys
 import tempfile
-import time
 import traceback
 from collections import Counter
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from isomortar.cli import main
+from forked import forked
 
 #: Endings that are none of the program's mistakes.
 FINE = ("right", "refused", "stopped")
@@ -44,82 +31,26 @@ class Wrong(Exception):  # noqa: N818 (what was seen, not a mistake of this prog
     """Something was seen that must never be."""
 
 
-@functools.cache
-def load() -> None:
-    """Load what the program loads when it needs it: here once, and not in every child."""
-    for name in ("cli.commands", "cli.progress", "driver", "results.pictures", "results.paraview"):
-        importlib.import_module(f"isomortar.{name}")
-    for name in ("rich.console", "scipy.interpolate", "scipy.sparse.linalg", "scipy.spatial", "splinepy", "tomlkit"):
-        importlib.import_module(name)
-
-
 def tried(action: Callable[[Path], Ending]) -> Ending:
     """The ending of an action in a child process; the action is given a folder of its own."""
-    load()
     with tempfile.TemporaryDirectory(prefix="fuzz-") as folder:
-        reader, writer = os.pipe()
-        child = os.fork()
-        if child == 0:
-            os.close(reader)
-            _act(action, Path(folder), writer)
-        os.close(writer)
-        said = _heard(reader, child)
-        os.close(reader)
-        _, status = os.waitpid(child, 0)
-    if said is None:
+        gone = forked(lambda: _told(action, Path(folder)), CPU_SECONDS, WALL_SECONDS, MEMORY)
+    if gone.status is None:
         return Ending("wrong", f"no end after {WALL_SECONDS:g} s")
-    if os.WIFSIGNALED(status):
-        number = os.WTERMSIG(status)
-        return Ending("wrong", f"ended by {signal.Signals(number).name}{' (a hang)' if number == signal.SIGXCPU else ''}")
-    return Ending(*json.loads(said)) if said else Ending("wrong", f"the process ended with status {os.waitstatus_to_exitcode(status)}")
+    if gone.status < 0:
+        return Ending("wrong", f"ended by {signal.Signals(-gone.status).name}{' (a hang)' if gone.status == -signal.SIGXCPU else ''}")
+    return Ending(*json.loads(gone.said)) if gone.said else Ending("wrong", f"the process ended with status {gone.status}")
 
 
-def _act(action: Callable[[Path], Ending], folder: Path, writer: int) -> None:
-    """In the child: act, tell the ending, and be gone without what a process does at its end."""
-    resource.setrlimit(resource.RLIMIT_CPU, (CPU_SECONDS, CPU_SECONDS + 5))
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    silence = os.open(os.devnull, os.O_RDWR)
-    for stream in (0, 1, 2):
-        os.dup2(silence, stream)
+def _told(action: Callable[[Path], Ending], folder: Path) -> bytes:
+    """In the child: the ending, whatever is raised."""
     try:
         ending = action(folder)
     except Wrong as error:
         ending = Ending("wrong", str(error))
     except BaseException:
         ending = Ending("wrong", f"a traceback: {traceback.format_exc()[-1500:]}")
-    os.write(writer, json.dumps([ending.kind, ending.said[:3000]]).encode())
-    os._exit(0)
-
-
-def _heard(reader: int, child: int) -> bytes | None:
-    """What the child tells before it ends; None: it had to be killed."""
-    deadline, said = time.monotonic() + WALL_SECONDS, b""
-    while True:
-        left = deadline - time.monotonic()
-        if left < 0.0 or not select.select([reader], [], [], left)[0]:
-            os.kill(child, signal.SIGKILL)
-            return None
-        piece = os.read(reader, 1 << 16)
-        if not piece:
-            return said
-        said += piece
-
-
-def program(*words: str, folder: Path) -> tuple[int, str]:
-    """Run ``isomortar WORDS`` within this process: its exit code, and what it said on stderr.
-
-    A traceback it never shows: that is exit code 3.
-    """
-    said = folder / "stderr"
-    sys.argv = ["isomortar", *words]
-    code = 0
-    with said.open("w") as stream, contextlib.redirect_stderr(stream), contextlib.redirect_stdout(stream):
-        try:
-            main()
-        except SystemExit as end:
-            code = int(end.code or 0)
-    return code, said.read_text()
+    return json.dumps([ending.kind, ending.said[:3000]]).encode()
 
 
 def ending_of(code: int, said: str) -> Ending:

@@ -10,8 +10,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import h5py
+from forked import program
 from fuzz.base_scenes import PRESS
-from fuzz.child import Ending, Wrong, ending_of, program, tally, tried
+from fuzz.child import Ending, Wrong, ending_of, tally, tried
 
 import isomortar
 from isomortar.harness import Bound, case

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from fuzz.child import Ending, Wrong, ending_of, program, tally, tried
+from forked import program
+from fuzz.child import Ending, Wrong, ending_of, tally, tried
 from fuzz.mutation import mutated, numbers
 
 from isomortar import Results
