@@ -36,6 +36,8 @@ HEIGHT, DEPTH = 0.5, 1.5
 AMPLITUDE = np.array([0.12, -0.10, 0.15])
 #: Gauss points beyond the order in every integral, and beyond that for the error of the quadrature.
 POINTS, MORE = 2, 2
+#: Elements that are evaluated in one go.
+AT_ONCE = 32
 
 
 @dataclass(frozen=True)
@@ -105,33 +107,45 @@ def lines(direction: Direction, count: int) -> list[tuple[FloatArray, FloatArray
 
 
 def elements(patch: Patch, points: IntArray, gauss: tuple[int, ...]) -> Iterator[tuple[IntArray, FloatArray, FloatArray, FloatArray]]:
-    """For each element its control points, functions (points, a), their gradients by position (points, a, 3), and volumes."""
-    tables = [lines(direction, count) for direction, count in zip(patch.directions, gauss, strict=True)]
+    """For some elements at a time their control points, functions (e, points, a), these by position (e, points, a, 3), and volumes."""
+    tables = [
+        [np.stack(of_each) for of_each in zip(*lines(direction, count), strict=True)]
+        for direction, count in zip(patch.directions, gauss, strict=True)
+    ]
     numbers = element_points(patch, points)
     shape = [direction.elements for direction in patch.directions]
-    for e, nodes in enumerate(numbers):
-        (u, du, gu), (v, dv, gv), (w, dw, gw) = (table[i] for table, i in zip(tables, np.unravel_index(e, shape, order="F"), strict=True))
-        weight = patch.weights[nodes]
+    for some in np.array_split(np.arange(len(numbers)), -(-len(numbers) // AT_ONCE)):
+        places = np.unravel_index(some, shape, order="F")
+        (u, du, gu), (v, dv, gv), (w, dw, gw) = ([part[i] for part in table] for table, i in zip(tables, places, strict=True))
+        nodes = numbers[some]
+        weights = patch.weights[nodes][:, None]
 
-        def product(a: FloatArray, b: FloatArray, c: FloatArray, weight: FloatArray = weight) -> FloatArray:
-            return np.einsum("kc,jb,ia->kjicba", c, b, a).reshape(-1, len(weight)) * weight
+        def product(a: FloatArray, b: FloatArray, c: FloatArray, weights: FloatArray = weights) -> FloatArray:
+            return np.einsum("ekc,ejb,eia->ekjicba", c, b, a).reshape(len(weights), -1, weights.shape[2]) * weights
 
         top = product(u, v, w)
-        slopes = np.stack([product(du, v, w), product(u, dv, w), product(u, v, dw)], axis=2)
-        total = top.sum(axis=1)[:, None]
+        slopes = np.stack([product(du, v, w), product(u, dv, w), product(u, v, dw)], axis=3)
+        total = top.sum(axis=2)[..., None]
         functions = top / total
-        parametric = (slopes - functions[:, :, None] * slopes.sum(axis=1)[:, None, :]) / total[:, :, None]
-        jacobian = np.einsum("ai,qap->qip", patch.control_points[nodes], parametric)
-        volume = np.einsum("k,j,i->kji", gw, gv, gu).ravel() * np.linalg.det(jacobian)
+        parametric = (slopes - functions[..., None] * slopes.sum(axis=2)[:, :, None]) / total[..., None]
+        jacobian = patch.control_points[nodes].swapaxes(1, 2)[:, None] @ parametric
+        volume = np.einsum("ek,ej,ei->ekji", gw, gv, gu).reshape(len(some), -1) * np.linalg.det(jacobian)
         yield nodes, functions, parametric @ np.linalg.inv(jacobian), volume
+
+
+def at_points(solution: Solution, places: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Displacements and their gradients at places, shape (e, points, 3)."""
+    u, gradient = solution.displacement(places.reshape(-1, 3))
+    return u.reshape(places.shape), gradient.reshape(*places.shape, 3)
 
 
 def load(solution: Solution, patch: Patch, points: IntArray, gauss: tuple[int, ...]) -> FloatArray:
     """The manufactured load, shape (control points, 3)."""
     total = np.zeros_like(patch.control_points)
     for nodes, functions, gradients, volume in elements(patch, points, gauss):
-        exact = stress(solution.displacement(functions @ patch.control_points[nodes])[1], solution.material)
-        total[nodes] += np.einsum("q,qij,qaj->ai", volume, exact, gradients)
+        _, gradient = at_points(solution, functions @ patch.control_points[nodes])
+        exact = stress(gradient.reshape(-1, 3, 3), solution.material).reshape(gradient.shape)
+        np.add.at(total, nodes, (gradients @ (volume[..., None, None] * exact).swapaxes(2, 3)).sum(axis=1))
     return total
 
 
@@ -139,11 +153,11 @@ def norms(solution: Solution | None, patch: Patch, points: IntArray, field: Floa
     """L2 norms of a displacement field and of its gradient; of their errors where there is a solution."""
     squares = np.zeros(2)
     for nodes, functions, gradients, volume in elements(patch, points, gauss):
-        value, slope = functions @ field[nodes], np.einsum("ai,qaj->qij", field[nodes], gradients)
+        value, slope = functions @ field[nodes], field[nodes].swapaxes(1, 2)[:, None] @ gradients
         if solution:
-            u, gradient = solution.displacement(functions @ patch.control_points[nodes])
+            u, gradient = at_points(solution, functions @ patch.control_points[nodes])
             value, slope = value - u, slope - gradient
-        squares += [volume @ (value**2).sum(axis=1), volume @ (slope**2).sum(axis=(1, 2))]
+        squares += [np.sum(volume * (value**2).sum(axis=2)), np.sum(volume * (slope**2).sum(axis=(2, 3)))]
     return np.sqrt(squares)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -95,10 +96,10 @@ class Direction:
         """Number of control points along the direction."""
         return len(self.knots) - self.order - 1 if self.family == "N" else self.order * (len(self.knots) - 1) + 1
 
-    @property
+    @cached_property
     def boundaries(self) -> FloatArray:
         """Element boundaries: the distinct knots, shape (elements + 1,)."""
-        return np.unique(self.knots)
+        return self.knots[np.append(True, np.diff(self.knots) > 0.0)]
 
     @property
     def elements(self) -> int:
