@@ -203,6 +203,12 @@ CASES = {
     ),
     "solver": ("max_cuts = 4", "max_cuts = -1", "solver.max_cuts", "is -1; allowed: greater than or equal to 0"),
     "solver, cuts without end": ("max_cuts = 4", "max_cuts = 54", "solver.max_cuts", "is 54; allowed: less than or equal to 30"),
+    "path by augmentations": (
+        "max_cuts = 4",
+        'method = "uzawa"\npath_tolerance = 0.001',
+        "solver.path_tolerance",
+        "is 0.001, below solver.augmentation_tolerance = 0.01",
+    ),
     "solver option": ("max_cuts = 4", 'slip_sum = "papers"', "solver.slip_sum", "is 'papers'; allowed: 'local' or 'paper'"),
     "curve": (
         "[solver]",

@@ -68,13 +68,20 @@ def _allowed() -> TypeAdapter[SolverSettings]:
 
 
 def _check_settings(settings: SolverSettings) -> None:
-    """Settings made in Python are what those of a scene file may be."""
+    """Settings made in Python are what those of a scene file may be; and go together."""
     values = asdict(settings)
     try:
         _allowed().validate_python(values)
     except ValidationError as error:
         with located("solver"):
             raise input_error(error, values) from error
+    path, left = settings.path_tolerance, settings.augmentation_tolerance
+    if settings.method == "uzawa" and path is not None and path < left:
+        raise InputError(
+            f"is {path:g}, below solver.augmentation_tolerance = {left:g}, the share of the multipliers that augmentations leave open: no "
+            "increment is small enough; take that one smaller, too",
+            "solver.path_tolerance",
+        )
 
 
 def _check_units(body: Body) -> None:
