@@ -294,7 +294,33 @@ def test_listings(invoke: Invoke) -> None:
     assert invoke("--version")[1] == f"isomortar {isomortar.__version__}\n"
 
 
-@pytest.mark.parametrize("command", ["run", "plot", "export", "check-tangent", "schema"])
+def test_a_scene_is_looked_at_before_it_is_computed(invoke: Invoke) -> None:
+    """Its words, its numbers, what is doubtful of it, and what it would be refused for; no file is written."""
+    code, out, err = invoke("check", "tire")
+    assert (code, err) == (0, "")
+    assert out.splitlines() == [
+        "tire: 2160 unknowns, 100 load steps, about 0.035 GB of memory (within a factor of two)",
+        "body tire: neo-hookean, 1 x 0.25 x 1 in size; 32 x 4 x 4 elements of N2 x N1 x N1, 0.0625 to 0.103 long, 925 control points, "
+        "weights 0.854 to 1",
+        "contact road: slave tire.v1, master a rigid plane; along the plane's normal, mortar, 3072 quadrature points; at the start they "
+        "are about 0.001 apart",
+        "support rim: prescribes x, y, z of tire.v0; goes 2.31 and turns by 270 degrees",
+        "0 warnings, nothing computed",
+    ]
+    code, out, _ = invoke("check", "press", "--set", "contacts.floor.plane.point=[0,0,0.2]", "--json")
+    found = json.loads(out)
+    assert (code, found["unknowns"], found["contacts"][0]["apart"]) == (0, 4116, pytest.approx(-0.2, abs=1e-3))
+    assert [warning.split(": ")[1][:23] for warning in found["warnings"]] == ["the bodies overlap by 0"]
+    code, out, _ = invoke("check", "press", "--set", "contacts.floor.plane.point=[0,0,0.2]")
+    assert out.splitlines()[-2].startswith("warning: contact 'floor': the bodies overlap by 0.2 at the start")
+    assert out.splitlines()[-1] == "1 warning, nothing computed"
+    code, out, err = invoke("check", "press", "--set", "materials.rubber.poisson=0.5")
+    assert (code, out) == (2, "")
+    assert err.startswith("isomortar: materials.rubber.poisson: is 0.5")
+    assert not any(Path().iterdir())
+
+
+@pytest.mark.parametrize("command", ["run", "check", "plot", "export", "check-tangent", "schema"])
 def test_help_shows_an_example(invoke: Invoke, command: str) -> None:
     code, out, _ = invoke(command, "--help")
     assert code == 0

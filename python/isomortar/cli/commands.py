@@ -11,6 +11,7 @@ import typer
 import isomortar
 from isomortar._process import loading
 from isomortar.cli.bench import bench
+from isomortar.cli.check import check
 from isomortar.cli.endings import FAILED
 from isomortar.cli.mutants import mutants
 from isomortar.cli.options import Overrides, SceneArgument
@@ -105,6 +106,9 @@ def run(
 
             Console(stderr=True).print(costs(results))
     print(path)
+
+
+app.command()(check)
 
 
 @app.command()

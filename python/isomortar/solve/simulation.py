@@ -86,9 +86,7 @@ class Simulation:
             A load increment did not converge and could not be cut further. Steps yielded before stand.
         """
         self._observer.started(self.problem.total_steps, self._step + 1)
-        if self._step == 0:
-            self._warn(doubts(self.equilibrium.problem, self.state))
-        self._warn(advice_on_problem(self.problem, self.equilibrium.pairs))
+        self._warn(self.doubts())
         advice = StepAdvice(self.problem, self._step, self.state.contacts)
         while self._step < self.problem.total_steps:
             result = self._advance_step(self._step + 1)
@@ -97,6 +95,12 @@ class Simulation:
             self._warn(advice.after_step(result.step, result.contacts, self.state.contacts))
             yield result
         self._warn(advice.at_the_end())
+
+    def doubts(self) -> Iterator[str]:
+        """Warnings that are due before the next load step; the scene's geometry is looked at before the first one."""
+        if self._step == 0:
+            yield from doubts(self.equilibrium.problem, self.state)
+        yield from advice_on_problem(self.problem, self.equilibrium.pairs)
 
     def _warn(self, warnings: Iterator[str]) -> None:
         for warning in warnings:

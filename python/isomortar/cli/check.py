@@ -1,0 +1,86 @@
+"""``isomortar check``: a scene before it is computed, a line for each of its parts."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+import isomortar
+from isomortar.cli.options import Overrides, SceneArgument
+
+if TYPE_CHECKING:
+    from isomortar.solve.outlook import BodyOutlook, ContactOutlook, Outlook, SupportOutlook
+
+
+def check(
+    scene: SceneArgument,
+    overrides: Overrides = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print all of it as JSON.")] = False,
+) -> None:
+    """Look at a scene without computing it: its size, how its contacts stand, what supports do, and what is doubtful.
+
+    What `isomortar run` would refuse ends with the same sentence and exit code 2; what it would warn of before the first load step is told.
+
+    For example:
+
+    - `isomortar check iron`
+    - `isomortar check my_scene.toml --set bodies.wheel.mesh.elements=[24,4,4]`
+    - `isomortar check press --json`
+    """
+    from isomortar.solve.outlook import outlook
+
+    found = outlook(isomortar.Scene.load(scene, overrides or ()).problem())
+    if as_json:
+        print(json.dumps(asdict(found), indent=2))
+        return
+    for line in lines(found):
+        print(line)
+
+
+def lines(found: Outlook) -> Iterator[str]:
+    """The words for it."""
+    yield (
+        f"{found.name}: {_many(found.unknowns, 'unknown')}, {_many(found.load_steps, 'load step')}, "
+        f"about {found.memory / 1e9:.2g} GB of memory (within a factor of two)"
+    )
+    yield from map(_body, found.bodies)
+    yield from map(_contact, found.contacts)
+    yield from map(_support, found.supports)
+    yield from (f"warning: {warning}" for warning in found.warnings)
+    yield f"{_many(len(found.warnings), 'warning')}, nothing computed"
+
+
+def _body(body: BodyOutlook) -> str:
+    kinds = " x ".join(f"{family}{order}" for family, order in zip(body.family, body.order, strict=True))
+    weights = "" if body.weights[0] == body.weights[1] else f", weights {body.weights[0]:.3g} to {body.weights[1]:.3g}"
+    return (
+        f"body {body.name}: {body.law}, {_by(body.size)} in size; {_by(body.elements)} elements of {kinds}, {body.shortest:.3g} to "
+        f"{body.longest:.3g} long, {_many(body.control_points, 'control point')}{weights}"
+    )
+
+
+def _contact(contact: ContactOutlook) -> str:
+    about = f"about {abs(contact.apart):.2g}"
+    stands = "touch" if contact.apart == 0.0 else f"overlap by {about}" if contact.apart < 0.0 else f"are {about} apart"
+    beside = f", {contact.excluded} of them beside the master" if contact.excluded else ""
+    return (
+        f"contact {contact.name}: slave {contact.slave}, master {contact.master}; {contact.projection}, {contact.enforcement}, "
+        f"{_many(contact.quadrature_points, 'quadrature point')}{beside}; at the start they {stands}"
+    )
+
+
+def _support(support: SupportOutlook) -> str:
+    ways = [f"goes {support.way:.3g}"] * (support.way > 0.0) + [f"turns by {support.degrees:.3g} degrees"] * (support.degrees > 0.0)
+    return f"support {support.name}: prescribes {', '.join(support.components)} of {support.face}; {' and '.join(ways) or 'stands still'}"
+
+
+def _by(numbers: tuple[float, ...]) -> str:
+    return " x ".join(f"{number:.4g}" for number in numbers)
+
+
+def _many(count: int, what: str) -> str:
+    return f"{count} {what}{'' if count == 1 else 's'}"

@@ -1,0 +1,137 @@
+"""A scene before any load step: what it is made of, how its contacts stand, what it will take, and what is doubtful of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from isomortar.geometry.patch import IntArray
+from isomortar.model.contrasts import element_lengths
+from isomortar.model.entities import Body, Contact, Problem, RigidPlane, Support
+from isomortar.model.memory import memory_needed
+from isomortar.model.stance import stance
+from isomortar.solve.simulation import Simulation
+
+
+@dataclass(frozen=True)
+class BodyOutlook:
+    """A body: size along x, y, z, elements along u, v, w with their orders and how long they are, and the smallest and largest weight."""
+
+    name: str
+    law: str
+    size: tuple[float, float, float]
+    family: tuple[str, ...]
+    order: tuple[int, ...]
+    elements: tuple[int, ...]
+    shortest: float
+    longest: float
+    weights: tuple[float, float]
+    control_points: int
+
+
+@dataclass(frozen=True)
+class ContactOutlook:
+    """A contact: its sides, how it is found, enforced and integrated.
+
+    `apart`: at the start, by cells of the faces; below zero where bodies overlap.
+    """
+
+    name: str
+    slave: str
+    master: str
+    projection: str
+    enforcement: str
+    quadrature_points: int
+    excluded: int
+    apart: float
+
+
+@dataclass(frozen=True)
+class SupportOutlook:
+    """A support: its face, the components that it prescribes, and how far and by what angle it goes in all stages together."""
+
+    name: str
+    face: str
+    components: str
+    way: float
+    degrees: float
+
+
+@dataclass(frozen=True)
+class Outlook:
+    """What is known of a scene before its first load step; `memory` in bytes, within a factor of two."""
+
+    name: str
+    unknowns: int
+    load_steps: int
+    memory: float
+    bodies: tuple[BodyOutlook, ...]
+    contacts: tuple[ContactOutlook, ...]
+    supports: tuple[SupportOutlook, ...]
+    warnings: tuple[str, ...]
+
+
+def outlook(problem: Problem) -> Outlook:
+    """Look at a problem without computing it.
+
+    Raises
+    ------
+    InputError
+        It cannot be meant, as by `Simulation`.
+    """
+    simulation = Simulation(problem)
+    return Outlook(
+        problem.name,
+        int(np.count_nonzero(simulation.equilibrium.supports.equation >= 0)),
+        problem.total_steps,
+        memory_needed(problem),
+        tuple(_body(body) for body in problem.bodies),
+        tuple(
+            _contact(problem, contact, state.projected) for contact, state in zip(problem.contacts, simulation.state.contacts, strict=True)
+        ),
+        tuple(_support(support) for support in problem.given_supports),
+        tuple(simulation.doubts()),
+    )
+
+
+def _body(body: Body) -> BodyOutlook:
+    directions, lengths = body.patch.directions, np.concatenate(element_lengths(body.patch))
+    x, y, z = np.ptp(body.patch.control_points, axis=0)
+    return BodyOutlook(
+        body.name,
+        "rigid" if body.rigid else body.material.law,
+        (float(x), float(y), float(z)),
+        tuple(direction.family for direction in directions),
+        tuple(direction.order for direction in directions),
+        tuple(direction.elements for direction in directions),
+        float(lengths.min()),
+        float(lengths.max()),
+        (float(body.patch.weights.min()), float(body.patch.weights.max())),
+        len(body.patch.weights),
+    )
+
+
+def _contact(problem: Problem, contact: Contact, projected: IntArray) -> ContactOutlook:
+    found, plane = stance(problem, contact), isinstance(contact.master, RigidPlane)
+    return ContactOutlook(
+        contact.name,
+        contact.slave.words,
+        "a rigid plane" if isinstance(contact.master, RigidPlane) else contact.master.words,
+        "along the plane's normal" if plane else {"closest": "closest points", "averaged": "along averaged normals"}[contact.projection],
+        contact.enforcement,
+        len(projected),
+        int(np.count_nonzero(projected == 0)),
+        found.gap - found.depth,
+    )
+
+
+def _support(support: Support) -> SupportOutlook:
+    ways = [np.linalg.norm(np.asarray(motion.translate)[list(support.components)]) for motion in support.motions]
+    return SupportOutlook(
+        support.name,
+        support.place.words,
+        "".join("xyz"[k] for k in support.components),
+        float(np.sum(ways)),
+        float(np.sum(np.abs([motion.rotate for motion in support.motions]))),
+    )
