@@ -320,7 +320,19 @@ def test_a_scene_is_looked_at_before_it_is_computed(invoke: Invoke) -> None:
     assert not any(Path().iterdir())
 
 
-@pytest.mark.parametrize("command", ["run", "check", "plot", "export", "check-tangent", "schema"])
+def test_the_doctor_tells_what_is_there_and_whether_it_is_right(invoke: Invoke, monkeypatch: pytest.MonkeyPatch) -> None:
+    code, out, _ = invoke("doctor")
+    assert code == 0
+    assert all(word in out for word in (f"isomortar {isomortar.__version__} in ", "numpy ", "libumfpack", "GCC: (", "all is well"))
+    assert [line[:5] for line in out.splitlines()[4:-1]] == ["right"] * 2
+    monkeypatch.setattr("isomortar.cli.doctor.BALANCE", 0.0)
+    code, out, _ = invoke("doctor")
+    assert code == 1
+    assert "WRONG  6 load steps of twist run and read back" in out
+    assert out.splitlines()[-1].startswith("1 of these are wrong")
+
+
+@pytest.mark.parametrize("command", ["run", "check", "doctor", "plot", "export", "check-tangent", "schema"])
 def test_help_shows_an_example(invoke: Invoke, command: str) -> None:
     code, out, _ = invoke(command, "--help")
     assert code == 0

@@ -12,6 +12,7 @@ import isomortar
 from isomortar._process import loading
 from isomortar.cli.bench import bench
 from isomortar.cli.check import check
+from isomortar.cli.doctor import doctor
 from isomortar.cli.endings import FAILED
 from isomortar.cli.mutants import mutants
 from isomortar.cli.options import Overrides, SceneArgument
@@ -194,6 +195,7 @@ app.command()(advise)
 app.command()(paper)
 app.command()(bench)
 app.command()(mutants)
+app.command()(doctor)
 
 
 def _beside(results: Path, kind: str) -> Path:
