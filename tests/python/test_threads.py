@@ -44,11 +44,13 @@ def test_assembly_has_the_same_bits_on_any_number_of_threads(threads: int) -> No
 HELPER = """
 import os, time
 import numpy
-time.sleep(1.0)  # until it sleeps, which it does not at once
 helper = sorted(int(thread) for thread in os.listdir("/proc/self/task"))[1]
 import isomortar
 seconds = lambda: int(open(f"/proc/self/task/{helper}/schedstat").read().split()[0]) / 1e9
-before = seconds()
+before = -1.0
+while seconds() != before:  # until it sleeps, which it does not at once, and later where the machine is busy
+    before = seconds()
+    time.sleep(1.0)
 for name, change in (("twist", "stages.twist.steps=1"), ("block", "stages.slide.steps=1")):
     scene = isomortar.Scene.load(name, [change])
     isomortar.run(scene, f"{name}.h5").close()
@@ -58,8 +60,8 @@ print(seconds() - before)
 
 @pytest.mark.skipif(os.cpu_count() == 1, reason="NumPy has no second thread on one core")
 def test_a_run_wakes_no_thread_of_numpy(tmp_path: Path) -> None:
-    """It would stay awake for half a second, on a core that another run has use for."""
-    assert float(said(HELPER, tmp_path, OPENBLAS_NUM_THREADS="2")) == 0.0
+    """It would stay awake for half a second, on a core that another run has use for; the system's own looks at it take 1e-5 s."""
+    assert float(said(HELPER, tmp_path, OPENBLAS_NUM_THREADS="2")) < 1e-3
 
 
 #: Prints what the environment says before and after the kernel is loaded, and how many threads the kernel's OpenBLAS has.
