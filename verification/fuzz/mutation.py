@@ -129,10 +129,10 @@ def _mirrored(data: Any, chance: random.Random) -> None:
     data.setdefault("symmetry", {})["xyz"[k]] = place
     if chance.random() < 0.8:
         for other in data["bodies"].values():
-            other.setdefault("mesh", {}).setdefault("elements", [1, 1, 1])[k] = 2
+            other.setdefault("mesh", {}).setdefault("elements", [1, 1, 1])[k : k + 1] = [2]  # an error where it is a table by now
         for stage in data["stages"]:
             for motion in stage.get("motions", {}).values():
-                motion.setdefault("translate", [0.0, 0.0, 0.0])[k] = 0.0
+                motion.setdefault("translate", [0.0, 0.0, 0.0])[k : k + 1] = [0.0]
 
 
 def _extreme(data: Any, chance: random.Random) -> None:
