@@ -28,7 +28,7 @@ BALANCE = 1e-7
 
 
 @dataclass(frozen=True)
-class Finding:
+class Tried:
     """Something that was tried: whether it is right, and words for it."""
 
     right: bool
@@ -46,9 +46,9 @@ def doctor() -> None:
         print(line)
     scene = isomortar.Scene.load(*SCENE)
     wrong = 0
-    for finding in findings(scene):
-        print(f"{'right' if finding.right else 'WRONG'}  {finding.words}")
-        wrong += not finding.right
+    for tried in trials(scene):
+        print(f"{'right' if tried.right else 'WRONG'}  {tried.words}")
+        wrong += not tried.right
     print(f"{wrong} of these are wrong: install again, with the versions that pyproject.toml allows" if wrong else "all is well")
     raise typer.Exit(FAILED if wrong else 0)
 
@@ -65,7 +65,7 @@ def installed(identity: dict[str, object]) -> Iterator[str]:
     yield f"on {len(os.sched_getaffinity(0))} cores, {memory_of_machine() / 1e9:.3g} GB of memory to take"
 
 
-def findings(scene: Scene) -> Iterator[Finding]:
+def trials(scene: Scene) -> Iterator[Tried]:
     """What is tried: that forces balance, that a results file holds what was computed, that the tangent is the derivative."""
     import numpy as np
 
@@ -79,9 +79,9 @@ def findings(scene: Scene) -> Iterator[Finding]:
             steps = [results.step(int(number)) for number in results.steps]
     forces = np.array([[reaction.force for reaction in step.reactions] for step in steps])
     left = float(np.max(np.linalg.norm(forces.sum(axis=1), axis=1) / np.linalg.norm(forces, axis=2).max(axis=1)))
-    yield Finding(
+    yield Tried(
         len(steps) == 6 and left < BALANCE, f"{len(steps)} load steps of {scene.name} run and read back; forces balance to {left:.0e}"
     )
     report = check_tangent(scene.problem(), STEP)
     worst = max(report.rows, key=lambda row: row.error / row.bound)
-    yield Finding(report.passes, f"the tangent is the derivative to {worst.error:.0e} in {worst.part} (bound {worst.bound:.0e})")
+    yield Tried(report.passes, f"the tangent is the derivative to {worst.error:.0e} in {worst.part} (bound {worst.bound:.0e})")
