@@ -17,7 +17,7 @@ from isomortar.cli.endings import FAILED
 if TYPE_CHECKING:
     from isomortar.scene import Scene
 
-#: The scene that is tried: two bodies, friction, contact that sticks and slips; its load steps, and where its tangent is measured.
+#: The scene that is run: two bodies, friction, contact that sticks and slips; its load steps, and where its tangent is measured.
 SCENE = (
     "twist",
     ("bodies.slave.mesh.elements=[2,2,2]", "bodies.master.mesh.elements=[4,4,2]", "stages.press.steps=2", "stages.twist.steps=4"),
@@ -28,8 +28,8 @@ BALANCE = 1e-7
 
 
 @dataclass(frozen=True)
-class Tried:
-    """Something that was tried: whether it is right, and words for it."""
+class Examined:
+    """Something that was looked at: whether it is right, and words for it."""
 
     right: bool
     words: str
@@ -46,9 +46,9 @@ def doctor() -> None:
         print(line)
     scene = isomortar.Scene.load(*SCENE)
     wrong = 0
-    for tried in trials(scene):
-        print(f"{'right' if tried.right else 'WRONG'}  {tried.words}")
-        wrong += not tried.right
+    for one in examined(scene):
+        print(f"{'right' if one.right else 'WRONG'}  {one.words}")
+        wrong += not one.right
     print(f"{wrong} of these are wrong: install again, with the versions that pyproject.toml allows" if wrong else "all is well")
     raise typer.Exit(FAILED if wrong else 0)
 
@@ -65,8 +65,8 @@ def installed(identity: dict[str, object]) -> Iterator[str]:
     yield f"on {len(os.sched_getaffinity(0))} cores, {memory_of_machine() / 1e9:.3g} GB of memory to take"
 
 
-def trials(scene: Scene) -> Iterator[Tried]:
-    """What is tried: that forces balance, that a results file holds what was computed, that the tangent is the derivative."""
+def examined(scene: Scene) -> Iterator[Examined]:
+    """What is looked at: that forces balance, that a results file holds what was computed, that the tangent is the derivative."""
     import numpy as np
 
     from isomortar.driver import run
@@ -79,9 +79,9 @@ def trials(scene: Scene) -> Iterator[Tried]:
             steps = [results.step(int(number)) for number in results.steps]
     forces = np.array([[reaction.force for reaction in step.reactions] for step in steps])
     left = float(np.max(np.linalg.norm(forces.sum(axis=1), axis=1) / np.linalg.norm(forces, axis=2).max(axis=1)))
-    yield Tried(
+    yield Examined(
         len(steps) == 6 and left < BALANCE, f"{len(steps)} load steps of {scene.name} run and read back; forces balance to {left:.0e}"
     )
     report = check_tangent(scene.problem(), STEP)
     worst = max(report.rows, key=lambda row: row.error / row.bound)
-    yield Tried(report.passes, f"the tangent is the derivative to {worst.error:.0e} in {worst.part} (bound {worst.bound:.0e})")
+    yield Examined(report.passes, f"the tangent is the derivative to {worst.error:.0e} in {worst.part} (bound {worst.bound:.0e})")
