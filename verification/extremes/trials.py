@@ -1,4 +1,4 @@
-"""Runs of the program as a user starts them: a scene file, and a process of its own with limits of time and memory."""
+"""Runs of the program by its command line: a scene file, and a process of its own with limits of time and memory."""
 
 from __future__ import annotations
 

@@ -66,7 +66,7 @@ def installed(identity: dict[str, object]) -> Iterator[str]:
 
 
 def examined(scene: Scene) -> Iterator[Examined]:
-    """What is looked at: that forces balance, that a results file holds what was computed, that the tangent is the derivative."""
+    """What is looked at: that forces read back from a results file balance, and that the tangent is the derivative."""
     import numpy as np
 
     from isomortar.driver import run

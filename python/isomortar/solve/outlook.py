@@ -113,12 +113,15 @@ def _body(body: Body) -> BodyOutlook:
 
 
 def _contact(problem: Problem, contact: Contact, projected: IntArray) -> ContactOutlook:
-    found, plane = stance(problem, contact), isinstance(contact.master, RigidPlane)
+    found = stance(problem, contact)
+    master, projection = "a rigid plane", "along the plane's normal"
+    if not isinstance(contact.master, RigidPlane):
+        master, projection = contact.master.words, "along averaged normals" if contact.averaged else "closest points"
     return ContactOutlook(
         contact.name,
         contact.slave.words,
-        "a rigid plane" if isinstance(contact.master, RigidPlane) else contact.master.words,
-        "along the plane's normal" if plane else {"closest": "closest points", "averaged": "along averaged normals"}[contact.projection],
+        master,
+        projection,
         contact.enforcement,
         len(projected),
         int(np.count_nonzero(projected == 0)),
