@@ -162,6 +162,16 @@ def test_a_folder_without_sources_is_an_error(tmp_path):
         LAYERS["kernel"].read(tmp_path)
 
 
+def test_a_campaign_may_keep_to_files_and_folders():
+    python = LAYERS["python"]
+    sources = python.read(ROOT)
+    inside = python.within(sources, ["model/enforcement", "model/glue.py"])
+    assert inside.keys() == {file for file in sources if file.startswith("model/enforcement/") or file == "model/glue.py"}
+    assert python.within(sources, []) == sources
+    with pytest.raises(InputError, match=r"'model/enforce'.*an example: geometry/"):
+        python.within(sources, ["model", "model/enforce"])
+
+
 def test_the_gate_stops_at_the_first_red_cell_and_asks_it_first_next_time(cells):
     red, tried = "mutants_family/cheap[k=2]", gate(cells)
     first = tried.attack(Oracle(red), FAULTY, "solid/a.f90", names(cells), (), math.inf)

@@ -20,6 +20,10 @@ def mutants(
     layer: Annotated[
         Literal["kernel", "python"], typer.Option(help="The Fortran kernel, in both precisions, or the Python between a scene and it.")
     ] = "kernel",
+    within: Annotated[
+        list[str] | None,
+        typer.Option(metavar="PATH", help="Only in these files and folders of the sources, as model/enforcement; may be given again."),
+    ] = None,
     sample: Annotated[int, typer.Option(min=0, help="Random faults, beside all that are planted by hand.")] = 300,
     seed: Annotated[int, typer.Option(help="Of the random draw.")] = 1,
     patience: Annotated[
@@ -45,6 +49,7 @@ def mutants(
     - `isomortar mutants --sample 0` attacks the planted faults alone
     - `isomortar mutants --sample 300 -j 2`
     - `isomortar mutants --layer python --sample 200`
+    - `isomortar mutants --within contact/friction --sample 40`
     """
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
@@ -63,9 +68,10 @@ def mutants(
     clock = time.perf_counter()
     where, folder = LAYERS[layer], results / layer
     sources = where.read(Path())
-    planted = read_planted(cases / "planted_faults.toml", sources, where.suffix)
+    attacked = where.within(sources, within or [])
+    planted = [fault for fault in read_planted(cases / "planted_faults.toml", sources, where.suffix) if fault.file in attacked]
     classified = read_classified(cases / "surviving_mutants.toml")
-    drawn = draw(where, sources, seed) if sample else []
+    drawn = draw(where, attacked, seed) if sample else []
     cells = select(collect(cases), "gate") + (cells_of_tests(Path("tests/python")) if layer == "python" else [])
     console = Console(stderr=True, highlight=False)
     columns = (BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TextColumn("{task.description}", markup=False))
@@ -79,7 +85,15 @@ def mutants(
             tally = campaign.run(planted, drawn, sample, patience or float("inf"))
     score = Score(tally, classified, where.least_share)
     minutes = round((time.perf_counter() - clock) / 60, 1)
-    settings = {"layer": layer, "sample": sample, "seed": seed, "patience": patience, "jobs": jobs, "minutes": minutes}
+    settings = {
+        "layer": layer,
+        "within": ", ".join(within or ["all"]),
+        "sample": sample,
+        "seed": seed,
+        "patience": patience,
+        "jobs": jobs,
+        "minutes": minutes,
+    }
     report.write(folder / "report.html", score, settings)
     _print(score)
     print(folder / "report.html")

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
+from pathlib import Path, PurePath
 
 from isomortar.errors import InputError
 
@@ -54,6 +55,23 @@ class Layer:
         if not found:
             raise InputError(f"there are none in {folder}: faults are planted in a checkout, from its folder", "sources")
         return {file: text for file, text in found.items() if file not in self.left_out}
+
+    def within(self, sources: Mapping[str, str], paths: Sequence[str]) -> dict[str, str]:
+        """Those of the sources that are one of `paths` or stand below it; all of them where there are no paths.
+
+        Raises
+        ------
+        InputError
+            One of `paths` is no source that faults are put into, and no folder of some.
+        """
+        places = {path: [file for file in sources if PurePath(file).is_relative_to(path)] for path in paths}
+        for path, files in places.items():
+            if not files:
+                raise InputError(
+                    f"is {path!r}: no file or folder in {self.folder} that faults are put into; an example: {next(iter(sources))}", "within"
+                )
+        wanted = {file for files in places.values() for file in files}
+        return {file: text for file, text in sources.items() if not paths or file in wanted}
 
 
 LAYERS = {
