@@ -1,4 +1,5 @@
-! What Python sees of the assembly of linear systems from sources of 3x3 blocks (isomortar_sparse_scatter).
+! What Python sees of sources of 3x3 blocks and the assembly of linear systems from them (isomortar_sparse_blocks,
+! isomortar_sparse_scatter).
 
 !> Where each entry of a source goes in a compressed system.
 !>
@@ -47,3 +48,28 @@ subroutine add_values(places, source, n, values, m)
 
   call add(places, source, values)
 end subroutine add_values
+
+!> Product of the squares of a matrix's entries with a vector.
+!>
+!> - `pattern`: handle (isomortar_api_descriptors) of the matrix's pattern, which has `nblocks` in `nrows`.
+!> - `values`: (column component, row component, block); squared when they are scaled by `scale`.
+!> - `vector`: (component, control point) of the `ncolumns`; `product` likewise of the rows.
+!> - `status`: that of a handle.
+subroutine squares_times(pattern, values, nblocks, scale, vector, ncolumns, nrows, product, status)
+  use iso_c_binding, only: c_double, c_int, c_int64_t
+  use isomortar_api_descriptors, only: find
+  use isomortar_base_status, only: status_ok
+  use isomortar_sparse_blocks, only: pattern_t, product_of => squares_times
+  implicit none
+  integer(c_int64_t), intent(in) :: pattern
+  integer(c_int), intent(in) :: nblocks, ncolumns, nrows
+  real(c_double), intent(in) :: values(3, 3, nblocks), scale, vector(3, ncolumns)
+  real(c_double), intent(out) :: product(3, nrows)
+  integer(c_int), intent(out) :: status
+  type(pattern_t), pointer :: of_matrix
+
+  status = status_ok
+  call find(pattern, of_matrix, status)
+  if (status /= status_ok) return
+  call product_of(of_matrix, values, scale, vector, product)
+end subroutine squares_times

@@ -10,7 +10,7 @@ module isomortar_sparse_blocks
   implicit none
   private
 
-  public :: lacks, mark_row
+  public :: lacks, mark_row, squares_times
 
   !> Pattern of a matrix of 3x3 blocks; rows and columns are numbered from 1, offsets from 0.
   type, public :: pattern_t
@@ -47,5 +47,30 @@ contains
       lacks = lacks .or. place(columns(k)) <= pattern%start(row - 1) .or. place(columns(k)) > pattern%start(row)
     end do
   end function lacks
+
+  !> Product of the squares of a matrix's entries with a vector: what independent errors of the vector's entries make of its
+  !> product with the matrix, in squares (theory 5.5).
+  !>
+  !> - `pattern`, `values` (column, row, block): the matrix; its entries are scaled by `scale` before they are squared.
+  !> - `vector` (component, control point), `product` (component, control point): of the columns, and of the rows.
+  pure subroutine squares_times(pattern, values, scale, vector, product)
+    type(pattern_t), intent(in) :: pattern
+    real(wp), intent(in) :: values(:, :, :), scale, vector(:, :)
+    real(wp), intent(out) :: product(:, :)
+    integer :: block, i, r
+
+    if (contracts) call require(size(values, 3) == size(pattern%column), "squares_times: each block has its values")
+    if (contracts) call require(all(is_index(pattern%column, size(vector, 2))), "squares_times: all columns have their entries")
+    do i = 1, size(product, 2)
+      product(:, i) = 0.0_wp
+      do block = pattern%start(i - 1) + 1, pattern%start(i)
+        associate (known => vector(:, pattern%column(block)))
+          do r = 1, 3
+            product(r, i) = product(r, i) + sum((scale * values(:, r, block))**2 * known)
+          end do
+        end associate
+      end do
+    end do
+  end subroutine squares_times
 
 end module isomortar_sparse_blocks

@@ -29,6 +29,7 @@ _FACTORS = ("analyse", "factorise", "solve", "order", "condense", "factorise_con
 ROUTINES = (
     *("add_body", "material_stress", "surface_functions", "slave_tables", "project_points", "control_quantities", "augmented_multipliers"),
     *("friction_radius", "contact_forces", "contact_blocks", "multiplier_rows", "condense_multipliers", "find_places", "add_values"),
+    "squares_times",
     *_FACTORS,
 )
 #: Tiny scenes that call them all but `surface_functions`, for each kind of master, and slip sums: condensed multipliers are

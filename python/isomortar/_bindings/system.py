@@ -1,4 +1,4 @@
-"""The linear system: where the entries of its sources go."""
+"""The linear system: its sources, and where their entries go."""
 
 from __future__ import annotations
 
@@ -51,3 +51,17 @@ def add_values(places: LongArray, source: FloatArray, values: FloatArray) -> Non
     check.array("values", values, np.float64, None)
     check.within("places", places, 0, len(values))
     _kernel.add_values(places.reshape(-1), source.reshape(-1), values)
+
+
+def squares_times(pattern: Pattern, values: FloatArray, scale: float, vector: FloatArray) -> FloatArray:
+    """Product of the squares of a matrix's entries, scaled before, with a vector of its columns, shape (rows of blocks, 3)."""
+    check.kind("pattern", pattern, Pattern)
+    check.array("values", values, np.float64, len(pattern.column), 3, 3)
+    check.array("vector", vector, np.float64, None, 3)
+    check.below("pattern.column", pattern.highest, len(vector), "control point")
+    rows = len(pattern.start) - 1
+    scale = check.real("scale", scale, lambda value: value > 0.0, "a positive number")
+    product, status = _kernel.squares_times(handles.pattern("pattern", pattern), values.T, scale, vector.T, rows)
+    if status:
+        raise_status(status, -1)
+    return product.T

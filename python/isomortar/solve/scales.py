@@ -8,8 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import sparse
 
+from isomortar import _bindings
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
 from isomortar.model.numbering import Numbering
@@ -59,14 +59,11 @@ class PieceMeasures:
         nothing else, and in a thin one it is far less than stiffness times size.
         """
         _, tangent = self._solid.forces_and_tangent(positions)
-        pattern = self._solid.pattern
         diagonal = np.einsum("kii->ki", tangent[self._solid.diagonal])
-        last_bits = np.spacing(np.maximum(np.abs(positions), np.abs(self._numbering.reference))).ravel()
+        last_bits = np.spacing(np.maximum(np.abs(positions), np.abs(self._numbering.reference)))
         size, length = _power_of_two(diagonal), _power_of_two(last_bits)
-        squares = tangent * (1.0 / size)
-        squares *= squares
-        shares = sparse.bsr_array((squares, pattern.column, pattern.start)) @ (last_bits / length) ** 2
-        round_off = constants.ROUND_OFF * self.free_norms(np.sqrt(shares).reshape(-1, 3) * (size * length))
+        shares = _bindings.squares_times(self._solid.pattern, tangent, 1.0 / size, (last_bits / length) ** 2)
+        round_off = constants.ROUND_OFF * self.free_norms(np.sqrt(shares) * (size * length))
         return Scales(np.maximum.reduceat(diagonal.max(axis=1), self._starts), round_off)
 
 
