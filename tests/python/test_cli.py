@@ -18,6 +18,7 @@ from rich.console import Console
 import isomortar
 from isomortar import cli
 from isomortar.cli.progress import LiveProgress
+from isomortar.results.writer import ResultsWriter
 from isomortar.solve.record import IterationRecord, StepResult
 
 SMALL = ("bodies.block.mesh.elements=[3,3,2]", "stages.press.steps=3")
@@ -320,6 +321,46 @@ def test_a_scene_is_looked_at_before_it_is_computed(invoke: Invoke) -> None:
     assert not any(Path().iterdir())
 
 
+def test_a_results_file_tells_what_it_holds(invoke: Invoke) -> None:
+    """Half of a run and the whole of it; its numbers are those of the file."""
+    short = [*settings(SMALL), "--set", "stages.press.steps=2"]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("isomortar.results.writer.ResultsWriter.recorded", _until(1))
+        assert invoke("run", "press", *short, "--output", "half.h5")[0] == 3
+    code, out, _ = invoke("info", "half.h5")
+    assert code == 0
+    assert out.splitlines()[1].startswith("1 of 2 load steps (press 1 of 2), 1 with their state; ")
+    assert out.splitlines()[-1] == "not at its end: isomortar run SCENE --resume --output half.h5 goes on"
+    assert invoke("run", "press", *short, "--output", "half.h5", "--resume")[0] == 0
+    code, out, _ = invoke("info", "half.h5", "--json")
+    found = json.loads(out)
+    end = last("half.h5")
+    assert (code, found["name"], found["recorded"], found["stages"]) == (0, "press", 2, {"press": [2, 2]})
+    assert found["supports"] == [
+        {"name": name, "force": list(reaction.force), "moment": list(reaction.moment)}
+        for name, reaction in zip(("top",), end.reactions, strict=True)
+    ]
+    (contact,) = found["contacts"]
+    assert (contact["name"], contact["active"], contact["slip"]) == ("floor", end.contacts[0].active, end.contacts[0].slip)
+    assert contact["pressure"] == list(end.contacts[0].pressure_field)
+    assert contact["penetration"] == max(end.contacts[0].gap)
+    text = invoke("info", "half.h5")[1]
+    assert f"contact floor: {contact['active']} of {contact['constraints']} constraints active" in text
+    assert "not at its end" not in text
+    assert invoke("info", "none.h5")[0] == 1
+
+
+def _until(last: int) -> Callable[[ResultsWriter, StepResult], None]:
+    """Recording of load steps up to one; the next one is a fault of the program."""
+    recorded = ResultsWriter.recorded
+
+    def until(writer: ResultsWriter, result: StepResult) -> None:
+        assert result.step <= last
+        recorded(writer, result)
+
+    return until
+
+
 def test_the_doctor_tells_what_is_there_and_whether_it_is_right(invoke: Invoke, monkeypatch: pytest.MonkeyPatch) -> None:
     code, out, _ = invoke("doctor")
     assert code == 0
@@ -332,7 +373,7 @@ def test_the_doctor_tells_what_is_there_and_whether_it_is_right(invoke: Invoke, 
     assert out.splitlines()[-1].startswith("1 of these are wrong")
 
 
-@pytest.mark.parametrize("command", ["run", "check", "doctor", "plot", "export", "check-tangent", "schema"])
+@pytest.mark.parametrize("command", ["run", "check", "info", "doctor", "plot", "export", "check-tangent", "schema"])
 def test_help_shows_an_example(invoke: Invoke, command: str) -> None:
     code, out, _ = invoke(command, "--help")
     assert code == 0

@@ -14,6 +14,7 @@ from isomortar.cli.bench import bench
 from isomortar.cli.check import check
 from isomortar.cli.doctor import doctor
 from isomortar.cli.endings import FAILED
+from isomortar.cli.info import info
 from isomortar.cli.mutants import mutants
 from isomortar.cli.options import Overrides, SceneArgument
 from isomortar.cli.paper import paper
@@ -110,6 +111,7 @@ def run(
 
 
 app.command()(check)
+app.command()(info)
 
 
 @app.command()

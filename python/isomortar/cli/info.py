@@ -1,0 +1,147 @@
+"""``isomortar info``: what a results file holds, and how its computation stands."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+import isomortar
+
+if TYPE_CHECKING:
+    from isomortar.solve.record import StepResult
+
+
+@dataclass(frozen=True)
+class ContactEnd:
+    """A contact at the last recorded load step: constraints by state, smallest and largest pressure, deepest gap of a constraint."""
+
+    name: str
+    constraints: int
+    active: int
+    slip: int
+    pressure: tuple[float, ...]
+    penetration: float
+
+
+@dataclass(frozen=True)
+class SupportEnd:
+    """A support at the last recorded load step: force on its body, moment about its moving centre."""
+
+    name: str
+    force: tuple[float, ...]
+    moment: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Information:
+    """What a results file holds; lists of contacts and supports are empty as long as it has no load step.
+
+    Parameters
+    ----------
+    name, version : str
+        Of the scene, and of the program that wrote the file.
+    unknowns, load_steps, recorded, kept_states, cuts : int
+        Of the scene: unknowns and load steps; of the file: load steps, states from which a run could go on, cut increments.
+    stages : dict of str to (int, int)
+        Recorded load steps and all, by stage.
+    cpu_seconds : float
+        Of all recorded load steps.
+    contacts : tuple of ContactEnd
+    supports : tuple of SupportEnd
+    """
+
+    name: str
+    version: str
+    unknowns: int
+    load_steps: int
+    recorded: int
+    kept_states: int
+    cuts: int
+    stages: dict[str, tuple[int, int]]
+    cpu_seconds: float
+    contacts: tuple[ContactEnd, ...]
+    supports: tuple[SupportEnd, ...]
+
+
+def info(
+    results: Annotated[Path, typer.Argument(metavar="RESULTS", help="Results file of `isomortar run`.")],
+    as_json: Annotated[bool, typer.Option("--json", help="Print all of it as JSON.")] = False,
+) -> None:
+    """Say what a results file holds, how far its computation came, and how its contacts and supports stand at the last load step.
+
+    Works while the computation is still running.
+
+    For example:
+
+    - `isomortar info results/iron.h5`
+    - `isomortar info results/iron.h5 --json`
+    """
+    with isomortar.Results(results) as stored:
+        found = information(stored)
+    if as_json:
+        print(json.dumps(asdict(found), indent=2))
+        return
+    for line in lines(found, results):
+        print(line)
+
+
+def information(results: isomortar.Results) -> Information:
+    """What is in a results file that is open."""
+    import numpy as np
+
+    from isomortar.model.numbering import Numbering
+
+    problem, stages, last = results.problem, results.stages, results.last_step()
+    return Information(
+        name=isomortar.Scene.from_toml(results.scene_text).name,
+        version=results.version,
+        unknowns=Numbering(problem).reference.size,
+        load_steps=problem.total_steps,
+        recorded=len(results.steps),
+        kept_states=len(results.kept_states),
+        cuts=int(results.curve("cuts").sum()),
+        stages={stage.name: (stages.count(stage.name), stage.steps) for stage in problem.stages},
+        cpu_seconds=float(np.nansum(results.timings().get("total", np.zeros(0)))),
+        contacts=tuple(_contacts(results, last)) if last else (),
+        supports=tuple(_supports(results, last)) if last else (),
+    )
+
+
+def _contacts(results: isomortar.Results, last: StepResult) -> Iterator[ContactEnd]:
+    for contact, end in zip(results.problem.contacts, last.contacts, strict=True):
+        pressure = tuple(map(float, end.pressure_field))
+        yield ContactEnd(contact.name, len(end.gap), end.active, end.slip, pressure, float(max(end.gap, default=0.0)))
+
+
+def _supports(results: isomortar.Results, last: StepResult) -> Iterator[SupportEnd]:
+    for support, reaction in zip(results.problem.supports, last.reactions, strict=True):
+        yield SupportEnd(support.name, tuple(map(float, reaction.force)), tuple(map(float, reaction.moment)))
+
+
+def lines(found: Information, path: Path) -> Iterator[str]:
+    """The words for it."""
+    yield f"{found.name}: {found.unknowns} unknowns, computed by isomortar {found.version}"
+    parts = ", ".join(f"{name} {done} of {whole}" for name, (done, whole) in found.stages.items())
+    yield (
+        f"{found.recorded} of {found.load_steps} load steps ({parts}), {found.kept_states} with their state; "
+        f"{found.cpu_seconds:.3g} CPU seconds, {found.cuts} cuts of increments"
+    )
+    for contact in found.contacts:
+        low, high = contact.pressure
+        yield (
+            f"contact {contact.name}: {contact.active} of {contact.constraints} constraints active, {contact.slip} slip; "
+            f"pressures {low:.4g} to {high:.4g}, penetration {contact.penetration:.2g}"
+        )
+    for support in found.supports:
+        yield f"support {support.name}: force ({_row(support.force)}), moment ({_row(support.moment)})"
+    if found.recorded < found.load_steps:
+        yield f"not at its end: isomortar run SCENE --resume --output {path} goes on"
+
+
+def _row(numbers: tuple[float, ...]) -> str:
+    return ", ".join(f"{number:.5g}" for number in numbers)
