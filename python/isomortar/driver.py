@@ -18,15 +18,22 @@ from isomortar.solve.simulation import Simulation
 
 
 def run(
-    scene: Scene, output: str | os.PathLike[str], observer: Observer | None = None, *, resume: bool = False, overwrite: bool = False
+    scene: Scene | str | os.PathLike[str],
+    output: str | os.PathLike[str] | None = None,
+    observer: Observer | None = None,
+    *,
+    resume: bool = False,
+    overwrite: bool = False,
 ) -> Results:
     """Compute a scene and keep every load step in a results file.
 
     Parameters
     ----------
-    scene : Scene
-    output : path-like
-        The results file, complete up to the last load step at any moment. Its folder is made if it does not exist.
+    scene : Scene, str or path-like
+        A scene, the name of a bundled one, or the path of a scene file.
+    output : path-like, optional
+        The results file, complete up to the last load step at any moment; default ``results/NAME.h5``. Its folder is made if it does not
+        exist.
     observer : Observer, optional
         Watches; of a recorded step it hears when that is on the disk.
     resume : bool
@@ -50,7 +57,13 @@ def run(
         Another run is writing the results file; or what is there is damaged, no results file, belongs to another scene, or cannot be
         written.
     """
-    return compute(scene, scene.problem(), Path(output), observer or Observer(), resume, overwrite)
+    chosen = scene if isinstance(scene, Scene) else Scene.load(os.fspath(scene))
+    return compute(chosen, chosen.problem(), Path(output or results_path(chosen)), observer or Observer(), resume, overwrite)
+
+
+def results_path(scene: Scene) -> Path:
+    """The results file of a scene where nobody names another."""
+    return Path("results") / f"{scene.name}.h5"
 
 
 def compute(scene: Scene, problem: Problem, path: Path, observer: Observer, resume: bool, overwrite: bool) -> Results:

@@ -12,7 +12,9 @@ import numpy as np
 import pytest
 import splinepy
 
+import isomortar
 import isomortar.scene
+from isomortar.errors import InputError
 from isomortar.geometry.primitives import ring
 from isomortar.model.entities import Face, Material, Motion, Problem, RigidPlane, SolverSettings
 from isomortar.scene import Scene, bundled_scenes, json_schema
@@ -148,6 +150,37 @@ def test_overrides_reach_every_kind_of_place() -> None:
     assert [s.steps for s in problem.stages] == [10, 7]
     assert problem.supports[0].motions[0] == Motion((0, 0, -0.25))
     assert (problem.settings.slip_sum, scene.record.states, problem.contacts[0].friction) == ("paper", "last", 0)
+
+
+def test_overrides_may_be_values_by_path() -> None:
+    texts = [
+        "bodies.master.mesh.order=[3, 2, 2]",
+        "stages.drag.steps=7",
+        "solver.slip_sum=paper",
+        "stages.drag.motions.top.translate=[0.1, 0, 0]",
+    ]
+    values = {
+        "bodies.master.mesh.order": (3, 2, 2),
+        "stages.drag.steps": np.int64(7),
+        "solver.slip_sum": "paper",
+        "stages.drag.motions.top": {"translate": np.array([0.1, 0.0, 0.0])},
+    }
+    one, other = Scene.load("iron", texts), Scene.load("iron", values)
+    assert one.tables == other.tables
+    assert Scene.from_toml(other.to_toml()).tables == one.tables
+
+
+def test_a_scene_and_its_results_say_what_they_are(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    scene = Scene.load("press", {"bodies.block.mesh.elements": [2, 2, 1], "stages.press.steps": 1})
+    assert repr(scene) == "<Scene press: bodies block; contacts floor; stages press (1 load steps)>"
+    with isomortar.run(scene) as results:
+        assert repr(results) == f"<Results {Path('results/press.h5')}: 1/1 steps>"
+    assert repr(results).endswith(": closed>")
+    with pytest.raises(InputError, match="exists already"):
+        isomortar.run(scene)
+    (tmp_path / "own.toml").write_text(scene.to_toml())
+    isomortar.run("own.toml", overwrite=True).close()
 
 
 def assert_same(one: Problem, other: Problem) -> None:

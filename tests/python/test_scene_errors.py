@@ -283,6 +283,22 @@ def test_bad_override(override: str, field: str | None, said: str) -> None:
     assert said in str(error.value)
 
 
+@pytest.mark.parametrize(
+    ("path", "value", "field", "said"),
+    [
+        ("bodies.slave.mesh=", 3, None, "is no path of keys, e.g. solver.max_cuts"),
+        ("solver.max_cuts", None, "solver.max_cuts", "is None; allowed: what a scene file can hold"),
+        ("supports.top.axis", [1, 0, 1j], "supports.top.axis", "is 1j; allowed"),
+        ("solver.max_cuts", "many", "solver.max_cuts", "is 'many'; allowed: a valid integer"),
+    ],
+)
+def test_bad_override_by_path(path: str, value: object, field: str | None, said: str) -> None:
+    with pytest.raises(InputError) as error:
+        Scene.load("iron", {path: value})
+    assert error.value.field == field
+    assert said in str(error.value)
+
+
 def test_several_faults_are_told_at_once() -> None:
     with pytest.raises(InputError) as error:
         Scene.from_toml(GOOD.replace("steps = 3", "steps = 0").replace("max_cuts = 4", "max_cuts = -1"))

@@ -99,6 +99,8 @@ def bad_words(_: pytest.MonkeyPatch) -> Told:
         "a single value": "name.first=3",
     }.items():
         yield name, refusal(partial(Scene.load, "iron", [override]))
+    yield "no path", refusal(lambda: Scene.load("iron", {"solver max_cuts": 3}))
+    yield "no value by path", refusal(lambda: Scene.load("iron", {"solver.max_cuts": None}))
     yield "no scene", refusal(lambda: Scene.load("irn"))
     yield "seam", refusal(lambda: Scene.load("tire", ["contacts.road.slave=tire.u0"]).problem())
 

@@ -88,11 +88,11 @@ def run(
         raise InputError("--resume and --overwrite exclude each other: go on with the results file, or begin anew")
     with loading():
         from isomortar.cli.progress import progress
-        from isomortar.driver import compute
+        from isomortar.driver import compute, results_path
 
         chosen = isomortar.Scene.load(scene, overrides or ())
         problem = chosen.problem()
-    path = output or Path("results") / f"{chosen.name}.h5"
+    path = output or results_path(chosen)
     with progress(problem, quiet) as observer:
         try:
             results = compute(chosen, problem, path, observer, resume, overwrite)

@@ -98,6 +98,11 @@ class Results:
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
         self.close()
 
+    def __repr__(self) -> str:
+        if not self._file:
+            return f"<Results {self.path}: closed>"
+        return f"<Results {self.path}: {len(self.steps)}/{self.problem.total_steps} steps>"
+
     def close(self) -> None:
         """Close the file."""
         self._file.close()

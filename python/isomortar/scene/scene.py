@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +14,7 @@ from isomortar.model.messages import input_error
 from isomortar.scene.build import build, coarse_patch
 from isomortar.scene.geometry_file import patch_table
 from isomortar.scene.schema import CurveTable, RecordTable, SceneTable
-from isomortar.scene.source import apply_overrides, dump, parse, read_source
+from isomortar.scene.source import SceneChanges, apply_overrides, dump, parse, read_source
 
 
 class Scene:
@@ -31,8 +30,8 @@ class Scene:
         Short name where the text gives none.
     folder : Path
         Where its geometry files lie.
-    overrides : iterable of str
-        ``path=value`` each, see `isomortar.scene.source.apply_overrides`.
+    overrides : iterable of str, or mapping of str to value
+        ``path=value`` each, or values by path, see `isomortar.scene.source.apply_overrides`.
 
     Attributes
     ----------
@@ -46,7 +45,7 @@ class Scene:
         Not TOML, unknown keys, impossible values; `field` is the dotted path of the key.
     """
 
-    def __init__(self, text: str, name: str, folder: Path, overrides: Iterable[str] = ()) -> None:
+    def __init__(self, text: str, name: str, folder: Path, overrides: SceneChanges = ()) -> None:
         self._text, self._folder = text, folder
         self._data = parse(text, name)
         apply_overrides(self._data, overrides)
@@ -58,22 +57,28 @@ class Scene:
         self.title = self.tables.title
 
     @classmethod
-    def load(cls, source: str | Path, overrides: Iterable[str] = ()) -> Scene:
+    def load(cls, source: str | Path, overrides: SceneChanges = ()) -> Scene:
         """A scene from a file, or a bundled one by its name.
 
         Parameters
         ----------
         source : str or Path
             Path of a scene file, or a name of `bundled_scenes`.
-        overrides : iterable of str
-            Changes of single values, e.g. ``bodies.master.mesh.order=[3, 2, 2]``.
+        overrides : iterable of str, or mapping of str to value
+            SceneChanges of single values: ``bodies.master.mesh.order=[3, 2, 2]``, or ``{"bodies.master.mesh.order": [3, 2, 2]}``.
         """
         return cls(*read_source(source), overrides)
 
     @classmethod
-    def from_toml(cls, text: str, folder: str | Path = ".", overrides: Iterable[str] = ()) -> Scene:
+    def from_toml(cls, text: str, folder: str | Path = ".", overrides: SceneChanges = ()) -> Scene:
         """A scene from the text of a scene file; `folder` is where its geometry files lie."""
         return cls(text, "scene", Path(folder), overrides)
+
+    def __repr__(self) -> str:
+        tables = self.tables
+        parts = [f"{what} {', '.join(names)}" for what, names in (("bodies", [*tables.bodies]), ("contacts", [*tables.contacts])) if names]
+        stages = ", ".join(f"{stage.name} ({stage.steps} load steps)" for stage in tables.stages)
+        return f"<Scene {self.name}: {'; '.join([*parts, f'stages {stages}'])}>"
 
     def problem(self) -> Problem:
         """The problem that the scene describes, checked as far as it can be before any work.

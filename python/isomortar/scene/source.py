@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -14,6 +14,11 @@ from isomortar.scene.text import read_text
 from isomortar.scene.types import listed
 
 _BUNDLED = resources.files("isomortar.scene") / "bundled"
+
+#: SceneChanges of single values: ``path=value`` each, or values by path.
+SceneChanges = Iterable[str] | Mapping[str, Any]
+
+_PATH = re.compile(r"[\w-]+(\.[\w-]+)*")
 
 #: Tables whose entries have names of their own: an override cannot add one.
 _NAMED = ("materials", "bodies", "contacts", "supports")
@@ -56,26 +61,46 @@ def dump(data: dict[str, Any]) -> str:
     return tomlkit.dumps(data)
 
 
-def apply_overrides(data: dict[str, Any], overrides: Iterable[str]) -> None:
+def apply_overrides(data: dict[str, Any], overrides: SceneChanges) -> None:
     """Change single values in place.
 
     Parameters
     ----------
     data : dict
         A scene file's content.
-    overrides : iterable of str
-        ``path=value`` each: a dotted path (stages by name or number) and a TOML value; a bare word is taken as text.
+    overrides : iterable of str, or mapping of str to value
+        ``path=value`` each: a dotted path (stages by name or number) and a TOML value; a bare word is taken as text. A mapping has
+        values of Python by path.
 
     Raises
     ------
     InputError
         Not of that form, or no such body, stage, ... (unknown keys are found by the validation that follows).
     """
+    if isinstance(overrides, Mapping):
+        for path, value in overrides.items():
+            if not _PATH.fullmatch(str(path)):
+                raise InputError(f"override {path!r} is no path of keys, e.g. solver.max_cuts")
+            _set(data, path, _plain(value, path))
+        return
     for override in overrides:
         path, equals, value = (part.strip() for part in override.partition("="))
-        if not equals or not re.fullmatch(r"[\w-]+(\.[\w-]+)*", path):
+        if not equals or not _PATH.fullmatch(path):
             raise InputError(f"override {override!r} is not of the form path=value, e.g. solver.max_cuts=4")
         _set(data, path, _value(value, override))
+
+
+def _plain(value: Any, path: str) -> Any:
+    """A value as a scene file can hold it: lists for arrays and tuples, Python's numbers for NumPy's."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    if isinstance(value, Mapping):
+        return {str(key): _plain(entry, path) for key, entry in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(entry, path) for entry in value]
+    if not isinstance(value, str | bool | int | float):
+        raise InputError(f"is {value!r:.60}; allowed: what a scene file can hold, numbers, texts, truth values, lists and tables", path)
+    return value
 
 
 def _value(text: str, override: str) -> Any:
