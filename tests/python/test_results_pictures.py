@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
-from isomortar.errors import ResultsError
+from isomortar.errors import InputError, ResultsError
 from isomortar.geometry.patch import Direction
 from isomortar.model.numbering import Numbering
-from isomortar.results import Results, ResultsWriter, bodies, maps
+from isomortar.results import Results, ResultsWriter, bodies, maps, style
 from isomortar.results.bodies import draw_bodies
 from isomortar.results.curves import draw_curve, draw_reactions
 from isomortar.results.fields import contact_surfaces
@@ -57,6 +58,34 @@ def test_plot_draws_every_support_that_moves_and_every_contact(results_path: Pat
     assert all(path.stat().st_size > 5000 for path in paths)
 
 
+def test_what_is_drawn_may_be_chosen(results_path: Path, tmp_path: Path) -> None:
+    """Kinds, types of files, and the load step."""
+    names = {path.name for path in plot(results_path, tmp_path / "some", [Curve()], step=3, only=["bodies", "pressure"], formats=["svg"])}
+    assert names == {"bodies-tread.png", "bodies-ground.png", "pressure-tread.svg", "pressure-ground.svg"}
+    assert "load step 3 (press)" in (tmp_path / "some" / "pressure-tread.svg").read_text()
+    assert {path.suffix for path in plot(results_path, tmp_path / "curves", only=["curves"])} == {".png", ".pdf"}
+    with pytest.raises(InputError, match=r"only: is 'forces'; allowed: curves, bodies, pressure"):
+        plot(results_path, tmp_path, only=["forces"])
+    with pytest.raises(InputError, match=r"format: is 'jpg'; allowed: png, pdf, svg"):
+        plot(results_path, tmp_path, formats=["png", "jpg"])
+    with pytest.raises(ResultsError, match="load step 9 is not in"):
+        plot(results_path, tmp_path, step=9)
+
+
+def test_where_nothing_presses_the_material_is_bare() -> None:
+    """On the map and on the body: nothing of the colours of pressures where there is none, and all of them where there is some."""
+    made, step = problem(), quiet(3)
+    contact = step.state.contacts[0]
+    open_face = replace(contact, pressure=np.zeros_like(contact.pressure))
+    without = replace(step, state=replace(step.state, contacts=(open_face, step.state.contacts[1])))
+    bare = np.array(to_rgb(style.SLAVE))
+    drawn = draw_map(made, without, 0).axes[0].collections[0]
+    assert drawn.get_array().mask.all()
+    assert drawn.cmap.get_bad()[:3] == pytest.approx(bare)
+    pressed = draw_map(made, step, 0).axes[0].collections[0].get_array()
+    assert np.ma.getmaskarray(pressed).sum() == (np.abs(pressed.data) < 2e-3 * pressed.data.max()).sum() < pressed.size
+
+
 def test_nothing_to_draw_is_told(tmp_path: Path) -> None:
     ResultsWriter(tmp_path / "run.h5", problem(), "", "0")
     with pytest.raises(ResultsError, match="no load step"):
@@ -66,12 +95,13 @@ def test_nothing_to_draw_is_told(tmp_path: Path) -> None:
 def test_curves_show_the_recorded_numbers(results_path: Path) -> None:
     with Results(results_path) as results:
         force, moment = draw_reactions(results, "rim").axes
-        assert np.array_equal(force.lines[2].get_ydata(), results.curve("force", support="rim", component="z"))
-        assert np.array_equal(moment.lines[0].get_ydata(), results.curve("moment", support="rim", component="x"))
-        norm = np.linalg.norm(results.curve("force", support="rim"), axis=1)
+        assert np.array_equal(force.lines[2].get_xdata(), [0, *results.curve("time")])
+        assert np.array_equal(force.lines[2].get_ydata(), [0, *results.curve("force", support="rim", component="z")])
+        assert np.array_equal(moment.lines[0].get_ydata(), [0, *results.curve("moment", support="rim", component="x")])
+        norm = [0, *np.linalg.norm(results.curve("force", support="rim"), axis=1)]
         assert draw_curve(results, Curve()).axes[0].lines[0].get_ydata() == pytest.approx(norm)
         shown = draw_curve(results, Curve(quantity="moment", component="y")).axes[0].lines[0].get_ydata()
-        assert np.array_equal(shown, results.curve("moment", support="rim", component="y"))
+        assert np.array_equal(shown, [0, *results.curve("moment", support="rim", component="y")])
 
 
 def test_the_map_shows_each_state_at_its_control_points() -> None:
@@ -188,7 +218,7 @@ def test_reactions_are_drawn_by_component_and_stages_named_above(results_path: P
         for axes, quantity in zip(figure.axes, ("force", "moment"), strict=True):
             lines = {line.get_label(): np.asarray(line.get_ydata()) for line in axes.lines}
             for number, name in enumerate("xyz"):
-                np.testing.assert_array_equal(lines[name], results.curve(quantity, support="rim")[:, number])
+                np.testing.assert_array_equal(lines[name], [0, *results.curve(quantity, support="rim")[:, number]])
             assert [name for name in lines if not name.startswith("_")] == ["x", "y", "z"]
         stages = list(dict.fromkeys(results.stages))
         assert [text.get_text() for text in figure.axes[0].texts] == stages

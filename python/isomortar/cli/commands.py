@@ -120,16 +120,33 @@ def plot(
     output: Annotated[
         Path | None, typer.Option(file_okay=False, help="Folder of the figures.", show_default="RESULTS-plots, beside the file")
     ] = None,
+    step: Annotated[int | None, typer.Option(help="Load step whose bodies and pressures are drawn.", show_default="the last one")] = None,
+    only: Annotated[
+        list[str] | None,
+        typer.Option(metavar="WHAT", help="Draw these alone, curves, bodies or pressure; may be given again.", show_default="all"),
+    ] = None,
+    formats: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--format",
+            metavar="TYPE",
+            help="Of curves and maps, png, pdf or svg; may be given again. Bodies are PNG.",
+            show_default="png and pdf",
+        ),
+    ] = None,
 ) -> None:
-    """Draw force curves, bodies and contact pressure (PNG; curves and pressure also as PDF), and print where they lie.
+    """Draw force curves, bodies and contact pressure, and print where they lie.
 
     Works while the computation is still running: it draws the load steps that are done.
 
-    For example: `isomortar plot results/iron.h5`
+    For example:
+
+    - `isomortar plot results/iron.h5`
+    - `isomortar plot results/iron.h5 --step 20 --only bodies --only pressure --format svg`
     """
     with isomortar.Results(results) as stored:
         curves = isomortar.Scene.from_toml(stored.scene_text).record.curves or ()
-    for path in isomortar.plot(results, output or _beside(results, "plots"), curves):
+    for path in isomortar.plot(results, output or _beside(results, "plots"), curves, step=step, only=only or (), formats=formats or ()):
         print(path)
 
 

@@ -88,7 +88,7 @@ def _face(surface: ContactSurface) -> _Face:
     weight = np.maximum(corner, 0.0) if corner.max() > 0 else np.ones_like(corner)
     normal = surface.outward * np.tensordot(weight, normals, axes=2)
     peak = max(float(pressure.max()), 1e-300)
-    return _Face(peak, bool(pressure.min() < -1e-9 * peak), normal / np.linalg.norm(normal))
+    return _Face(peak, bool(pressure.min() < -style.NOTHING * peak), normal / np.linalg.norm(normal))
 
 
 def _camera_towards(normal: FloatArray) -> Camera:
@@ -193,5 +193,5 @@ def _add_contact(canvas: Canvas, surface: ContactSurface, colours: ScalarMappabl
     places, pressure, _ = surface.fields(matrices)
     grid = pressure.reshape(len(matrices[1]), len(matrices[0]))
     middle = 0.25 * (grid[1:, 1:] + grid[1:, :-1] + grid[:-1, 1:] + grid[:-1, :-1])
-    cells = colours.to_rgba(np.where(np.abs(middle) < 1e-9 * np.abs(middle).max(), 0.0, middle))
+    cells = colours.to_rgba(np.ma.masked_where(np.abs(middle) <= style.UNSEEN * np.abs(middle).max(), middle))
     _add_face(canvas, matrices, parts, places, (cells[..., :3], _SHADING_OF_PRESSURE), surface.outward)

@@ -41,11 +41,11 @@ def draw_reactions(results: Results, support: str) -> Figure:
     """Force that a support exerts, and its moment about the moving centre, by component."""
     figure = Figure(figsize=(6.4, 5.0), layout="constrained")
     force, moment = figure.subplots(2, 1, sharex=True)
-    time = results.curve("time")
+    time = _from_rest(results.curve("time"))
     scale = max(float(np.abs(results.curve("force", support=support)).max()), 1e-300)
     length = Numbering(results.problem).size
     for axes, quantity, label, size in ((force, "force", "force", scale), (moment, "moment", "moment about the centre", scale * length)):
-        values = results.curve(quantity, support=support)
+        values = _from_rest(results.curve(quantity, support=support))
         for number, (name, (colour, line)) in enumerate(_COMPONENTS.items()):
             axes.plot(time, values[:, number], line, color=colour, label=name, marker=_marker(time), markersize=3)
         axes.set_ylabel(label)
@@ -61,15 +61,20 @@ def draw_curve(results: Results, curve: WantedCurve) -> Figure:
     """A curve that the scene asks for."""
     figure = Figure(figsize=(6.4, 3.2), layout="constrained")
     axes = figure.subplots()
-    values: FloatArray = results.curve(curve.quantity, support=curve.support)
+    values = _from_rest(results.curve(curve.quantity, support=curve.support))
     chosen = np.linalg.norm(values, axis=1) if curve.component == "norm" else values[:, "xyz".index(curve.component)]
-    time = results.curve("time")
+    time = _from_rest(results.curve("time"))
     axes.plot(time, chosen, color=style.BLUE, marker=_marker(time), markersize=3)
     of = f"|{curve.quantity}|" if curve.component == "norm" else f"{curve.quantity} {curve.component}"
     axes.set_ylabel(of)
     axes.set_title(f"{results.problem.name}: {curve.name} (support {curve.support})", loc="left", pad=18)
     _finish((axes,), results)
     return figure
+
+
+def _from_rest(values: FloatArray) -> FloatArray:
+    """What is recorded by load step, with the rest before them: time zero, no force."""
+    return np.concatenate([np.zeros((1, *values.shape[1:])), values])
 
 
 def _marker(time: FloatArray) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 
 from isomortar.geometry.patch import Direction, FloatArray
 from isomortar.model.entities import Problem
@@ -38,9 +39,9 @@ def draw_map(problem: Problem, step: StepResult, number: int) -> Figure:
     figure = Figure(figsize=(6.4, 4.4), layout="constrained")
     axes = figure.subplots()
     peak = max(float(field.max()), 1e-300)
-    shown = np.where(np.abs(grid) < 1e-9 * peak, 0.0, grid)
+    shown = np.ma.masked_where(np.abs(grid) < style.UNSEEN * peak, grid)
     image = axes.pcolormesh(*samples, shown, shading="gouraud", cmap=style.pressure_colours(), vmin=0.0, vmax=peak, rasterized=True)
-    pulls = bool(grid.min() < -1e-9 * peak)
+    pulls = bool(grid.min() < -style.NOTHING * peak)
     bar = figure.colorbar(image, cax=axes.inset_axes((1.02, 0.0, 0.025, 1.0)), extend="min" if pulls else "neither")
     bar.set_label("contact pressure (force / area)")
     _draw_elements(axes, directions)
@@ -57,7 +58,9 @@ def draw_map(problem: Problem, step: StepResult, number: int) -> Figure:
 
 
 def _draw_elements(axes: Axes, directions: tuple[Direction, Direction]) -> None:
+    """Knot lines on bare material, which is seen where nothing presses."""
     (left, right), (bottom, top) = (d.boundaries[[0, -1]] for d in directions)
+    axes.add_patch(Rectangle((left, bottom), right - left, top - bottom, color=style.SLAVE, linewidth=0, zorder=0))
     axes.vlines(directions[0].boundaries, bottom, top, color=style.BLACK, linewidth=0.4, alpha=0.6)
     axes.hlines(directions[1].boundaries, left, right, color=style.BLACK, linewidth=0.4, alpha=0.6)
 

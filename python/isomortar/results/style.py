@@ -10,6 +10,8 @@ import matplotlib as mpl
 from matplotlib.colors import Colormap
 
 BLUE, ORANGE, GREEN, VERMILION, BLACK, GREY = "#0072B2", "#E69F00", "#009E73", "#D55E00", "#222222", "#8A8F98"
+#: Shares of the largest pressure: one that is round-off, and one that is drawn as none, as nobody could see it.
+NOTHING, UNSEEN = 1e-9, 2e-3
 SLAVE, MASTER, PLANE = "#D9DDE3", "#B9CCE4", "#EDEDEB"
 
 _STYLE: Any = {
@@ -40,8 +42,8 @@ def style() -> Iterator[None]:
 
 
 def pressure_colours() -> Colormap:
-    """From pale (no pressure) to dark red; grey below zero, where the contact would pull."""
-    return mpl.colormaps["YlOrRd"].with_extremes(under="#6F7680")
+    """From pale (little pressure) to dark red; bare material where there is none, grey below zero, where the contact would pull."""
+    return mpl.colormaps["YlOrRd"].with_extremes(under="#6F7680", bad=SLAVE)
 
 
 def signed_colours() -> Colormap:
