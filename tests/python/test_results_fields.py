@@ -22,11 +22,14 @@ from isomortar.geometry.patch import Direction
 from isomortar.model.entities import Problem
 from isomortar.model.numbering import Numbering
 from isomortar.results import ResultsWriter
-from isomortar.results.bezier import bernstein, bezier_matrix, sampling_matrix
+from isomortar.results.bezier import bernstein, bezier_matrix, fitted, functions_at, inner_places, rational, sampling_matrix
 from isomortar.results.fields import body_points, contact_surfaces
 from isomortar.results.paraview import export
+from isomortar.results.stress import deformation_gradient, first_piola_stress
 from isomortar.results.vtu import _places
+from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
+from isomortar.solve.simulation import Simulation
 from results_samples import INNER, OUTER, WIDTH, problem, step_result
 
 
@@ -141,7 +144,8 @@ def test_vtk_sees_the_exact_ring(tmp_path: Path) -> None:
     areas = np.array([integrate(contacts, cell, 2) for cell in range(contacts.GetNumberOfCells())])
     assert areas.sum() == pytest.approx(2 * 2 * np.pi * OUTER * WIDTH, rel=1e-8)
     entries = ElementTree.parse(collection).getroot().findall(".//DataSet")
-    assert [(e.get("timestep"), (collection.parent / str(e.get("file"))).is_file()) for e in entries] == [("1.0", True)] * 2
+    there = [(e.get("timestep"), (collection.parent / str(e.get("file"))).is_file()) for e in entries]
+    assert there == [("0.0", True)] * 2 + [("1.0", True)] * 2
 
 
 def test_vtk_sees_the_pressure_field(tmp_path: Path) -> None:
@@ -171,6 +175,10 @@ def test_places_are_counted_as_vtk_does(orders: tuple[int, int, int]) -> None:
     cell = vtkBezierHexahedron()
     counted = [cell.PointIndexFromIJK(i, j, k, [*orders, 0]) for i, j, k in _places(*orders)]
     assert counted == list(range(int(np.prod(np.add(orders, 1)))))
+
+
+#: Fields of bodies that no functions give.
+SOLID = ("stress", "von Mises stress", "J")
 
 
 def functions_of(direction: Direction, place: float) -> np.ndarray:
@@ -210,8 +218,17 @@ def expected_patches(made: Problem, step: StepResult) -> dict[str, list[tuple[tu
     for state, measured in zip(step.state.contacts, step.contacts, strict=True):
         control = {"place": points["tyre"][outer], "displacement": points["tyre"][outer] - tyre.control_points[outer]}
         control |= {"pressure": state.pressure[twice.ravel()], "traction": measured.traction_norm[twice.ravel()]}
+        control |= {"gap": measured.gap[twice.ravel()], "status": measured.status[twice.ravel()].astype(float)}
         faces.append((tyre.face_directions("v1"), tyre.weights[outer], control))
     return {"bodies": bodies, "contacts": faces}
+
+
+def rest(made: Problem, step: StepResult) -> StepResult:
+    """Before the first load step: nothing has moved, nothing presses."""
+    contacts = [dataclasses.replace(s, pressure=np.zeros_like(s.pressure)) for s in step.state.contacts]
+    state = dataclasses.replace(step.state, positions=Numbering(made).reference, contacts=tuple(contacts))
+    measured = [dataclasses.replace(c, traction_norm=np.zeros_like(c.traction_norm), status=np.zeros_like(c.status)) for c in step.contacts]
+    return dataclasses.replace(step, step=0, state=state, contacts=tuple(measured))
 
 
 def test_vtk_sees_every_field_of_every_step_at_any_place(tmp_path: Path) -> None:
@@ -225,8 +242,9 @@ def test_vtk_sees_every_field_of_every_step_at_any_place(tmp_path: Path) -> None
     entries = ElementTree.parse(collection).getroot().findall(".//DataSet")
     told = [(float(str(e.get("timestep"))), e.get("name"), e.get("part"), e.get("file")) for e in entries]
     kinds = ("bodies", "contacts")
-    assert told == [(s.time, kind, str(i), f"run/{kind}-{s.step:04d}.vtu") for s in steps for i, kind in enumerate(kinds)]
-    for step in steps:
+    times = [(0.0, 0), *((s.time, s.step) for s in steps)]
+    assert told == [(time, kind, str(i), f"run/{kind}-{number:04d}.vtu") for time, number in times for i, kind in enumerate(kinds)]
+    for step in [rest(made, steps[0]), *steps]:
         for kind, patches in expected_patches(made, step).items():
             grid = read(tmp_path / "run" / f"{kind}-{step.step:04d}.vtu")
             numbers = vtk_to_numpy(grid.GetCellData().GetArray("number"))
@@ -239,8 +257,11 @@ def test_vtk_sees_every_field_of_every_step_at_any_place(tmp_path: Path) -> None
                     ends = [d.boundaries[e : e + 2] for d, e in zip(directions, reverse[::-1], strict=True)]
                     places = [float(begin + x * (end - begin)) for (begin, end), x in zip(ends, local, strict=False)]
                     found = seen(grid, cell, local)
-                    assert set(found) == set(fields)
+                    assert set(found) == {*fields, *(SOLID if kind == "bodies" else ())}
                     for name, values in fields.items():
+                        if name == "gap" and step.step == 0:
+                            assert np.isnan(found[name])
+                            continue
                         assert found[name] == pytest.approx(field_at(directions, weights, values, places), abs=1e-12), (kind, cell, name)
                     cell += 1
 
@@ -252,3 +273,53 @@ def test_files_say_how_their_numbers_stand(tmp_path: Path) -> None:
     for path in paths:
         root = ElementTree.parse(path).getroot()
         assert root.attrib == {"type": "UnstructuredGrid", "version": "2.2", "byte_order": "LittleEndian", "header_type": "UInt64"}
+
+
+BENT = """
+format = 1
+bodies.block.geometry = {{ kind = "bowl", half_width = 0.5, bottom = 0.0, rise = 0.2, top = 0.6 }}
+bodies.block.mesh = {{ family = "{family}", order = [{order}, {order}, {order}], elements = [{elements}, {elements}, {elements}] }}
+supports.left.face = "block.u0"
+stages = [{{ name = "rest", steps = 1 }}]
+"""
+
+
+@pytest.mark.parametrize(("family", "order", "near"), [("N", 2, 0.001), ("L", 2, 0.01), ("N", 3, 0.001)])
+def test_vtk_sees_stresses_as_the_program_evaluates_them(tmp_path: Path, family: str, order: int, near: float) -> None:
+    """In the middle of elements of a body that is bent smoothly; twice as near and more on elements half as large."""
+    apart = []
+    for elements in (2, 4):
+        path = tmp_path / f"{elements}.h5"
+        made = Scene.from_toml(BENT.format(family=family, order=order, elements=elements)).problem()
+        (step,), (body,) = list(Simulation(made).run()), made.bodies
+        x, y, z = body.patch.control_points.T
+        positions = np.column_stack([x + 0.1 * np.sin(2 * z), y + 0.05 * x * z, 0.8 * z + 0.1 * np.cos(2 * x)])
+        ResultsWriter(path, made, "", "0").recorded(dataclasses.replace(step, state=dataclasses.replace(step.state, positions=positions)))
+        export(path, tmp_path)
+        grid = read(tmp_path / f"{elements}" / "bodies-0001.vtu")
+        middles = [(d.boundaries[:-1] + d.boundaries[1:]) / 2 for d in body.patch.directions]
+        deformation = deformation_gradient(body, positions, middles)
+        size = np.linalg.det(deformation)
+        stress = np.einsum("nij,nkj,n->nik", first_piola_stress(body.material, deformation), deformation, 1.0 / size)
+        deviator = stress - np.trace(stress, axis1=1, axis2=2)[:, None, None] / 3.0 * np.eye(3)
+        expected = {
+            "stress": stress[:, [0, 1, 2, 0, 1, 0], [0, 1, 2, 1, 2, 2]],
+            "von Mises stress": np.sqrt(1.5 * (deviator**2).sum(axis=(1, 2))),
+            "J": size,
+        }
+        found = [seen(grid, number, np.full(3, 0.5)) for number in range(len(deformation))]
+        shares = [np.abs(np.array([f[name] for f in found]) - v).max() / np.abs(v).max() for name, v in expected.items()]
+        apart.append(max(shares))
+    assert apart[0] < near
+    assert apart[1] < 0.5 * apart[0]
+
+
+def test_fitted_fields_are_exact_where_functions_have_them() -> None:
+    """A product of polynomials of the patch's orders over its weight is met at every Bezier point."""
+    tyre = problem().bodies[0].patch
+    random = np.random.default_rng(8)
+    control = random.standard_normal((len(tyre.weights), 2))
+    places = [inner_places(d) for d in tyre.directions]
+    values, _ = rational([functions_at(d, p)[0] for d, p in zip(tyre.directions, places, strict=True)], tyre.weights, control)
+    exact, _ = rational([bezier_matrix(d) for d in tyre.directions], tyre.weights, control)
+    assert fitted(tyre.directions, tyre.weights, values) == pytest.approx(exact, abs=1e-12)

@@ -30,7 +30,7 @@ def bezier_matrix(direction: Direction) -> FloatArray:
     """
     p = direction.order
     matrix = np.zeros((p * direction.elements + 1, direction.count))
-    places = 0.5 - 0.5 * np.cos(np.pi * (np.arange(p + 1) + 0.5) / (p + 1)) if direction.family == "N" else np.linspace(0, 1, p + 1)
+    places = _chebyshev(p) if direction.family == "N" else np.linspace(0, 1, p + 1)
     to_bezier = np.linalg.inv(bernstein(p, places))
     for element, (begin, end) in enumerate(zip(direction.boundaries[:-1], direction.boundaries[1:], strict=True)):
         rows = slice(p * element, p * element + p + 1)
@@ -69,6 +69,50 @@ def functions_at(direction: Direction, parameters: FloatArray) -> tuple[FloatArr
     rows = bezier_matrix(direction)[p * element[:, None] + np.arange(p + 1)]
     values = np.einsum("mk,mkc->mc", bernstein(p, places), rows)
     return values, np.einsum("mk,mkc->mc", p * (lower[:, :-1] - lower[:, 1:]) / size[:, None], rows)
+
+
+def inner_places(direction: Direction) -> FloatArray:
+    """Order + 1 parameters inside each element, shape (elements * (order + 1),): where a field is taken that `fitted` goes through."""
+    begin, size = direction.boundaries[:-1, None], np.diff(direction.boundaries)[:, None]
+    return (begin + _chebyshev(direction.order) * size).ravel()
+
+
+def fitted(directions: Sequence[Direction], weights: FloatArray, values: FloatArray) -> FloatArray:
+    """A field that no functions give, as rational Bezier elements: through its values in each, and the mean of neighbours between them.
+
+    Parameters
+    ----------
+    directions : sequence of Direction
+    weights : ndarray, shape (n,)
+        Of the patch's control points.
+    values : ndarray, shape (m, k)
+        At `inner_places` of the directions, first direction fastest.
+
+    Returns
+    -------
+    ndarray, shape (b, k)
+        At the Bezier points of the patch.
+    """
+    places = [functions_at(direction, inner_places(direction))[0] for direction in directions]
+    _, at_places = rational(places, weights, weights[:, None])
+    _, at_points = rational([bezier_matrix(direction) for direction in directions], weights, weights[:, None])
+    return _tensor_product([_fit(direction) for direction in directions], at_places[:, None] * values) / at_points[:, None]
+
+
+def _fit(direction: Direction) -> FloatArray:
+    """Matrix from values at `inner_places` to Bezier coefficients, shape (order * elements + 1, elements * (order + 1))."""
+    p, elements = direction.order, direction.elements
+    matrix = np.zeros((p * elements + 1, elements * (p + 1)))
+    to_bezier = np.linalg.inv(bernstein(p, _chebyshev(p)))
+    for element in range(elements):
+        matrix[p * element : p * element + p + 1, (p + 1) * element : (p + 1) * (element + 1)] = to_bezier
+    matrix[p:-1:p] *= 0.5
+    return matrix
+
+
+def _chebyshev(order: int) -> FloatArray:
+    """Order + 1 places between 0 and 1 that are good to interpolate at."""
+    return 0.5 - 0.5 * np.cos(np.pi * (np.arange(order + 1) + 0.5) / (order + 1))
 
 
 def rational(matrices: Sequence[FloatArray], weights: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:

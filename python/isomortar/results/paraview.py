@@ -8,21 +8,33 @@ weights only since its version 2.6, which most installed programs do not read.
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
 
+import numpy as np
+
 from isomortar.geometry.patch import FloatArray
-from isomortar.model.entities import Problem
+from isomortar.model.entities import Body, Problem
+from isomortar.model.numbering import Numbering
+from isomortar.results.bezier import fitted, inner_places
 from isomortar.results.fields import ContactSurface, body_points, contact_surfaces
 from isomortar.results.files import make_folder, writing
 from isomortar.results.reader import Results
+from isomortar.results.stress import cauchy_stress, deformation_gradient, von_mises
 from isomortar.results.vtu import BezierGrid, bezier_grid, write_vtu
+
+#: Places of xx, yy, zz, xy, yz, xz in a tensor's nine components: the order in which VTK has those of symmetric ones.
+_SYMMETRIC = [0, 4, 8, 1, 5, 2]
 
 
 def export(results_path: str | os.PathLike[str], outdir: str | os.PathLike[str]) -> Path:
-    """Write every kept state for ParaView.
+    """Write the bodies and slave faces at rest and at every kept state for ParaView.
 
-    Point data: displacement; on the slave faces also contact pressure and magnitude of the contact traction.
+    Point data of bodies: displacement; Cauchy stress (xx, yy, zz, xy, yz, xz; force per deformed area), its equivalent by von Mises and
+    J = det F, fitted element by element. Of slave faces: displacement, contact pressure, magnitude of the contact traction, control gaps
+    (positive is penetration) and status (0 open, 1 stick, 2 slip).
     Cell data: number of the body or contact pair, from 0 in the order of the scene.
 
     Returns
@@ -41,34 +53,50 @@ def export(results_path: str | os.PathLike[str], outdir: str | os.PathLike[str])
         make_folder(folder)
         root = ElementTree.Element("VTKFile", type="Collection", version="1.0", byte_order="LittleEndian")
         entries = ElementTree.SubElement(root, "Collection")
-        for number in results.kept_states:
-            step = results.step(int(number))
-            parts = {"bodies": _bodies(results.problem, step.state.positions)}
-            if results.problem.contacts:
-                parts["contacts"] = [_contact(i, s) for i, s in enumerate(contact_surfaces(results.problem, step))]
+        for time, number, parts in _states(results):
             for part, (name, grids) in enumerate(parts.items()):
                 path = folder / f"{name}-{number:04d}.vtu"
                 with writing(path):
                     write_vtu(path, grids)
                 place = path.relative_to(collection.parent).as_posix()
-                ElementTree.SubElement(entries, "DataSet", timestep=repr(step.time), part=str(part), name=name, file=place)
+                ElementTree.SubElement(entries, "DataSet", timestep=repr(time), part=str(part), name=name, file=place)
         with writing(collection):
             ElementTree.ElementTree(root).write(collection, encoding="utf-8", xml_declaration=True)
     return collection
 
 
-def _bodies(problem: Problem, positions: FloatArray) -> list[BezierGrid]:
+def _states(results: Results) -> Iterator[tuple[float, int, dict[str, list[BezierGrid]]]]:
+    """Load time, number and grids of the rest, which is number 0, and of every kept state."""
+    problem = results.problem
+    for number in results.kept_states:
+        step = results.step(int(number))
+        surfaces = contact_surfaces(problem, step)
+        if number == results.kept_states[0]:
+            yield 0.0, 0, _grids(problem, Numbering(problem).reference, [_at_rest(surface) for surface in surfaces])
+        yield step.time, step.step, _grids(problem, step.state.positions, surfaces)
+
+
+def _at_rest(surface: ContactSurface) -> ContactSurface:
+    """A slave face before anything has moved: open, its gaps not told (NaN)."""
+    nothing, untold = np.zeros_like(surface.pressure), np.full_like(surface.gap, np.nan)
+    return replace(
+        surface, points=surface.reference_points, pressure=nothing, traction=nothing, gap=untold, status=np.zeros_like(surface.status)
+    )
+
+
+def _grids(problem: Problem, positions: FloatArray, surfaces: list[ContactSurface]) -> dict[str, list[BezierGrid]]:
     points = body_points(problem, positions)
-    return [
-        bezier_grid(
-            body.patch.directions,
-            body.patch.weights,
-            points[body.name],
-            {"displacement": points[body.name] - body.patch.control_points},
-            number,
-        )
-        for number, body in enumerate(problem.bodies)
-    ]
+    bodies = [_body(number, body, points[body.name]) for number, body in enumerate(problem.bodies)]
+    return {"bodies": bodies} | ({"contacts": [_contact(i, surface) for i, surface in enumerate(surfaces)]} if surfaces else {})
+
+
+def _body(number: int, body: Body, points: FloatArray) -> BezierGrid:
+    directions, weights = body.patch.directions, body.patch.weights
+    deformation = deformation_gradient(body, points, [inner_places(direction) for direction in directions])
+    stress = np.zeros_like(deformation) if body.rigid else cauchy_stress(body.material, deformation)
+    values = {"stress": stress.reshape(-1, 9)[:, _SYMMETRIC], "von Mises stress": von_mises(stress), "J": np.linalg.det(deformation)}
+    fields = {name: fitted(directions, weights, value.reshape(len(deformation), -1)) for name, value in values.items()}
+    return bezier_grid(directions, weights, points, {"displacement": points - body.patch.control_points}, number, fields)
 
 
 def _contact(number: int, surface: ContactSurface) -> BezierGrid:
@@ -76,5 +104,7 @@ def _contact(number: int, surface: ContactSurface) -> BezierGrid:
         "displacement": surface.points - surface.reference_points,
         "pressure": surface.pressure[:, None],
         "traction": surface.traction[:, None],
+        "gap": surface.gap[:, None],
+        "status": surface.status[:, None].astype(np.float64),
     }
     return bezier_grid(surface.directions, surface.weights, surface.points, fields, number)

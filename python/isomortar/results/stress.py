@@ -49,3 +49,17 @@ def first_piola_stress(material: Material, deformation: FloatArray) -> FloatArra
     """
     gradient = np.ascontiguousarray(deformation.reshape(-1, 3, 3) - np.eye(3))
     return _bindings.material_stress(material.arrays, gradient).reshape(deformation.shape)
+
+
+def cauchy_stress(material: Material, deformation: FloatArray) -> FloatArray:
+    """Stress on the deformed body, force per deformed area: P F^T / det F; of small strains P itself, shape (..., 3, 3)."""
+    first = first_piola_stress(material, deformation)
+    if material.law == "linear-elastic":
+        return first
+    return first @ np.swapaxes(deformation, -1, -2) / np.linalg.det(deformation)[..., None, None]
+
+
+def von_mises(stress: FloatArray) -> FloatArray:
+    """Equivalent stress of von Mises: the norm of the deviator times the root of 3/2, shape (...,)."""
+    deviator = stress - np.trace(stress, axis1=-2, axis2=-1)[..., None, None] / 3.0 * np.eye(3)
+    return np.sqrt(1.5) * np.linalg.norm(deviator, axis=(-2, -1))

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import base64
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 from xml.etree import ElementTree
 
 import numpy as np
@@ -33,7 +35,12 @@ class BezierGrid:
 
 
 def bezier_grid(
-    directions: tuple[Direction, ...], weights: FloatArray, points: FloatArray, fields: dict[str, FloatArray], number: int
+    directions: tuple[Direction, ...],
+    weights: FloatArray,
+    points: FloatArray,
+    fields: dict[str, FloatArray],
+    number: int,
+    fitted: Mapping[str, FloatArray] = MappingProxyType({}),
 ) -> BezierGrid:
     """A patch of two or three directions as Bezier cells.
 
@@ -45,13 +52,17 @@ def bezier_grid(
     fields : dict of ndarray, shape (n, k)
         By control point.
     number : int
+    fitted : mapping of str to ndarray, shape (b, k)
+        Further fields, by Bezier point (`isomortar.results.bezier.fitted`).
     """
     values, bezier_weights = rational([bezier_matrix(d) for d in directions], weights, np.column_stack([points, *fields.values()]))
     ends = np.cumsum([3, *(field.shape[1] for field in fields.values())])
     parts = {name: values[:, begin:end] for name, begin, end in zip(fields, ends[:-1], ends[1:], strict=True)}
     orders = [d.order for d in directions] + [0] * (3 - len(directions))
     elements = [d.elements for d in directions] + [1] * (3 - len(directions))
-    return BezierGrid(values[:, :3], bezier_weights, parts, _cells(orders, elements), (orders[0], orders[1], orders[2]), number)
+    return BezierGrid(
+        values[:, :3], bezier_weights, parts | dict(fitted), _cells(orders, elements), (orders[0], orders[1], orders[2]), number
+    )
 
 
 def write_vtu(path: Path, grids: list[BezierGrid]) -> None:
