@@ -78,7 +78,7 @@ def test_the_page_says_what_is_right_where_and_what_is_wrong(family, tmp_path, c
     assert "1 to 1000</td>" in text  # right before
     assert "0 of 4 pairs" in text
     assert "1 points that were wrong at commit <code>0123456789ab</code>" in text
-    assert "size 1000</li>" in text  # right before, not now
+    assert "size 1000; now refused: too large &lt;b&gt;</li>" in text  # right before, not now
     assert "too large &lt;b&gt;" in text
     assert "no word of it" in text
     assert "Nothing of an ending." in text

@@ -45,7 +45,7 @@ def page(sweeps: Sequence[Sweep], judgements: Sequence[Judgement], others: Seque
 def _worse(sweep: Sweep) -> list[str]:
     """Points that were right before and are not now."""
     return [
-        f"{sweep.case.name}: {sweep.label(number)}"
+        f"{sweep.case.name}: {sweep.label(number)}; now {now.ending.name.lower()}: {now.words}"
         for number, (was, now) in enumerate(zip(sweep.before, sweep.now, strict=True))
         if was is not None and was.ending is Ending.RIGHT and now.ending is not Ending.RIGHT
     ]
