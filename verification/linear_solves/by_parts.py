@@ -117,6 +117,28 @@ def left_to_general_factors() -> dict[str, float]:
 
 
 @case(
+    claim="How near a system is to a singular one is told by the pivots of what is dense: the smallest over the largest, in any unit.",
+    tier="gate",
+    grid={"unit": (2.0**-501, 0.5, 2.0**499)},
+    bounds={
+        "error": Bound(
+            at_most=1e-15, reason="round-off: pivots are powers of two; so are twice the diagonal and its root, so that all sums are exact"
+        )
+    },
+)
+def nearness_to_singular(unit: float) -> dict[str, float]:
+    """Largest relative error of the estimate, of diagonal systems with pivots up to twelve decades apart."""
+    random, error = np.random.default_rng(12), 0.0
+    alone = sparse.csr_array(unit * sparse.eye_array(8))
+    for least in (-2, -10, -20, -40):
+        pivots = random.permutation(2.0 ** np.linspace(least, 1, 8).round()) * random.choice([-1.0, 1.0], 8)
+        found = factors(alone, np.ones(8, dtype=bool))
+        found.factorise(alone.data, np.asfortranarray(np.diag(unit * (pivots - 1.0))))
+        error = float(np.maximum(error, abs(found.rcond * 2.0 ** (1 - least) - 1.0)))
+    return {"error": error}
+
+
+@case(
     claim="Bodies that were released, or never made, solve nothing.",
     tier="gate",
     bounds={

@@ -1,0 +1,46 @@
+"""A slave that hangs partly beside its master and touches nothing: nothing presses, penetrates or pulls."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from isomortar.harness import Bound, case
+from isomortar.scene import Scene
+from isomortar.solve.simulation import Simulation
+
+#: Of functions of both signs what is left of a weight beyond the master's edge may be negative.
+SCENE = """
+format = 1
+bodies.upper.geometry = {{ kind = "box", lower = [0.0, 0.0, 0.01], upper = [1.0, 0.5, 0.5] }}
+bodies.upper.mesh = {{ family = "L", order = 2, elements = [2, 2, 1] }}
+bodies.lower.geometry = {{ kind = "box", lower = [0.0, {overhang}, -0.5], upper = [1.0, 1.0, 0.0] }}
+contacts.pair = {{ slave = "upper.w0", master = "lower.w1", projection = "{projection}", enforcement = "{enforcement}" }}
+supports.top.face = "upper.w1"
+supports.base.face = "lower.w0"
+stages = [{{ name = "hang", steps = 1, motions.top.translate = [0.0, 0.0, -0.001] }}]
+"""
+#: Places of the master's edge below the slave, whose negative weights are not those of the same constraints.
+OVERHANGS = (0.03, 0.1, 0.16, 0.22, 0.3, 0.37, 0.45)
+
+
+@case(
+    claim="Bodies that are apart bear nothing, however far the slave reaches beside its master and whatever signs its functions have.",
+    tier="gate",
+    grid={"projection": ("closest", "averaged"), "enforcement": ("mortar", "dual")},
+    bounds={
+        "active": Bound(at_most=0, reason="definition: bodies 0.009 apart"),
+        "penetration": Bound(at_most=0.0, reason="definition: the same"),
+        "force": Bound(at_most=1e-15, reason="round-off: nothing strains a body that moves as a whole; its modulus is 10, its size 1"),
+        "beside": Bound(at_least=1, reason="definition: points of the slave have no foot in any of the runs"),
+    },
+)
+def beside_the_master(projection: str, enforcement: str) -> dict[str, float]:
+    """Worst over places of the master's edge."""
+    found = []
+    for overhang in OVERHANGS:
+        text = SCENE.format(overhang=overhang, projection=projection, enforcement=enforcement)
+        (step,) = Simulation(Scene.from_toml(text).problem()).run()
+        (contact,) = step.contacts
+        found.append([contact.active, contact.gap.max(), np.abs(contact.force_slave).max(), -contact.excluded])
+    worst = np.max(found, axis=0)
+    return {"active": worst[0], "penetration": max(0.0, worst[1]), "force": worst[2], "beside": -worst[3]}
