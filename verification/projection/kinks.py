@@ -112,6 +112,32 @@ def near(bend: str, across: int) -> dict[str, float]:
     return {name: float(np.max(values)) for name, values in errors.items()}
 
 
+@case(
+    claim="A point beside the end of a ridge has no foot, from any start: on a line in one coordinate, beyond the edge in the other.",
+    tier="gate",
+    grid={"order": [1, 2], "across": [0, 1]},
+    bounds={
+        "found": Bound(at_most=0, reason="definition: the nearest point of the master is at its edge"),
+        "lost": Bound(at_most=0, reason="definition: as far within the edge each point has its foot, on the line"),
+    },
+)
+def beside_the_end(order: int, across: int) -> dict[str, float]:
+    """Points round the line, beside both ends and within them by as much: how many have a foot there, or none here."""
+    angle = np.tile(np.linspace(-0.9, 0.9, 10) * float(np.arctan(SLOPE)), 4)
+    beyond = np.repeat([1e-6, 1e-3, 0.02, 0.2], 10)
+    random, found, lost = np.random.default_rng(17), 0, 0
+    for end, outward in ((0.0, -1.0), (1.0, 1.0)):
+        for side in (1.0, -1.0):
+            targets = np.column_stack([RADIUS * np.sin(angle), end + side * outward * beyond, RADIUS * np.cos(angle)])
+            targets = targets[:, [1, 0, 2]] if across else targets
+            for starts in (None, *random.uniform(0.0, 1.0, (4, len(angle), 2))):
+                projections = feet("ridge", order, targets, starts, across)[0]
+                inside = (projections.found == 1) & (projections.fixed[:, across] == 1)
+                found += int(np.count_nonzero(projections.found)) if side > 0.0 else 0
+                lost += int(np.count_nonzero(~inside)) if side < 0.0 else 0
+    return {"found": found, "lost": lost}
+
+
 #: Half lengths of a body with a ridge along either of its sides, and how its upper face falls off before and behind each of them.
 SIDES = {"first": (40.0, 1.0), "second": (1.0, 40.0)}
 FALLS = np.array([[0.2, 0.8], [0.3, 0.5]])
