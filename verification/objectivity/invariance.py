@@ -10,6 +10,8 @@ from small_scenes import at_few_points, bowl
 from transforms import mirrored, moved, relabelled, scaled, turned, with_knots, with_weights
 
 from isomortar.geometry.patch import FloatArray
+from isomortar.geometry.primitives import box
+from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
 from isomortar.model.entities import Problem, RigidPlane
 from isomortar.solve.record import StepResult
@@ -169,6 +171,22 @@ def mirror_image(master: str) -> dict[str, float]:
 def knot_scaling(factor: float, shift: float) -> dict[str, float]:
     """Knots of all directions times a factor, and shifted by a share of their range."""
     return change("block", lambda problem: with_knots(problem, factor, shift * factor))
+
+
+@case(
+    claim="Nor do they where a master has kinks, along averaged normals, whatever the sign of its knots.",
+    tier="gate",
+    grid={"shift": (-0.7, 0.7)},
+    bounds=BOUNDS,
+)
+def knots_of_kinks(shift: float) -> dict[str, float]:
+    """Knots of all directions shifted by a share of their range, of a bowl on Lagrange elements."""
+    problem = at_few_points(bowl("block"))
+    slave, master = problem.bodies
+    kinked = mesh(box((-0.6, -0.6, -0.5), (0.7, 0.65, 0.0)), ("L", "L", "N"), (1, 2, 1), (6, 4, 1))
+    (contact,) = problem.contacts
+    changed = replace(problem, bodies=(slave, replace(master, patch=kinked)), contacts=(replace(contact, projection="averaged"),))
+    return change("block", lambda problem: with_knots(problem, 1.0, shift), problem=changed)
 
 
 @case(claim="A factor of all weights changes no result.", tier="gate", grid={"factor": (1e-3, 7.0)}, bounds=BOUNDS)
