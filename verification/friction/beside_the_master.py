@@ -43,4 +43,4 @@ def beside_the_master(projection: str, enforcement: str) -> dict[str, float]:
         (contact,) = step.contacts
         found.append([contact.active, contact.gap.max(), np.abs(contact.force_slave).max(), -contact.excluded])
     worst = np.max(found, axis=0)
-    return {"active": worst[0], "penetration": max(0.0, worst[1]), "force": worst[2], "beside": -worst[3]}
+    return {"active": worst[0], "penetration": float(np.maximum(0.0, worst[1])), "force": worst[2], "beside": -worst[3]}
