@@ -36,6 +36,7 @@ class Listener(Observer):
         self.begun = (0, 0)
         self.warnings: list[str] = []
         self.cuts: list[str] = []
+        self.tried_next: list[tuple[int, float, float]] = []
 
     def started(self, total_steps: int, first_step: int) -> None:
         self.begun = (total_steps, first_step)
@@ -45,6 +46,7 @@ class Listener(Observer):
 
     def cut(self, step: int, time: float, increment: float, reason: str) -> None:
         self.cuts.append(reason)
+        self.tried_next.append((step, time, increment))
 
 
 class Told(Observer):
@@ -243,6 +245,7 @@ def test_unconverged_step_is_cut_and_then_named() -> None:
     with pytest.raises(ConvergenceError, match=r"load step 4 \(stage 'press'\) does not converge"):
         run(small_iron(max_iterations=1, max_cuts=2), listener)
     assert len(listener.cuts) == 2
+    assert listener.tried_next == [(4, 4.0, 0.5), (4, 3.5, 0.25)]
 
 
 @pytest.mark.parametrize("method", ["monolithic", "uzawa"])

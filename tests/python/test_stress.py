@@ -41,6 +41,13 @@ def test_stress_of_uniform_stretches() -> None:
     assert first_piola_stress(material, np.diag([stretch, 1, 1]))[0, 0] == pytest.approx(along)
 
 
+@pytest.mark.parametrize("law", ["neo-hookean", "neo-hookean-j", "linear-elastic"])
+def test_modulus_is_that_of_a_stretch_without_lateral_strain(law: str) -> None:
+    material, h = Material(young=7.0, poisson=0.37, law=law), 1e-6  # type: ignore[arg-type]
+    ahead, behind = (first_piola_stress(material, np.diag([1.0 + step, 1.0, 1.0]))[0, 0] for step in (h, -h))
+    assert (ahead - behind) / (2 * h) == pytest.approx(material.modulus, rel=1e-8)
+
+
 def test_stress_balances_the_forces_of_the_kernel() -> None:
     """Of a uniform deformation of a box the nodal forces on its end sum to P N times the end's area."""
     made = problem()
