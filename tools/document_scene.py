@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
+from string import ascii_lowercase
 from typing import Any
 
-from document_results import Page
+from pages import Page
 
 from isomortar.scene import json_schema
 
@@ -95,7 +95,8 @@ def _array(entry: dict[str, Any]) -> str:
 
 def _plural(words: str) -> str:
     """Of a noun that stands first, with what follows it; quoted values have none."""
-    noun, rest = re.match(r"([a-z]*)(.*)", words).groups()  # type: ignore[union-attr]
+    rest = words.lstrip(ascii_lowercase)
+    noun = words.removesuffix(rest)
     return f"{noun}s{rest}" if noun else words
 
 

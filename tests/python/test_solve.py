@@ -188,44 +188,6 @@ def test_contact_conditions_after_every_step() -> None:
         assert result.cuts == 0
 
 
-@pytest.mark.parametrize("enforcement", ["mortar", "dual"])
-@pytest.mark.parametrize("projection", ["closest", "averaged"])
-@pytest.mark.parametrize("overhang", [0.16, 0.37])
-def test_a_slave_beside_its_master_penetrates_nothing(overhang: float, projection: str, enforcement: str) -> None:
-    """Of functions of both signs what is left of a weight beyond the master's edge may be negative: their gaps are no gaps.
-
-    Along averaged normals the weight is that of all points, and what is left of it has to be looked at apart.
-    """
-    scene = Scene.from_toml(f"""
-format = 1
-[bodies.upper]
-geometry = {{ kind = "box", lower = [0.0, 0.0, 0.01], upper = [1.0, 0.5, 0.5] }}
-mesh = {{ family = "L", order = 2, elements = [2, 2, 1] }}
-[bodies.lower]
-geometry = {{ kind = "box", lower = [0.0, {overhang}, -0.5], upper = [1.0, 1.0, 0.0] }}
-[contacts.pair]
-slave = "upper.w0"
-master = "lower.w1"
-projection = "{projection}"
-enforcement = "{enforcement}"
-[supports.top]
-face = "upper.w1"
-[supports.base]
-face = "lower.w0"
-[[stages]]
-name = "hang"
-steps = 1
-motions.top.translate = [0.0, 0.0, -0.001]
-""")
-    (step,) = run(scene.problem())
-    (contact,) = step.contacts
-    assert contact.excluded > 0
-    assert contact.active == 0
-    assert contact.gap.max() <= 0.0
-    if projection == "closest":
-        np.testing.assert_allclose(contact.gap[contact.gap != 0.0], -0.009, rtol=1e-12)
-
-
 def test_momentum_balance_at_the_interface() -> None:
     for result in run(small_iron()):
         contact = result.contacts[0]

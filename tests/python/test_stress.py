@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import isomortar
+from isomortar._arrays import MaterialLaw
 from isomortar.geometry.patch import Patch
 from isomortar.model.entities import Body, Material
 from isomortar.model.numbering import Numbering
@@ -42,8 +43,8 @@ def test_stress_of_uniform_stretches() -> None:
 
 
 @pytest.mark.parametrize("law", ["neo-hookean", "neo-hookean-j", "linear-elastic"])
-def test_modulus_is_that_of_a_stretch_without_lateral_strain(law: str) -> None:
-    material, h = Material(young=7.0, poisson=0.37, law=law), 1e-6  # type: ignore[arg-type]
+def test_modulus_is_that_of_a_stretch_without_lateral_strain(law: MaterialLaw) -> None:
+    material, h = Material(young=7.0, poisson=0.37, law=law), 1e-6
     ahead, behind = (first_piola_stress(material, np.diag([1.0 + step, 1.0, 1.0]))[0, 0] for step in (h, -h))
     assert (ahead - behind) / (2 * h) == pytest.approx(material.modulus, rel=1e-8)
 

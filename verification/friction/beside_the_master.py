@@ -6,6 +6,7 @@ import numpy as np
 
 from isomortar.harness import Bound, case
 from isomortar.scene import Scene
+from isomortar.solve.record import ContactResult
 from isomortar.solve.simulation import Simulation
 
 #: Of functions of both signs what is left of a weight beyond the master's edge may be negative.
@@ -23,6 +24,12 @@ stages = [{{ name = "hang", steps = 1, motions.top.translate = [0.0, 0.0, -0.001
 OVERHANGS = (0.03, 0.1, 0.16, 0.22, 0.3, 0.37, 0.45)
 
 
+def hanging(projection: str, enforcement: str) -> list[ContactResult]:
+    """What is found of the contact at each place of the master's edge."""
+    texts = [SCENE.format(overhang=overhang, projection=projection, enforcement=enforcement) for overhang in OVERHANGS]
+    return [step.contacts[0] for text in texts for step in Simulation(Scene.from_toml(text).problem()).run()]
+
+
 @case(
     claim="Bodies that are apart bear nothing, however far the slave reaches beside its master and whatever signs its functions have.",
     tier="gate",
@@ -36,11 +43,25 @@ OVERHANGS = (0.03, 0.1, 0.16, 0.22, 0.3, 0.37, 0.45)
 )
 def beside_the_master(projection: str, enforcement: str) -> dict[str, float]:
     """Worst over places of the master's edge."""
-    found = []
-    for overhang in OVERHANGS:
-        text = SCENE.format(overhang=overhang, projection=projection, enforcement=enforcement)
-        (step,) = Simulation(Scene.from_toml(text).problem()).run()
-        (contact,) = step.contacts
-        found.append([contact.active, contact.gap.max(), np.abs(contact.force_slave).max(), -contact.excluded])
-    worst = np.max(found, axis=0)
-    return {"active": worst[0], "penetration": float(np.maximum(0.0, worst[1])), "force": worst[2], "beside": -worst[3]}
+    contacts = hanging(projection, enforcement)
+    return {
+        "active": max(contact.active for contact in contacts),
+        "penetration": float(np.maximum(0.0, np.max([contact.gap for contact in contacts]))),
+        "force": float(np.max(np.abs([contact.force_slave for contact in contacts]))),
+        "beside": min(contact.excluded for contact in contacts),
+    }
+
+
+@case(
+    claim="Where a slave reaches beside its master the gap is told of what lies above it, or not at all.",
+    tier="gate",
+    grid={"enforcement": ("mortar", "dual")},
+    bounds={
+        "gap": Bound(at_most=1e-12, reason="round-off: of the distance"),
+        "told": Bound(at_least=4, reason="definition: points lie above"),
+    },
+)
+def gap_beside_the_master(enforcement: str) -> dict[str, float]:
+    """Worst over places of the master's edge; averaged normals' gaps are those of all points of a function, and smaller."""
+    gaps = [contact.gap[contact.gap != 0.0] for contact in hanging("closest", enforcement)]
+    return {"gap": float(np.max(np.abs(np.concatenate(gaps) / -0.009 - 1.0))), "told": min(len(told) for told in gaps)}

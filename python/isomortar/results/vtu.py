@@ -6,7 +6,6 @@ import base64
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from types import MappingProxyType
 from xml.etree import ElementTree
 
 import numpy as np
@@ -40,7 +39,7 @@ def bezier_grid(
     points: FloatArray,
     fields: dict[str, FloatArray],
     number: int,
-    fitted: Mapping[str, FloatArray] = MappingProxyType({}),
+    fitted: Mapping[str, FloatArray] | None = None,
 ) -> BezierGrid:
     """A patch of two or three directions as Bezier cells.
 
@@ -58,11 +57,10 @@ def bezier_grid(
     values, bezier_weights = rational([bezier_matrix(d) for d in directions], weights, np.column_stack([points, *fields.values()]))
     ends = np.cumsum([3, *(field.shape[1] for field in fields.values())])
     parts = {name: values[:, begin:end] for name, begin, end in zip(fields, ends[:-1], ends[1:], strict=True)}
+    parts |= fitted or {}
     orders = [d.order for d in directions] + [0] * (3 - len(directions))
     elements = [d.elements for d in directions] + [1] * (3 - len(directions))
-    return BezierGrid(
-        values[:, :3], bezier_weights, parts | dict(fitted), _cells(orders, elements), (orders[0], orders[1], orders[2]), number
-    )
+    return BezierGrid(values[:, :3], bezier_weights, parts, _cells(orders, elements), (orders[0], orders[1], orders[2]), number)
 
 
 def write_vtu(path: Path, grids: list[BezierGrid]) -> None:
