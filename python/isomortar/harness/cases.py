@@ -22,6 +22,7 @@ import inspect
 import itertools
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal, NoReturn, get_args
 
@@ -178,7 +179,7 @@ class Case:
     scene: str | None
     files: tuple[Path, ...]
 
-    @property
+    @cached_property
     def path(self) -> Path:
         """The file that it stands in."""
         return Path(inspect.getfile(self.function)).resolve()
@@ -188,7 +189,7 @@ class Case:
         """The folder that it stands in."""
         return self.path.parent.name
 
-    @property
+    @cached_property
     def name(self) -> str:
         """Family and function: ``basis/partition_of_unity``."""
         return f"{self.family}/{self.function.__name__}"
@@ -225,7 +226,7 @@ class Cell:
         """The settings in one line: ``order=2, family=N``; empty without any."""
         return ", ".join(f"{name}={value}" for name, value in self.settings.items())
 
-    @property
+    @cached_property
     def name(self) -> str:
         """Case and settings: ``basis/partition_of_unity[order=2]``."""
         return f"{self.case.name}[{self.label}]" if self.settings else self.case.name

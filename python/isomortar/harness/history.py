@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
+from statistics import median
 from typing import Any
-
-import numpy as np
 
 from isomortar.harness.journal import Journal
 from isomortar.harness.runner import Result
@@ -47,7 +47,7 @@ def read(path: Path, last: int = 60) -> list[Entry]:
 
 def values_of(runs: Sequence[Entry], cell: str, number: str) -> list[float]:
     """A number over the runs; NaN where it was not measured."""
-    return [float(run.cells.get(cell, {}).get("values", {}).get(number, np.nan)) for run in runs]
+    return [float(run.cells.get(cell, {}).get("values", {}).get(number, math.nan)) for run in runs]
 
 
 def change_points(values: Sequence[float], least: float = 0.0) -> list[int]:
@@ -56,13 +56,13 @@ def change_points(values: Sequence[float], least: float = 0.0) -> list[int]:
     A point counts when it is further from the median of the (up to eight) points since the last change than `least`, than 2 % of that
     median, and than five robust standard deviations, and the next point does not return. Values that are not finite are passed over.
     """
-    finite = [(i, v) for i, v in enumerate(values) if np.isfinite(v)]
+    finite = [(i, v) for i, v in enumerate(values) if math.isfinite(v)]
     found: list[int] = []
     begin = 0
     for k in range(1, len(finite)):
-        before = np.array([v for _, v in finite[max(begin, k - _BEFORE) : k]])
-        middle = float(np.median(before))
-        width = max(5 * 1.4826 * float(np.median(np.abs(before - middle))), 0.02 * abs(middle), least)
+        before = [v for _, v in finite[max(begin, k - _BEFORE) : k]]
+        middle = median(before)
+        width = max(5 * 1.4826 * median(abs(v - middle) for v in before), 0.02 * abs(middle), least)
         after = [v for _, v in finite[k : k + 2]]
         if all(abs(v - middle) > width for v in after):
             found.append(finite[k][0])
