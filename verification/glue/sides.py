@@ -192,9 +192,13 @@ def _moved(places: FloatArray, numbering: Numbering, name: str) -> bool:
 
 
 def tier_of_way(way: int, turned: str) -> Tier:
-    """The gate has every way once: each order of the directions is that of the first tile twice, and of the last one twice."""
+    """The gate has half of the ways once: each order of the directions is that of the first tile, and of the last one.
+
+    `any_orientation` has all of them.
+    """
     order, flips = divmod(way, 4)
-    return "gate" if (turned == "first") == ((order + flips // 2) % 2 == 0) else "nightly"
+    of_the_first = (order + flips // 2) % 2 == 0
+    return "gate" if (turned == "first") == of_the_first and (order + flips) % 2 == 0 else "nightly"
 
 
 @case(

@@ -136,10 +136,10 @@ def bounds(master: str, place: str, state: str) -> dict[str, Bound]:  # noqa: AR
 def tier(master: str, place: str, state: str) -> Tier:
     """The gate has every place and state, and masters up to N3, not all of their products.
 
-    Of lines and corners of curved elements it has one side each.
+    Of lines and corners of curved elements it has one side each, and of states that where points stick beside others that slip.
     """
-    chosen = master in ("L1", "L2") and (state == "mixed" or place == "inside")
-    spared = master == "L3" or (master == "L2" and place in ("line: behind", "corner: before"))
+    chosen = (master == "L1" and place == "inside") or (master in ("L1", "L2") and state == "mixed")
+    spared = master == "L2" and place in ("line: behind", "corner: before")
     return "gate" if (chosen or (place, state) == ("inside", "mixed")) and not spared else "nightly"
 
 
