@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
-from enforcement.tables import ELEMENTS, at_points, plate, side_of
+from enforcement.tables import ELEMENTS, POINTWISE, SIZE, at_points, plate, side_of
 from patch_tests.contact import functions, knots
 
 from isomortar.geometry.primitives import ring
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
 from isomortar.model.enforcement.side import PointSide
-from isomortar.model.entities import Body, Material
+from isomortar.model.entities import Body, Enforcement, Material
 
 _ROUND_OFF = Bound(at_most=1e-13, reason="round-off: of sums over some tens of numbers")
 KINDS = ("N1", "N2", "N3", "N5")
@@ -61,3 +63,24 @@ def nearest_at_a_seam() -> dict[str, float]:
     side = side_of(Body("ring", patch, Material(), (2, 2, 2), closed="u"), "v1", "greville", 8)
     assert isinstance(side, PointSide)
     return {"apart": float(np.abs(side.places[side.nearest] - side.control_places).max())}
+
+
+@case(
+    claim="Areas of constraints at points have the face's own first moments: a pressure that varies linearly has the right resultant, and "
+    "turns about the right axis.",
+    tier="gate",
+    grid={"method": POINTWISE, "kind": KINDS},
+    bounds={"area": _ROUND_OFF, "moment": _ROUND_OFF},
+)
+def first_moments(method: Enforcement, kind: str) -> dict[str, float]:
+    """Relative errors of the sums of areas, and of areas times coordinates u and v, on a plate half as wide again at u = 1 as at u = 0."""
+    order = int(kind[1:])
+    body = plate("N", order)
+    points = body.patch.control_points.copy()
+    points[:, 1] *= 1.0 + 0.5 * points[:, 0] / SIZE[0]
+    side = side_of(replace(body, patch=replace(body.patch, control_points=points)), "w0", method, order + 1)
+    assert isinstance(side, PointSide)
+    area, found = side.arrays.area, side.arrays.area @ side.places
+    expected = SIZE[0] * SIZE[1] * np.array([1.0 / 2.0 + 0.5 / 3.0, 1.25 / 2.0])  # the width is 1 + u / 2
+    whole = 1.25 * SIZE[0] * SIZE[1]
+    return {"area": abs(float(area.sum()) / whole - 1.0), "moment": float(np.abs(found / expected - 1.0).max())}

@@ -18,6 +18,7 @@ from isomortar.harness import Bound, case
 from isomortar.harness.cases import Tier
 from isomortar.model.entities import Face, Faces, Problem
 from isomortar.model.numbering import Numbering
+from isomortar.model.sheet import Sheet
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
 from isomortar.solve.simulation import Simulation
@@ -229,6 +230,37 @@ def any_orientation_of_tiles(way: int, turned: str) -> dict[str, float]:
         "positions": float(np.abs(positions(right, expected) - positions(other, found)).max()),
         "forces": float(np.abs(forces(expected) - forces(found)).max() / np.abs(forces(expected)).max()),
     }
+
+
+@case(
+    claim="Below each control point of a side of tiles lies the one opposite it in its body, whichever way that runs its directions.",
+    tier="gate",
+    grid={"turned": ("a", "d")},
+    bounds={
+        "away": Bound(at_most=0.0, reason="definition: a turned body has the same control points"),
+        "thickness": Bound(at_least=0.4, at_most=0.4, reason="definition: that of the tiles"),
+    },
+)
+def bodies_of_tiles(turned: str) -> dict[str, float]:
+    """Largest distance from what is below tiles that are all named alike, over all ways of one of them."""
+    right = tiled(2, 2)
+    expected = through(right)
+    found = [through(oriented(right, turned, *way)) for way in orientations()]
+    return {
+        "away": max(float(np.abs(pairs - expected).max()) for pairs in found),
+        "thickness": float(np.abs(expected[:, 0] - expected[:, 1]).max()),
+    }
+
+
+def through(problem: Problem) -> FloatArray:
+    """Control points of the master's side and those opposite, in the order of their places on the side, shape (n, 2, 3)."""
+    (contact,) = problem.contacts
+    assert isinstance(contact.master, Face)
+    sheet = Sheet.of(problem, contact.master)
+    layers = sheet.patch.control_points.reshape(2, -1, 3)
+    own = int(sheet.face[1])
+    order = np.lexsort(np.round(layers[own], 9).T)
+    return np.stack([layers[own][order], layers[1 - own][order]], axis=1)
 
 
 @case(
