@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from isomortar.driver import run as run
     from isomortar.errors import IsomortarError as IsomortarError
+    from isomortar.results.film import film as film
     from isomortar.results.paraview import export as export
     from isomortar.results.pictures import plot as plot
     from isomortar.results.reader import Results as Results
@@ -30,11 +31,12 @@ _HOMES = {
     "Scene": "scene.scene",
     "Simulation": "solve.simulation",
     "export": "results.paraview",
+    "film": "results.film",
     "plot": "results.pictures",
     "run": "driver",
 }
 
-__all__ = ["IsomortarError", "Observer", "Results", "Scene", "Simulation", "export", "plot", "run"]
+__all__ = ["IsomortarError", "Observer", "Results", "Scene", "Simulation", "export", "film", "plot", "run"]
 
 
 def __getattr__(name: str) -> Any:

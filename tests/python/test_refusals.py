@@ -15,7 +15,7 @@ import splinepy
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from isomortar import Results, Scene, plot
+from isomortar import Results, Scene, film, plot
 from isomortar._codes import Status
 from isomortar.errors import FoldedElementError
 from isomortar.geometry import primitives
@@ -178,6 +178,11 @@ def of_files(_: pytest.MonkeyPatch) -> Told:
     writer.recorded(step_result(1))
     writer.recorded(step_result(2))
     yield "not kept", refusal(lambda: Results("run.h5").step(1))
+    yield "filmed: one state", refusal(lambda: film("run.h5", "run.gif"))
+    yield "filmed: type", refusal(lambda: film("run.h5", "run.mp4"))
+    yield "filmed: nothing", refusal(lambda: film("run.h5", "run.gif", every=0))
+    ResultsWriter("alone.h5", replace(problem(), contacts=()), "", "0")
+    yield "filmed: no contact", refusal(lambda: film("alone.h5", "run.gif"))
     for name, key, value in (("another format", "format", "waves"), ("of another version", "format_version", 1)):
         Path("other.h5").write_bytes(Path("run.h5").read_bytes())
         with h5py.File("other.h5", "r+") as file:

@@ -165,6 +165,37 @@ def export(
 
 
 @app.command()
+def film(
+    results: ResultsArgument,
+    output: Annotated[
+        Path | None,
+        typer.Option(dir_okay=False, help="A .gif file, or .webp, which has all colours.", show_default="RESULTS.gif, beside the file"),
+    ] = None,
+    contact: Annotated[str | None, typer.Option(help="Whose pressure is in colour.", show_default="the first one's")] = None,
+    every: Annotated[int, typer.Option(min=1, help="Show one load step in so many, and the last one.")] = 1,
+    rate: Annotated[float, typer.Option(metavar="PER SECOND", help="Pictures.")] = 8.0,
+) -> None:
+    """Film the bodies and the contact pressure, load step after load step on one scale, and print where the film lies.
+
+    For example: `isomortar film results/iron.h5 --every 2`
+    """
+    from rich.console import Console
+    from rich.progress import Progress
+
+    with Progress(console=Console(stderr=True), transient=True) as progress:
+        bar = progress.add_task("pictures")
+        path = isomortar.film(
+            results,
+            output or results.with_suffix(".gif"),
+            contact=contact,
+            every=every,
+            rate=rate,
+            tell=lambda done, total: progress.update(bar, completed=done, total=total),
+        )
+    print(path)
+
+
+@app.command()
 def check_tangent(
     scene: SceneArgument,
     overrides: Overrides = None,

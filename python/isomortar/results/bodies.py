@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from matplotlib.cm import ScalarMappable
@@ -29,7 +29,58 @@ _VIEW = Camera(azimuth=-62.0, elevation=24.0)
 _SHADING_OF_PRESSURE = 0.25
 
 
-def draw_bodies(problem: Problem, step: StepResult, number: int) -> Figure:
+@dataclass(frozen=True)
+class Pressed:
+    """A sampled contact face: largest pressure, whether it pulls anywhere, mean outward normal where it presses."""
+
+    peak: float
+    pulls: bool
+    normal: FloatArray
+
+
+@dataclass(frozen=True)
+class Scale:
+    """What the pictures of several load steps have in common.
+
+    Parameters
+    ----------
+    face : Pressed
+        The largest pressure, and where the eye is that looks at the face.
+    near : ndarray, shape (n, 3)
+        Control points of the slave bodies: a plane is drawn as far as below all of them.
+    whole : ndarray, shape (2, 2)
+        Corners of the picture of all bodies.
+    size : ndarray, shape (2,)
+        Width and height of that of the slave, which goes along with it.
+    """
+
+    face: Pressed
+    near: FloatArray
+    whole: FloatArray
+    size: FloatArray
+
+
+def common_scale(problem: Problem, steps: Iterable[StepResult], number: int) -> Scale:
+    """Of some load steps, for a contact pair."""
+    faces: list[Pressed] = []
+    bodies: list[FloatArray] = []
+    slaves: list[FloatArray] = []
+    for step in steps:
+        surface = contact_surfaces(problem, step)[number]
+        points = body_points(problem, step.state.positions)
+        faces.append(_face(surface))
+        bodies += points.values()
+        slaves.append(np.concatenate([points[name] for name in _slaves(surface)]))
+    hardest = max(faces, key=lambda face: face.peak)
+    face = replace(hardest, pulls=any(face.pulls for face in faces))
+    near = np.concatenate(slaves)
+    floor = [_floor(surface.contact.master, near)] if isinstance(surface.contact.master, RigidPlane) else []
+    towards = _camera_towards(face.normal)
+    sizes = np.ptp([towards.corners(points) for points in slaves], axis=1)
+    return Scale(face, near, _VIEW.corners(np.concatenate([*bodies, *floor])), sizes.max(axis=0))
+
+
+def draw_bodies(problem: Problem, step: StepResult, number: int, scale: Scale | None = None) -> Figure:
     """The deformed bodies, and beside them the slave body of a contact pair, its contact face coloured by pressure.
 
     Parameters
@@ -38,12 +89,13 @@ def draw_bodies(problem: Problem, step: StepResult, number: int) -> Figure:
     step : StepResult
     number : int
         Of the contact pair.
+    scale : Scale, optional
+        That of other load steps too (`common_scale`); default: of this one, as large as the picture allows.
     """
     surface = contact_surfaces(problem, step)[number]
     points = body_points(problem, step.state.positions)
-    faces = surface.contact.slave.faces
-    slaves = {face.body for face in faces}
-    face = _face(surface)
+    faces, slaves = surface.contact.slave.faces, _slaves(surface)
+    face = scale.face if scale else _face(surface)
     colours = ScalarMappable(Normalize(0.0, face.peak), style.pressure_colours())
     figure = Figure(figsize=(8.6, 4.2), layout="constrained")
     whole, contact = figure.subplots(1, 2, width_ratios=(1.35, 1.0))
@@ -54,15 +106,14 @@ def draw_bodies(problem: Problem, step: StepResult, number: int) -> Figure:
         add_body(canvas, body, points[body.name], plain(colour), inside=_of_body([*glued, *faces], body))
     _add_contact(canvas, surface, colours)
     if isinstance(surface.contact.master, RigidPlane):
-        near = np.concatenate([points[name] for name in slaves])
-        margin = 0.2 * float(np.ptp(near, axis=0).max())
-        canvas.add_floor(plane_corners(surface.contact.master, near, margin), np.array(to_rgb(style.PLANE)))
-    canvas.paint(whole)
+        near = scale.near if scale else np.concatenate([points[name] for name in slaves])
+        canvas.add_floor(_floor(surface.contact.master, near), np.array(to_rgb(style.PLANE)))
+    canvas.paint(whole, scale.whole if scale else None)
     canvas = Canvas(_camera_towards(face.normal))
-    for name in sorted(slaves):
+    for name in slaves:
         add_body(canvas, problem.body(name), points[name], plain(style.SLAVE), inside=_of_body(faces, problem.body(name)))
     _add_contact(canvas, surface, colours)
-    canvas.paint(contact)
+    canvas.paint(contact, canvas.limits().mean(axis=0) + np.outer([-0.5, 0.5], scale.size) if scale else None)
     whole.set_title(f"{problem.name}, load step {step.step} ({step.stage})", loc="left")
     contact.set_title(f"{surface.contact.slave.body} from the master's side", loc="left")
     bar = figure.colorbar(colours, ax=contact, shrink=0.7, aspect=22, pad=0.02, extend="min" if face.pulls else "neither")
@@ -70,16 +121,17 @@ def draw_bodies(problem: Problem, step: StepResult, number: int) -> Figure:
     return figure
 
 
-@dataclass(frozen=True)
-class _Face:
-    """A sampled contact face: largest pressure, whether it pulls anywhere, mean outward normal where it presses."""
-
-    peak: float
-    pulls: bool
-    normal: FloatArray
+def _slaves(surface: ContactSurface) -> list[str]:
+    """Names of the bodies whose faces are the slave's side."""
+    return sorted({face.body for face in surface.contact.slave.faces})
 
 
-def _face(surface: ContactSurface) -> _Face:
+def _floor(plane: RigidPlane, near: FloatArray) -> FloatArray:
+    """Corners of the part of a plane that is drawn below some points."""
+    return plane_corners(plane, near, 0.2 * float(np.ptp(near, axis=0).max()))
+
+
+def _face(surface: ContactSurface) -> Pressed:
     matrices = _samplings(surface.directions, face_parts(surface.directions, _FINENESS_OF_CONTACT))
     points, pressure, _ = surface.fields(matrices)
     shape = (len(matrices[1]), len(matrices[0]))
@@ -88,7 +140,7 @@ def _face(surface: ContactSurface) -> _Face:
     weight = np.maximum(corner, 0.0) if corner.max() > 0 else np.ones_like(corner)
     normal = surface.outward * np.tensordot(weight, normals, axes=2)
     peak = max(float(pressure.max()), 1e-300)
-    return _Face(peak, bool(pressure.min() < -style.NOTHING * peak), normal / np.linalg.norm(normal))
+    return Pressed(peak, bool(pressure.min() < -style.NOTHING * peak), normal / np.linalg.norm(normal))
 
 
 def _camera_towards(normal: FloatArray) -> Camera:

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from isomortar.geometry.patch import FloatArray
 
+#: Left free round what is drawn, as a share of its size.
+_MARGIN = 0.01
 _EDGE = np.array([0.16, 0.18, 0.22])
 #: A sphere is drawn as discs, each within the one before, towards the light and brighter.
 _DISCS, _CORNERS = 6, 28
@@ -34,6 +36,10 @@ class Camera:
     def places(self, points: FloatArray) -> FloatArray:
         """Where points of shape (..., 3) appear in the picture, shape (..., 2)."""
         return points @ self.axes[:2].T
+
+    def corners(self, points: FloatArray) -> FloatArray:
+        """Lower left and upper right corner of where points of shape (n, 3) appear, with a small margin, shape (2, 2)."""
+        return _corners(self.places(points))
 
 
 class Canvas:
@@ -116,10 +122,7 @@ class Canvas:
 
     def limits(self) -> FloatArray:
         """Lower left and upper right corner of all that was added, with a small margin."""
-        everything = np.concatenate([group.reshape(-1, 3) for group in self._shapes])
-        low, high = everything[:, :2].min(axis=0), everything[:, :2].max(axis=0)
-        margin = 0.01 * (high - low).max()
-        return np.array([low - margin, high + margin])
+        return _corners(np.concatenate([group.reshape(-1, 3)[:, :2] for group in self._shapes]))
 
     def paint(self, axes: Axes, limits: FloatArray | None = None) -> None:
         """Paint all that was added, and show the part of it between `limits`, or all of it."""
@@ -141,6 +144,13 @@ class Canvas:
         self._depths.append(shapes[..., 2].mean(axis=1) + nearer)
         self._colours.append(np.column_stack([np.clip(colours, 0, 1), np.full(len(colours), opacity)]))
         self._widths.append(np.full(len(shapes), width))
+
+
+def _corners(places: FloatArray) -> FloatArray:
+    """Lower left and upper right corner about places in a picture, with a small margin, shape (2, 2)."""
+    low, high = places.min(axis=0), places.max(axis=0)
+    margin = _MARGIN * (high - low).max()
+    return np.array([low - margin, high + margin])
 
 
 def _normals(corners: FloatArray, outward: int) -> FloatArray:

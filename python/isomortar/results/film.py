@@ -1,0 +1,105 @@
+"""A film of a run: bodies and contact pressure load step after load step, from one place and on one scale."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Sequence
+from io import BytesIO
+from pathlib import Path
+
+from PIL import Image
+
+from isomortar.errors import InputError, ResultsError
+from isomortar.results.bodies import common_scale, draw_bodies
+from isomortar.results.files import writing
+from isomortar.results.reader import Results
+from isomortar.results.style import style
+from isomortar.solve.record import StepResult
+
+#: Types of films, and what Pillow calls them.
+FORMATS = {".gif": "GIF", ".webp": "WEBP"}
+#: Pixels per inch: 8.6 inches are as wide as most windows.
+DENSITY = 110
+
+
+def film(
+    results_path: str | os.PathLike[str],
+    output: str | os.PathLike[str],
+    *,
+    contact: str | None = None,
+    every: int = 1,
+    rate: float = 8.0,
+    tell: Callable[[int, int], None] | None = None,
+) -> Path:
+    """Film the bodies and the pressure of one contact.
+
+    Parameters
+    ----------
+    results_path : path-like
+    output : path-like
+        A .gif or .webp file.
+    contact : str, optional
+        Whose pressure is in colour; default: the first one's.
+    every : int
+        Of the load steps one in so many is shown, the last one always.
+    rate : float
+        Pictures per second.
+    tell : callable, optional
+        Told how many pictures of how many are drawn.
+
+    Returns
+    -------
+    Path
+        The film's.
+
+    Raises
+    ------
+    InputError
+        There is no such contact, or no such type of film; `every` or `rate` is too small.
+    ResultsError
+        The results file is missing, damaged, or holds too few states; or the film cannot be written.
+    """
+    path = Path(output)
+    if path.suffix not in FORMATS:
+        raise InputError(f"is {path.name!r}; allowed: a name that ends in {' or '.join(FORMATS)}", "output")
+    if every < 1 or not 0.0 < rate <= 100.0:
+        raise InputError(f"is {every} and {rate:g}; allowed: 1 and more, and up to 100 a second", "every, rate")
+    with Results(results_path) as results, style():
+        number = _number(results, contact)
+        shown = _shown(results, every)
+        scale = common_scale(results.problem, _states(results, shown), number)
+        pictures = []
+        for step in _states(results, shown):
+            drawn = BytesIO()
+            draw_bodies(results.problem, step, number, scale).savefig(drawn, format="png", dpi=DENSITY)
+            pictures.append(Image.open(drawn).convert("RGB"))
+            if tell:
+                tell(len(pictures), len(shown))
+    with writing(path):
+        pictures[0].save(path, FORMATS[path.suffix], save_all=True, append_images=pictures[1:], duration=round(1000.0 / rate), loop=0)
+    return path
+
+
+def _number(results: Results, contact: str | None) -> int:
+    """Of a contact by its name, or of the first one."""
+    names = [c.name for c in results.problem.contacts]
+    if not names:
+        raise ResultsError(f"{results.path} has no contact that could be filmed")
+    if contact is not None and contact not in names:
+        raise InputError(f"is {contact!r}; allowed: {', '.join(names)}", "contact")
+    return names.index(contact) if contact is not None else 0
+
+
+def _shown(results: Results, every: int) -> Sequence[int]:
+    """Numbers of the load steps in the film: the last one, and one in so many before it."""
+    kept = [int(number) for number in results.kept_states]
+    if len(kept) < 2:
+        raise ResultsError(
+            f"{results.path} holds {len(kept)} state of a load step, and a film needs two: compute more steps, with record.states = 'every'"
+        )
+    return kept[::-1][::every][::-1]
+
+
+def _states(results: Results, numbers: Sequence[int]) -> Iterator[StepResult]:
+    """One after the other: a film takes no more memory than its pictures."""
+    return (results.step(number) for number in numbers)

@@ -1,0 +1,68 @@
+"""Films of runs: which load steps, on which scale, and what cannot be filmed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+from PIL import Image
+
+import isomortar
+from isomortar.errors import InputError
+from isomortar.results import ResultsWriter
+from isomortar.results.bodies import common_scale, draw_bodies
+from results_samples import problem
+from test_results_pictures import quiet
+
+
+@pytest.fixture
+def results_path(tmp_path: Path) -> Path:
+    path = tmp_path / "run.h5"
+    writer = ResultsWriter(path, problem(), "", "0")
+    for number in range(1, 5):
+        writer.recorded(quiet(number))
+    return path
+
+
+def test_a_film_shows_one_load_step_in_so_many_and_the_last_one(results_path: Path, tmp_path: Path) -> None:
+    told = []
+    path = isomortar.film(results_path, tmp_path / "run.gif", every=3, rate=5.0, tell=lambda *done: told.append(done))
+    with Image.open(path) as pictures:
+        assert (pictures.format, pictures.n_frames, pictures.info["loop"], pictures.info["duration"]) == ("GIF", 2, 0, 200)
+        first = np.asarray(pictures.convert("RGB"), float)
+        pictures.seek(1)
+        assert np.abs(np.asarray(pictures.convert("RGB"), float) - first).max() > 50.0
+    assert told == [(1, 2), (2, 2)]
+
+
+def corners(figure: Figure, picture: int) -> np.ndarray:
+    """Lower left and upper right one of what is seen."""
+    axes = figure.axes[picture]
+    return np.transpose([axes.get_xlim(), axes.get_ylim()])
+
+
+@pytest.mark.parametrize("number", [0, 1])
+def test_all_pictures_of_a_film_have_one_scale(number: int) -> None:
+    """Nothing leaves them, and the hardest pressure of all has the end of the colours."""
+    made, steps = problem(), [quiet(k) for k in range(1, 4)]
+    scale = common_scale(made, steps, number)
+    single = [draw_bodies(made, step, number) for step in steps]
+    together = [draw_bodies(made, step, number, scale) for step in steps]
+    hardest = max(figure.axes[2].get_ylim()[1] for figure in single)
+    assert [figure.axes[2].get_ylim()[1] for figure in together] == pytest.approx([hardest] * len(steps))
+    for one in together:
+        assert np.array_equal(corners(one, 0), corners(together[0], 0))
+        assert np.ptp(corners(one, 1), axis=0) == pytest.approx(scale.size)
+        for picture in (0, 1):
+            low, high = corners(one, picture)
+            drawn = np.concatenate([path.vertices for path in one.axes[picture].collections[0].get_paths()])
+            assert (drawn >= low).all()
+            assert (drawn <= high).all()
+
+
+def test_what_cannot_be_filmed_leaves_no_file(results_path: Path, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="is 'sky'; allowed: tread, ground"):
+        isomortar.film(results_path, tmp_path / "run.gif", contact="sky")
+    assert not (tmp_path / "run.gif").exists()
