@@ -6,8 +6,10 @@ import math
 from datetime import datetime
 from pathlib import Path
 
+import keep_front
 import numpy as np
 import pytest
+from fronts import recommended
 
 from isomortar.errors import InputError, IsomortarError
 from isomortar.harness.runner import local_processes
@@ -358,7 +360,7 @@ def test_a_knob_is_one_entry(scene, tmp_path):
 # The whole, on a tiny scene
 
 
-def test_a_search_that_was_killed_goes_on_to_the_same_answer(scene, tmp_path):
+def test_a_search_that_was_killed_goes_on_to_the_same_answer(scene, tmp_path, monkeypatch):
     knobs = [knob for knob in KNOBS if knob.name in ("elements", "load steps")]
     dials = dials_of(scene, knobs=knobs)
     wants = [wanted("force.top.z", scene.problem())]
@@ -388,6 +390,24 @@ def test_a_search_that_was_killed_goes_on_to_the_same_answer(scene, tmp_path):
     data = json.loads(page.write(tmp_path, scene, *(second[0], [second[1]]), datetime.now().astimezone()).with_suffix(".json").read_text())
     assert data["answers"][0]["error"] <= 0.5
     assert np.isfinite(data["uncertainty"])
+    _kept_and_run_again(tmp_path, data, monkeypatch)
+
+
+def _kept_and_run_again(trade, data, monkeypatch):
+    """What a trade found is kept as a reference; its recommendation is as near to the truth as it was."""
+    kept = trade / "kept"
+    (kept / "scenes").mkdir(parents=True)
+    (kept / "scenes" / "tiny-within-7-percent.toml").write_text("of an earlier trade")
+    keep_front.keep(trade, kept, kept / "scenes")
+    monkeypatch.setattr(recommended, "REFERENCES", kept)
+    monkeypatch.setattr(recommended, "FOLDER", kept / "scenes")
+    (name,) = (path.stem for path in (kept / "scenes").iterdir())
+    found = recommended.recommended.function(name)
+    assert recommended.target(name) == 0.5
+    assert found["error"] == pytest.approx(data["answers"][0]["error"], rel=1e-9)
+    front = recommended.truth_of(name).dataset("front/error").values
+    assert front == pytest.approx([run["error"] for run in data["front"]])
+    assert (np.diff(front) < 0).all()
 
 
 # CheaperSearch: the scene as it is is the truth

@@ -123,6 +123,7 @@ def _data(scene: Scene, search: Search, answers: Sequence[Recommendation], start
         **identity(),
         "wanted": [want.text for want in search.wants],
         "uncertainty": search.uncertainty,
+        "truth": search.truth.numbers if search.truth else {},
         "front": [
             {"name": o.name, "error": search.error(o), "cpu_seconds": o.cost}
             for o in figures.pareto(search, [o for o in search.laboratory.outcomes.values() if o not in (search.truth, search.rival)])
