@@ -53,11 +53,11 @@ def truth_of(name: str) -> Reference:
 def recommended(name: str) -> dict[str, float]:
     """Compute the scene; compare what is wanted with the truth as the trade did."""
     kept = truth_of(name)
-    truth = _tried({key: kept.dataset(key).values for key in KEPT})
+    truth = _tried({key: expected.values for key in KEPT if (expected := kept.dataset(key))})
     path = FOLDER / f"{name}.toml"
     want = wanted(kept.record["wanted"], Scene.load(path).problem())
     run = trades.traded.function(str(path))
-    return {"error": Yardstick(want, truth, truth).error(_tried(run)), **{key: run[key] for key in ("cpu_seconds", "unknowns", "solves")}}
+    return {"error": Yardstick(want, truth, truth).error(_tried(dict(run))), **{key: run[key] for key in ("cpu_seconds", "unknowns", "solves")}}
 
 
 def _tried(numbers: dict[str, Any]) -> Tried:
