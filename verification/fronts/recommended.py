@@ -57,7 +57,10 @@ def recommended(name: str) -> dict[str, float]:
     path = FOLDER / f"{name}.toml"
     want = wanted(kept.record["wanted"], Scene.load(path).problem())
     run = trades.traded.function(str(path))
-    return {"error": Yardstick(want, truth, truth).error(_tried(dict(run))), **{key: run[key] for key in ("cpu_seconds", "unknowns", "solves")}}
+    return {
+        "error": Yardstick(want, truth, truth).error(_tried(dict(run))),
+        **{key: run[key] for key in ("cpu_seconds", "unknowns", "solves")},
+    }
 
 
 def _tried(numbers: dict[str, Any]) -> Tried:
