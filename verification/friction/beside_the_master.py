@@ -45,10 +45,10 @@ def beside_the_master(projection: str, enforcement: str) -> dict[str, float]:
     """Worst over places of the master's edge."""
     contacts = hanging(projection, enforcement)
     return {
-        "active": max(contact.active for contact in contacts),
+        "active": float(np.max([contact.active for contact in contacts])),
         "penetration": float(np.maximum(0.0, np.max([contact.gap for contact in contacts]))),
         "force": float(np.max(np.abs([contact.force_slave for contact in contacts]))),
-        "beside": min(contact.excluded for contact in contacts),
+        "beside": float(np.min([contact.excluded for contact in contacts])),
     }
 
 
@@ -64,4 +64,4 @@ def beside_the_master(projection: str, enforcement: str) -> dict[str, float]:
 def gap_beside_the_master(enforcement: str) -> dict[str, float]:
     """Worst over places of the master's edge; averaged normals' gaps are those of all points of a function, and smaller."""
     gaps = [contact.gap[contact.gap != 0.0] for contact in hanging("closest", enforcement)]
-    return {"gap": float(np.max(np.abs(np.concatenate(gaps) / -0.009 - 1.0))), "told": min(len(told) for told in gaps)}
+    return {"gap": float(np.max(np.abs(np.concatenate(gaps) / -0.009 - 1.0))), "told": float(np.min([len(told) for told in gaps]))}

@@ -247,7 +247,7 @@ def bodies_of_tiles(turned: str) -> dict[str, float]:
     expected = through(right)
     found = [through(oriented(right, turned, *way)) for way in orientations()]
     return {
-        "away": max(float(np.abs(pairs - expected).max()) for pairs in found),
+        "away": float(np.max([np.abs(pairs - expected).max() for pairs in found])),
         "thickness": float(np.abs(expected[:, 0] - expected[:, 1]).max()),
     }
 
