@@ -195,7 +195,7 @@ def _moved(places: FloatArray, numbering: Numbering, name: str) -> bool:
 def tier_of_way(way: int, turned: str) -> Tier:
     """The gate has half of the ways once: each order of the directions is that of the first tile, and of the last one.
 
-    `any_orientation` has all of them.
+    `any_orientation` has all of them, of two halves.
     """
     order, flips = divmod(way, 4)
     of_the_first = (order + flips // 2) % 2 == 0

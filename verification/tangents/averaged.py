@@ -139,7 +139,7 @@ def tier(master: str, place: str, state: str) -> Tier:
     Of lines and corners of curved elements it has one side each, and of states that where points stick beside others that slip.
     """
     chosen = (master == "L1" and place == "inside") or (master in ("L1", "L2") and state == "mixed")
-    spared = master == "L2" and place in ("line: behind", "corner: before")
+    spared = master == "L3" or (master == "L2" and place in ("line: behind", "corner: before"))
     return "gate" if (chosen or (place, state) == ("inside", "mixed")) and not spared else "nightly"
 
 
