@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy import stats
 
 from isomortar.geometry.patch import FloatArray
+from isomortar.harness.orders import regression
 
 
 def fall(counts: Sequence[float] | FloatArray, errors: Sequence[float] | FloatArray) -> dict[str, float]:
@@ -20,6 +20,5 @@ def fall(counts: Sequence[float] | FloatArray, errors: Sequence[float] | FloatAr
     dict
         ``order``, ``low``, ``high``.
     """
-    line = stats.linregress(np.log(counts), np.log(errors))
-    order, half = -float(line.slope), float(stats.t.ppf(0.975, len(counts) - 2) * line.stderr)
-    return {"order": order, "low": order - half, "high": order + half}
+    slope, half = regression(np.log(counts), np.log(errors))
+    return {"order": -slope, "low": -slope - half, "high": -slope + half}

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy import stats
 
 from isomortar.harness.orders import Convergence, estimate_order
 
@@ -111,3 +112,13 @@ def test_what_is_no_sequence_is_invalid(sizes, errors, others, expected):
     assert estimate.judgement == "invalid"
     assert estimate.why
     assert np.isnan(estimate.order)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_order_and_interval_are_those_of_a_regression(seed: int) -> None:
+    x = np.log(H[-4:])
+    errors = np.exp(2.7 * x + 0.05 * np.random.default_rng(seed).standard_normal(4))
+    line = stats.linregress(x, np.log(errors))
+    half = max(stats.t.ppf(0.975, 2) * line.stderr, 0.05)
+    estimate = estimate_order(Convergence(H[-4:], errors, {"quadrature": 1e-3 * errors}), 3)
+    assert [estimate.order, estimate.low, estimate.high] == pytest.approx([line.slope, line.slope - half, line.slope + half], rel=1e-9)

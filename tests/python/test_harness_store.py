@@ -111,6 +111,25 @@ def test_all_ways_to_import_count(root, how):
 
 
 @pytest.mark.usefixtures("unhashed")
+@pytest.mark.parametrize(
+    "text",
+    [
+        "def f():\n    import helper\n",
+        "class A:\n    def f(self):\n        if True:\n            import helper\n",
+        "try:\n    pass\nexcept OSError:\n    import helper\nelse:\n    pass\nfinally:\n    pass\n",
+        "with open('x') as f:\n    for _ in f:\n        from helper import SCALE\n",
+        "match 1:\n    case 1:\n        import helper as h\n",
+        "async def f():\n    while True:\n        import helper\n",
+    ],
+)
+def test_imports_are_found_wherever_they_stand(tmp_path, text):
+    (tmp_path / "helper.py").write_text("SCALE = 1\n")
+    file = tmp_path / "family" / "cases.py"
+    file.parent.mkdir()
+    file.write_text(text)
+    assert store._imports_of(file, tmp_path) == {tmp_path / "helper.py"}
+
+
 def test_a_file_is_read_for_its_imports_once_for_all_runs_and_cases(root, monkeypatch):
     """A study has a cell a scene file, and many cases import the same: reading anew for each took most of a minute."""
     read, parse = [], ast.parse

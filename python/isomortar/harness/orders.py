@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import stats
+from scipy.special import stdtrit
 
 from isomortar.geometry.patch import FloatArray
 
@@ -76,11 +76,18 @@ def estimate_order(convergence: Convergence, expected: float) -> OrderEstimate:
         return OrderEstimate(np.nan, np.nan, np.nan, (), "invalid", fault)
     sizes, errors = np.asarray(convergence.sizes, float), np.asarray(convergence.errors, float)
     steps = np.diff(np.log(errors)) / np.diff(np.log(sizes))
-    line = stats.linregress(np.log(sizes[-WINDOW:]), np.log(errors[-WINDOW:]))
-    half = max(float(stats.t.ppf(0.975, WINDOW - 2) * line.stderr), RESOLUTION)
-    order = float(line.slope)
+    order, half = regression(np.log(sizes[-WINDOW:]), np.log(errors[-WINDOW:]))
+    half = max(half, RESOLUTION)
     judgement, why = _judge(order, half, expected, steps[-WINDOW + 1 :], _over_budget(convergence, errors))
     return OrderEstimate(order, order - half, order + half, tuple(float(s) for s in steps), judgement, why)
+
+
+def regression(x: FloatArray, y: FloatArray) -> tuple[float, float]:
+    """Slope of the line through points by least squares, and half of its 95 % interval, Student's."""
+    x, y = x - x.mean(), y - y.mean()
+    slope, free = float(x @ y / (x @ x)), len(x) - 2
+    left = y - slope * x
+    return slope, float(stdtrit(free, 0.975) * np.sqrt(left @ left / free / (x @ x)))
 
 
 def _fault(convergence: Convergence, expected: float) -> str:

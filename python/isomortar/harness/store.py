@@ -160,7 +160,7 @@ def _sources(path: Path) -> list[Path]:
 def _imports_of(path: Path, cases: Path) -> set[Path]:
     """What a file imports itself. Read once, as many cases import the same."""
     files: set[Path] = set()
-    for node in ast.walk(ast.parse(path.read_text())):
+    for node in _statements(ast.parse(path.read_text())):
         names: list[str] = []
         within = [cases, _PACKAGE.parent]
         if isinstance(node, ast.Import):
@@ -171,6 +171,14 @@ def _imports_of(path: Path, cases: Path) -> set[Path]:
         bases = [root.joinpath(*name.split(".")) for name in names for root in within]
         files |= {file for base in bases for file in (base.with_suffix(".py"), base / "__init__.py") if file.is_file()}
     return {file for file in files if (file.is_relative_to(cases) or file.is_relative_to(_PACKAGE)) and file != _ENTRANCE}
+
+
+def _statements(node: ast.AST) -> Iterator[ast.AST]:
+    """What stands below a node, but for expressions, which import nothing and are most of a file."""
+    for below in ast.iter_child_nodes(node):
+        if not isinstance(below, ast.expr):
+            yield below
+            yield from _statements(below)
 
 
 def _content_hash(measurement: dict[str, Any]) -> str:

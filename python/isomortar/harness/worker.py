@@ -7,6 +7,7 @@ standard output.
 from __future__ import annotations
 
 import contextlib
+import functools
 import json
 import os
 import queue
@@ -120,9 +121,10 @@ def serve(measure: Callable[[Cell], Measurement] = measure) -> None:
         os._exit(0)
 
     threading.Thread(target=read, daemon=True).start()
+    known = functools.cache(cases_of)  # a file is read once, as its module is
     while True:
         task = json.loads(tasks.get())
-        case = next(c for c in cases_of(Path(task["path"])) if c.name == task["case"])
+        case = next(c for c in known(Path(task["path"])) if c.name == task["case"])
         sources = sources_hash(case)  # before: a long case may outlive an edit
         measurement = replace(measure(Cell(case, task["settings"])), sources=sources)
         answers.write(json.dumps(asdict(measurement)).encode() + b"\n")

@@ -303,7 +303,7 @@ class SolverSettings:
     """Error of the multipliers that a load increment may make, estimated by halving it; absent: the load steps as given."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Problem:
     """A whole computation, ready for `isomortar.solve`: plain data, no unknowns, no state.
 

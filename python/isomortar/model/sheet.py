@@ -14,6 +14,7 @@ from isomortar.geometry.net import BESIDE, Net
 from isomortar.geometry.patch import Direction, IntArray, Patch
 from isomortar.model.entities import Body, Face, Problem
 from isomortar.model.numbering import Numbering, patch_arrays
+from isomortar.model.remembered import remembered
 
 
 @dataclass(frozen=True)
@@ -52,9 +53,7 @@ class Sheet:
         InputError
             Its faces do not join to one, row by row and column by column.
         """
-        if len(place.faces) == 1:
-            return cls.of_face(problem.body(place.body), place.face)
-        return _joined(problem, place)
+        return _of(problem, place)
 
     @classmethod
     def of_face(cls, body: Body, face: str) -> Sheet:
@@ -94,6 +93,11 @@ class Sheet:
     def arrays(self, numbering: Numbering) -> tuple[PatchArrays, int, int]:
         """The patch, with global control points, the axis across the face and its end there, as the kernel takes them."""
         return patch_arrays(self.patch, self.points(numbering)), 3, int(self.face[1])
+
+
+@remembered
+def _of(problem: Problem, place: Face) -> Sheet:
+    return _joined(problem, place) if len(place.faces) > 1 else Sheet.of_face(problem.body(place.body), place.face)
 
 
 @dataclass(frozen=True, eq=False)

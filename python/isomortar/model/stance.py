@@ -9,6 +9,7 @@ import numpy as np
 from isomortar.geometry.faces import Cells, cells
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model.entities import Contact, Face, Problem, RigidPlane
+from isomortar.model.remembered import remembered
 from isomortar.model.sheet import Sheet
 
 #: Faces whose outward normals include more than about 96 degrees face each other.
@@ -48,6 +49,7 @@ class Stance:
     behind: bool
 
 
+@remembered
 def stance(problem: Problem, contact: Contact) -> Stance:
     """How a pair stands."""
     sheet = Sheet.of(problem, contact.slave)
