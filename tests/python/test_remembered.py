@@ -39,9 +39,9 @@ def test_sides_are_forgotten_with_their_problem() -> None:
 def test_errors_are_raised_every_time() -> None:
     @remembered
     def fails(problem: Problem, place: Face) -> None:
-        raise InputError(f"{place.words}: no")
+        raise InputError(f"{problem.name}, {place.words}: no")
 
     problem = isomortar.Scene.load("press").problem()
     for _ in range(2):
-        with pytest.raises(InputError, match=r"block\.u0: no"):
+        with pytest.raises(InputError, match=r"press, block\.u0: no"):
             fails(problem, Face("block", "u0"))
