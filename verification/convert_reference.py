@@ -107,7 +107,7 @@ def _contact(contact: dict[str, Any], bodies: list[str]) -> dict[str, Any]:
         plane = contact["plane"]
         _only(plane, "plane", "point", "normal", "t1")
         table["plane"] = {"tangent" if key == "t1" else key: vector for key, vector in plane.items()}
-    table |= {"friction": float(contact.get("mu", 0.0)), "reference_area": 1.0}
+    table |= {"friction": float(contact.get("mu", 0.0)), "reference_area": 1.0, "subcells": 0}
     if contact.get("quad"):
         table["quadrature"] = contact["quad"]
     return table

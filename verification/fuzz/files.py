@@ -134,7 +134,7 @@ def endings(first: int, count: int) -> Iterator[tuple[int, Ending]]:
     claim="A results file that is cut short, damaged or edited is refused by plot, export and resume, and left as it is; one that is as it "
     "was written is taken. No traceback, signal or hang, and never numbers that were not computed.",
     tier=lambda count: "gate" if count < 100 else "nightly",
-    grid={"count": (40, 400)},
+    grid={"count": (25, 400)},
     bounds={
         "right": Bound(at_least=0.03, at_most=0.4, reason="definition: files that were left alone, or sealed again"),
         "refused": Bound(at_most=0.4, reason="definition: what a file is refused for is no matter of the scene"),

@@ -201,7 +201,7 @@ def endings(first: int, count: int) -> Iterator[tuple[int, Ending]]:
     claim="Fuzzed scenes end right, refused, or stopped with a sentence: no traceback, signal, hang, no numbers that are none, forces in "
     "balance, contact conditions met, the same in other units and with tables in another order.",
     tier=lambda count: "gate" if count < 100 else "nightly",
-    grid={"count": (20, 400)},
+    grid={"count": (12, 400)},
     bounds={
         "right": Bound(at_least=0.15, at_most=1.0, reason="definition: enough of the scenes run to be looked at"),
         "refused": Bound(at_least=0.15, at_most=1.0, reason="definition: enough of the scenes make no sense"),

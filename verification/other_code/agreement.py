@@ -18,7 +18,7 @@ QUICK = {
         *(f"{name}{FIRST}12" for name in ("twist_N3", "iron_N3")),
         *(f"twist_N2{FIRST}14", f"tire_N2_32_q{FIRST}13"),
     ),
-    "tight": ("press_L2", f"twist_N3{FIRST}8", f"tire_L2{FIRST}3", f"tire_N2{FIRST}3"),
+    "tight": ("press_L2", f"twist_N3{FIRST}6", f"tire_L2{FIRST}3", f"tire_N2{FIRST}3"),
 }
 
 _NEWTON = "round-off: Newton's 1e-11 and contact conditions to 1e-10 here; the rest is the reference's uncertainty"

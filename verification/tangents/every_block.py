@@ -84,6 +84,7 @@ def planted(blocks: PartBlocks) -> list[bool]:
 
 @case(
     claim="Every block of the tangent is exact, none is missing, and a scaling of any one of them by 1 + 1e-6 or 1 - 1e-6 is seen.",
+    tier=lambda slip_sum: "gate" if slip_sum == "local" else "nightly",
     grid={"slip_sum": ("local", "paper")},
     bounds={
         **dict.fromkeys(PARTS, _ROUND_OFF),
