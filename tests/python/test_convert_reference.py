@@ -148,14 +148,15 @@ def test_nothing_is_dropped_silently(tmp_path: Path) -> None:
 
 def test_cells_are_whole_as_there(tmp_path: Path) -> None:
     """The other program integrates over whole elements, at p + 3 points, whatever this one would do by itself."""
-    cubic, line = [0.0] * 4 + [1.0] * 4, [i / 3 for i in range(4)]
 
-    def block(low: float) -> dict[str, Any]:
+    def block(low: float, *inner: float) -> dict[str, Any]:
+        knots, n = [[0.0] * 4 + [*inner] + [1.0] * 4] * 2 + [[0.0, 0.0, 1.0, 1.0]], 4 + len(inner)
+        line = np.linspace(0.0, 1.0, n).tolist()
         points = [[x, y, low + h] for h in (0.0, 0.5) for y in line for x in line]
-        patch = {"kind": ["N"] * 3, "degrees": [3, 3, 1], "knots": [cubic, cubic, [0, 0, 1, 1]], "n": [4, 4, 2]}
-        return {"name": "block", "E": 1.0, "nu": 0.3, "patch": patch | {"control_points": points, "weights": [1.0] * 32}}
+        patch = {"kind": ["N"] * 3, "degrees": [3, 3, 1], "knots": knots, "n": [n, n, 2]}
+        return {"name": "block", "E": 1.0, "nu": 0.3, "patch": patch | {"control_points": points, "weights": [1.0] * (2 * n * n)}}
 
-    explicit = without_conflict() | {"bodies": [block(0.5), block(0.0)]}
+    explicit = without_conflict() | {"bodies": [block(0.5), block(0.0, 0.4)]}
     explicit["contact"] = {"slave": {"body": 0, "face": "w0"}, "master": {"body": 1, "face": "w1"}, "mu": 0.25}
     source = tmp_path / "cubic.json"
     source.write_text(json.dumps(explicit))

@@ -29,7 +29,7 @@ def turned(angle: float, steps: int) -> list[StepResult]:
 
 @case(
     claim="A turn in one load step, past a half and past whole turns, ends where many small load steps end.",
-    tier="gate",
+    tier=lambda angle: "nightly" if angle == 720.0 else "gate",
     grid={"angle": (170.0, 350.0, 360.0, -360.0, 720.0)},
     bounds={
         "moment": Bound(at_most=1e-9, reason="theory: without contact the path does not matter; Newton's method stops at 1e-10"),

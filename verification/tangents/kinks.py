@@ -79,7 +79,7 @@ def bounds(order: int, side: str) -> dict[str, Bound]:
 
 @case(
     claim="Where feet are on C0 lines the tangent is exact in every part, and contact forces and moments are in balance.",
-    tier=lambda order, side: "gate" if (order == 1) == (side == "ridges") else "nightly",
+    tier=lambda order, side: "gate" if (order == 1) == (side == "valleys") else "nightly",
     grid={"order": [1, 2], "side": list(MOVED)},
     bounds=bounds,
 )
