@@ -138,7 +138,7 @@ _INTERVAL = "theory: the 95 % interval holds order 1, and neither 0 (no fall) no
 
 @case(
     claim="A sphere has Hertz's peak pressure within 1 % and his contact radius within an element, on a plane and on a sphere.",
-    tier=lambda kind, master: "gate" if (kind, master) == ("N2", "plane") else "nightly",
+    tier=lambda kind, master: "gate" if kind == "N2" else "nightly",  # noqa: ARG005
     grid={"kind": ("N2", "N3", "N4"), "master": MASTERS},
     bounds={
         "peak": Bound(at_most=0.01, reason=_PEAK),

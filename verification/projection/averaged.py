@@ -200,6 +200,7 @@ def bounds(order: int, place: str) -> dict[str, Bound]:  # noqa: ARG001
 @case(
     claim="Along averaged normals feet, gaps, slips and weights are what their definition says, and forces do the work of pressures along "
     "the normal and of tractions in the slave's basis.",
+    tier=lambda order, place: "gate" if (order == 2) == (place == "inside") else "nightly",
     grid={"order": (1, 2), "place": tuple(MOVED)},
     bounds=bounds,
 )
