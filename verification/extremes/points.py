@@ -13,8 +13,8 @@ from typing import Any
 from extremes.endings import Ending
 
 from isomortar.errors import InputError
-from isomortar.harness.cases import Bound, Case, Cell
-from isomortar.harness.measurement import Measurement, words_of
+from isomortar.harness.cases import Bound, Case, Cell, Words
+from isomortar.harness.measurement import Measurement, restored
 from isomortar.harness.runner import Result
 from isomortar.harness.store import write_whole
 
@@ -65,7 +65,7 @@ def is_point(cell: Cell) -> bool:
 def point_of(measurement: Measurement) -> Point:
     """A point from the measurement of its cell; what ended in another way than by a measurement is wrong."""
     numbers = measurement.numbers
-    words = words_of(numbers.get("words"))
+    words = restored(numbers.get("words"), Words)
     ending, kept = numbers.get("ending"), numbers.get("digits")
     if measurement.ending != "measured" or words is None or not isinstance(ending, float) or not isinstance(kept, float):
         return Point(Ending.WRONG, 0.0, measurement.reason)

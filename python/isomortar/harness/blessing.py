@@ -14,9 +14,9 @@ import numpy as np
 from isomortar.errors import InputError
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import svg
-from isomortar.harness.cases import Case, Cell, Matches
+from isomortar.harness.cases import Case, Cell, Curve, Matches
 from isomortar.harness.compare import Lookup
-from isomortar.harness.measurement import curve_of
+from isomortar.harness.measurement import restored
 from isomortar.harness.references import Reference, dataset_name, made_by, write_reference
 from isomortar.harness.report import template
 from isomortar.harness.runner import Result
@@ -74,7 +74,7 @@ def changes(results: Sequence[Result], lookup: Lookup) -> list[Change]:
             if result.measurement.ending != "measured" or check.state == "not measured":
                 raise InputError("was not measured: only a green run can be blessed", f"{result.cell.name}.{check.name}")
             value = result.measurement.numbers[check.name]
-            curve = curve_of(value)
+            curve = restored(value, Curve)
             new = np.asarray(value if curve is None else curve.y, float)
             if not (new.size and np.isfinite(new).all()):
                 raise InputError("is empty or not finite: it can be no reference", f"{result.cell.name}.{check.name}")

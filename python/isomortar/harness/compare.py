@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from isomortar.geometry.patch import FloatArray
-from isomortar.harness.cases import Bound, Cell, Claim, Curve, Matches, Order, Shown
-from isomortar.harness.measurement import Measurement, Stored, convergence_of, curve_of, real_numbers, words_of
-from isomortar.harness.orders import OrderEstimate, estimate_order
+from isomortar.harness.cases import Bound, Cell, Claim, Curve, Matches, Order, Shown, Words
+from isomortar.harness.measurement import Measurement, Stored, real_numbers, restored
+from isomortar.harness.orders import Convergence, OrderEstimate, estimate_order
 
 #: Best first. Only ``passed`` passes.
 CheckState = Literal["passed", "missing reference", "not measured", "skipped", "failed", "crashed", "timed out"]
@@ -110,16 +110,14 @@ def judge(cell: Cell, measurement: Measurement, lookup: Lookup) -> list[Check]:
 def _check(cell: Cell, name: str, claim: Claim, value: Stored, lookup: Lookup) -> Check:
     if isinstance(claim, Order):
         return _check_order(name, claim, value)
-    said = words_of(value)
-    if said is not None:
+    if (said := restored(value, Words)) is not None:
         shown = isinstance(claim, Shown)
         found = said.text if shown else "words, not numbers"
         return Check(name, "passed" if shown else "failed", np.nan, _limit(claim), found, claim.reason)
-    curve = curve_of(value)
+    curve = restored(value, Curve)
     if curve is None and isinstance(value, dict):
         return Check(name, "failed", np.nan, _limit(claim), "a convergence sequence: its claim must be an Order", claim.reason)
-    fault = curve_fault(curve) if curve else ""
-    if fault:
+    if curve and (fault := curve_fault(curve)):
         return Check(name, "failed", np.nan, _limit(claim), fault, claim.reason)
     entries = np.asarray(value if curve is None else curve.y, float)
     if isinstance(claim, Matches):
@@ -147,8 +145,7 @@ def curve_fault(curve: Curve) -> str:
 
 
 def _check_order(name: str, claim: Order, value: Stored) -> Check:
-    convergence = convergence_of(value)
-    if convergence is None:
+    if (convergence := restored(value, Convergence)) is None:
         return Check(name, "failed", np.nan, _limit(claim), "not a Convergence", claim.reason)
     estimate = estimate_order(convergence, claim.expected)
     state: CheckState = "passed" if estimate.judgement == "confirmed" else "failed"

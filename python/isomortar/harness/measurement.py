@@ -10,7 +10,7 @@ import traceback
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 
@@ -25,6 +25,7 @@ from isomortar.program.process import Ending
 LARGEST_WHOLE = 2**53
 #: A measured value as it is stored: number, nested list, Convergence, Curve or Words as a dict, None where there is none.
 Stored = float | list[Any] | dict[str, Any] | None
+_Kind = TypeVar("_Kind", Convergence, Curve, Words)
 
 
 @dataclass(frozen=True)
@@ -150,22 +151,8 @@ def _masked(value: Any) -> bool:
     return isinstance(value, np.ma.MaskedArray) or (isinstance(value, list | tuple) and any(map(_masked, value)))
 
 
-def convergence_of(value: Stored) -> Convergence | None:
-    """The convergence sequence that was stored, or None if it was something else."""
-    if isinstance(value, dict) and value.get("type") == "convergence":
-        return Convergence(value["sizes"], value["errors"], value["others"])
-    return None
-
-
-def curve_of(value: Stored) -> Curve | None:
-    """The curve that was stored, or None if it was something else."""
-    if isinstance(value, dict) and value.get("type") == "curve":
-        return Curve(**{name: entry for name, entry in value.items() if name != "type"})
-    return None
-
-
-def words_of(value: Stored) -> Words | None:
-    """The words that were stored, or None if it was something else."""
-    if isinstance(value, dict) and value.get("type") == "words":
-        return Words(value["text"])
+def restored(value: Stored, kind: type[_Kind]) -> _Kind | None:
+    """What was stored as one of these kinds, or None if it was something else."""
+    if isinstance(value, dict) and value.get("type") == kind.__name__.lower():
+        return kind(**{name: entry for name, entry in value.items() if name != "type"})
     return None

@@ -17,9 +17,10 @@ import jinja2
 import numpy as np
 
 from isomortar.harness import history, svg
-from isomortar.harness.cases import Bound, Order
+from isomortar.harness.cases import Bound, Curve, Order
 from isomortar.harness.compare import CHECK_STATES, Check, worst
-from isomortar.harness.measurement import convergence_of, curve_of
+from isomortar.harness.measurement import restored
+from isomortar.harness.orders import Convergence
 from isomortar.harness.runner import Result
 from isomortar.harness.store import identity, write_whole
 
@@ -231,7 +232,7 @@ def _plot(results: list[Result], name: str) -> str:
     for result in results:
         value = result.measurement.numbers.get(name)
         short = ", ".join(str(v) for v in result.cell.settings.values())
-        convergence, curve = convergence_of(value), curve_of(value)
+        convergence, curve = restored(value, Convergence), restored(value, Curve)
         claim = result.cell.case.bounds_of(result.cell.settings).get(name)
         if convergence:
             sizes, errors = np.asarray(convergence.sizes, float), np.asarray(convergence.errors, float)

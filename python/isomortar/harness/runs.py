@@ -16,7 +16,8 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 
 from isomortar.geometry.patch import FloatArray
-from isomortar.harness.measurement import words_of
+from isomortar.harness.cases import Words
+from isomortar.harness.measurement import restored
 from isomortar.harness.report import plain, template
 from isomortar.harness.runner import Result
 from isomortar.harness.statement import STATEMENT_STATES, Judgement, NotMeasuredError
@@ -51,7 +52,7 @@ class Computed(ABC):
     @property
     def words(self) -> str:
         """Why it ended so; empty where all load steps are there."""
-        said = words_of(self.result.measurement.numbers.get("words"))
+        said = restored(self.result.measurement.numbers.get("words"), Words)
         return said.text if said else self.result.measurement.reason
 
     def number(self, name: str) -> float:
