@@ -104,7 +104,7 @@ contains
         by_vector(:, 3 * (kind - 1) + i) = forms(i:3 * size(by_vector, 1):3, kind)
       end do
     end do
-    rows = reshape(matmul(sample%coefficients, by_vector), shape(rows))
+    call to_points(sample%coefficients, 3 * kinds, by_vector, rows)
   end subroutine spread_rows
 
   !> area * (p Ddg + t_a Ddxi^a) by short vectors on the left and control points on the right:
@@ -113,7 +113,7 @@ contains
     class(gap_map_t), intent(in) :: map
     type(sample_t), intent(in) :: sample
     real(wp), intent(in) :: area, field(3)
-    real(wp), intent(out) :: second(:, :, :, :)
+    real(wp), contiguous, intent(out) :: second(:, :, :, :)
     real(wp) :: form(3 * size(second, 4), 3 * size(second, 4)), by_vector(size(second, 4), 3, 3, size(second, 4))
     integer :: k, l, vectors
 
@@ -126,8 +126,17 @@ contains
         by_vector(l, :, :, k) = form(3 * k - 2:3 * k, 3 * l - 2:3 * l)
       end do
     end do
-    second = reshape(matmul(sample%coefficients, reshape(by_vector, [vectors, 9 * vectors])), shape(second))
+    call to_points(sample%coefficients, 9 * vectors, by_vector, second)
   end subroutine spread_geometric
+
+  !> Of m numbers for each short vector those for each control point.
+  pure subroutine to_points(coefficients, m, by_vector, by_point)
+    integer, intent(in) :: m
+    real(wp), intent(in) :: coefficients(:, :), by_vector(size(coefficients, 2), m)
+    real(wp), intent(out) :: by_point(size(coefficients, 1), m)
+
+    by_point = matmul(coefficients, by_vector)
+  end subroutine to_points
 
   !> Add the sums of a batch, in which control points bear and normals of nodes, to what these depend on.
   !>

@@ -165,22 +165,22 @@ contains
     integer, intent(in) :: kinds, rest
     real(wp), intent(in) :: source(size(line%values, 1), rest, kinds, kinds)
     real(wp), intent(out) :: target(rest, size(line%values, 2), kinds - 1, kinds - 1)
-    real(wp) :: beside(2 * size(line%values, 1), rest), both(4 * size(line%values, 1), rest)
+    real(wp) :: beside(rest, 2 * size(line%values, 1)), both(rest, 4 * size(line%values, 1))
     integer :: d, e, m
 
-    m = size(line%values, 1)
-    both(:m, :) = source(:, :, 1, 1)
-    both(m + 1:2 * m, :) = source(:, :, 2, 1)
-    both(2 * m + 1:3 * m, :) = source(:, :, 1, 2)
-    both(3 * m + 1:, :) = source(:, :, 2, 2)
-    target(:, :, 1, 1) = matmul(transpose(both), line%either)
+    m = size(line%values, 1) ! few: copies run down the rest, one short copy for each of which costs more than the products
+    both(:, :m) = transpose(source(:, :, 1, 1))
+    both(:, m + 1:2 * m) = transpose(source(:, :, 2, 1))
+    both(:, 2 * m + 1:3 * m) = transpose(source(:, :, 1, 2))
+    both(:, 3 * m + 1:) = transpose(source(:, :, 2, 2))
+    target(:, :, 1, 1) = matmul(both, line%either)
     do d = 2, kinds - 1
-      beside(:m, :) = source(:, :, 1, d + 1)
-      beside(m + 1:, :) = source(:, :, 2, d + 1)
-      target(:, :, 1, d) = matmul(transpose(beside), line%first)
-      beside(:m, :) = source(:, :, d + 1, 1)
-      beside(m + 1:, :) = source(:, :, d + 1, 2)
-      target(:, :, d, 1) = matmul(transpose(beside), line%second)
+      beside(:, :m) = transpose(source(:, :, 1, d + 1))
+      beside(:, m + 1:) = transpose(source(:, :, 2, d + 1))
+      target(:, :, 1, d) = matmul(beside, line%first)
+      beside(:, :m) = transpose(source(:, :, d + 1, 1))
+      beside(:, m + 1:) = transpose(source(:, :, d + 1, 2))
+      target(:, :, d, 1) = matmul(beside, line%second)
       do e = 2, kinds - 1
         target(:, :, e, d) = matmul(transpose(source(:, :, e + 1, d + 1)), line%values)
       end do
