@@ -112,7 +112,7 @@ def build(folder: Path) -> int:
     shutil.copytree(ROOT / "docs", source)
     for beside in ("fortran", "python", "verification"):  # pages link to sources there
         (source.parent / beside).symlink_to(ROOT / beside)
-    (source / "kernel.md").write_text(kernel(), encoding="utf-8")
+    (source / "kernel").with_suffix(".md").write_text(kernel(), encoding="utf-8")
     count = 0
     for page in sorted(path for pattern in PAGES for path in source.glob(pattern)):
         print(f"running {page.relative_to(source)}", flush=True)

@@ -52,14 +52,14 @@ def test_the_manual_is_built_of_blocks_that_run(tmp_path: Path) -> None:
     ],
 )
 def test_a_block_that_fails_is_named(manual: ModuleType, tmp_path: Path, block: str, word: str) -> None:
-    page = tmp_path / "page.md"
+    page = tmp_path / "page.txt"
     page.write_text(f"# A page\n\n```sh\necho first\n```\n\nand\n\n```{block}```\n", encoding="utf-8")
-    with pytest.raises(manual.BlockError, match=rf"page\.md, line 10: (?s:.)*{re.escape(word)}"):
+    with pytest.raises(manual.BlockError, match=rf"page\.txt, line 10: (?s:.)*{re.escape(word)}"):
         manual.run_page(page)
 
 
 def test_blocks_of_a_page_share_a_folder_and_what_they_print_follows_them(manual: ModuleType, tmp_path: Path) -> None:
-    page = tmp_path / "page.md"
+    page = tmp_path / "page.txt"
     page.write_text(
         "```toml\n# here.toml\na = 1\n```\n\n```python\nprint(open('here.toml').read())\n```\n\n```text\nfalse\n```\n", encoding="utf-8"
     )
