@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
@@ -164,7 +165,7 @@ def _of(text: str, *overrides: str) -> str:
     return refusal(lambda: Scene.from_toml(text, overrides=overrides).problem())
 
 
-def of_files(_: pytest.MonkeyPatch) -> Told:
+def of_files(patch: pytest.MonkeyPatch) -> Told:
     """Files that are no scene, or no results, and places where nothing can be written."""
     for name, content in {"UTF-16": "# a".encode("utf-16"), "Latin-1": "# ä".encode("latin-1")}.items():
         Path("scene.toml").write_bytes(content)
@@ -178,6 +179,9 @@ def of_files(_: pytest.MonkeyPatch) -> Told:
     writer.recorded(step_result(1))
     writer.recorded(step_result(2))
     yield "not kept", refusal(lambda: Results("run.h5").step(1))
+    with patch.context() as within:
+        within.setitem(sys.modules, "pandas", None)
+        yield "no pandas", refusal(lambda: Results("run.h5").to_dataframe())
     yield "filmed: one state", refusal(lambda: film("run.h5", "run.gif"))
     yield "filmed: type", refusal(lambda: film("run.h5", "run.mp4"))
     yield "filmed: nothing", refusal(lambda: film("run.h5", "run.gif", every=0))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 import h5py
 import numpy as np
@@ -21,6 +21,7 @@ from isomortar.model.numbering import Numbering
 from isomortar.results import layout
 from isomortar.results.definition import read_problem
 from isomortar.results.files import is_marked, is_whole
+from isomortar.results.table import data_frame
 from isomortar.solve.record import (
     AugmentationRecord,
     ContactRates,
@@ -32,6 +33,9 @@ from isomortar.solve.record import (
     State,
     StepResult,
 )
+
+if TYPE_CHECKING:
+    import pandas
 
 Value = TypeVar("Value")
 
@@ -170,6 +174,16 @@ class Results:
         if values.ndim != 2 or values.shape[1] != 3:
             raise ResultsError(f"curve {quantity!r} has no components")
         return values[:, "xyz".index(component)]
+
+    def to_dataframe(self) -> pandas.DataFrame:
+        """All curves as a frame of pandas: a row for each recorded load step, columns like ``force.top.x`` and ``active.floor``.
+
+        Raises
+        ------
+        InputError
+            Pandas is not installed.
+        """
+        return data_frame(self)
 
     def timings(self) -> dict[str, FloatArray]:
         """CPU seconds, of all threads, by phase over the recorded load steps; NaN where a step did not tell."""
