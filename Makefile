@@ -1,6 +1,6 @@
 # What a person does with a working copy. `make` alone prints this list.
 .DEFAULT_GOAL := help
-.PHONY: help setup demo verify manual test lint format
+.PHONY: help setup demo verify manual wheel test lint format
 
 # One BLAS thread is as fast as two on systems of this size; the cores go to cases.
 export OPENBLAS_NUM_THREADS ?= 1
@@ -26,6 +26,9 @@ verify: $(READY) ## run the verification cases of the gate; the report goes to r
 
 manual: $(READY) ## run the blocks of the manual and build it; it goes to results/manual/html/index.html
 	$(BIN)/python tools/build_manual.py
+
+wheel: $(READY) ## a wheel that needs nothing of the machine, in dist/, tried in an empty environment
+	@bash tools/build_wheel.sh
 
 test: lint ## linters, then all tests
 	$(BIN)/python -m pytest

@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# Builds a wheel that needs nothing of the machine but its C library, into dist/, and tries it in an empty environment: the small scene of
+# `isomortar doctor`, and with --gate the gate. The libraries of the solver (OpenBLAS, SuiteSparse, METIS, those of gfortran) go into it.
+#
+#     bash tools/build_wheel.sh [--gate]
+set -euo pipefail
+cd "$(dirname "$0")/.."
+export PATH="$PWD/.venv/bin:$PATH"
+
+say() { printf '==> %s\n' "$1"; }
+
+say "Installing into .venv: what makes wheels"
+python -m pip install --quiet --group release
+
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+say "Building"
+git archive HEAD | tar -x -C "$(mkdir -p "$folder/source" && echo "$folder/source")"
+python -m pip wheel --quiet --no-deps --no-build-isolation --wheel-dir "$folder/thin" "$folder/source"
+mkdir -p dist
+auditwheel repair --wheel-dir "$folder/whole" "$folder"/thin/*.whl
+cp "$folder"/whole/*.whl dist/
+
+say "Trying it in an empty environment"
+python -m venv "$folder/empty"
+"$folder/empty/bin/python" -m pip install --quiet "$folder"/whole/*.whl
+(cd "$folder" && empty/bin/isomortar doctor)
+if [ "${1:-}" = --gate ]; then
+  (cd "$folder/source" && "$folder/empty/bin/isomortar" verify)
+fi
+say "Done: $(ls dist/*.whl)"
