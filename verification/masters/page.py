@@ -61,7 +61,6 @@ def _row(run: Found) -> dict[str, Any]:
         "median": float(np.median(tangents)) if len(tangents) else np.nan,
         "most": float(tangents.max(initial=0.0)),
         "tangents": float(tangents.sum()),
-        "solves": float(run.by_step("solves").sum()),
         "cuts": run.cuts,
         "mean": run.mean,
         "roughness": run.roughness,

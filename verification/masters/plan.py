@@ -19,6 +19,8 @@ from isomortar.program.getfem import GetFEM
 #: How feet are found: by closest points on masters with kinks, along averaged normals on them, and both on smooth ones.
 Way = Literal["closest", "averaged", "smooth", "smooth, averaged"]
 WAYS: tuple[Way, ...] = get_args(Way)
+#: Every linear solve has a tangent of its own, as in the programs whose solves these are compared with.
+OWN_TANGENTS = "solver.measures=['forgiving','margin','reversal','halving','extrapolation']"
 #: Load steps after which the forces of the block are told: pressed, and slid.
 INSTANTS = (5, 15)
 
@@ -28,7 +30,8 @@ def _section(section: Section, splines: Elements, quadratic: Elements, *further:
     kinks = [
         found for order, elements in ((1, splines), (2, quadratic)) for found in (_closest(order, elements), averaged(order, elements))
     ]
-    return replace(section, reference="N2", variants=(*nurbs(splines, 2, 3), *kinks, *further), changes=(*section.changes, *changes))
+    variants = (*nurbs(splines, 2, 3), *kinks, *further)
+    return replace(section, reference="N2", variants=variants, changes=(*section.changes, OWN_TANGENTS, *changes))
 
 
 def _closest(order: int, elements: Elements) -> Variant:

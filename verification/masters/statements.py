@@ -6,7 +6,7 @@ from masters.found import Evidence
 
 from isomortar.harness.statement import Statement
 
-#: Where averaged normals were tried first; there every linear solve has a tangent of its own.
+#: Where averaged normals were tried first; there as here every linear solve has a tangent of its own.
 _TRIED = "reference: an independent program took"
 
 STATEMENTS: tuple[Statement[Evidence], ...] = (
