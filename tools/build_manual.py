@@ -48,10 +48,13 @@ class Block:
                 raise BlockError("begins with no comment # NAME.toml that says where to write it")
             (folder / name[1]).write_text(self.text, encoding="utf-8")
             return ""
-        command = [sys.executable, "-c"] if self.language == "python" else ["bash", "-euo", "pipefail", "-c"]
+        command = ["bash", "-euo", "pipefail", "-c", self.text]
+        if self.language == "python":  # a file, which processes that it starts can import
+            (folder / "block.py").write_text(self.text, encoding="utf-8")
+            command = [sys.executable, "block.py"]
         search = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", os.defpath)])
         setting = {**os.environ, "PATH": search, "COLUMNS": "110"}
-        ended = subprocess.run([*command, self.text], cwd=folder, env=setting, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        ended = subprocess.run(command, cwd=folder, env=setting, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         if ended.returncode:
             raise BlockError(f"ended with exit code {ended.returncode}:\n{ended.stdout[-2000:]}")
         return ended.stdout

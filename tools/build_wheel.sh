@@ -15,9 +15,9 @@ python -m pip install --quiet --group release
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 say "Building"
-git archive HEAD | tar -x -C "$(mkdir -p "$folder/source" && echo "$folder/source")"
+mkdir -p dist "$folder/source"
+git archive HEAD | tar -x -C "$folder/source"
 python -m pip wheel --quiet --no-deps --no-build-isolation --wheel-dir "$folder/thin" "$folder/source"
-mkdir -p dist
 auditwheel repair --wheel-dir "$folder/whole" "$folder"/thin/*.whl
 cp "$folder"/whole/*.whl dist/
 
@@ -28,4 +28,4 @@ python -m venv "$folder/empty"
 if [ "${1:-}" = --gate ]; then
   (cd "$folder/source" && "$folder/empty/bin/isomortar" verify)
 fi
-say "Done: $(ls dist/*.whl)"
+say "Done: dist/$(basename "$folder"/whole/*.whl)"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -14,11 +15,12 @@ from results_samples import problem, step_result
 
 
 @pytest.fixture
-def results(tmp_path: Path) -> Results:
+def results(tmp_path: Path) -> Iterator[Results]:
     writer = ResultsWriter(tmp_path / "run.h5", problem(), "format = 1\n", "0.1")
     for number in range(1, 5):
         writer.recorded(step_result(number))
-    return Results(tmp_path / "run.h5")
+    with Results(tmp_path / "run.h5") as opened:
+        yield opened
 
 
 def test_every_column_is_that_of_its_curve(results: Results) -> None:
