@@ -170,7 +170,7 @@ def test_a_run_that_stops_is_shown_with_the_reason_and_does_not_hold(tmp_path: P
     wrote = _written([run.planned for run in runs], GETFEM, tmp_path, results, datetime(2026, 1, 1))
     text = wrote.page.read_text(encoding="utf-8")
     assert (wrote.failed, wrote.complete) == (2, False)
-    assert text.count('<td class="text why soft" colspan="11">load step 12 &lt;does&gt; not converge</td>') == 2
+    assert text.count('<td class="text why soft" colspan="10">load step 12 &lt;does&gt; not converge</td>') == 2
     rows = [row for rows in json.loads(wrote.page.with_suffix(".json").read_text(encoding="utf-8"))["scenes"] for row in rows]
     assert [(row["name"], row["way"]) for row in rows] == [(run.name, run.method) for run in runs]
     assert {row["words"] for row in rows} == {"", "load step 12 <does> not converge"}
