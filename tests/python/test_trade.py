@@ -295,6 +295,35 @@ def test_a_target_below_the_truth_is_refused_with_what_it_needs(scene):
     assert search.uncertainty > 1e-6 / 3
 
 
+class Idle(Formula):
+    """Load steps change next to nothing, and elements along v."""
+
+    idle = ("load steps", "elements of block along v")
+
+    def of(self, choice):
+        """Like the others, but for what is idle."""
+        busy = tuple(dial.own if dial.name in self.idle else number for dial, number in zip(self._dials, choice, strict=True))
+        steps = next(dial for dial in self._dials if dial.name == "load steps")
+        moved = sum(1e-9 * number for dial, number in zip(self._dials, choice, strict=True) if dial.name in self.idle)
+        error, cost, failure = super().of(busy)
+        return error - effect(steps, steps.own)[0] + moved, cost, failure
+
+
+def test_over_refined_runs_spend_nothing_on_what_changes_nothing(scene):
+    """At first all is at its dearest; once the truth's own error is known, what does not matter beside it is tightened once."""
+    dials = synthetic()
+    names = [dial.name for dial in dials]
+    matters, idle = (Search(kind(scene, dials), dials, [wanted("force.top.x", scene.problem())], 1e6) for kind in (Formula, Idle))
+    for search in (matters, idle):
+        search.screen()
+        search.find_truth(4e-3)
+    chosen = [dict(zip(names, search.truth.choice, strict=True)) for search in (matters, idle)]
+    assert [truth["load steps"] for truth in chosen] == [5, 3]
+    assert [truth["elements of block along v"] for truth in chosen] == [chosen[1]["elements of block along u"], 3]
+    assert chosen[1]["elements of block along u"] > 3
+    assert 3 * idle.uncertainty <= 4e-3
+
+
 def test_what_can_not_be_refined_has_no_truth(scene):
     """Else one run twice would know it to the last bit."""
     dials = (Dial("elements of block along u", (Setting("2"), Setting("4")), 1, "", part="elements"),)

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import islice
+from typing import Any
 from unittest.mock import patch
 
 import numpy as np
@@ -15,10 +17,9 @@ from isomortar.accuracy.discretisations import Discretisation, overrides, sweep_
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Problem
 from isomortar.scene import Scene
-from isomortar.solve.condensed import Bodies
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.simulation import Simulation
-from isomortar.solve.system import LinearSystem
+from isomortar.solve.system import CheckedSystem, LinearSystem, Source
 from isomortar.solve.timing import Ledger
 
 #: Size of the deformation of a body whose tangent is wanted, relative to its coordinates.
@@ -27,10 +28,29 @@ STRAIN = 0.02
 
 @dataclass(frozen=True)
 class System:
-    """A linear system as Newton's method solves it."""
+    """A linear system as Newton's method solves it: of which bodies and contacts it is made, and its right-hand side."""
 
-    matrix: sparse.csr_array
+    equilibrium: Equilibrium
+    sources: list[Source]
+    values: list[FloatArray]
     right: FloatArray
+
+    def analysed(self) -> CheckedSystem:
+        """A system to factorise it by, as a run makes one: by parts where these take fewer operations. All is analysed anew."""
+        self.equilibrium._bodies = None
+        return self.equilibrium.new_system(self.sources, len(self.right))
+
+    @cached_property
+    def matrix(self) -> sparse.csr_array:
+        """The same as a whole."""
+        general = LinearSystem(len(self.right), self.sources, Ledger())
+        general.factorise(self.values)
+        return general.matrix()
+
+    @property
+    def definite(self) -> bool:
+        """Whether it is a solid's alone: symmetric and positive definite."""
+        return len(self.sources) == 1
 
 
 @dataclass(frozen=True)
@@ -63,23 +83,26 @@ def deformed(equilibrium: Equilibrium) -> FloatArray:
     return x + STRAIN * np.sin(3.0 * x[:, [1, 2, 0]])
 
 
-def solid_system(equilibrium: Equilibrium, positions: FloatArray) -> LinearSystem:
-    """The linear system of the solid alone, assembled and factorised once."""
-    system = LinearSystem(len(equilibrium.supports.free), [equilibrium.solid_source], equilibrium.ledger)
-    system.factorise([equilibrium.solid.forces_and_tangent(positions)[1]])
-    return system
+def solid_system(order: int, elements: tuple[int, int, int]) -> System:
+    """The tangent of a deformed block alone, with a right-hand side of all frequencies."""
+    equilibrium = solid_block(order, elements)
+    _, tangent = equilibrium.solid.forces_and_tangent(deformed(equilibrium))
+    right = np.random.default_rng(2).standard_normal(len(equilibrium.supports.free))
+    return System(equilibrium, [equilibrium.solid_source], [tangent], right)
 
 
 def last_system(problem: Problem, steps: int) -> System:
-    """The last linear system that is solved in some load steps, multipliers included, as a whole."""
+    """The last linear system that is factorised in some load steps, multipliers included."""
     solved: list[System] = []
-    solve = LinearSystem.solve
+    solve = Equilibrium.solve
 
-    def note(system: LinearSystem, right: FloatArray) -> FloatArray:
-        solved[:] = [System(system.matrix().copy(), right.copy())]
-        return solve(system, right)
+    def note(
+        equilibrium: Equilibrium, sources: list[Source], values: list[FloatArray], right: FloatArray, *where: Any
+    ) -> FloatArray:
+        solved[:] = [System(equilibrium, sources, [value.copy() for value in values], right.copy())]
+        return solve(equilibrium, sources, values, right, *where)
 
-    with patch.object(LinearSystem, "solve", note), patch.object(Bodies, "condense", lambda *_: False):
+    with patch.object(Equilibrium, "solve", note):
         for _ in islice(Simulation(problem).run(), steps):
             pass
     return solved[0]

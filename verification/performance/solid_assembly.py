@@ -41,14 +41,13 @@ def solid_assembly(quick: bool) -> Iterator[Row]:
     """
     elements = (3, 3, 2) if quick else (12, 12, 6)
     for order, seconds in REFERENCE.items():
-        equilibrium = solid_block(order, elements)
+        found = solid_system(order, elements)
+        equilibrium, values, system = found.equilibrium, found.values, found.analysed()
         positions = deformed(equilibrium)
-        system = solid_system(equilibrium, positions)
-        values = equilibrium.solid.forces_and_tangent(positions)[1]
         # Copies: the tangent of positions that are the very same is kept, not assembled.
         tangent = cpu_seconds(lambda solid=equilibrium.solid, x=positions: solid.forces_and_tangent(x.copy()))[0]  # type: ignore[misc]
         forces = cpu_seconds(lambda solid=equilibrium.solid, x=positions: solid.forces(x))[0]  # type: ignore[misc]
-        factor = cpu_seconds(lambda system=system, values=values: system.factorise([values]))[0]  # type: ignore[misc]
+        factor = cpu_seconds(lambda system=system, values=values: system.factorise(values))[0]  # type: ignore[misc]
         rate = dgemm_rate()
         size: Row = {"order": order, "elements": "x".join(map(str, elements)), "unknowns": len(equilibrium.supports.free)}
         times = {"forces": forces, "tangent": tangent, "factor": factor, "dgemm": rate, "like dgemm": tangent * rate}

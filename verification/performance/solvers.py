@@ -7,22 +7,29 @@ from importlib import import_module
 from typing import Any
 
 import numpy as np
+from performance.problems import System
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from isomortar._sparse import SparseLU
 from isomortar.geometry.patch import FloatArray
-from isomortar.solve.system import orderings
 
 
 class Solver(ABC):
-    """A solver of one matrix, shape (n, n). Making it imports what it needs: ImportError where that is not installed."""
+    """A solver of one system of n unknowns. Making it imports what it needs: ImportError where that is not installed.
+
+    `applies` says of a system whether the solver is for its like.
+    """
 
     name: str
     install = ""
 
-    def __init__(self, matrix: sparse.csr_array) -> None:
-        self.matrix = matrix
+    def __init__(self, system: System) -> None:
+        self.system = system
+
+    @staticmethod
+    def applies(system: System) -> bool:  # noqa: ARG004
+        """Whether it is made for systems of this kind."""
+        return True
 
     @abstractmethod
     def analyse(self) -> None:
@@ -38,34 +45,62 @@ class Solver(ABC):
 
 
 class Isomortar(Solver):
-    """UMFPACK, ordered and solved as in Newton's method: without refinement."""
+    """As in Newton's method: bodies by Cholesky and faces by dense LU, or UMFPACK where that takes fewer operations."""
 
     name = "isomortar"
 
     def analyse(self) -> None:
-        """Order; where either ordering may be the faster, by what the first factors take."""
-        indptr, indices = (np.asarray(index, dtype=np.int64) for index in (self.matrix.indptr, self.matrix.indices))
-        rivals = [SparseLU(indptr, indices, ordering=name) for name in orderings(self.matrix.shape[0])]
-        self._lu = min((lu.factorise(self.matrix.data) for lu in rivals), key=lambda lu: lu.flops) if len(rivals) > 1 else rivals[0]
+        """Order, and choose."""
+        self._factors = self.system.analysed()
+
+    def factorise(self) -> None:
+        """Gather and factorise."""
+        self._factors.factorise(self.system.values)
+
+    def solve(self, right: FloatArray) -> FloatArray:
+        """Solve, with refinement where that is called for."""
+        return self._factors.solve(right)
+
+
+class Cholmod(Solver):
+    """CHOLMOD by scikit-sparse, for what is symmetric and definite."""
+
+    name, install = "CHOLMOD", "apt-get install libsuitesparse-dev; pip install scikit-sparse"
+
+    def __init__(self, system: System) -> None:
+        super().__init__(system)
+        self._cholmod: Any = import_module("sksparse.cholmod")
+        self._matrix = sparse.csc_array(system.matrix)
+
+    @staticmethod
+    def applies(system: System) -> bool:
+        """To a solid alone."""
+        return system.definite
+
+    def analyse(self) -> None:
+        """Order."""
+        self._factor = self._cholmod.analyze(self._matrix, mode="supernodal")
 
     def factorise(self) -> None:
         """Factorise."""
-        self._lu.factorise(self.matrix.data)
+        self._factor.cholesky_inplace(self._matrix)
 
     def solve(self, right: FloatArray) -> FloatArray:
         """Solve."""
-        return self._lu.solve(right, refine=0)
+        return np.asarray(self._factor(right))
 
 
 class Pardiso(Solver):
-    """MKL's Pardiso for unsymmetric matrices, with its own defaults: two steps of refinement where pivots were perturbed."""
+    """MKL's Pardiso, with its own defaults: two steps of refinement where pivots were perturbed."""
 
     name, install = "MKL Pardiso", "pip install pypardiso"
 
-    def __init__(self, matrix: sparse.csr_array) -> None:
-        super().__init__(matrix)
-        self._solver: Any = import_module("pypardiso").PyPardisoSolver(mtype=11)
-        self._none = np.zeros((matrix.shape[0], 1))
+    def __init__(self, system: System) -> None:
+        super().__init__(system)
+        definite = system.definite
+        self._solver: Any = import_module("pypardiso").PyPardisoSolver(mtype=2 if definite else 11)
+        self._matrix = sparse.csr_array(sparse.triu(system.matrix)) if definite else system.matrix
+        self._none = np.zeros((system.matrix.shape[0], 1))
 
     def analyse(self) -> None:
         """Order."""
@@ -82,18 +117,18 @@ class Pardiso(Solver):
     def _phase(self, phase: int, right: FloatArray) -> FloatArray:
         """One phase alone, which pypardiso's public functions do not offer."""
         self._solver.set_phase(phase)
-        return np.asarray(self._solver._call_pardiso(self.matrix, right)).ravel()
+        return np.asarray(self._solver._call_pardiso(self._matrix, right)).ravel()
 
 
 class Mumps(Solver):
-    """MUMPS for unsymmetric matrices, ordered by METIS."""
+    """MUMPS, ordered by METIS."""
 
     name, install = "MUMPS", "apt-get install libmumps-seq-dev; pip install python-mumps"
 
-    def __init__(self, matrix: sparse.csr_array) -> None:
-        super().__init__(matrix)
+    def __init__(self, system: System) -> None:
+        super().__init__(system)
         self._context: Any = import_module("mumps").Context()
-        self._context.set_matrix(sparse.coo_matrix(matrix))
+        self._context.set_matrix(sparse.coo_matrix(system.matrix), symmetric=system.definite)
 
     def analyse(self) -> None:
         """Order."""
@@ -118,11 +153,11 @@ class SuperLU(Solver):
 
     def factorise(self) -> None:
         """Order and factorise."""
-        self._lu = splu(sparse.csc_array(self.matrix))
+        self._lu = splu(sparse.csc_array(self.system.matrix))
 
     def solve(self, right: FloatArray) -> FloatArray:
         """Solve."""
         return np.asarray(self._lu.solve(right))
 
 
-SOLVERS: tuple[type[Solver], ...] = (Isomortar, Pardiso, Mumps, SuperLU)
+SOLVERS: tuple[type[Solver], ...] = (Isomortar, Cholmod, Pardiso, Mumps, SuperLU)

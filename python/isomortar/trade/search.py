@@ -21,6 +21,8 @@ RESOLVED = 3.0
 AIM = 0.9
 #: Another combination is tried where it should cost less than this share of the best one so far.
 WORTH = 0.9
+#: What changes the result by less than this share of the truth's own error is not what that comes from.
+SETTLED = 1.0 / 30.0
 #: Combinations that are tried for one target.
 TRIES = 12
 #: Share of the budget that over-refined runs may take.
@@ -170,10 +172,30 @@ class Search:
         return self.laboratory.spent > self.budget
 
     def _refined(self, orders: int, meshes: int, last: int) -> Choice:
-        """Orders and meshes so many settings dearer than the scene's own; of all else that refines the dearest setting, or the last but."""
-        finer = {"order": orders, "elements": meshes}
-        wanted = [d.own + finer[d.part] if d.part else max(d.own, len(d.settings) - last) if d.refines else d.own for d in self.dials]
-        return tuple(min(len(d.settings) - 1, n) for d, n in zip(self.dials, wanted, strict=True))
+        """Orders and meshes so many settings dearer than the scene's own; of all else that refines the dearest setting, or the last but.
+
+        What is settled is not refined on: its mesh by one setting, all else by one or not at all.
+        """
+        settled = self._settled()
+
+        def setting(number: int, dial: Dial) -> int:
+            if dial.part == "order":
+                return dial.own + orders
+            if dial.part == "elements":
+                return dial.own + (min(meshes, 1) if number in settled else meshes)
+            if not dial.refines:
+                return dial.own
+            return dial.own + 2 - last if number in settled else max(dial.own, len(dial.settings) - last)
+
+        return tuple(min(len(d.settings) - 1, setting(number, d)) for number, d in enumerate(self.dials))
+
+    def _settled(self) -> set[int]:
+        """Dials whose next dearer setting changes next to nothing of what is wanted, beside the truth's own error."""
+        if self.truth is None:
+            return set()
+        model, limit = self.model, SETTLED * self.uncertainty
+        dearer = {number: dial.own + 1 for number, dial in enumerate(self.dials) if dial.own + 1 in model.settings(number)}
+        return {number for number, setting in dearer.items() if model.effect(number, setting) <= limit}
 
     def _cost(self, choice: Choice) -> float:
         """CPU seconds that an over-refined run will take about, by what one setting took."""
