@@ -1,6 +1,6 @@
 # What a person does with a working copy. `make` alone prints this list.
 .DEFAULT_GOAL := help
-.PHONY: help setup demo verify manual wheel test lint format
+.PHONY: help setup demo verify nightly manual wheel test lint format
 
 # One BLAS thread is as fast as two on systems of this size; the cores go to cases.
 export OPENBLAS_NUM_THREADS ?= 1
@@ -23,6 +23,9 @@ demo: $(READY) ## run the ironing scene; curve and picture go to results/
 
 verify: $(READY) ## run the verification cases of the gate; the report goes to results/verification/
 	$(BIN)/isomortar verify
+
+nightly: $(READY) ## nightly tier, extremes, orders, benchmarks: hours; one page, results/nightly/index.html, and one exit code
+	$(BIN)/python tools/run_nightly.py
 
 manual: $(READY) ## run the blocks of the manual and build it; it goes to results/manual/html/index.html
 	$(BIN)/python tools/build_manual.py
