@@ -30,7 +30,7 @@ from isomortar.model.enforcement.side import pointwise
 from isomortar.model.entities import Body
 from isomortar.model.numbering import Numbering
 from isomortar.model.raised import lowered
-from isomortar.results import files
+from isomortar.results import files, layout
 from isomortar.results.writer import ResultsWriter
 from isomortar.scene.source import apply_overrides
 from isomortar.solve import doubts, feet, singular, system
@@ -187,7 +187,8 @@ def of_files(patch: pytest.MonkeyPatch) -> Told:
     yield "filmed: nothing", refusal(lambda: film("run.h5", "run.gif", every=0))
     ResultsWriter("alone.h5", replace(problem(), contacts=()), "", "0")
     yield "filmed: no contact", refusal(lambda: film("alone.h5", "run.gif"))
-    for name, key, value in (("another format", "format", "waves"), ("of another version", "format_version", 1)):
+    versions = ("of an earlier version", "format_version", 1), ("of a later version", "format_version", 9)
+    for name, key, value in (("another format", "format", "waves"), *versions):
         Path("other.h5").write_bytes(Path("run.h5").read_bytes())
         with h5py.File("other.h5", "r+") as file:
             file.attrs[key] = value
@@ -197,7 +198,7 @@ def of_files(patch: pytest.MonkeyPatch) -> Told:
     yield "damaged", refusal(lambda: files.read(Path("cut.h5")))
     yield "gone", _but_the_end(refusal(lambda: files.read(Path("gone.h5"))))
     with h5py.File("other.h5", "r+") as file:
-        file.attrs["format_version"] = 3
+        file.attrs["format_version"] = layout.FORMAT_VERSION
         del file["curves/time"]
     Path("other.h5").write_bytes(files.sealed(Path("other.h5").read_bytes()))
     yield "without a curve", re.sub(r"\(.*?\),", "(#),", refusal(lambda: Results("other.h5").curve("time")))

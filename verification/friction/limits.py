@@ -74,7 +74,7 @@ def keys(numbers: Numbers) -> str:
     },
 )
 def even_pressure(law: str, depth: float, method: str) -> dict[str, float]:
-    """Relative errors of the forces that the prism exerts, and the share across the push."""
+    """Relative errors of the forces on the prism, and the share across the push."""
     text = _PRISM.replace("CONTACT", keys(LAWS[law])).replace("DEPTH", str(depth))
     problem = Scene.from_toml(text, overrides=[f"solver.method='{method}'"]).problem()
     *_, last = Simulation(problem).run()
@@ -85,8 +85,8 @@ def even_pressure(law: str, depth: float, method: str) -> dict[str, float]:
     friction, cohesion, most = LAWS[law]
     traction = min(cohesion + friction * pressure, np.inf if most is None else most)
     return {
-        "pressure": float(abs(-force[2] / (AREA * pressure) - 1.0)),
-        "traction": float(abs(force[0] / (AREA * traction) - 1.0)),
+        "pressure": float(abs(force[2] / (AREA * pressure) - 1.0)),
+        "traction": float(abs(-force[0] / (AREA * traction) - 1.0)),
         "across": float(abs(force[1]) / (AREA * traction)),
     }
 
@@ -127,7 +127,7 @@ def sliding_block(capped: str) -> dict[str, float]:
     found = {"sum": float(abs(drag / (weight @ each) - 1.0)), "share": float(np.mean(each[pressure > 0.0] == most))}
     if capped == "in a part":
         return found
-    whole = most * weight.sum() if capped == "everywhere" else cohesion * weight.sum() - friction * force[2]
+    whole = most * weight.sum() if capped == "everywhere" else cohesion * weight.sum() + friction * force[2]
     return found | {"closed form": float(abs(drag / whole - 1.0))}
 
 

@@ -68,7 +68,7 @@ def block_over_lines() -> dict[str, float]:
     """Load steps, cuts, tangents, and the forces at the end."""
     steps = ran("block")
     force = steps[-1].contacts[0].force_slave
-    return {**effort(steps), "normal": float(-force[2]), "tangential": float(force[0])} | {"tangents": tangents(steps).sum()}
+    return {**effort(steps), "normal": float(force[2]), "tangential": float(-force[0])} | {"tangents": tangents(steps).sum()}
 
 
 def long_bounds(scene: str) -> dict[str, Bound]:
@@ -95,7 +95,7 @@ def over_lines_to_the_end(scene: str) -> dict[str, float]:
     """Load steps, cuts, tangents in the median; the mean drag of load steps 20 to 50."""
     name, kind = scene.split()
     steps = ran(name, "bodies.master.mesh.family=L", f"bodies.master.mesh.order=[{kind[1]},{kind[1]},{kind[1]}]")
-    drag = float(np.mean([step.contacts[0].force_slave[0] for step in steps[19:]]))
+    drag = float(np.mean([-step.contacts[0].force_slave[0] for step in steps[19:]]))
     return {**effort(steps), "tangents": float(np.median(tangents(steps)))} | ({"drag": drag} if LONG[scene] else {})
 
 

@@ -85,11 +85,11 @@ def _look(results: Results) -> None:
         for name, value in values.items():
             _finite(f"{contact.name}.{name}", value)
         if isinstance(contact.master, RigidPlane):
-            forces.append(-values["force_slave"])
+            forces.append(values["force_slave"])
         elif not _close(values["force_slave"], -values["force_master"], ROUND_OFF, _nothing(results)):
             raise Wrong(f"forces on both sides of {contact.name} differ: {values['force_slave'][-1]}, {values['force_master'][-1]}")
         forces += [
-            values[f"force_{side}"] for side, place in (("slave", contact.slave), ("master", contact.master)) if _stands(problem, place)
+            -values[f"force_{side}"] for side, place in (("slave", contact.slave), ("master", contact.master)) if _stands(problem, place)
         ]
         _look_at_contact(results, contact)
     for force in forces:

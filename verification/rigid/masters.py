@@ -269,7 +269,7 @@ def moved(motion: str, projection: str) -> dict[str, float]:
         "positions": apart((result.state.positions[:n] - centre) @ turn + supports.centre, other.state.positions[:n]),
         "forces": apart(result.reactions[0].force @ turn, other.reactions[0].force),
         "pressures": apart(pressures(ours), pressures(others)),
-        "balance": apart([result.reactions[1].force, result.reactions[1].moment], borne),
+        "balance": apart([result.reactions[1].force, result.reactions[1].moment], -borne),
     }
 
 

@@ -104,7 +104,7 @@ def both_methods(scene: str) -> dict[str, float]:
     return {
         "forces": float(np.abs(found[0] - found[1]).max() / size),
         "positions": float(np.max([np.abs(a.state.positions - b.state.positions).max() for a, b in zip(one, other, strict=True)])),
-        "balance": float(np.abs(found[0].sum(axis=1) - borne).max() / size),
+        "balance": float(np.abs(found[0].sum(axis=1) + borne).max() / size),
         "touches": float(one[-1].contacts[0].active),
         "cuts": float(sum(result.cuts for result in (*one, *other))),
     }

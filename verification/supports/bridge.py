@@ -70,8 +70,7 @@ def results(place: str) -> list[StepResult]:
 def side_by_side(place: str) -> dict[str, float]:
     """What the forces on a body, and their moments about the origin, leave, over the largest force (and its arm).
 
-    The smallest contact force, or difference of two of them, over the largest one. Contact forces count as in the residual: against
-    those that act on the body.
+    The smallest contact force, or difference of two of them, over the largest one.
     """
     problem = Scene.from_toml(_SCENE).problem()
     left, arm = [], max(1.0, float(np.abs(PLACES[place]).max()))
@@ -80,9 +79,9 @@ def side_by_side(place: str) -> dict[str, float]:
         for support, reaction in zip(problem.supports, result.reactions, strict=True):
             total[support.place.body] += reaction.force, reaction.moment + np.cross(reaction.centre, reaction.force)
         for contact, measured in zip(problem.contacts, result.contacts, strict=True):
-            total[contact.slave.body] -= measured.force_slave, measured.moment_slave
+            total[contact.slave.body] += measured.force_slave, measured.moment_slave
             if isinstance(contact.master, Face):
-                total[contact.master.body] -= measured.force_master, measured.moment_master
+                total[contact.master.body] += measured.force_master, measured.moment_master
         forces = np.array([contact.force_slave for contact in result.contacts])
         largest = np.linalg.norm(forces, axis=1).max()
         left.append(np.abs(list(total.values())).max(axis=(0, 2)) / largest / (1.0, arm))

@@ -68,7 +68,7 @@ def problem(scene: str) -> Problem:
     },
 )
 def balance(scene: str) -> dict[str, float]:
-    """Sum of the support forces less the contact forces, and of their moments about the origin, over the largest force.
+    """Sum of the support forces and the contact forces, and of their moments about the origin, over the largest force.
 
     Then the largest force along a component that is not prescribed, and the smallest force of a support over the largest.
     """
@@ -80,8 +80,8 @@ def balance(scene: str) -> dict[str, float]:
     sizes = np.linalg.norm(forces, axis=1)
     borne = sum((np.stack([c.force_slave + c.force_master, c.moment_slave + c.moment_master]) for c in result.contacts), np.zeros((2, 3)))
     return {
-        "force": float(np.linalg.norm(forces.sum(axis=0) - borne[0]) / sizes.max()),
-        "moment": float(np.linalg.norm(moments.sum(axis=0) - borne[1]) / sizes.max()),
+        "force": float(np.linalg.norm(forces.sum(axis=0) + borne[0]) / sizes.max()),
+        "moment": float(np.linalg.norm(moments.sum(axis=0) + borne[1]) / sizes.max()),
         "stray": float(np.abs(forces[free]).max(initial=0.0)),
         "smallest": float(sizes.min() / sizes.max()),
     }

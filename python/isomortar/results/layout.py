@@ -21,19 +21,23 @@ The program knows no units; `unit` names the dimension in terms of the scene's o
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import h5py
 import numpy as np
+from numpy.typing import NDArray
 
 FORMAT = "isomortar results"
-FORMAT_VERSION = 3
+#: Of the files that are written. Format 3 had contact forces with the other sign, and is the earliest that is read.
+FORMAT_VERSION, EARLIEST_VERSION = 4, 3
 
 
 @dataclass(frozen=True)
 class Quantity:
     """Type, unit and meaning of a dataset, shape of a row where the data do not tell it, what stands for a value nobody gave.
 
-    `frictional`: of contacts with friction alone; without it all zeros, and not written.
+    `frictional`: of contacts with friction alone; without it all zeros, and not written. `turned`: files of formats before this one have
+    it with the other sign.
     """
 
     dtype: np.dtype
@@ -42,6 +46,11 @@ class Quantity:
     row: tuple[int, ...] = ()
     missing: float | str | None = None
     frictional: bool = False
+    turned: int = 0
+
+    def signed(self, values: NDArray[Any], version: int) -> NDArray[Any]:
+        """What a file of a format holds, with the sign of today."""
+        return 0.0 - values if version < self.turned else values  # zero stays that: not -0
 
 
 def _real(unit: str, description: str, row: tuple[int, ...] = ()) -> Quantity:
@@ -58,6 +67,11 @@ def _later(unit: str, description: str) -> Quantity:
     return Quantity(np.dtype(np.float64), unit, description, missing=np.nan)
 
 
+def _exerted(unit: str, description: str) -> Quantity:
+    """A force or moment on a side of a contact; format 3 had what that side exerts."""
+    return Quantity(np.dtype(np.float64), unit, description, (3,), turned=4)
+
+
 def _count(description: str) -> Quantity:
     return Quantity(np.dtype(np.int64), "1", description)
 
@@ -67,6 +81,12 @@ def _flag(description: str) -> Quantity:
 
 
 TEXT = h5py.string_dtype()
+
+
+def version_of(file: h5py.File) -> int:
+    """Number of a file's format; one that does not tell is as early as any."""
+    return int(file.attrs.get("format_version", EARLIEST_VERSION))
+
 
 #: One value a recorded step, named as in `StepResult`.
 STEP = {
@@ -88,10 +108,10 @@ REACTION = {
 
 #: Resultants and counts of a contact pair, named as in `ContactResult`.
 CONTACT = {
-    "force_slave": _real("force", "resultant of the contact forces that the slave side exerts", (3,)),
-    "force_master": _real("force", "resultant of the contact forces that the master side exerts", (3,)),
-    "moment_slave": _real("force*length", "moment of the contact forces that the slave side exerts, about the origin", (3,)),
-    "moment_master": _real("force*length", "moment of the contact forces that the master side exerts, about the origin", (3,)),
+    "force_slave": _exerted("force", "resultant of the contact forces on the slave"),
+    "force_master": _exerted("force", "resultant of the contact forces on the master; of a rigid plane 0"),
+    "moment_slave": _exerted("force*length", "moment of the contact forces on the slave, about the origin"),
+    "moment_master": _exerted("force*length", "moment of the contact forces on the master, about the origin; of a rigid plane 0"),
     "active": _count("active constraints"),
     "slip": _count("slipping constraints"),
     "pressure_field": _real("force/area", "smallest and largest contact pressure p = sum R^J p^J at the contact quadrature points", (2,)),

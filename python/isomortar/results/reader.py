@@ -238,10 +238,16 @@ class Results:
     def _check_format(self, file: h5py.File) -> None:
         if file.attrs.get("format") != layout.FORMAT:
             raise ResultsError(f"{self.path} is sealed as results of isomortar are, but holds something else")
-        version = file.attrs["format_version"]
-        if version != layout.FORMAT_VERSION:
+        version = layout.version_of(file)
+        if version > layout.FORMAT_VERSION:
             raise ResultsError(
-                f"{self.path} has format {version}, this program reads format {layout.FORMAT_VERSION}: use the version that wrote it"
+                f"{self.path} has format {version}, newer than format {layout.FORMAT_VERSION} that this program reads: update isomortar, "
+                "or run the scene again into another file"
+            )
+        if version < layout.EARLIEST_VERSION:
+            raise ResultsError(
+                f"{self.path} has format {version}, this program reads formats {layout.EARLIEST_VERSION} to {layout.FORMAT_VERSION}: use "
+                "the version that wrote it, or run the scene again"
             )
 
     def _read(self, action: Callable[[h5py.File], Value]) -> Value:
@@ -319,7 +325,7 @@ def _column(file: h5py.File, path: str, quantity: layout.Quantity) -> Any:
         return np.full(len(file["curves/step"]), quantity.missing)
     if quantity.frictional and path not in file:
         return np.zeros((*file[f"{path.rpartition('/')[0]}/pressure"].shape, *quantity.row))
-    return file[path]
+    return quantity.signed(file[path][()], layout.version_of(file)) if quantity.turned else file[path]
 
 
 def _augmentations(file: h5py.File, step: int) -> tuple[AugmentationRecord, ...]:

@@ -79,6 +79,7 @@ class ResultsWriter(Observer):
     def recorded(self, result: StepResult) -> None:
         """Append the step; on return it is on the disk."""
         with self._changed(read(self.path)) as file:
+            self._renew(file)
             self._append(file, result)
 
     def _begin(self, scene_text: str, version: str) -> None:
@@ -117,6 +118,19 @@ class ResultsWriter(Observer):
         with h5py.File(copy, "a" if content else "w", libver=LIBVER, **({} if content else {"userblock_size": SEAL_SIZE})) as file:
             yield file
         replace(self.path, sealed(copy.getvalue()))
+
+    def _renew(self, file: h5py.File) -> None:
+        """Put what a file of an earlier format holds into the present one, for what is appended to it."""
+        version = layout.version_of(file)
+        if version == layout.FORMAT_VERSION:
+            return
+        for contact in self._problem.contacts:
+            for name, quantity in layout.CONTACT.items():
+                if quantity.turned:
+                    dataset = file[f"curves/contacts/{contact.name}/{name}"]
+                    dataset[...] = quantity.signed(dataset[()], version)
+                    dataset.attrs["description"] = quantity.description
+        file.attrs["format_version"] = layout.FORMAT_VERSION
 
     def _append(self, file: h5py.File, result: StepResult) -> None:
         row = len(file["curves/step"])

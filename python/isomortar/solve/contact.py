@@ -409,6 +409,7 @@ class PairMechanics:
         control, projections = kinematics.control, kinematics.projections
         slave_forces, forces = np.zeros_like(positions), np.zeros_like(positions)
         self.add_forces(positions, kinematics, response, forces)
+        forces = 0.0 - forces  # those that act on the bodies; what balances them is in the residual
         slave_forces[self.pair.slave.point] = forces[self.pair.slave.point]
         master_forces = forces - slave_forces
         field = self.pair.field(response.pressure)[projections.found > 0]

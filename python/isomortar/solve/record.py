@@ -104,7 +104,7 @@ class Reaction:
 class ContactResult:
     """Measured quantities of one contact pair at the end of a load step.
 
-    `force_slave`, `force_master`: resultants of the contact forces that each side exerts, `moment_*` about the origin, shape (3,).
+    `force_slave`, `force_master`: resultants of the contact forces on each side, `moment_*` about the origin, shape (3,); 0 on a plane.
     `active`, `slip`: numbers of constraints. `traction_norm`: metric norm of the traction of each, shape (n,).
     `status`: of each constraint 0 open, 1 stick, 2 slip, shape (n,). `gap`: g^J of each, shape (n,);
     positive is penetration. `pressure_field`: smallest and largest p at the contact quadrature points, shape (2,).
