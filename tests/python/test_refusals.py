@@ -179,6 +179,8 @@ def of_files(patch: pytest.MonkeyPatch) -> Told:
     writer.recorded(step_result(1))
     writer.recorded(step_result(2))
     yield "not kept", refusal(lambda: Results("run.h5").step(1))
+    yield "drawn over: words", refusal(lambda: plot("run.h5", "figures", x="strain"))
+    yield "drawn over: still", refusal(lambda: plot("run.h5", "figures", x="displacement of bed"))
     with patch.context() as within:
         within.setitem(sys.modules, "pandas", None)
         yield "no pandas", refusal(lambda: Results("run.h5").to_dataframe())

@@ -30,8 +30,9 @@ def test_every_column_is_that_of_its_curve(results: Results) -> None:
     assert list(frame["stage"]) == results.stages
     expected = {name: results.curve(name) for name in layout.STEP if name not in ("step", "stage")}
     for support in (support.name for support in problem().supports):
-        for name in ("force", "moment", "centre"):
+        for name in ("force", "moment", "centre", "displacement"):
             expected |= {f"{name}.{support}.{c}": results.curve(name, support=support, component=c) for c in "xyz"}
+        expected[f"rotation.{support}"] = results.curve("rotation", support=support)
     for contact in (contact.name for contact in problem().contacts):
         for name in layout.CONTACT:
             curve = results.curve(name, contact=contact)

@@ -134,6 +134,9 @@ def plot(
             show_default="png and pdf",
         ),
     ] = None,
+    x: Annotated[
+        str, typer.Option("--x", metavar="WHAT", help="What curves are drawn over: time, or the displacement or rotation of a support.")
+    ] = "time",
 ) -> None:
     """Draw force curves, bodies and contact pressure, and print where they lie.
 
@@ -143,10 +146,12 @@ def plot(
 
     - `isomortar plot results/iron.h5`
     - `isomortar plot results/iron.h5 --step 20 --only bodies --only pressure --format svg`
+    - `isomortar plot results/iron.h5 --x "displacement x of top"` (without x its size; a rotation is in degrees: `--x "rotation of top"`)
     """
     with isomortar.Results(results) as stored:
         curves = isomortar.Scene.from_toml(stored.scene_text).record.curves or ()
-    for path in isomortar.plot(results, output or _beside(results, "plots"), curves, step=step, only=only or (), formats=formats or ()):
+    folder = output or _beside(results, "plots")
+    for path in isomortar.plot(results, folder, curves, step=step, only=only or (), formats=formats or (), x=x):
         print(path)
 
 

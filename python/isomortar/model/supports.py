@@ -28,6 +28,13 @@ def rotation(axis: FloatArray, angle: float) -> FloatArray:
     return np.eye(3) + np.sin(angle) * across + 2.0 * np.sin(0.5 * angle) ** 2 * across @ across
 
 
+def moved_by(support: Support, shares: FloatArray) -> tuple[FloatArray, float]:
+    """Displacement of a support's centre, shape (3,), and its angle in degrees, where shares of the stages have passed (theory 5.1)."""
+    parts = list(zip(shares, support.motions, strict=True))
+    shift = sum((share * np.asarray(motion.translate) for share, motion in parts), np.zeros(3))
+    return shift, sum(share * motion.rotate for share, motion in parts)
+
+
 def _carried(body: Body, face: str, numbering: Numbering) -> IntArray:
     """Control points that a support on a face of a body prescribes."""
     if body.rigid:
@@ -100,11 +107,7 @@ class Supports:
 
     def centre(self, support: Support, time: float) -> FloatArray:
         """The moving centre c + u(t) of a support, shape (3,)."""
-        return self._centre(support, progress(self._problem.stages, time))
-
-    def _centre(self, support: Support, shares: FloatArray) -> FloatArray:
-        shift = sum((share * np.asarray(motion.translate) for share, motion in zip(shares, support.motions, strict=True)), np.zeros(3))
-        return np.asarray(support.centre, dtype=np.float64) + shift
+        return np.asarray(support.centre, dtype=np.float64) + moved_by(support, progress(self._problem.stages, time))[0]
 
     def increment(self, positions: FloatArray, time: float) -> FloatArray:
         """What the prescribed positions lack to where their supports put them, zero elsewhere, shape (control points, 3)."""
@@ -123,10 +126,10 @@ class Supports:
         positions = self._numbering.reference.copy()
         shares = progress(self._problem.stages, time)
         for k, support in enumerate(self._problem.supports):
-            angle = sum(share * motion.rotate for share, motion in zip(shares, support.motions, strict=True))
+            shift, angle = moved_by(support, shares)
             points = self.points[k]
             arms = self._numbering.reference[points] - np.asarray(support.centre)
-            target = self._centre(support, shares) + arms @ rotation(unit(support.axis), np.radians(angle)).T
+            target = np.asarray(support.centre, dtype=np.float64) + shift + arms @ rotation(unit(support.axis), np.radians(angle)).T
             for component in support.components:
                 positions[points, component] = target[:, component]
         return positions

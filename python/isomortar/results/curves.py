@@ -13,6 +13,7 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Support
 from isomortar.model.numbering import Numbering
 from isomortar.results import style
+from isomortar.results.abscissa import Abscissa, abscissa
 from isomortar.results.reader import Results
 
 _COMPONENTS = {"x": (style.BLUE, "-"), "y": (style.GREEN, "--"), "z": (style.VERMILION, "-.")}
@@ -37,68 +38,72 @@ def moving_supports(results: Results) -> list[Support]:
     return moving or list(results.problem.supports)
 
 
-def draw_reactions(results: Results, support: str) -> Figure:
+def draw_reactions(results: Results, support: str, over: Abscissa | None = None) -> Figure:
     """Force that a support exerts, and its moment about the moving centre, by component."""
+    over = over or abscissa(results)
     figure = Figure(figsize=(6.4, 5.0), layout="constrained")
     force, moment = figure.subplots(2, 1, sharex=True)
-    time = _from_rest(results.curve("time"))
     scale = max(float(np.abs(results.curve("force", support=support)).max()), 1e-300)
     length = Numbering(results.problem).size
     for axes, quantity, label, size in ((force, "force", "force", scale), (moment, "moment", "moment about the centre", scale * length)):
         values = _from_rest(results.curve(quantity, support=support))
         for number, (name, (colour, line)) in enumerate(_COMPONENTS.items()):
-            axes.plot(time, values[:, number], line, color=colour, label=name, marker=_marker(time), markersize=3)
+            axes.plot(over.values, values[:, number], line, color=colour, label=name, marker=_marker(over), markersize=3)
         axes.set_ylabel(label)
         if np.abs(values).max() < 1e-9 * size:  # round-off: show it as nothing
             axes.set_ylim(-0.01 * size, 0.01 * size)
     force.legend(ncols=3, loc="lower right", bbox_to_anchor=(1.0, 1.06), borderaxespad=0.0)
     force.set_title(f"{results.problem.name}: reaction at support {support}", loc="left", pad=18)
-    _finish((force, moment), results)
+    _finish((force, moment), results, over)
     return figure
 
 
-def draw_curve(results: Results, curve: WantedCurve) -> Figure:
+def draw_curve(results: Results, curve: WantedCurve, over: Abscissa | None = None) -> Figure:
     """A curve that the scene asks for."""
+    over = over or abscissa(results)
     figure = Figure(figsize=(6.4, 3.2), layout="constrained")
     axes = figure.subplots()
     values = _from_rest(results.curve(curve.quantity, support=curve.support))
     chosen = np.linalg.norm(values, axis=1) if curve.component == "norm" else values[:, "xyz".index(curve.component)]
-    time = _from_rest(results.curve("time"))
-    axes.plot(time, chosen, color=style.BLUE, marker=_marker(time), markersize=3)
+    axes.plot(over.values, chosen, color=style.BLUE, marker=_marker(over), markersize=3)
     of = f"|{curve.quantity}|" if curve.component == "norm" else f"{curve.quantity} {curve.component}"
     axes.set_ylabel(of)
     axes.set_title(f"{results.problem.name}: {curve.name} (support {curve.support})", loc="left", pad=18)
-    _finish((axes,), results)
+    _finish((axes,), results, over)
     return figure
 
 
 def _from_rest(values: FloatArray) -> FloatArray:
-    """What is recorded by load step, with the rest before them: time zero, no force."""
+    """What is recorded by load step, with the rest before them: no force."""
     return np.concatenate([np.zeros((1, *values.shape[1:])), values])
 
 
-def _marker(time: FloatArray) -> str:
+def _marker(over: Abscissa) -> str:
     """Few steps are shown one by one."""
-    return "o" if len(time) <= 25 else ""
+    return "o" if len(over.values) <= 25 else ""
 
 
-def _finish(panels: tuple[Axes, ...], results: Results) -> None:
-    """Shade every second stage and name the stages; put zero and the steps in sight."""
-    time = results.curve("time")
-    start = 0
-    for number, (stage, group) in enumerate(groupby(results.stages)):
-        end = start + len(list(group))
-        begin_time = time[start - 1] if start else 0.0
-        panels[0].annotate(
-            stage, (0.5 * (begin_time + time[end - 1]), 1.02), xycoords=("data", "axes fraction"), ha="center", color=style.GREY
-        )
-        for axes in panels:
-            if number % 2:
-                axes.axvspan(begin_time, time[end - 1], color="#F1F3F6", linewidth=0, zorder=0)
-        start = end
+def _finish(panels: tuple[Axes, ...], results: Results, over: Abscissa) -> None:
+    """Put zero and the steps in sight; show the stages where they lie beside each other."""
     for axes in panels:
         axes.axhline(0.0, color=style.GREY, linewidth=0.6, zorder=1)
-        axes.set_xlim(0.0, time[-1])
+        axes.set_xlim(over.values.min(), over.values.max())
         axes.grid(axis="y", color="#E3E6EA", linewidth=0.6)
         axes.set_axisbelow(True)
-    panels[-1].set_xlabel("load time (steps)")
+    panels[-1].set_xlabel(over.label)
+    if over.one_way:
+        _show_stages(panels, results.stages, over.values)
+
+
+def _show_stages(panels: tuple[Axes, ...], stages: list[str], places: FloatArray) -> None:
+    """Shade every second stage, and name those that have a width."""
+    start = 0
+    for number, (stage, group) in enumerate(groupby(stages)):
+        end = start + len(list(group))
+        if places[start] != places[end]:
+            middle = 0.5 * (places[start] + places[end])
+            panels[0].annotate(stage, (middle, 1.02), xycoords=("data", "axes fraction"), ha="center", color=style.GREY)
+        for axes in panels:
+            if number % 2:
+                axes.axvspan(places[start], places[end], color="#F1F3F6", linewidth=0, zorder=0)
+        start = end

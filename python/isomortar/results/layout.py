@@ -106,6 +106,9 @@ REACTION = {
     "centre": _real("length", "moving centre of the support", (3,)),
 }
 
+#: Of a support, from its motions and the load time: no file holds them.
+MOTION = "displacement", "rotation"
+
 #: Resultants and counts of a contact pair, named as in `ContactResult`.
 CONTACT = {
     "force_slave": _exerted("force", "resultant of the contact forces on the slave"),

@@ -10,6 +10,7 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from isomortar.errors import InputError, ResultsError
+from isomortar.results.abscissa import Abscissa, abscissa
 from isomortar.results.bodies import draw_bodies
 from isomortar.results.curves import WantedCurve, draw_curve, draw_reactions, moving_supports
 from isomortar.results.files import make_folder, writing
@@ -30,6 +31,7 @@ def plot(
     step: int | None = None,
     only: Sequence[str] = (),
     formats: Sequence[str] = (),
+    x: str = "time",
 ) -> list[Path]:
     """Draw curves over all load steps, and bodies and contact pressure of one of them.
 
@@ -46,6 +48,9 @@ def plot(
         What is drawn; default: all of it.
     formats : sequence of {"png", "pdf", "svg"}
         Of curves and maps; default: png and pdf. Bodies, of which vectors would be many, are always PNG.
+    x : str
+        What curves are drawn over: ``time``, ``displacement of SUPPORT`` (its size), ``displacement z of SUPPORT`` or
+        ``rotation of SUPPORT``.
 
     Returns
     -------
@@ -54,7 +59,7 @@ def plot(
     Raises
     ------
     InputError
-        Something else is to be drawn, or another type of file.
+        Something else is to be drawn, or over something else, or another type of file.
     ResultsError
         The results file is missing, damaged, or holds no such load step; or a figure cannot be written.
     """
@@ -65,9 +70,10 @@ def plot(
         shown = results.last_step() if step is None else results.step(step)
         if shown is None:
             raise ResultsError(f"{results.path} holds no load step yet: nothing to draw")
+        over = abscissa(results, x)
         make_folder(folder)
         paths = []
-        for stem, draw in _figures(results, shown, curves, only or DRAWABLE):
+        for stem, draw in _figures(results, shown, curves, only or DRAWABLE, over):
             paths += _save(draw(), folder / stem, ("png",) if stem.startswith("bodies-") else formats or ("png", "pdf"))
     return paths
 
@@ -80,12 +86,12 @@ def _among(field: str, names: Sequence[str], allowed: tuple[str, ...]) -> None:
 
 
 def _figures(
-    results: Results, step: StepResult, curves: Sequence[WantedCurve], kinds: Sequence[str]
+    results: Results, step: StepResult, curves: Sequence[WantedCurve], kinds: Sequence[str], over: Abscissa
 ) -> Iterator[tuple[str, Callable[[], Figure]]]:
     """Names of the figures, and what draws each."""
     if "curves" in kinds:
-        yield from ((f"reactions-{s.name}", partial(draw_reactions, results, s.name)) for s in moving_supports(results))
-        yield from ((f"curve-{curve.name}", partial(draw_curve, results, curve)) for curve in curves)
+        yield from ((f"reactions-{s.name}", partial(draw_reactions, results, s.name, over)) for s in moving_supports(results))
+        yield from ((f"curve-{curve.name}", partial(draw_curve, results, curve, over)) for curve in curves)
     for number, contact in enumerate(results.problem.contacts):
         if "bodies" in kinds:
             yield f"bodies-{contact.name}", partial(draw_bodies, results.problem, step, number)

@@ -18,6 +18,7 @@ from isomortar.errors import ResultsError
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model.entities import Contact, Problem
 from isomortar.model.numbering import Numbering
+from isomortar.model.supports import moved_by, progress
 from isomortar.results import layout
 from isomortar.results.definition import read_problem
 from isomortar.results.files import is_marked, is_whole
@@ -149,8 +150,9 @@ class Results:
         Parameters
         ----------
         quantity : str
-            Of a support: force, moment, centre. Of a contact: force_slave, force_master, moment_slave, moment_master, active, slip,
-            pressure_field, excluded, friction_work, spurious_work. Of neither: step, time, newton_order, substeps, cuts, next_increment.
+            Of a support: force, moment, centre, displacement, rotation (degrees). Of a contact: force_slave, force_master, moment_slave,
+            moment_master, active, slip, pressure_field, excluded, friction_work, spurious_work. Of neither: step, time, newton_order,
+            substeps, cuts, next_increment.
         support, contact : str, optional
             Name of a support or of a contact pair.
         component : {"x", "y", "z"}, optional
@@ -160,20 +162,32 @@ class Results:
         -------
         ndarray, shape (steps,) or (steps, 3)
         """
+        motion: dict[str, FloatArray] = {}
         if support is not None:
             known, place = layout.REACTION, f"supports/{_named(self.problem.supports, support, 'support').name}/"
+            motion = self._motion(support)
         elif contact is not None:
             known, place = layout.CONTACT, f"contacts/{_named(self.problem.contacts, contact, 'contact').name}/"
         else:
             known, place = {name: kind for name, kind in layout.STEP.items() if name != "stage"}, ""
-        if quantity not in known:
-            raise ResultsError(f"there is no curve {quantity!r} here; there are: {', '.join(known)}")
-        values = self._read(lambda file: _column(file, f"curves/{place}{quantity}", known[quantity])[()])
+        if quantity in motion:
+            values = motion[quantity]
+        elif quantity in known:
+            values = self._read(lambda file: _column(file, f"curves/{place}{quantity}", known[quantity])[()])
+        else:
+            raise ResultsError(f"there is no curve {quantity!r} here; there are: {', '.join((*known, *motion))}")
         if component is None:
             return values
         if values.ndim != 2 or values.shape[1] != 3:
             raise ResultsError(f"curve {quantity!r} has no components")
         return values[:, "xyz".index(component)]
+
+    def _motion(self, support: str) -> dict[str, FloatArray]:
+        """What is computed of a support's motions, by name."""
+        chosen, stages = _named(self.problem.supports, support, "support"), self.problem.stages
+        moved = [moved_by(chosen, progress(stages, time)) for time in self.curve("time")]
+        values = np.reshape([shift for shift, _ in moved], (-1, 3)), np.array([angle for _, angle in moved])
+        return dict(zip(layout.MOTION, values, strict=True))
 
     def to_dataframe(self) -> pandas.DataFrame:
         """All curves as a frame of pandas: a row for each recorded load step, columns like ``force.top.x`` and ``active.floor``.

@@ -21,7 +21,7 @@ def columns(results: Results) -> dict[str, NDArray[Any]]:
     table: dict[str, NDArray[Any]] = {"time": results.curve("time"), "stage": np.array(results.stages)}
     table |= {name: results.curve(name) for name in layout.STEP if name not in ("step", "stage", "time")}
     for support in results.problem.supports:
-        for quantity in layout.REACTION:
+        for quantity in (*layout.REACTION, *layout.MOTION):
             table |= _components(f"{quantity}.{support.name}", results.curve(quantity, support=support.name))
     for contact in results.problem.contacts:
         for quantity in layout.CONTACT:

@@ -1,0 +1,66 @@
+"""What curves are drawn over: load time, or how far a support has moved or turned."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+
+from isomortar.errors import InputError
+from isomortar.geometry.patch import FloatArray
+from isomortar.results.reader import Results
+
+_WAY = re.compile(r"(?P<quantity>displacement|rotation)( (?P<component>[xyz]))? of (?P<support>[\w-]+)")
+
+
+@dataclass(frozen=True)
+class Abscissa:
+    """Values at rest and at every recorded load step, shape (steps + 1,), and what stands below their axis."""
+
+    values: FloatArray
+    label: str
+
+    @property
+    def one_way(self) -> bool:
+        """Whether they never go back, so that stages lie beside each other."""
+        steps = np.diff(self.values)
+        return bool(np.all(steps >= 0.0) or np.all(steps <= 0.0))
+
+
+def abscissa(results: Results, what: str = "time") -> Abscissa:
+    """What curves are drawn over, by its words.
+
+    Parameters
+    ----------
+    results : Results
+    what : str
+        ``time``; ``displacement z of top``, without a component its size; ``rotation of top``, in degrees.
+
+    Raises
+    ------
+    InputError
+        Other words, or a support that does not move like that.
+    ResultsError
+        There is no such support.
+    """
+    if what == "time":
+        return Abscissa(_from_rest(results.curve("time")), "load time (steps)")
+    found = _WAY.fullmatch(what)
+    if not found or (found["component"] and found["quantity"] == "rotation"):
+        raise InputError(
+            f"is {what!r}; allowed: 'time', 'displacement of SUPPORT' (its size), 'displacement z of SUPPORT', 'rotation of SUPPORT'", "x"
+        )
+    values = results.curve(found["quantity"], support=found["support"])
+    if values.ndim == 2:
+        values = values[:, "xyz".index(found["component"])] if found["component"] else np.linalg.norm(values, axis=1)
+    values = _from_rest(values)
+    if not values.any():
+        raise InputError(f"is {what!r}, and it stays zero: nothing can be drawn over it", "x")
+    unit = " (degrees)" if found["quantity"] == "rotation" else ""
+    return Abscissa(values, f"{what}{unit}")
+
+
+def _from_rest(values: FloatArray) -> FloatArray:
+    """With zero before the first load step."""
+    return np.append(0.0, values)
