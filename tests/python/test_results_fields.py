@@ -26,6 +26,7 @@ from isomortar.results.bezier import bernstein, bezier_matrix, fitted, functions
 from isomortar.results.fields import body_points, contact_surfaces
 from isomortar.results.paraview import export
 from isomortar.results.stress import deformation_gradient, first_piola_stress
+from isomortar.results.vectors import contact_vectors
 from isomortar.results.vtu import _places
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
@@ -205,7 +206,9 @@ def seen(grid: Any, number: int, local: np.ndarray) -> dict[str, np.ndarray]:
     return {"place": np.array(point)} | {name: np.asarray(weights) @ values[ids] for name, values in arrays.items() if name != "weights"}
 
 
-def expected_patches(made: Problem, step: StepResult) -> dict[str, list[tuple[tuple[Direction, ...], np.ndarray, dict[str, np.ndarray]]]]:
+def expected_patches(
+    made: Problem, step: StepResult, before: StepResult | None
+) -> dict[str, list[tuple[tuple[Direction, ...], np.ndarray, dict[str, np.ndarray]]]]:
     """Directions, weights and control values of every body and slave face, put together by hand."""
     points = body_points(made, step.state.positions)
     bodies, faces = [], []
@@ -215,12 +218,18 @@ def expected_patches(made: Problem, step: StepResult) -> dict[str, list[tuple[tu
     tyre = made.bodies[0].patch
     outer = tyre.face_points("v1")
     twice = np.concatenate([np.arange(16).reshape(8, 2), [[0, 1]]])  # along u the last control points are the first ones; w runs first
-    for state, measured in zip(step.state.contacts, step.contacts, strict=True):
+    vectors = contact_vectors(made, step, before)
+    for state, measured, of_contact in zip(step.state.contacts, step.contacts, vectors, strict=True):
         control = {"place": points["tyre"][outer], "displacement": points["tyre"][outer] - tyre.control_points[outer]}
         control |= {"pressure": state.pressure[twice.ravel()], "traction": measured.traction_norm[twice.ravel()]}
         control |= {"gap": measured.gap[twice.ravel()], "status": measured.status[twice.ravel()].astype(float)}
+        control |= {"traction vector": of_contact.traction, "slip vector": of_contact.slip} if step.step else _no_vectors(outer)
         faces.append((tyre.face_directions("v1"), tyre.weights[outer], control))
     return {"bodies": bodies, "contacts": faces}
+
+
+def _no_vectors(points: np.ndarray) -> dict[str, np.ndarray]:
+    return {name: np.zeros((len(points), 3)) for name in ("traction vector", "slip vector")}
 
 
 def rest(made: Problem, step: StepResult) -> StepResult:
@@ -244,8 +253,8 @@ def test_vtk_sees_every_field_of_every_step_at_any_place(tmp_path: Path) -> None
     kinds = ("bodies", "contacts")
     times = [(0.0, 0), *((s.time, s.step) for s in steps)]
     assert told == [(time, kind, str(i), f"run/{kind}-{number:04d}.vtu") for time, number in times for i, kind in enumerate(kinds)]
-    for step in [rest(made, steps[0]), *steps]:
-        for kind, patches in expected_patches(made, step).items():
+    for step, before in [(rest(made, steps[0]), None), (steps[0], None), (steps[1], steps[0])]:
+        for kind, patches in expected_patches(made, step, before).items():
             grid = read(tmp_path / "run" / f"{kind}-{step.step:04d}.vtu")
             numbers = vtk_to_numpy(grid.GetCellData().GetArray("number"))
             assert numbers.tolist() == [i for i, (lines, *_) in enumerate(patches) for _ in range(np.prod([d.elements for d in lines]))]

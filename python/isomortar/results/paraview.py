@@ -23,6 +23,7 @@ from isomortar.results.fields import ContactSurface, body_points, contact_surfac
 from isomortar.results.files import make_folder, writing
 from isomortar.results.reader import Results
 from isomortar.results.stress import cauchy_stress, deformation_gradient, von_mises
+from isomortar.results.vectors import ContactVectors, contact_vectors
 from isomortar.results.vtu import BezierGrid, bezier_grid, write_vtu
 
 #: Places of xx, yy, zz, xy, yz, xz in a tensor's nine components: the order in which VTK has those of symmetric ones.
@@ -33,8 +34,10 @@ def export(results_path: str | os.PathLike[str], outdir: str | os.PathLike[str])
     """Write the bodies and slave faces at rest and at every kept state for ParaView.
 
     Point data of bodies: displacement; Cauchy stress (xx, yy, zz, xy, yz, xz; force per deformed area), its equivalent by von Mises and
-    J = det F, fitted element by element. Of slave faces: displacement, contact pressure, magnitude of the contact traction, control gaps
-    (positive is penetration) and status (0 open, 1 stick, 2 slip).
+    J = det F, fitted element by element. Of slave faces: displacement, contact pressure, magnitude of the contact traction, that traction
+    as a vector (friction on the slave), slip of the slave on its master within the load step as a vector (NaN where the state before it
+    was not kept), control gaps (positive is penetration) and status (0 open, 1 stick, 2 slip). Pressure and traction are force per area in
+    the reference configuration.
     Cell data: number of the body or contact pair, from 0 in the order of the scene.
 
     Returns
@@ -72,8 +75,10 @@ def _states(results: Results) -> Iterator[tuple[float, int, dict[str, list[Bezie
         step = results.step(int(number))
         surfaces = contact_surfaces(problem, step)
         if number == results.kept_states[0]:
-            yield 0.0, 0, _grids(problem, Numbering(problem).reference, [_at_rest(surface) for surface in surfaces])
-        yield step.time, step.step, _grids(problem, step.state.positions, surfaces)
+            still = [ContactVectors(*np.zeros((2, *surface.points.shape))) for surface in surfaces]
+            yield 0.0, 0, _grids(problem, Numbering(problem).reference, [_at_rest(surface) for surface in surfaces], still)
+        before = results.step(int(number) - 1) if number - 1 in results.kept_states else None
+        yield step.time, step.step, _grids(problem, step.state.positions, surfaces, contact_vectors(problem, step, before))
 
 
 def _at_rest(surface: ContactSurface) -> ContactSurface:
@@ -84,10 +89,13 @@ def _at_rest(surface: ContactSurface) -> ContactSurface:
     )
 
 
-def _grids(problem: Problem, positions: FloatArray, surfaces: list[ContactSurface]) -> dict[str, list[BezierGrid]]:
+def _grids(
+    problem: Problem, positions: FloatArray, surfaces: list[ContactSurface], vectors: list[ContactVectors]
+) -> dict[str, list[BezierGrid]]:
     points = body_points(problem, positions)
     bodies = [_body(number, body, points[body.name]) for number, body in enumerate(problem.bodies)]
-    return {"bodies": bodies} | ({"contacts": [_contact(i, surface) for i, surface in enumerate(surfaces)]} if surfaces else {})
+    contacts = [_contact(i, *of_contact) for i, of_contact in enumerate(zip(surfaces, vectors, strict=True))]
+    return {"bodies": bodies} | ({"contacts": contacts} if contacts else {})
 
 
 def _body(number: int, body: Body, points: FloatArray) -> BezierGrid:
@@ -99,11 +107,13 @@ def _body(number: int, body: Body, points: FloatArray) -> BezierGrid:
     return bezier_grid(directions, weights, points, {"displacement": points - body.patch.control_points}, number, fields)
 
 
-def _contact(number: int, surface: ContactSurface) -> BezierGrid:
+def _contact(number: int, surface: ContactSurface, vectors: ContactVectors) -> BezierGrid:
     fields = {
         "displacement": surface.points - surface.reference_points,
         "pressure": surface.pressure[:, None],
         "traction": surface.traction[:, None],
+        "traction vector": vectors.traction,
+        "slip vector": vectors.slip,
         "gap": surface.gap[:, None],
         "status": surface.status[:, None].astype(np.float64),
     }
