@@ -213,6 +213,10 @@ def of_results(_: pytest.MonkeyPatch) -> Told:
     yield "there already", refusal(lambda: ResultsWriter("run.h5", problem(), "", "0"))
     other = replace(problem(), name="other", stages=problem().stages[:1])
     yield "another scene", refusal(lambda: ResultsWriter("run.h5", other, "", "0", resume=True))
+    ResultsWriter("longer.h5", problem(), "", "0")
+    shorter = [replace(support, motions=support.motions[:1]) for support in problem().supports]
+    short = replace(other, supports=tuple(shorter))
+    yield "shorter scene", refusal(lambda: ResultsWriter("longer.h5", short, "", "0", resume=True))
     yield "none there", refusal(lambda: Results("none.h5"))
     with Results("run.h5") as results:
         yield "no step", refusal(lambda: results.step(3))

@@ -63,6 +63,10 @@ def run(
     output: Annotated[
         Path | None, typer.Option(dir_okay=False, help="Results file.", show_default="results/NAME.h5, NAME being the scene's")
     ] = None,
+    steps: Annotated[
+        list[int] | None,
+        typer.Option(min=1, help="Load steps more, in a stage of their own at the rate of the scene's last one; may be repeated."),
+    ] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Go on after the last load step that the results file holds.")] = False,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Begin anew where the results file exists.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress; warnings and errors still show.")] = False,
@@ -71,12 +75,14 @@ def run(
     """Compute a scene.
 
     Every load step is on the disk when it is done: after Ctrl-C, a crash or a power cut `--resume` goes on from the last one, and
-    the results file can be read meanwhile. An existing file is an error without `--resume` or `--overwrite`.
+    the results file can be read meanwhile. An existing file is an error without `--resume` or `--overwrite`. A scene that has stages
+    more at its end goes on as well, to the numbers of a run from the start; nothing else in it may have changed.
 
     For example:
 
     - `isomortar run iron`
     - `isomortar run iron --resume`
+    - `isomortar run iron --resume --steps 10` goes on for ten load steps more; `--steps 10 --steps 5` then for another five
     - `isomortar run my_scene.toml --output my_results.h5`
     - `isomortar run twist --set "bodies.master.mesh.order=[3,3,2]" --set contacts.interface.friction=0.5`
     - `isomortar run press --set stages.press.steps=10 --output fine.h5`
@@ -90,7 +96,7 @@ def run(
         from isomortar.cli.progress import progress
         from isomortar.driver import compute, results_path
 
-        chosen = isomortar.Scene.load(scene, overrides or ())
+        chosen = isomortar.Scene.load(scene, overrides or ()).with_more_steps(*(steps or ()))
         problem = chosen.problem()
     path = output or results_path(chosen)
     with progress(problem, quiet) as observer:

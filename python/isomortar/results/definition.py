@@ -46,6 +46,12 @@ def write_problem(group: h5py.Group, problem: Problem) -> None:
         _write_body(group.create_group(f"bodies/{number}"), body)
 
 
+def write_stages(group: h5py.Group, problem: Problem) -> None:
+    """Store the stages of a problem, and what supports do in them, in the place of fewer."""
+    for name in ("stages", "supports"):
+        group.attrs[name] = _json(getattr(problem, name))
+
+
 def read_problem(group: h5py.Group) -> Problem:
     """Rebuild the problem that `write_problem` stored.
 
@@ -61,6 +67,13 @@ def read_problem(group: h5py.Group) -> Problem:
     if not bodies or not named <= {body.name for body in bodies}:
         raise ValueError("bodies of the scene are missing")
     return problem
+
+
+def is_longer(stored: Problem, given: Problem) -> bool:
+    """Whether a problem is another one with stages added at its end, and nothing else."""
+    count = len(stored.stages)
+    supports = tuple(replace(support, motions=support.motions[:count]) for support in given.supports)
+    return len(given.stages) > count and not differences(stored, replace(given, stages=given.stages[:count], supports=supports))
 
 
 def differences(stored: Problem, given: Problem) -> list[str]:

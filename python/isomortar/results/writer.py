@@ -15,7 +15,7 @@ import numpy as np
 from isomortar.errors import ResultsError
 from isomortar.model.entities import Contact, Problem
 from isomortar.results import layout
-from isomortar.results.definition import differences, write_problem
+from isomortar.results.definition import differences, is_longer, write_problem, write_stages
 from isomortar.results.files import SEAL_SIZE, read, replace, sealed
 from isomortar.results.reader import Results
 from isomortar.solve.record import AugmentationRecord, ContactRates, Observer, Rates, State, StepResult
@@ -46,7 +46,7 @@ class ResultsWriter(Observer):
     states : {"every", "last"}
         Keep the full state of every step, or of the newest only. Curves and log keep every step.
     resume : bool
-        Append to an existing file (or begin one if there is none).
+        Append to an existing file (or begin one if there is none). The problem may have stages that the file's has not, at its end.
     overwrite : bool
         Begin anew in the place of an existing file. Without `resume` and `overwrite` the file must not exist yet.
 
@@ -69,16 +69,18 @@ class ResultsWriter(Observer):
         self.path = Path(path)
         self._problem = problem
         self._states = states
+        self._longer: str | None = None
         if overwrite or not self.path.exists():
             self._begin(scene_text, version)
         elif resume:
-            self._check_same_scene()
+            self._check_same_scene(scene_text)
         else:
             raise ResultsError(f"{self.path} exists already: resume it, overwrite it, or name another results file")
 
     def recorded(self, result: StepResult) -> None:
         """Append the step; on return it is on the disk."""
         with self._changed(read(self.path)) as file:
+            self._lengthen(file)
             self._renew(file)
             self._append(file, result)
 
@@ -87,8 +89,7 @@ class ResultsWriter(Observer):
             file.attrs["format"] = layout.FORMAT
             file.attrs["format_version"] = layout.FORMAT_VERSION
             file.attrs["program_version"] = version
-            scene = file.create_dataset("scene", data=np.bytes_(scene_text.encode()))
-            scene.attrs["unit"], scene.attrs["description"] = "text", "the scene file, UTF-8"
+            _put_scene(file, scene_text)
             write_problem(file.create_group("problem"), self._problem)
             _make_all(file, "curves", layout.STEP)
             for support in self._problem.supports:
@@ -101,14 +102,22 @@ class ResultsWriter(Observer):
             file.create_group("counters")
             file.create_group("orderings")
 
-    def _check_same_scene(self) -> None:
+    def _check_same_scene(self, scene_text: str) -> None:
         with Results(self.path) as stored:
             unlike = differences(stored.problem, self._problem)
+            if unlike and is_longer(stored.problem, self._problem):
+                self._longer, unlike = scene_text, []
+            if unlike and is_longer(self._problem, stored.problem):
+                further = ", ".join(stage.name for stage in stored.problem.stages[len(self._problem.stages) :])
+                raise ResultsError(
+                    f"{self.path} has stages that the scene does not have: {further}. Give them to resume it, as by the same --steps, or "
+                    "name another results file"
+                )
         if unlike:
             more = f"; and {len(unlike) - 5} more" if len(unlike) > 5 else ""
             raise ResultsError(
                 f"{self.path} belongs to another scene, so it cannot be resumed with this one: {'; '.join(unlike[:5])}{more}. "
-                "Undo these changes, or name another results file"
+                "Undo these changes, or name another results file; stages may be added at the end"
             )
 
     @contextmanager
@@ -118,6 +127,15 @@ class ResultsWriter(Observer):
         with h5py.File(copy, "a" if content else "w", libver=LIBVER, **({} if content else {"userblock_size": SEAL_SIZE})) as file:
             yield file
         replace(self.path, sealed(copy.getvalue()))
+
+    def _lengthen(self, file: h5py.File) -> None:
+        """Put a scene that has stages more in the place of the file's own."""
+        if self._longer is None:
+            return
+        del file["scene"]
+        _put_scene(file, self._longer)
+        write_stages(file["problem"], self._problem)
+        self._longer = None
 
     def _renew(self, file: h5py.File) -> None:
         """Put what a file of an earlier format holds into the present one, for what is appended to it."""
@@ -164,6 +182,11 @@ class ResultsWriter(Observer):
         _put(file, "rates", layout.RATES, rates, kept)
         for contact, of_contact in zip(self._problem.contacts, rates.contacts, strict=True):
             _put(file, f"rates/contacts/{contact.name}", _wanted(contact, layout.CONTACT_RATES), of_contact, kept)
+
+
+def _put_scene(file: h5py.File, text: str) -> None:
+    scene = file.create_dataset("scene", data=np.bytes_(text.encode()))
+    scene.attrs["unit"], scene.attrs["description"] = "text", "the scene file, UTF-8"
 
 
 def _wanted(contact: Contact, quantities: Mapping[str, layout.Quantity]) -> dict[str, layout.Quantity]:

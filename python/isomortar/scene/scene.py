@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import itertools
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ from isomortar.model.entities import Problem
 from isomortar.model.messages import input_error
 from isomortar.scene.build import build, coarse_patch
 from isomortar.scene.geometry_file import patch_table
-from isomortar.scene.schema import CurveTable, RecordTable, SceneTable
+from isomortar.scene.schema import CurveTable, RecordTable, SceneTable, StageTable
 from isomortar.scene.source import SceneChanges, apply_overrides, dump, parse, read_source
 
 
@@ -74,6 +75,16 @@ class Scene:
         """A scene from the text of a scene file; `folder` is where its geometry files lie."""
         return cls(text, "scene", Path(folder), overrides)
 
+    def with_more_steps(self, *counts: int) -> Scene:
+        """The scene with a stage more for each count: so many load steps at the rate of its last stage.
+
+        A run that is resumed with it goes on where the scene ended.
+        """
+        data = copy.deepcopy(self._data)
+        for count in counts:
+            data["stages"].append(_further(self.tables.stages[-1], count, [stage["name"] for stage in data["stages"]]))
+        return Scene(dump(data), self.name, self._folder) if counts else self
+
     def __repr__(self) -> str:
         tables = self.tables
         parts = [f"{what} {', '.join(names)}" for what, names in (("bodies", [*tables.bodies]), ("contacts", [*tables.contacts])) if names]
@@ -125,3 +136,14 @@ class Scene:
                 del data["bodies"][name]["file"]
                 data["bodies"][name]["patch"] = patch_table(coarse_patch(name, table, self._folder))
         return self._text if data == parse(self._text, self.name) else dump(data)
+
+
+def _further(stage: StageTable, count: int, names: list[str]) -> dict[str, Any]:
+    """A stage that goes on like another one for some load steps, by a name that is not taken."""
+    share = count / stage.steps
+    motions = {
+        support: {"translate": [share * way for way in motion.translate], "rotate": share * motion.rotate}
+        for support, motion in stage.motions.items()
+    }
+    name = next(name for number in itertools.count(2) if (name := f"{stage.name}-{number}") not in names)
+    return {"name": name, "steps": count, "motions": motions}

@@ -1,0 +1,164 @@
+"""A run that is resumed with stages more at the end of its scene comes to the numbers of a run from the start, bit for bit."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import isomortar
+from isomortar.errors import ResultsError
+from isomortar.results import Results
+from isomortar.scene import Scene
+from isomortar.solve.record import StepResult
+from test_results_files import StopsAtOnce, ended
+from test_results_formats import as_before
+from test_results_store import same
+
+PRESS = {"bodies.block.mesh.elements": [2, 2, 1], "stages.press.steps": 2, "stages.press.motions.top.translate": [0.02, 0.0, -0.08]}
+IRON = {
+    "bodies.slave.mesh.elements": [2, 2, 1],
+    "bodies.master.mesh.elements": [4, 2, 1],
+    "stages.press.steps": 1,
+    "stages.drag.steps": 3,
+    "stages.drag.motions.top.translate": [0.6, 0.0, 0.0],
+}
+HALF = """
+format = 1
+symmetry = { y = 0.0 }
+bodies.block.geometry = { kind = "box", lower = [0, -1, 0], upper = [1, 1, 1] }
+bodies.block.mesh.elements = [2, 2, 1]
+contacts.floor = { slave = "block.w0", plane = { point = [0, 0, 0], normal = [0, 0, 1] }, friction = 0.3 }
+supports.top.face = "block.w1"
+stages = [{ name = "press", steps = 2, motions.top.translate = [0.1, 0, -0.1] }]
+"""
+TURN = {"name": "back", "steps": 2, "motions": {"top": {"translate": [-0.1, 0.0, 0.0], "rotate": 10.0}}}
+
+
+def with_stages(scene: Scene, *stages: dict[str, Any]) -> Scene:
+    """The scene with stages more at its end."""
+    given = [stage.model_dump() for stage in scene.tables.stages]
+    return Scene.from_toml(scene.to_toml(), overrides={"stages": [*given, *stages]})
+
+
+def steps_of(path: Path) -> list[StepResult]:
+    """All kept load steps, without what they cost."""
+    with Results(path) as results:
+        return [replace(results.step(int(number)), timings={}, counters={}) for number in results.kept_states]
+
+
+def assert_same(path: Path, other: Path) -> None:
+    """Two files hold the same scene and numbers."""
+    with Results(path) as one, Results(other) as two:
+        assert one.scene_text == two.scene_text
+        assert same(one.problem, two.problem)
+        assert len(one.steps) == len(two.steps) == one.problem.total_steps
+    assert all(map(same, steps_of(path), steps_of(other)))
+
+
+SCENES = {
+    "plane": Scene.load("press", PRESS),
+    "block": Scene.load("iron", IRON),
+    "augmentations": Scene.load("press", PRESS | {"solver.method": "uzawa"}),
+    "the last state": Scene.load("press", PRESS | {"record.states": "last"}),
+    "half": Scene.from_toml(HALF),
+}
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_more_load_steps_are_those_of_a_run_from_the_start(tmp_path: Path, name: str) -> None:
+    """At the rate of the last stage; another time from there."""
+    scene, path = SCENES[name], tmp_path / "longer.h5"
+    isomortar.run(scene, path).close()
+    isomortar.run(scene.with_more_steps(2), path, resume=True).close()
+    isomortar.run(scene.with_more_steps(2, 1), path, resume=True).close()
+    isomortar.run(scene.with_more_steps(2, 1), tmp_path / "whole.h5").close()
+    assert_same(path, tmp_path / "whole.h5")
+
+
+def test_another_stage_is_that_of_a_run_from_the_start(tmp_path: Path) -> None:
+    """One that goes elsewhere, on a file of an earlier format, after a stop within the scene."""
+    scene = SCENES["block"]
+    longer, path = with_stages(scene, TURN), tmp_path / "longer.h5"
+    with pytest.raises(KeyboardInterrupt):
+        isomortar.run(scene, path, Stops(3))
+    as_before(path, 3)
+    isomortar.run(longer, path, resume=True).close()
+    isomortar.run(longer, tmp_path / "whole.h5").close()
+    assert_same(path, tmp_path / "whole.h5")
+
+
+class Stops(isomortar.Observer):
+    """Ends a run after a load step."""
+
+    def __init__(self, step: int) -> None:
+        self.step = step
+
+    def recorded(self, result: StepResult) -> None:
+        if result.step == self.step:
+            raise KeyboardInterrupt
+
+
+def test_steps_more_go_on_at_the_same_rate() -> None:
+    scene = Scene.load("twist")
+    given, *more = [stage.model_dump() for stage in scene.with_more_steps(4, 2).tables.stages][len(scene.tables.stages) - 1 :]
+    assert [(stage["name"], stage["steps"]) for stage in more] == [(f"{given['name']}-2", 4), (f"{given['name']}-3", 2)]
+    for stage in more:
+        for support, motion in given["motions"].items():
+            share = stage["steps"] / given["steps"]
+            assert stage["motions"][support]["rotate"] == pytest.approx(share * motion["rotate"])
+            assert stage["motions"][support]["translate"] == pytest.approx([share * way for way in motion["translate"]])
+    assert scene.with_more_steps() is scene
+
+
+CHANGES = {
+    "friction": ({"contacts.floor.friction": 0.1}, "contacts.floor.friction"),
+    "a longer stage": ({"stages.press.steps": 3}, "stages.press.steps"),
+    "another way": ({"stages.press.motions.top.translate": [0, 0, -0.1]}, "supports.top.motions.0.translate"),
+}
+
+
+@pytest.mark.parametrize("what", CHANGES)
+def test_anything_else_is_refused_as_ever(tmp_path: Path, what: str) -> None:
+    """With stages more and without."""
+    path, (changes, words) = tmp_path / "press.h5", CHANGES[what]
+    isomortar.run(SCENES["plane"], path).close()
+    before = path.read_bytes()
+    changed = Scene.load("press", PRESS | changes)
+    for scene in (changed, changed.with_more_steps(2)):
+        with pytest.raises(ResultsError, match=f"another scene.*{words}.*stages may be added at the end"):
+            isomortar.run(scene, path, resume=True)
+    assert path.read_bytes() == before
+
+
+def test_a_shorter_scene_is_refused_and_a_file_is_as_it_was_until_there_is_more(tmp_path: Path) -> None:
+    path, scene = tmp_path / "press.h5", SCENES["plane"]
+    isomortar.run(scene, path).close()
+    before = path.read_bytes()
+    with pytest.raises(KeyboardInterrupt):
+        isomortar.run(scene.with_more_steps(2), path, StopsAtOnce(), resume=True)
+    assert path.read_bytes() == before
+    isomortar.run(scene.with_more_steps(2), path, resume=True).close()
+    with pytest.raises(ResultsError, match="has stages that the scene does not have: press-2"):
+        isomortar.run(scene, path, resume=True)
+
+
+def commands(folder: Path, *words: str) -> Sequence[str]:
+    done = ended(folder, "run", "press", "--set", "stages.press.motions.top.translate=[0,0,-0.1]", *words)
+    assert done.returncode == 0, done.stderr
+    return done.stderr.splitlines()
+
+
+def test_the_command_goes_on(tmp_path: Path) -> None:
+    commands(tmp_path)
+    assert "press: 3 of 5 load steps are there, going on" in commands(tmp_path, "--resume", "--steps", "2")
+    assert "press: all 5 load steps are there already" in commands(tmp_path, "--resume", "--steps", "2")
+    commands(tmp_path, "--resume", "--steps", "2", "--steps", "1")
+    commands(tmp_path, "--steps", "2", "--steps", "1", "--output", "whole.h5")
+    assert_same(tmp_path / "results" / "press.h5", tmp_path / "whole.h5")
+    done = ended(tmp_path, "run", "press", "--set", "stages.press.motions.top.translate=[0,0,-0.1]", "--resume")
+    assert done.returncode == 1
+    assert "has stages that the scene does not have: press-2, press-3. Give them to resume it, as by the same --steps" in done.stderr
