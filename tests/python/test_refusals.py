@@ -184,6 +184,8 @@ def of_files(patch: pytest.MonkeyPatch) -> Told:
     with patch.context() as within:
         within.setitem(sys.modules, "pandas", None)
         yield "no pandas", refusal(lambda: Results("run.h5").to_dataframe())
+        within.setitem(sys.modules, "xarray", None)
+        yield "no xarray", refusal(lambda: Results("run.h5").to_xarray())
     yield "filmed: one state", refusal(lambda: film("run.h5", "run.gif"))
     yield "filmed: type", refusal(lambda: film("run.h5", "run.mp4"))
     yield "filmed: nothing", refusal(lambda: film("run.h5", "run.gif", every=0))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -45,3 +46,38 @@ def test_every_column_is_that_of_its_curve(results: Results) -> None:
     assert set(frame.columns) == {"stage", *expected}
     for name, curve in expected.items():
         np.testing.assert_array_equal(frame[name].to_numpy(), curve, err_msg=name)
+
+
+def test_arrays_have_the_same_numbers_by_name(results: Results) -> None:
+    """Every column of the table is in an array, and nothing else is."""
+    data, frame = results.to_xarray(), results.to_dataframe()
+    seen = []
+    for name, array in data.data_vars.items():
+        for place in np.ndindex(*array.shape[1:]):
+            labels = {dimension: str(array[dimension].values[k]) for dimension, k in zip(array.dims[1:], place, strict=True)}
+            seen.append(".".join([str(name), *labels.values()]))
+            np.testing.assert_array_equal(array.sel(labels).to_numpy(), frame[seen[-1]].to_numpy(), err_msg=seen[-1])
+    assert {*seen, "time", "stage"} == set(frame.columns)
+    assert len(seen) == len(set(seen))
+    assert list(data.step.values) == [1, 2, 3, 4]
+    assert list(data.time.values) == [1.0, 2.0, 3.0, 4.0]
+    assert list(data.stage.values) == results.stages
+    assert data.force.dims == ("step", "support", "component")
+    assert data.active.sel(contact="tread").dims == ("step",)
+
+
+def test_arrays_say_what_they_are(results: Results) -> None:
+    data = results.to_xarray()
+    for name, quantity in (layout.REACTION | layout.CONTACT).items():
+        assert data[name].attrs == {"units": quantity.unit, "long_name": quantity.description}
+    assert data.rotation.attrs == {"units": "degrees"}
+    assert data.attrs == {"name": "rolling", "program_version": "0.1"}
+
+
+def test_what_has_no_contacts_has_no_arrays_of_them(tmp_path: Path) -> None:
+    ResultsWriter(tmp_path / "alone.h5", replace(problem(), contacts=()), "", "0.1")
+    with Results(tmp_path / "alone.h5") as results:
+        data = results.to_xarray()
+    assert set(data.dims) == {"step", "support", "component"}
+    assert data.sizes["step"] == 0
+    assert not set(data.data_vars) & set(layout.CONTACT)

@@ -106,8 +106,8 @@ REACTION = {
     "centre": _real("length", "moving centre of the support", (3,)),
 }
 
-#: Of a support, from its motions and the load time: no file holds them.
-MOTION = "displacement", "rotation"
+#: Of a support, from its motions and the load time, with units: no file holds them.
+MOTION = {"displacement": "length", "rotation": "degrees"}
 
 #: Resultants and counts of a contact pair, named as in `ContactResult`.
 CONTACT = {

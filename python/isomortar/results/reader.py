@@ -22,7 +22,7 @@ from isomortar.model.supports import moved_by, progress
 from isomortar.results import layout
 from isomortar.results.definition import read_problem
 from isomortar.results.files import is_marked, is_whole
-from isomortar.results.table import data_frame
+from isomortar.results.table import data_frame, data_set
 from isomortar.solve.record import (
     AugmentationRecord,
     ContactRates,
@@ -37,6 +37,7 @@ from isomortar.solve.record import (
 
 if TYPE_CHECKING:
     import pandas
+    import xarray
 
 Value = TypeVar("Value")
 
@@ -198,6 +199,18 @@ class Results:
             Pandas is not installed.
         """
         return data_frame(self)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """All curves as arrays of xarray over load steps, supports or contacts, and components, with units and meanings.
+
+        For example ``results.to_xarray().force.sel(support="top", component="z")``.
+
+        Raises
+        ------
+        InputError
+            Xarray is not installed.
+        """
+        return data_set(self)
 
     def timings(self) -> dict[str, FloatArray]:
         """CPU seconds, of all threads, by phase over the recorded load steps; NaN where a step did not tell."""

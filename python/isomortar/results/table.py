@@ -1,7 +1,8 @@
-"""All curves of a results file side by side: a column each, by the names that `isomortar trade` wants them by."""
+"""All curves of a results file side by side: a column each, or arrays over load steps, supports or contacts, and components."""
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,14 +13,19 @@ from isomortar.results import layout
 
 if TYPE_CHECKING:
     import pandas
+    import xarray
 
     from isomortar.results.reader import Results
+
+#: Names of what a vector has, and of what a range has.
+_COMPONENTS, _ENDS = ("x", "y", "z"), ("smallest", "largest")
+_OF_STEPS = tuple(name for name in layout.STEP if name not in ("step", "stage", "time"))
 
 
 def columns(results: Results) -> dict[str, NDArray[Any]]:
     """Every curve by its name, shape (recorded steps,): ``force.top.x``, ``active.floor``, ``pressure_field.floor.largest``."""
     table: dict[str, NDArray[Any]] = {"time": results.curve("time"), "stage": np.array(results.stages)}
-    table |= {name: results.curve(name) for name in layout.STEP if name not in ("step", "stage", "time")}
+    table |= {name: results.curve(name) for name in _OF_STEPS}
     for support in results.problem.supports:
         for quantity in (*layout.REACTION, *layout.MOTION):
             table |= _components(f"{quantity}.{support.name}", results.curve(quantity, support=support.name))
@@ -33,7 +39,7 @@ def _components(name: str, values: NDArray[Any]) -> dict[str, NDArray[Any]]:
     """A curve, or those of its components."""
     if values.ndim == 1:
         return {name: values}
-    names = ("x", "y", "z") if values.shape[1] == 3 else ("smallest", "largest")
+    names = _COMPONENTS if values.shape[1] == 3 else _ENDS
     return {f"{name}.{component}": column for component, column in zip(names, values.T, strict=True)}
 
 
@@ -45,8 +51,45 @@ def data_frame(results: Results) -> pandas.DataFrame:
     InputError
         Pandas is not installed.
     """
-    try:
-        import pandas
-    except ImportError as error:
-        raise InputError("needs pandas, which is not installed: pip install 'isomortar[pandas]'", "to_dataframe") from error
+    pandas = _optional("pandas", "to_dataframe")
     return pandas.DataFrame(columns(results), index=pandas.Index(results.steps, name="step"))
+
+
+def data_set(results: Results) -> xarray.Dataset:
+    """All curves as arrays of xarray that know their dimensions, units and meanings.
+
+    Raises
+    ------
+    InputError
+        Xarray is not installed.
+    """
+    xarray = _optional("xarray", "to_xarray")
+    supports, contacts = ([entry.name for entry in entries] for entries in (results.problem.supports, results.problem.contacts))
+    arrays = {name: _array(layout.STEP[name], ("step",), results.curve(name)) for name in _OF_STEPS}
+    for name in (*layout.REACTION, *layout.MOTION) if supports else ():
+        values = np.stack([results.curve(name, support=support) for support in supports], axis=1)
+        arrays[name] = _array(layout.REACTION.get(name) or layout.MOTION[name], ("step", "support"), values)
+    for name in layout.CONTACT if contacts else ():
+        values = np.stack([results.curve(name, contact=contact) for contact in contacts], axis=1)
+        arrays[name] = _array(layout.CONTACT[name], ("step", "contact"), values)
+    places = {"step": results.steps, "time": ("step", results.curve("time")), "stage": ("step", np.array(results.stages, dtype=str))}
+    named = {"support": supports, "contact": contacts, "component": list(_COMPONENTS), "end": list(_ENDS)}
+    used = {dimension for dimensions, *_ in arrays.values() for dimension in dimensions}
+    places |= {name: names for name, names in named.items() if name in used}
+    return xarray.Dataset(arrays, coords=places, attrs={"name": results.problem.name, "program_version": results.version})
+
+
+def _array(quantity: layout.Quantity | str, dimensions: tuple[str, ...], values: NDArray[Any]) -> tuple[Any, ...]:
+    """An array with its dimensions, those of a vector or a range among them, and what it is; of some the unit alone is told."""
+    if values.ndim > len(dimensions):
+        dimensions += ("component" if values.shape[-1] == 3 else "end",)
+    told = {"units": quantity} if isinstance(quantity, str) else {"units": quantity.unit, "long_name": quantity.description}
+    return dimensions, values, told
+
+
+def _optional(package: str, asked: str) -> Any:
+    """A package that only those need who ask for something."""
+    try:
+        return import_module(package)
+    except ImportError as error:
+        raise InputError(f"needs {package}, which is not installed: pip install 'isomortar[{package}]'", asked) from error
