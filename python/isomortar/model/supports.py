@@ -29,7 +29,7 @@ def rotation(axis: FloatArray, angle: float) -> FloatArray:
 
 
 def moved_by(support: Support, shares: FloatArray) -> tuple[FloatArray, float]:
-    """Displacement of a support's centre, shape (3,), and its angle in degrees, where shares of the stages have passed (theory 5.1)."""
+    """Displacement of a support's centre, shape (3,), and its angle in degrees, where shares of the stages have passed (theory 5.2)."""
     parts = list(zip(shares, support.motions, strict=True))
     shift = sum((share * np.asarray(motion.translate) for share, motion in parts), np.zeros(3))
     return shift, sum(share * motion.rotate for share, motion in parts)

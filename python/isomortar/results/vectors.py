@@ -18,7 +18,7 @@ from isomortar.solve.record import ContactState, StepResult
 
 
 @dataclass(frozen=True)
-class Feet:
+class FootPlaces:
     """Where the slave quadrature points of a contact stand on its master: coordinates, shape (q, 2), and 1 where there is a foot, (q,)."""
 
     places: FloatArray
@@ -38,7 +38,7 @@ class ContactVectors:
 
 
 def contact_vectors(problem: Problem, result: StepResult, before: StepResult | None) -> list[ContactVectors]:
-    """Those of every contact pair at the end of a load step.
+    """Those of every contact pair at the end of a load step (theory 8.6).
 
     Parameters
     ----------
@@ -61,28 +61,28 @@ def contact_vectors(problem: Problem, result: StepResult, before: StepResult | N
     return vectors
 
 
-def _feet(state: ContactState) -> Feet:
-    return Feet(state.projection, state.projected)
+def _feet(state: ContactState) -> FootPlaces:
+    return FootPlaces(state.projection, state.projected)
 
 
-def _at_rest(pair: Pair, numbering: Numbering) -> Feet:
+def _at_rest(pair: Pair, numbering: Numbering) -> FootPlaces:
     """Feet in the reference configuration, where slips begin (theory 3.20)."""
     count = len(pair.slave.area)
     nowhere = np.zeros((count, 2)), np.zeros(count, dtype=np.int32)
     projections = _bindings.project_points(pair.slave, pair.master, numbering.reference, *nowhere)
-    return Feet(projections.xi, projections.followed)
+    return FootPlaces(projections.xi, projections.followed)
 
 
-def _slip(pair: Pair, problem: Problem, positions: FloatArray, feet: Feet, begun: Feet | None) -> FloatArray:
-    """Means of the way of the feet on the master as it is now, by constraint, shape (n, 3)."""
+def _slip(pair: Pair, problem: Problem, positions: FloatArray, feet: FootPlaces, begun: FootPlaces | None) -> FloatArray:
+    """Means of the way of the feet on the master as it is now, by constraint, shape (n, 3) (theory 8.6)."""
     if begun is None:
         return np.full((pair.slave.test.count, 3), np.nan)
     now, then = (_master_at(pair.contact, problem, positions, places)[0] for places in (feet.places, begun.places))
     return _mean(pair, now - then, feet.found * begun.found)
 
 
-def _dual(pair: Pair, problem: Problem, positions: FloatArray, feet: Feet) -> FloatArray:
-    """Dual basis of the coordinates of tractions at slave quadrature points, shape (q, 3, 2): by averaged normals the slave's own."""
+def _dual(pair: Pair, problem: Problem, positions: FloatArray, feet: FootPlaces) -> FloatArray:
+    """Dual basis of tractions at slave quadrature points, shape (q, 3, 2); along averaged normals the slave's own (theory 8.6)."""
     if pair.contact.averaged:
         slave = pair.slave
         local = positions[slave.point][np.repeat(slave.shape.nodes, slave.per_element, axis=0)]
@@ -112,7 +112,7 @@ def _plane_at(plane: RigidPlane, places: FloatArray) -> tuple[FloatArray, FloatA
 
 
 def _mean(pair: Pair, values: FloatArray, found: IntArray) -> FloatArray:
-    """Means of values at the slave quadrature points that are found, with the constraints' weights (theory 4.1), shape (n, ...)."""
+    """Means of values at the slave quadrature points that are found, with the constraints' weights, shape (n, ...) (theory 4.1, 8.6)."""
     test = pair.slave.test
     shares = test.values * (pair.slave.area * (found > 0))[:, None]
     nodes = np.repeat(test.nodes, pair.slave.per_element, axis=0)
