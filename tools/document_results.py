@@ -19,10 +19,11 @@ format = 1
 bodies.block.geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }
 contacts.floor = { slave = "block.w0", plane = { point = [0, 0, 0], normal = [0, 0, 1] }, friction = 0.5 }
 supports.top.face = "block.w1"
+loads.own = { body = "block", weight = [0, 0, -0.1] }
 stages = [{ name = "press", steps = 2, motions.top.translate = [0, 0, -0.1] }]
 """
 #: Names that a scene gives.
-_GIVEN = {"top": "SUPPORT", "floor": "CONTACT", "0": "BODY"}
+_GIVEN = {"top": "SUPPORT", "floor": "CONTACT", "own": "LOAD", "0": "BODY"}
 
 
 def tables() -> str:

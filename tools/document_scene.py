@@ -16,7 +16,8 @@ _BEGIN, _END = "<!-- tables: python tools/document_scene.py -->\n", "<!-- end of
 _HEADINGS = {
     "Material": "materials.NAME", "BodyTable": "bodies.NAME", "BoxTable": 'geometry, kind = "box"', "BowlTable": 'geometry, kind = "bowl"',
     "RingTable": 'geometry, kind = "ring"', "PatchTable": "bodies.NAME.patch", "MeshTable": "bodies.NAME.mesh",
-    "ContactTable": "contacts.NAME", "PlaneTable": "contacts.NAME.plane", "SupportTable": "supports.NAME", "StageTable": "stages",
+    "ContactTable": "contacts.NAME", "PlaneTable": "contacts.NAME.plane", "SupportTable": "supports.NAME",
+    "LoadTable": "loads.NAME", "StageTable": "stages",
     "Motion": "stages.NAME.motions.SUPPORT", "SolverSettings": "solver", "RecordTable": "record", "CurveTable": "record.curves",
 }  # fmt: skip
 

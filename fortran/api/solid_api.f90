@@ -42,6 +42,33 @@ subroutine add_body(patch, gauss, material, x, reference, n, forces, with_tangen
   end if
 end subroutine add_body
 
+!> Volumes of the control points of one body (isomortar_solid_volume).
+!>
+!> - `gauss`: quadrature points of an element by direction.
+!> - `reference`: positions of all `n` control points in the reference configuration, L.
+!> - `volumes`: of each of them, L^3.
+!> - `place`: on failure the element, from 1.
+subroutine control_volumes(patch, gauss, reference, n, volumes, status, place)
+  use iso_c_binding, only: c_double, c_int, c_int64_t
+  use isomortar_api_descriptors, only: find
+  use isomortar_nurbs_patch, only: patch_t
+  use isomortar_solid_volume, only: volumes_of => control_volumes
+  implicit none
+  integer(c_int64_t), intent(in) :: patch
+  integer(c_int), intent(in) :: n, gauss(3)
+  real(c_double), intent(in) :: reference(3, n)
+  real(c_double), intent(out) :: volumes(n)
+  integer(c_int), intent(out) :: status, place
+  type(patch_t), pointer :: body
+
+  volumes = 0.0_c_double
+  status = 0
+  place = 0
+  call find(patch, body, status)
+  if (status /= 0) return
+  call volumes_of(body, gauss, reference, volumes, status, place)
+end subroutine control_volumes
+
 !> First Piola stresses of a material.
 !>
 !> - `gradient`: `n` displacement gradients F - 1.

@@ -15,7 +15,7 @@ module isomortar_solid_element
   implicit none
   private
 
-  public :: element_residual, element_tangent, sample_element
+  public :: element_residual, element_tangent, quotient, sample_element
 
   !> Everything at the quadrature points of an element that residual and tangent are made of.
   type, public :: samples_t

@@ -25,6 +25,9 @@ from results_samples import problem, step_result
 from test_advice import DOUBTFUL, PLATE, PRESS, RUNS, Warned, _of_weights, material, rational, warnings
 from test_causes import said, scene
 from test_glue import WRONG as UNGLUED
+from test_loads import GOOD as LOADED
+from test_loads import HALVED, UNEVEN
+from test_loads import WRONG as UNBEARABLE
 from test_raised import WRONG as UNRAISED
 from test_raised import wrong
 from test_rigid import GOOD as DIE
@@ -75,6 +78,14 @@ def bad_rigid_bodies(_: pytest.MonkeyPatch) -> Told:
     """Refused for rigid bodies that cannot be."""
     for name, (old, new, *_) in UNBENDING.items():
         yield name, refused(DIE.replace(old, new))
+
+
+def bad_loads(_: pytest.MonkeyPatch) -> Told:
+    """Refused for loads that cannot be meant."""
+    for name, (old, new, *_) in UNBEARABLE.items():
+        yield name, refused(LOADED.replace(old, new))
+    for name, (load, *_) in UNEVEN.items():
+        yield name, refused(HALVED.replace("LOAD", load))
 
 
 def bad_raised_faces(_: pytest.MonkeyPatch) -> Told:
@@ -254,6 +265,7 @@ KINDS = (
     bad_contacts,
     bad_joints,
     bad_rigid_bodies,
+    bad_loads,
     bad_raised_faces,
     bad_sides,
     bad_words,

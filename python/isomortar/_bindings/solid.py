@@ -57,6 +57,23 @@ def add_body(
     return float(jacobian)
 
 
+def control_volumes(patch: PatchArrays, gauss: tuple[int, int, int], reference: FloatArray) -> FloatArray:
+    """Volumes of control points: integrals of their functions over the reference configuration of one body, shape (control points,).
+
+    Raises
+    ------
+    FoldedElementError
+        With the number of the element.
+    """
+    check.kind("patch", patch, PatchArrays)
+    n = len(check.finite("reference", check.array("reference", reference, np.float64, None, 3)))
+    check.below("patch.point", patch.highest, n, "control point")
+    volumes, status, place = _kernel.control_volumes(handles.patch(patch), check.gauss("gauss", gauss, 3), reference.T)
+    if status:
+        raise_status(status, place - 1)
+    return np.asarray(volumes)
+
+
 def material_stress(material: MaterialArrays, gradient: FloatArray) -> FloatArray:
     """First Piola stresses, force per reference area, at displacement gradients F - 1, both of shape (points, 3, 3).
 

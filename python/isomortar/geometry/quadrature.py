@@ -21,3 +21,8 @@ def contact_points(direction: Direction) -> int:
 def _by_order(table: dict[Family, tuple[int, ...]], direction: Direction) -> int:
     row = table[direction.family]
     return row[direction.order - 1] if direction.order <= len(row) else direction.order + 2
+
+
+def load_points(direction: Direction) -> int:
+    """Gauss points per element of a loaded face along a direction: what is polynomial is exact (theory 5.15), with one more for weights."""
+    return (3 * direction.order + 1) // 2 + 1

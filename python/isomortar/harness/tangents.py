@@ -24,12 +24,15 @@ from isomortar.solve.timing import Ledger
 
 #: Largest relative error of a product of the tangent, and largest asymmetry of its frictionless part.
 BOUND, SYMMETRY_BOUND = 1e-11, 1e-13
+#: The same of pressures on faces: their forces are products of two positions, so that differences are exact.
+LOADS_BOUND = 1e-12
 #: Products smaller than this share of the largest are measured by that: they come from where functions fade out.
 HARDLY = 1e-3
 
 #: The parts, in the order of the report.
 PARTS = {
     "solid": "internal forces",
+    "loads": "forces of pressures on faces",
     "normal, geometric": "contact forces, pressures held, tractions left out",
     "normal, gap": "<R g> of active constraints",
     "normal, pressure": "control pressures",
@@ -176,7 +179,7 @@ def _part_error(part: str, samples: list[Sample]) -> PartError | None:
     least = HARDLY * float(np.max([np.linalg.norm(twin) for _, twin in mine]))
     errors = [_relative(ours, twin, least) for ours, twin in mine]
     largest = float(np.max(errors))  # of which one that is not a number is the largest
-    return PartError(part, PARTS[part], len(errors), largest, SYMMETRY_BOUND if part == "symmetry" else BOUND)
+    return PartError(part, PARTS[part], len(errors), largest, {"symmetry": SYMMETRY_BOUND, "loads": LOADS_BOUND}.get(part, BOUND))
 
 
 def _relative(ours: FloatArray, twin: FloatArray, least: float) -> float:
@@ -302,6 +305,10 @@ def _sample(
     fields = length * equilibrium.numbering.size * random.standard_normal((directions, *visit.positions.shape))
     ours, twin = block_product(equilibrium.solid.pattern, solid, fields[0]), solid_twin(equilibrium, visit.positions, fields[0])
     yield "solid", ours, twin
+    for field in fields if equilibrium.problem.loads else ():
+        yield "loads", *load_changes(equilibrium, visit, field)
+    loads, exact = load_changes(equilibrium, visit, fields[0])
+    ours, twin = ours + loads, twin + exact
     linear = [PairTangent(pair.pair, visit.positions, pair.visit) for pair in pairs if np.any(pair.response.state)]
     for pair in pairs:
         if not np.any(pair.response.state):
@@ -318,6 +325,15 @@ def _sample(
             yield from tangent.along_multipliers(random, length)
     if not any(tangent.pair.pair.contact.averaged for tangent in linear):  # along an averaged normal pressures are not conservative
         yield _symmetry(equilibrium, solid, linear)
+
+
+def load_changes(equilibrium: Equilibrium, visit: Visit, along: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Change of what loads leave out of balance, by their tangent and by a central difference, exact of whatever length (theory 5.16)."""
+    ours, loads = np.zeros_like(along), equilibrium.loads
+    for pattern, values in loads.tangents(visit.positions, visit.time):
+        ours -= block_product(pattern, values, along)
+    ahead, behind = (loads.forces(visit.positions + way * along, visit.time) for way in (1.0, -1.0))
+    return ours, sum((0.5 * (b - a) for a, b in zip(ahead, behind, strict=True)), np.zeros_like(along))
 
 
 def solid_twin(equilibrium: Equilibrium, positions: FloatArray, along: FloatArray) -> FloatArray:

@@ -26,10 +26,11 @@ class PairVisit:
 
 @dataclass(frozen=True)
 class Visit:
-    """A visited state: its positions about the equilibrium's origin, shape (control points, 3), and its contact pairs."""
+    """A visited state: its positions about the equilibrium's origin, shape (control points, 3), its contact pairs, and its load time."""
 
     positions: FloatArray
     pairs: tuple[PairVisit, ...]
+    time: float = 0.0
 
 
 Note = tuple[FloatArray, PairVisit]
@@ -41,7 +42,7 @@ class RecordingPair(PairMechanics):
     def __init__(self, pair: PairMechanics, problem: Problem, simulation: Simulation, notes: list[Note]) -> None:
         others = [other.pair for other in simulation.equilibrium.pairs if other.pair is not pair.pair]
         super().__init__(pair.pair, problem.settings, simulation.ledger, simulation.equilibrium.origin, others)
-        self._notes = notes
+        self._notes, self.drifts = notes, pair.drifts
 
     def kinematics(self, positions: FloatArray, start: ContactState) -> Kinematics:
         """Project and integrate."""
@@ -79,10 +80,10 @@ def visited_states(problem: Problem, step: int) -> list[Visit]:
             break
         notes.clear()
     if not notes:
-        return [Visit(simulation.state.positions, ())]
+        return [Visit(simulation.state.positions, (), float(step))]
     visits = _of_last_increment(_in_visits(notes, len(problem.contacts)))
     chosen = sorted({0, max(0, len(visits) - 2), len(visits) - 1})
-    return [visits[k] for k in chosen]
+    return [replace(visits[k], time=float(step)) for k in chosen]
 
 
 def _in_visits(notes: list[Note], pairs: int) -> list[Visit]:

@@ -16,9 +16,11 @@ from isomortar.geometry.refinement import surface_samples
 from isomortar.model.contact_checks import check_contacts
 from isomortar.model.entities import Body, Contact, Face, Problem, SolverSettings, Support, unit
 from isomortar.model.glue import check_glue, named, pieces
+from isomortar.model.load_checks import check_loads
 from isomortar.model.memory import memory_needed, memory_of_machine
 from isomortar.model.messages import input_error, located
 from isomortar.model.numbering import Numbering, check_closed
+from isomortar.model.rank import rigid_rank
 from isomortar.model.rational import QUADRATURE_TOLD, quadrature_error, too_few_points
 
 #: Sizes of bodies, and forces and force densities (Young's modulus times the square of the size, and over the size) whose squares and
@@ -42,7 +44,7 @@ def check(problem: Problem) -> None:
         Settings of the solver that are not allowed; units that no number holds; more memory than there is; glue of faces that do not
         conform; a support that turns too often in a load step, goes or turns too far from the origin; a rigid body that supports contradict
         each other on, or leave components to; a body that nothing holds; supports that contradict each other; contacts that cannot be
-        meant; too few Gauss points for a body's weights.
+        meant; loads that cannot be meant; too few Gauss points for a body's weights.
     """
     _check_settings(problem.settings)
     for body in problem.bodies:
@@ -53,6 +55,7 @@ def check(problem: Problem) -> None:
     _check_memory(problem)
     check_glue(problem)
     check_contacts(problem)
+    check_loads(problem)
     _check_turns(problem)
     _check_ways(problem)
     _check_carried(problem)
@@ -205,7 +208,7 @@ def _check_held(problem: Problem) -> None:
                 "add a support on one of its faces",
                 f"bodies.{body.name}",
             )
-        if body.name not in in_contact and _rigid_rank(problem, whole[body.name]) < 6:
+        if body.name not in in_contact and rigid_rank(problem, whole[body.name]) < 6:
             raise InputError(
                 f"{named(whole[body.name], body.name)} is free to move: its supports leave a rigid motion, and it is in "
                 "no contact; support more components",
@@ -223,21 +226,6 @@ def _touch(problem: Problem, contact: Contact) -> bool:
     )
     margin = 0.01 * np.ptp(slave, axis=0).max()
     return bool(np.all(slave.min(axis=0) - margin <= master.max(axis=0)) and np.all(master.min(axis=0) - margin <= slave.max(axis=0)))
-
-
-def _rigid_rank(problem: Problem, piece: tuple[Body, ...]) -> int:
-    """How many of the six rigid motions of a body, with what is glued to it, its supports prevent."""
-    rows = []
-    together = np.concatenate([body.patch.control_points for body in piece])
-    centre, size = together.mean(axis=0), np.ptp(together, axis=0).max()
-    for support in (s for s in problem.supports if s.place.body in {body.name for body in piece}):
-        patch = problem.body(support.place.body).patch
-        arms = (patch.control_points[patch.face_points(support.place.face)] - centre) / size
-        for component in support.components:
-            direction = np.zeros_like(arms)
-            direction[:, component] = 1.0
-            rows.append(np.hstack([direction, np.cross(arms, direction)]))
-    return int(np.linalg.matrix_rank(np.vstack(rows), tol=1e-9)) if rows else 0
 
 
 def _check_agreement(problem: Problem, numbering: Numbering, one: Support, other: Support) -> None:

@@ -1,4 +1,4 @@
-"""What a computation consists of: bodies, contacts, supports with their motions, stages."""
+"""What a computation consists of: bodies, contacts, supports with their motions, loads, stages."""
 
 from __future__ import annotations
 
@@ -253,6 +253,32 @@ class Stage:
     steps: int
 
 
+#: What a load is: a pressure that follows its face, a traction that does not, or the weight of a body.
+LoadKind = Literal["pressure", "traction", "weight"]
+
+
+@dataclass(frozen=True)
+class Load:
+    """A load on a body: `pressure` on its current face (one value), `traction` on its reference face, or `weight` on its reference volume.
+
+    `value` is force per area, or per volume, along x, y, z; `face` is None for a weight.
+    `factors` has one entry a stage: by what the value is multiplied at the end of the stage.
+    """
+
+    name: str
+    kind: LoadKind
+    body: str
+    face: str | None
+    value: tuple[float, ...]
+    factors: tuple[float, ...]
+
+    @property
+    def place(self) -> Face:
+        """The face it is on."""
+        assert self.face is not None
+        return Face(self.body, self.face)
+
+
 #: What helps Newton's method on the way to the solution (theory 6.5, 7.5); none changes the solution.
 #: keeping: factors of an earlier tangent serve for as long as solves with them leave a small share of the residual. The others
 #: help the monolithic loop. forgiving: slip rows with the current traction in place of the cone's. margin: what slips at the
@@ -308,7 +334,7 @@ class Problem:
     """A whole computation, ready for `isomortar.solve`: plain data, no unknowns, no state.
 
     Scenes build it (`isomortar.scene`); it can be built by hand as well. `glue`: faces of two bodies each that share their control points.
-    `symmetry`: planes on whose upper side it is; forces of supports and contacts are those of the whole.
+    `symmetry`: planes on whose upper side it is; forces of supports, contacts and loads are those of the whole.
     """
 
     name: str
@@ -319,6 +345,7 @@ class Problem:
     settings: SolverSettings = field(default_factory=SolverSettings)
     glue: tuple[tuple[Face, Face], ...] = ()
     symmetry: tuple[SymmetryPlane, ...] = ()
+    loads: tuple[Load, ...] = ()
 
     def body(self, name: str) -> Body:
         """The body of that name."""

@@ -21,6 +21,11 @@ def progress(stages: Sequence[Stage], time: float) -> FloatArray:
     return np.clip((time - starts) / np.array([stage.steps for stage in stages]), 0.0, 1.0)
 
 
+def factor_at(stages: Sequence[Stage], factors: Sequence[float], time: float) -> float:
+    """A factor that grows linearly from stage to stage, from zero to what it is at the end of each (theory 5.14)."""
+    return float(np.interp(time, np.cumsum([0] + [stage.steps for stage in stages]), [0.0, *factors]))
+
+
 def rotation(axis: FloatArray, angle: float) -> FloatArray:
     """Matrix that turns vectors about a unit axis, by Rodrigues' formula (theory 5.3); SciPy's take a tenth of a run's start."""
     x, y, z = axis

@@ -40,11 +40,12 @@ def held_on_planes(problem: Problem, cuts: tuple[Cut, ...]) -> Problem:
     Raises
     ------
     InputError
-        What it does is not symmetric: a motion, a rigid plane, a face across a plane that is in use; or a support has such a name.
+        What it does is not symmetric: a motion, a load, a rigid plane, a face across a plane that is in use; or a support has such a name.
     """
     for plane in problem.symmetry:
         _check_motions(problem, plane)
         _check_rigid_planes(problem, plane)
+        _check_loads(problem, plane)
     _check_faces(problem, cuts)
     still, deformable = tuple(Motion() for _ in problem.stages), {body.name for body in problem.deformable}
     held = [Support(plane.holding(face.body), face, still, (plane.axis,)) for plane, face in cuts if face.body in deformable]
@@ -93,6 +94,15 @@ def _check_rigid_planes(problem: Problem, plane: SymmetryPlane) -> None:
             raise InputError(f"is not its own mirror image in {plane.words}; allowed: normals along it", f"contacts.{contact.name}.plane")
 
 
+def _check_loads(problem: Problem, plane: SymmetryPlane) -> None:
+    for load in problem.loads:
+        if load.kind != "pressure" and load.value[plane.axis]:
+            across = "xyz"[plane.axis]
+            raise InputError(
+                f"acts along {across}, through {plane.words}; allowed with symmetry: 0 there", f"loads.{load.name}.{load.kind}"
+            )
+
+
 def _check_faces(problem: Problem, cuts: tuple[Cut, ...]) -> None:
     """Refuse faces that are of a halved direction: of two that mirror each other one is not there any more."""
     for plane, cut in cuts:
@@ -102,9 +112,12 @@ def _check_faces(problem: Problem, cuts: tuple[Cut, ...]) -> None:
 
 
 def _faces_in_use(problem: Problem) -> Iterator[tuple[str, Face]]:
-    """Faces of supports, contacts and glue with the keys that name them."""
+    """Faces of supports, loads, contacts and glue with the keys that name them."""
     for support in problem.supports:
         yield f"supports.{support.name}.face", support.place
+    for load in problem.loads:
+        if load.face is not None:
+            yield f"loads.{load.name}.face", load.place
     for contact in problem.contacts:
         yield from ((f"contacts.{contact.name}.slave", face) for face in contact.slave.faces)
         if isinstance(contact.master, Face):

@@ -38,7 +38,7 @@ class LagrangeProblem:
     ------
     InputError
         No program of Lagrange elements has this, or not this one: NURBS, weights, elements of which an edge is a point, another law of
-        material, glue, rigid bodies and planes, friction other than Coulomb's.
+        material, glue, loads, rigid bodies and planes, friction other than Coulomb's.
     """
 
     def __init__(self, problem: Problem, program: str, laws: Collection[str]) -> None:
@@ -46,6 +46,8 @@ class LagrangeProblem:
         self.problem, self._program = problem, program
         if problem.glue:
             raise self.refuse("is not told of glued bodies", "glue")
+        if problem.loads:
+            raise self.refuse("is not told of loads", f"loads.{problem.loads[0].name}")
         self._numbering = Numbering(problem)
         self._supports = Supports(problem, self._numbering)
         self.nodes, self.prescribed = self._numbering.reference, self._supports.prescribed

@@ -14,7 +14,7 @@ import numpy as np
 from pydantic import TypeAdapter
 
 from isomortar.geometry.patch import Direction, Patch
-from isomortar.model.entities import Body, Contact, Face, Material, Problem, Raised, SolverSettings, Stage, Support, SymmetryPlane
+from isomortar.model.entities import Body, Contact, Face, Load, Material, Problem, Raised, SolverSettings, Stage, Support, SymmetryPlane
 from isomortar.results.layout import CONTROL_POINTS, KNOTS, WEIGHTS, Quantity
 
 _AXES = "uvw"
@@ -25,9 +25,10 @@ _PLAIN: dict[str, Any] = {
     "settings": SolverSettings,
     "glue": tuple[tuple[Face, Face], ...],
     "symmetry": tuple[SymmetryPlane, ...],
+    "loads": tuple[Load, ...],
 }
 #: What earlier files of the same format do not hold, and had not.
-_LATER = ("glue", "symmetry", "rigid", "raised")
+_LATER = ("glue", "symmetry", "loads", "rigid", "raised")
 _BODY: dict[str, Any] = {
     "name": str,
     "material": Material,
@@ -64,6 +65,7 @@ def read_problem(group: h5py.Group) -> Problem:
     bodies = tuple(_read_body(group[f"bodies/{number}"]) for number in range(len(group["bodies"])))
     problem = Problem(name=json.loads(group.attrs["name"]), bodies=bodies, **plain)
     named = {support.place.body for support in problem.supports} | {contact.slave.body for contact in problem.contacts}
+    named |= {load.body for load in problem.loads}
     if not bodies or not named <= {body.name for body in bodies}:
         raise ValueError("bodies of the scene are missing")
     return problem
@@ -141,7 +143,7 @@ def _flat(value: Any, path: str = "") -> dict[str, Any]:
 
 def _order(problem: Problem) -> dict[str, Any]:
     """Names in the order in which numbers of the results file stand."""
-    return {kind: [entry.name for entry in getattr(problem, kind)] for kind in ("bodies", "contacts", "supports", "stages")}
+    return {kind: [entry.name for entry in getattr(problem, kind)] for kind in ("bodies", "contacts", "supports", "loads", "stages")}
 
 
 def _shown(leaves: dict[str, Any], path: str) -> str:

@@ -8,6 +8,7 @@ The program knows no units; `unit` names the dimension in terms of the scene's o
     /curves/<quantity>           one row a recorded step
     /curves/supports/<name>/...  reactions
     /curves/contacts/<name>/...  resultants and counts of a contact pair
+    /curves/loads/<name>/...     resultants of a load
     /timings/<phase>             CPU seconds, one row a recorded step
     /counters/<name>             what was done, one row a recorded step
     /orderings/<matrices>        orderings of the unknowns, one row a recorded step: part of what a restart needs
@@ -108,6 +109,12 @@ REACTION = {
 
 #: Of a support, from its motions and the load time, with units: no file holds them.
 MOTION = {"displacement": "length", "rotation": "degrees"}
+
+#: Named as in `LoadResult`.
+LOAD = {
+    "force": _real("force", "force of the load on its body", (3,)),
+    "moment": _real("force*length", "moment of the load on its body, about the origin", (3,)),
+}
 
 #: Resultants and counts of a contact pair, named as in `ContactResult`.
 CONTACT = {

@@ -29,6 +29,7 @@ from isomortar.solve.record import (
     ContactResult,
     ContactState,
     IterationRecord,
+    LoadResult,
     Rates,
     Reaction,
     State,
@@ -144,7 +145,13 @@ class Results:
         return [text.decode() for text in self._rows("curves/stage")]
 
     def curve(
-        self, quantity: str, *, support: str | None = None, contact: str | None = None, component: Literal["x", "y", "z"] | None = None
+        self,
+        quantity: str,
+        *,
+        support: str | None = None,
+        contact: str | None = None,
+        load: str | None = None,
+        component: Literal["x", "y", "z"] | None = None,
     ) -> NDArray[Any]:
         """A quantity over the recorded load steps.
 
@@ -152,10 +159,10 @@ class Results:
         ----------
         quantity : str
             Of a support: force, moment, centre, displacement, rotation (degrees). Of a contact: force_slave, force_master, moment_slave,
-            moment_master, active, slip, pressure_field, excluded, friction_work, spurious_work. Of neither: step, time, newton_order,
-            substeps, cuts, next_increment.
-        support, contact : str, optional
-            Name of a support or of a contact pair.
+            moment_master, active, slip, pressure_field, excluded, friction_work, spurious_work. Of a load: force, moment. Of none of them:
+            step, time, newton_order, substeps, cuts, next_increment.
+        support, contact, load : str, optional
+            Name of a support, of a contact pair, or of a load.
         component : {"x", "y", "z"}, optional
             Of a vector; absent: all three.
 
@@ -169,6 +176,8 @@ class Results:
             motion = self._motion(support)
         elif contact is not None:
             known, place = layout.CONTACT, f"contacts/{_named(self.problem.contacts, contact, 'contact').name}/"
+        elif load is not None:
+            known, place = layout.LOAD, f"loads/{_named(self.problem.loads, load, 'load').name}/"
         else:
             known, place = {name: kind for name, kind in layout.STEP.items() if name != "stage"}, ""
         if quantity in motion:
@@ -315,6 +324,7 @@ def _step_result(file: h5py.File, problem: Problem, number: int, row: int, kept:
         timings={name: float(data[row]) for name, data in file["timings"].items() if not np.isnan(data[row])},
         counters={name: int(data[row]) for name, data in file["counters"].items() if data[row] >= 0},
         orderings={int(matrices): data.asstr()[row] for matrices, data in file["orderings"].items() if data[row]},
+        loads=tuple(LoadResult(**_get(file, f"curves/loads/{load.name}", layout.LOAD, row)) for load in problem.loads),
     )
 
 

@@ -32,6 +32,9 @@ def columns(results: Results) -> dict[str, NDArray[Any]]:
     for contact in results.problem.contacts:
         for quantity in layout.CONTACT:
             table |= _components(f"{quantity}.{contact.name}", results.curve(quantity, contact=contact.name))
+    for load in results.problem.loads:
+        for quantity in layout.LOAD:
+            table |= _components(f"{quantity}.load.{load.name}", results.curve(quantity, load=load.name))
     return table
 
 

@@ -96,6 +96,8 @@ class ResultsWriter(Observer):
                 _make_all(file, f"curves/supports/{support.name}", layout.REACTION)
             for contact in self._problem.contacts:
                 _make_all(file, f"curves/contacts/{contact.name}", layout.CONTACT)
+            for load in self._problem.loads:
+                _make_all(file, f"curves/loads/{load.name}", layout.LOAD)
             _make_all(file, "log", layout.LOG)
             _make_all(file, "states", {"step": layout.STATE_STEP})
             file.create_group("timings")
@@ -161,6 +163,8 @@ class ResultsWriter(Observer):
             _put(file, f"curves/supports/{support.name}", layout.REACTION, reaction, row)
         for contact, measured in zip(self._problem.contacts, result.contacts, strict=True):
             _put(file, f"curves/contacts/{contact.name}", layout.CONTACT, measured, row)
+        for load, acting in zip(self._problem.loads, result.loads, strict=True):
+            _put(file, f"curves/loads/{load.name}", layout.LOAD, acting, row)
         _put_named(file["timings"], layout.TIMING, result.timings, row)
         _put_named(file["counters"], layout.COUNTER, result.counters, row)
         _put_named(file["orderings"], layout.ORDERING, {str(matrices): name for matrices, name in result.orderings.items()}, row)

@@ -18,6 +18,7 @@ from isomortar.model.entities import (
     Contact,
     Face,
     Faces,
+    Load,
     Material,
     Motion,
     Problem,
@@ -32,7 +33,7 @@ from isomortar.model.messages import located
 from isomortar.model.sheet import Sheet
 from isomortar.model.symmetry import held_on_planes, upper_part
 from isomortar.scene.geometry_file import read_geometry
-from isomortar.scene.schema import BodyTable, ContactTable, MeshTable, PlaneTable, SceneTable, SupportTable
+from isomortar.scene.schema import BodyTable, ContactTable, LoadTable, MeshTable, PlaneTable, SceneTable, SupportTable
 from isomortar.scene.types import listed
 
 #: Scenes above this number of unknowns are taken for mistakes: their factorisation would not fit a large machine.
@@ -71,6 +72,7 @@ def build(scene: SceneTable, name: str, folder: Path) -> Problem:
         settings=scene.solver,
         glue=tuple(_joint(faces, by_name, f"glue.{number}") for number, faces in enumerate(scene.glue)),
         symmetry=planes,
+        loads=tuple(_load(load, table, by_name, _factors(scene, load)) for load, table in scene.loads.items()),
     )
     contacts = tuple(_contact(contact, table, problem) for contact, table in scene.contacts.items())
     return held_on_planes(replace(problem, contacts=contacts), cuts)
@@ -242,8 +244,36 @@ def _motions(scene: SceneTable, support: str) -> tuple[Motion, ...]:
     return tuple(stage.motions.get(support, Motion()) for stage in scene.stages)
 
 
+def _load(name: str, table: LoadTable, bodies: dict[str, Body], factors: tuple[float, ...]) -> Load:
+    if table.weight is not None:
+        assert table.body is not None  # LoadTable has a body with a weight, else a face
+        if table.body not in bodies:
+            raise InputError(f"there is no body {table.body!r}; allowed: {listed(table.body, bodies)}", f"loads.{name}.body")
+        return Load(name, "weight", table.body, None, table.weight, factors)
+    assert table.face is not None
+    place = _face(table.face, bodies, f"loads.{name}.face")
+    if table.traction is not None:
+        return Load(name, "traction", place.body, place.face, table.traction, factors)
+    assert table.pressure is not None
+    return Load(name, "pressure", place.body, place.face, (table.pressure,), factors)
+
+
+def _factors(scene: SceneTable, load: str) -> tuple[float, ...]:
+    """Factors of a load at the ends of the stages."""
+    factor = 0.0 if any(load in stage.loads for stage in scene.stages) else 1.0
+    factors = []
+    for stage in scene.stages:
+        factor = stage.loads.get(load, factor)
+        factors.append(factor)
+    return tuple(factors)
+
+
 def _stages(scene: SceneTable) -> tuple[Stage, ...]:
     for number, stage in enumerate(scene.stages):
+        for name in stage.loads:
+            if name not in scene.loads:
+                field = f"stages.{stage.name}.loads.{name}"
+                raise InputError(f"there is no such load; allowed: {listed(name, scene.loads)}", field)
         for name in stage.motions:
             if name not in scene.supports:
                 field = f"stages.{stage.name}.motions.{name}"

@@ -233,6 +233,33 @@ class SupportTable(Table):
         return value
 
 
+class LoadTable(Table):
+    """A load: a pressure or a traction on a face, or the weight of a body."""
+
+    face: FaceName | None = None
+    """BODY.FACE, of a pressure or a traction."""
+    body: str | None = None
+    """Name of a body, of a weight."""
+    pressure: Real | None = None
+    """Force per area of the face as it is deformed, into the body: follows the face."""
+    traction: Point | None = None
+    """Force per area of the face in the reference configuration, along x, y, z: keeps its direction and its size."""
+    weight: Point | None = None
+    """Force per volume of the body in the reference configuration, along x, y, z."""
+
+    @model_validator(mode="after")
+    def _one_kind(self) -> LoadTable:
+        given = [key for key in ("pressure", "traction", "weight") if getattr(self, key) is not None]
+        if len(given) != 1:
+            facts = {"given": " and ".join(given) or "no size"}
+            raise PydanticCustomError("load", "has {given}; allowed: exactly one of pressure, traction, weight", facts)
+        place, other = ("body", "face") if given == ["weight"] else ("face", "body")
+        if getattr(self, place) is None or getattr(self, other) is not None:
+            facts = {"kind": given[0], "place": place, "other": other}
+            raise PydanticCustomError("load", "is a {kind}; allowed: {place}, and no {other}", facts)
+        return self
+
+
 class StageTable(Table):
     """A part of the load history."""
 
@@ -242,6 +269,8 @@ class StageTable(Table):
     """Equal load steps, each of them recorded."""
     motions: dict[str, MotionTable] = Field({})
     """By name of support; supports without a motion stay where they are."""
+    loads: dict[str, Real] = Field({})
+    """Factors at the end of the stage, by name of load; without one a load stays as it is; one that no stage names grows in the first."""
 
 
 class CurveTable(Table):
@@ -287,6 +316,8 @@ class SceneTable(Table):
     """Planes of symmetry, { y = 0.0 } say: of a scene given whole the part above each is computed; forces are the whole's."""
     supports: dict[Name, SupportTable] = Field({})
     """Supports by name."""
+    loads: dict[Name, LoadTable] = Field({})
+    """Loads by name."""
     stages: Annotated[list[StageTable], Field(min_length=1)]
     """The load history, in order."""
     solver: SolverTable = SolverSettings()

@@ -99,7 +99,8 @@ def solve_bordered(
         _, solid = equilibrium.solid.forces_and_tangent(balance.positions)
     equilibrium.ledger.counts["solid tangents"] += 1
     unknowns = equilibrium.supports.equation
-    sources, values = [equilibrium.solid_source], [solid]
+    sources, values = equilibrium.load_tangents(balance.positions)
+    sources, values = [equilibrium.solid_source, *sources], [solid, *values]
     size = len(equilibrium.supports.free)
     borders: list[Border | None] = []
     for k, target in enumerate(targets):

@@ -112,10 +112,13 @@ class PairMechanics:
     ----------
     shared : ndarray of bool, shape (test functions,)
         Those that constrain control points of the slave of another pair as well.
+    drifts : bool
+        Whether loads act, and supports leave one of its bodies a rigid motion.
     """
 
     def __init__(self, pair: Pair, settings: SolverSettings, ledger: Ledger, origin: FloatArray, others: Sequence[Pair]) -> None:
         self.pair = pair
+        self.drifts = False
         self._feet = Feet(pair, origin)
         self._separation = Separation(pair)
         self.friction = pair.contact.friction_law
@@ -217,6 +220,20 @@ class PairMechanics:
         sunk = alone & (kinematics.control.gap > depth * kinematics.control.weight)
         self.held.bears[sunk] = 1
         return bool(sunk.any())
+
+    def nearest(self, positions: FloatArray, start: ContactState, penalty: float | Scales) -> FloatArray | None:
+        """Pressures whose trials are above zero at the nearest constraints, though these are open (theory 6.8).
+
+        With scales in its place the penalty is that of `parameters`. None unless all is open, and loads alone bring the bodies together.
+        """
+        if not self.drifts or np.any(start.pressure != 0.0):
+            return None
+        control = self.kinematics(positions, start).control
+        height = np.divide(control.gap, control.weight, out=np.full_like(control.gap, -np.inf), where=control.weight > 0.0)
+        least = constants.NO_PART * np.sqrt(self.pair.area)
+        near = np.isfinite(height) & (height >= height.max() - least)
+        size = float(self.parameters(control, penalty)[0]) if isinstance(penalty, Scales) else penalty
+        return np.where(near, size * np.maximum(least, least - height), 0.0)
 
     def sliding(self, start: ContactState) -> FloatArray:
         """Tractions of the last converged state, with those of sliding where supports push (theory 4.12); shape (n, 2)."""

@@ -64,7 +64,8 @@ def doubts(problem: Problem, state: State) -> Iterator[str]:
     stances = [stance(problem, contact) for contact in problem.contacts]
     travel = _travel(problem)
     presses = any(contact.smoothing for contact in problem.contacts) or any(_overlaps(found) for found in stances)
-    if not any(support.moves for support in problem.supports) and not presses:
+    loaded = any(any(load.factors) and any(load.value) for load in problem.loads)
+    if not any(support.moves for support in problem.supports) and not presses and not loaded:
         yield "no support moves in any stage, and nothing overlaps at the start: nothing will happen"
     for contact, found, feet in zip(problem.contacts, stances, (contact.projected for contact in state.contacts), strict=True):
         too_deep = _too_deep(problem, contact, state.positions, feet) if found.depth > 0.0 else 0

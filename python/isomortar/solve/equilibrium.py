@@ -16,9 +16,11 @@ from isomortar.errors import SingularSystemError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
 from isomortar.model.entities import Problem
+from isomortar.model.loads import Loads
 from isomortar.model.numbering import Numbering
 from isomortar.model.origin import about, by_near_points, origin_of
 from isomortar.model.pairs import Pair
+from isomortar.model.rank import rigid_rank
 from isomortar.model.solid import Solid
 from isomortar.model.supports import Supports
 from isomortar.solve.condensed import Bodies, CondensedSystem, touched
@@ -60,6 +62,8 @@ class Equilibrium:
         Where all coordinates in here count from, in those of the problem given: zero unless its bodies are far from the origin.
     problem : Problem
         In coordinates about `origin`.
+    time : float
+        Load time at the end of the increment that was begun last: loads are those of then.
     orderings : dict
         Orderings of the unknowns that are in use, by the number of sources: with each pair that is in contact the matrix differs.
 
@@ -81,11 +85,23 @@ class Equilibrium:
         self.pairs = [
             PairMechanics(pair, problem.settings, ledger, self.origin, pairs[:k] + pairs[k + 1 :]) for k, pair in enumerate(pairs)
         ]
+        self.loads = Loads(problem, self.numbering)
+        for pair in self.pairs:
+            pair.drifts = self._loaded and any(self._is_loose(k) for k in pair.pair.pieces)
+        self.time = 0.0
         self.solid_source = Source(self.solid.pattern, self.supports.equation, self.supports.equation)
         self._bodies: Bodies | None = None
         self._system: CheckedSystem | None = None
         self._system_patterns: list[object] = []
         self.orderings: dict[int, Ordering] = {}
+
+    @property
+    def _loaded(self) -> bool:
+        return bool(self.problem.loads)
+
+    def _is_loose(self, piece: int) -> bool:
+        """Whether supports leave a piece a rigid motion."""
+        return rigid_rank(self.problem, self.numbering.pieces[piece]) < 6
 
     def initial_state(self) -> State:
         """The reference configuration without contact."""
@@ -109,6 +125,7 @@ class Equilibrium:
         Scales
             What forces are measured against.
         """
+        self.time = time
         if self._system is not None:
             self._system.begin()
         for pair, contact in zip(self.pairs, start.contacts, strict=True):
@@ -147,6 +164,8 @@ class Equilibrium:
             internal = self.solid.forces(positions)
         self.ledger.counts["solid residuals"] += 1
         total = internal.copy()
+        for load in self.loads.forces(positions, self.time):
+            total -= load
         kinematics, responses = [], []
         for k, (pair, state) in enumerate(zip(self.pairs, start.contacts, strict=True)):
             kinematics.append(pair.kinematics(positions, state))
@@ -164,7 +183,8 @@ class Equilibrium:
         with self.ledger.phase("solid"):
             _, solid = self.solid.forces_and_tangent(balance.positions)
         self.ledger.counts["solid tangents"] += 1
-        sources, values = [self.solid_source], [solid]
+        sources, values = self.load_tangents(balance.positions)
+        sources, values = [self.solid_source, *sources], [solid, *values]
         for pair, law, kinematics, response in zip(self.pairs, laws, balance.kinematics, balance.responses, strict=True):
             if not np.any(response.state):
                 continue
@@ -172,6 +192,11 @@ class Equilibrium:
             sources.append(Source(pattern, self.supports.equation, self.supports.equation))
             values.append(tangent)
         return sources, values
+
+    def load_tangents(self, positions: FloatArray) -> tuple[list[Source], list[FloatArray]]:
+        """What pressures on faces add to the tangent, as sources of the linear system with their values."""
+        tangents, equation = list(self.loads.tangents(positions, self.time)), self.supports.equation
+        return [Source(pattern, equation, equation) for pattern, _ in tangents], [-values for _, values in tangents]
 
     def correction(self, balance: Balance, laws: Sequence[Law], prescribed: FloatArray) -> FloatArray:
         """Newton's correction of all positions, with given increments of the prescribed ones, shape (control points, 3) (theory 5.4).

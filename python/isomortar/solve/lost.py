@@ -54,10 +54,11 @@ class LostDigits:
         return float(np.max([np.linalg.norm((forces[own] * free).sum(axis=0)) for forces in thrown]))
 
     def _borne(self, bodies: set[str], size: float, result: StepResult) -> float:
-        """The largest force of a support or contact on bodies that are one, or moment of a support over their size."""
+        """The largest force of a support, load or contact on bodies that are one, or moment of a support over their size."""
         problem = self._equilibrium.problem
         reactions = [r for s, r in zip(problem.supports, result.reactions, strict=True) if s.place.body in bodies]
         vectors = [v for r in reactions for v in (r.force, r.moment / size)]
+        vectors += [found.force for load, found in zip(problem.loads, result.loads, strict=True) if load.body in bodies]
         for contact, found in zip(problem.contacts, result.contacts, strict=True):
             sides = {face.body for side in (contact.slave, contact.master) if isinstance(side, Face) for face in side.faces}
             vectors += [found.force_slave] if bodies & sides else []

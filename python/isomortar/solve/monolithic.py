@@ -98,9 +98,12 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
 
         What supports push along a plane slides; what they keep still there sticks, or its traction would grow with the pressure.
         """
-        pairs = self._equilibrium.pairs
-        multipliers = [(contact.pressure, pair.sliding(contact)) for pair, contact in zip(pairs, self._start.contacts, strict=True)]
-        return self._evaluate(self._start.positions, multipliers, self._margin, [pair.held.still for pair in pairs])
+        pairs, positions = self._equilibrium.pairs, self._start.positions
+        multipliers = []
+        for pair, contact in zip(pairs, self._start.contacts, strict=True):
+            nearest = pair.nearest(positions, contact, self._scales)
+            multipliers.append((contact.pressure if nearest is None else nearest, pair.sliding(contact)))
+        return self._evaluate(positions, multipliers, self._margin, [pair.held.still for pair in pairs])
 
     def ahead(self, positions: FloatArray, length: float) -> _BorderedIterate:
         """The first iterate at positions ahead of the start, with multipliers that went on by a length at their rates (theory 6.7)."""

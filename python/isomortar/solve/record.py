@@ -101,6 +101,14 @@ class Reaction:
 
 
 @dataclass(frozen=True)
+class LoadResult:
+    """Force of a load on its body, and its moment about the origin; each shape (3,)."""
+
+    force: FloatArray
+    moment: FloatArray
+
+
+@dataclass(frozen=True)
 class ContactResult:
     """Measured quantities of one contact pair at the end of a load step.
 
@@ -174,6 +182,8 @@ class StepResult:
     orderings : dict
         Orderings of the unknowns that are in use, by the number of matrices that make up the system (part of the restart state: which
         one is better was tried on the first of them).
+    loads : tuple of LoadResult
+        One a load.
     """
 
     step: int
@@ -190,6 +200,7 @@ class StepResult:
     timings: dict[str, float]
     counters: dict[str, int]
     orderings: dict[int, Ordering]
+    loads: tuple[LoadResult, ...] = ()
 
 
 class Observer:

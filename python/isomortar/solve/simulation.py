@@ -23,7 +23,7 @@ from isomortar.solve.lost import LostDigits
 from isomortar.solve.method import Increment, Method
 from isomortar.solve.monolithic import Monolithic
 from isomortar.solve.pulling import Pulling
-from isomortar.solve.record import AugmentationRecord, ContactResult, Observer, Reaction, State, StepResult, history_bytes
+from isomortar.solve.record import AugmentationRecord, ContactResult, LoadResult, Observer, Reaction, State, StepResult, history_bytes
 from isomortar.solve.sharing import Sharing
 from isomortar.solve.small_strains import SmallStrains
 from isomortar.solve.timing import Ledger
@@ -211,6 +211,12 @@ class Simulation:
             reactions.append(Reaction(*of_whole(self.problem, force, turning, centre), centre))
         return tuple(reactions)
 
+    def _loads(self, time: float, positions: FloatArray) -> tuple[LoadResult, ...]:
+        """What loads exert on their bodies (theory 8.2)."""
+        about = positions + self.equilibrium.origin
+        sums = [(forces.sum(axis=0), moment(about, forces)) for forces in self.equilibrium.loads.forces(positions, time)]
+        return tuple(LoadResult(*of_whole(self.problem, force, turning, np.zeros(3))) for force, turning in sums)
+
     def _work(self, start: State, balance: Balance) -> FloatArray:
         """Friction work and spurious work of each contact pair in an increment, shape (pairs, 2) (theory 3.31)."""
         pairs = zip(self.equilibrium.pairs, start.contacts, balance.kinematics, balance.responses, strict=True)
@@ -238,6 +244,7 @@ class Simulation:
             state=replace(state, positions=state.positions + origin, rates=None if self._ends_stage(step) else state.rates),
             reactions=self._reactions(float(step), balance.positions, balance.total),
             contacts=contacts,
+            loads=self._loads(float(step), balance.positions),
             augmentations=log,
             newton_order=float(np.median(orders)) if orders else float("nan"),
             substeps=substeps,

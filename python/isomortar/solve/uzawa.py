@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from isomortar._bindings import Law
+from isomortar._bindings import Law, Response
 from isomortar.errors import ConvergenceError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
@@ -27,6 +27,18 @@ class _PositionNewton(Newton[Iterate, FloatArray]):
         """The first iterate with these laws."""
         self._laws = laws
         return self._evaluate(positions)
+
+    def closing(self, laws: Sequence[Law], positions: FloatArray, nearest: Sequence[FloatArray]) -> Iterate:
+        """The same where constraints with a pressure in `nearest`, one array a pair, are closed whatever they bear (theory 6.8)."""
+        self._laws = laws
+
+        def respond(k: int, kinematics: Kinematics) -> Response:
+            pair, law = self._equilibrium.pairs[k], laws[k]
+            closed = pair.respond(kinematics, replace(law, pressure=law.pressure + nearest[k]))
+            return replace(closed, pressure=closed.pressure - np.where(closed.state > 0, nearest[k], 0.0))
+
+        balance = self._equilibrium.forces(positions, self._start, respond)
+        return Iterate(balance, self._residual(balance))
 
     def _evaluate(self, positions: FloatArray) -> Iterate:
         balance = self._equilibrium.balance(positions, self._start, self._laws)
@@ -73,7 +85,8 @@ class Uzawa(Method):
         newton = _PositionNewton(equilibrium, start, scales)
         positions, records, orders, growth = start.positions, [], [], 1.0
         for augmentation in range(1, self._settings.max_augmentations + 1):
-            found = newton.solve(newton.held(laws, positions), prescribed, partial(self._observer.iteration, step, time, augmentation))
+            first = self._first(newton, laws, start) if augmentation == 1 else newton.held(laws, positions)
+            found = newton.solve(first, prescribed, partial(self._observer.iteration, step, time, augmentation))
             orders.append(found.order)
             balance = found.iterate.balance
             changes, distances = self._changes(laws, balance), self._distances(laws, balance, scales)
@@ -96,6 +109,15 @@ class Uzawa(Method):
             f"{np.max(distances):.2e} off the contact conditions (solver.augmentation_tolerance is "
             f"{self._settings.augmentation_tolerance:g}; larger penalties need fewer augmentations)"
         )
+
+    def _first(self, newton: _PositionNewton, laws: list[Law], start: State) -> Iterate:
+        """The first iterate of an increment."""
+        pairs = zip(self._equilibrium.pairs, laws, start.contacts, strict=True)
+        nearest = [pair.nearest(start.positions, contact, float(law.penalties[0])) for pair, law, contact in pairs]
+        if any(pressures is not None for pressures in nearest):
+            given = [np.zeros_like(law.pressure) if p is None else p for p, law in zip(nearest, laws, strict=True)]
+            return newton.closing(laws, start.positions, given)
+        return newton.held(laws, start.positions)
 
     def _changes(self, laws: list[Law], balance: Balance) -> tuple[float, float]:
         """Relative change of pressures and of tractions by the last augmentation (theory 7.3; the paper's mixed norm: twice the same).

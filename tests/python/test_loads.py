@@ -1,0 +1,186 @@
+"""Loads: what cannot be meant is refused, results hold what acts, and a run that is resumed comes to the same numbers."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+from isomortar import run
+from isomortar.errors import InputError
+from isomortar.program.getfem import GetFEM
+from isomortar.results.definition import read_problem, write_problem
+from isomortar.results.reader import Results
+from isomortar.scene import Scene
+from isomortar.solve.record import LoadResult, Observer, StepResult
+from isomortar.solve.simulation import Simulation
+
+# Two blocks that are glued, on a rigid die, under loads of all kinds; each case below changes one place.
+GOOD = """
+format = 1
+glue = [["left.u1", "right.u0"]]
+[bodies.left]
+geometry = { kind = "box", lower = [-1, -1, 0.02], upper = [0, 1, 0.5] }
+mesh = { order = 2, elements = [2, 2, 1] }
+[bodies.right]
+geometry = { kind = "box", lower = [0, -1, 0.02], upper = [1, 1, 0.5] }
+mesh = { order = 2, elements = [2, 2, 1] }
+[bodies.die]
+rigid = true
+geometry = { kind = "box", lower = [-2, -2, -1], upper = [2, 2, 0] }
+mesh = { order = 1 }
+[bodies.thick]
+geometry = { kind = "box", lower = [5, 5, 0], upper = [6, 6, 1] }
+mesh = { order = 2, contact_order = 4 }
+[contacts.die]
+slave = ["left.w0", "right.w0"]
+master = "die.w1"
+[contacts.floor]
+slave = "thick.w0"
+plane = { point = [0, 0, -1] }
+[supports.west]
+face = "left.u0"
+components = ["x", "y"]
+[supports.thick]
+face = "thick.w1"
+[loads.own]
+body = "right"
+weight = [0, 0, -0.2]
+[loads.wind]
+face = "left.w1"
+pressure = 0.1
+[loads.pull]
+face = "right.u1"
+traction = [0, 0, -0.05]
+[[stages]]
+name = "settle"
+steps = 2
+[[stages]]
+name = "gust"
+steps = 2
+loads = { wind = 2.0, pull = 1.0 }
+"""
+
+# What is replaced, by what, the field that the error names, and a part of its text.
+WRONG = {
+    "no body": ('body = "right"', 'body = "write"', "loads.own.body", "there is no body 'write'; allowed: right"),
+    "no face": ('face = "right.u1"', 'face = "right.u2"', "loads.pull.face", "right has no face 'u2'"),
+    "no size": ("pressure = 0.1", "", "loads.wind", "has no size; allowed: exactly one of"),
+    "two sizes": ("pressure = 0.1", "pressure = 0.1\ntraction = [1, 0, 0]", "loads.wind", "has pressure and traction"),
+    "weight on a face": ('body = "right"', 'face = "right.u1"', "loads.own", "is a weight; allowed: body, and no face"),
+    "pressure on a body": ('face = "left.w1"', 'body = "left"', "loads.wind", "is a pressure; allowed: face, and no body"),
+    "not a number": ("pressure = 0.1", "pressure = nan", "loads.wind.pressure", "allowed: a finite number"),
+    "two components": ("[0, 0, -0.05]", "[0, -0.05]", "loads.pull.traction", "allowed: a list of 3 numbers"),
+    "unknown key": ("pressure = 0.1", "pressures = 0.1", "loads.wind.pressures", "unknown key; allowed here: pressure"),
+    "no load": ("{ wind = 2.0,", "{ window = 2.0,", "stages.gust.loads.window", "there is no such load; allowed: wind, own, pull"),
+    "no factor": ("{ wind = 2.0,", "{ wind = inf,", "stages.gust.loads.wind", "allowed: a finite number"),
+    "rigid": ('body = "right"', 'body = "die"', "loads.own.body", "is on body 'die', which is rigid"),
+    "face of a rigid body": ('face = "left.w1"', 'face = "die.w0"', "loads.wind.face", "is on body 'die', which is rigid"),
+    "inside": ('face = "left.w1"', 'face = "left.u1"', "loads.wind.face", "which is glued to right.u0"),
+    "held altogether": ('face = "left.w1"', 'face = "thick.w1"', "loads.wind.face", "the pressure would do nothing"),
+    "held component": (
+        'face = "right.u1"\ntraction = [0, 0, -0.05]', 'face = "left.u0"\ntraction = [0, 2, -1]', "loads.pull.traction", "acts along y",
+    ),
+    "beside a raised face": ('face = "left.w1"', 'face = "thick.u0"', "loads.wind.face", "functions of 'thick' are of another order at w0"),
+}  # fmt: skip
+
+#: A block that is cut by a plane of symmetry.
+HALVED = """
+format = 1
+bodies.block = { geometry = { kind = "box", lower = [0, -1, 0], upper = [2, 1, 0.6] }, mesh = { elements = [2, 2, 1] } }
+symmetry = { y = 0.0 }
+supports.wall.face = "block.u0"
+loads.LOAD
+stages = [{ name = "load", steps = 1 }]
+"""
+UNEVEN = {
+    "through the plane": ('own = { body = "block", weight = [0, 1, 0] }', "loads.own.weight", "acts along y, through the plane y = 0"),
+    "beside the plane": ('wind = { face = "block.v1", pressure = 1 }', "loads.wind.face", "a face beside the plane y = 0"),
+}
+
+
+class Stopped(Observer):
+    """Ends a run after some load steps."""
+
+    def __init__(self, after: int) -> None:
+        self._after = after
+
+    def recorded(self, result: StepResult) -> None:
+        if result.step == self._after:
+            raise KeyboardInterrupt
+
+
+@pytest.mark.parametrize(("old", "new", "field", "text"), WRONG.values(), ids=list(WRONG))
+def test_what_cannot_be_meant_is_refused(old: str, new: str, field: str, text: str) -> None:
+    assert GOOD.count(old) == 1
+    with pytest.raises(InputError) as raised:
+        Scene.from_toml(GOOD.replace(old, new)).problem()
+    assert raised.value.field == field
+    assert text in str(raised.value)
+
+
+@pytest.mark.parametrize(("load", "field", "text"), UNEVEN.values(), ids=list(UNEVEN))
+def test_what_is_not_symmetric_is_refused(load: str, field: str, text: str) -> None:
+    with pytest.raises(InputError) as raised:
+        Scene.from_toml(HALVED.replace("LOAD", load)).problem()
+    assert raised.value.field == field
+    assert text in str(raised.value)
+
+
+def test_a_face_without_area_is_refused() -> None:
+    problem = Scene.from_toml(GOOD).problem()
+    right = problem.body("right")
+    points = right.patch.control_points.copy()
+    points[right.patch.face_points("u1")] = points[right.patch.face_points("u1")].mean(axis=0)
+    folded = replace(right, patch=replace(right.patch, control_points=points))
+    bodies = tuple(folded if body.name == "right" else body for body in problem.bodies)
+    with pytest.raises(InputError, match="fall onto a line or a point"):
+        Simulation(replace(problem, bodies=bodies))
+
+
+def test_other_programs_are_not_told_of_loads() -> None:
+    text = HALVED.replace("symmetry = { y = 0.0 }", "").replace("LOAD", 'own = { body = "block", weight = [0, 0, 1] }')
+    text = text.replace("mesh = {", 'mesh = { family = "L", order = 1,')
+    with pytest.raises(InputError, match="is not told of loads"):
+        GetFEM().run(Scene.from_toml(text).problem())
+
+
+def test_files_hold_loads(tmp_path: Path) -> None:
+    problem = Scene.from_toml(GOOD).problem()
+    with h5py.File(tmp_path / "problem.h5", "w") as file:
+        write_problem(file, problem)
+        assert read_problem(file).loads == problem.loads
+        del file.attrs["loads"]
+        assert read_problem(file).loads == ()  # of an earlier version
+
+
+def test_results_hold_what_acts_and_go_on_to_the_last_bit(tmp_path: Path) -> None:
+    scene = Scene.from_toml(GOOD)
+    whole = run(scene, tmp_path / "whole.h5")
+    with pytest.raises(KeyboardInterrupt):
+        run(scene, tmp_path / "parts.h5", observer=Stopped(2))
+    parts = run(scene, tmp_path / "parts.h5", resume=True)
+    with Results(tmp_path / "whole.h5") as one, Results(tmp_path / "parts.h5") as other:
+        first, second = one.step(4), other.step(4)
+        wind = one.curve("force", load="wind", component="z")
+        assert "force.load.wind.z" in one.to_dataframe()
+        with pytest.raises(Exception, match="there is no load 'wnd'"):
+            one.curve("force", load="wnd")
+    assert whole is not None
+    assert parts is not None
+    np.testing.assert_array_equal(first.state.positions, second.state.positions)
+    for a, b in zip(first.loads, second.loads, strict=True):
+        assert isinstance(a, LoadResult)
+        np.testing.assert_array_equal(a.force, b.force)
+        np.testing.assert_array_equal(a.moment, b.moment)
+    np.testing.assert_allclose(wind, [0.0, 0.0, -0.2, -0.4], rtol=0.05, atol=1e-15)
+
+
+def test_what_loads_do_is_no_doubt() -> None:
+    text = HALVED.replace("LOAD", 'own = { body = "block", weight = [0, 0, 1] }')
+    assert not [words for words in Simulation(Scene.from_toml(text).problem()).doubts() if "nothing will happen" in words]
+    idle = text.replace("steps = 1 }", "steps = 1, loads.own = 0 }")
+    assert [words for words in Simulation(Scene.from_toml(idle).problem()).doubts() if "nothing will happen" in words]
