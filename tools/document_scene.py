@@ -17,6 +17,7 @@ _HEADINGS = {
     "Material": "materials.NAME", "BodyTable": "bodies.NAME", "BoxTable": 'geometry, kind = "box"', "BowlTable": 'geometry, kind = "bowl"',
     "RingTable": 'geometry, kind = "ring"', "PatchTable": "bodies.NAME.patch", "MeshTable": "bodies.NAME.mesh",
     "ContactTable": "contacts.NAME", "PlaneTable": "contacts.NAME.plane", "SupportTable": "supports.NAME",
+    "ForceTable": "supports.NAME.force",
     "LoadTable": "loads.NAME", "StageTable": "stages",
     "Motion": "stages.NAME.motions.SUPPORT", "SolverSettings": "solver", "RecordTable": "record", "CurveTable": "record.curves",
 }  # fmt: skip

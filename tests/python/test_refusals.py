@@ -255,7 +255,7 @@ def of_causes(patch: pytest.MonkeyPatch) -> Told:
     yield "repeat others", re.sub(r"\d+|'\w+'", "#", error(CORNER, *same).partition("the first of them ")[2])
     equilibrium = Equilibrium(Scene.from_toml(BLOCK + 'supports.top.face = "block.w1"').problem(), Ledger())
     reference, numbering = equilibrium.numbering.reference, equilibrium.numbering
-    yield "nothing", str(explain(0.0, np.full(3, np.nan), np.arange(3), reference, numbering, []))
+    yield "nothing", str(explain(0.0, np.full(3, np.nan), equilibrium.supports, reference, numbering, []))
     pair, start = equilibrium.pairs[0], equilibrium.initial_state().contacts[0]
     conditions = PairConditions(pair, np.full(3 * pair.pair.slave.test.count, -1), pair.kinematics(reference, start))
     held = np.zeros(reference.size, dtype=np.bool_)

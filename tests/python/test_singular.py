@@ -59,7 +59,7 @@ def explained(directions: list[int], multipliers: list[int], found: int = 1) -> 
     null[directions] = 1.0
     null[len(free) + np.array(multipliers, dtype=int)] = 2.0
     contact = PairConditions(pair, equation, replace(kinematics, projections=projections))
-    return str(explain(0.0, null, free, state.positions, equilibrium.numbering, [contact]))
+    return str(explain(0.0, null, equilibrium.supports, state.positions, equilibrium.numbering, [contact]))
 
 
 def test_body_that_slides_is_said_to_move() -> None:
@@ -96,7 +96,7 @@ def test_conditions_whose_points_have_left_the_master_say_so() -> None:
 def test_no_direction_says_nothing() -> None:
     null = np.full(3, np.nan)
     equilibrium = Equilibrium(Scene.from_toml(BLOCK + 'supports.top.face = "block.w1"').problem(), Ledger())
-    said = str(explain(0.0, null, np.arange(3), equilibrium.numbering.reference, equilibrium.numbering, []))
+    said = str(explain(0.0, null, equilibrium.supports, equilibrium.numbering.reference, equilibrium.numbering, []))
     assert "nothing can be said" in said
 
 

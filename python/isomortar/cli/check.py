@@ -13,7 +13,7 @@ import isomortar
 from isomortar.cli.options import Overrides, SceneArgument
 
 if TYPE_CHECKING:
-    from isomortar.solve.outlook import BodyOutlook, ContactOutlook, Outlook, SupportOutlook
+    from isomortar.solve.outlook import BodyOutlook, ContactOutlook, LoadOutlook, Outlook, SupportOutlook
 
 
 def check(
@@ -50,6 +50,7 @@ def lines(found: Outlook) -> Iterator[str]:
     yield from map(_body, found.bodies)
     yield from map(_contact, found.contacts)
     yield from map(_support, found.supports)
+    yield from map(_load, found.loads)
     yield from (f"warning: {warning}" for warning in found.warnings)
     yield f"{_many(len(found.warnings), 'warning')}, nothing computed"
 
@@ -75,7 +76,13 @@ def _contact(contact: ContactOutlook) -> str:
 
 def _support(support: SupportOutlook) -> str:
     ways = [f"goes {support.way:.3g}"] * (support.way > 0.0) + [f"turns by {support.degrees:.3g} degrees"] * (support.degrees > 0.0)
-    return f"support {support.name}: prescribes {', '.join(support.components)} of {support.face}; {' and '.join(ways) or 'stands still'}"
+    ways += [f"presses {axis} by {force:.3g}" for axis, force in zip("xyz", support.force, strict=False) if force is not None]
+    prescribed = ", ".join(support.components) or "nothing"
+    return f"support {support.name}: prescribes {prescribed} of {support.face}; {' and '.join(ways) or 'stands still'}"
+
+
+def _load(load: LoadOutlook) -> str:
+    return f"load {load.name}: {load.kind} {', '.join(f'{value:.3g}' for value in load.value)} on {load.on}"
 
 
 def _by(numbers: tuple[float, ...]) -> str:

@@ -42,9 +42,9 @@ def check(problem: Problem) -> None:
     ------
     InputError
         Settings of the solver that are not allowed; units that no number holds; more memory than there is; glue of faces that do not
-        conform; a support that turns too often in a load step, goes or turns too far from the origin; a rigid body that supports contradict
-        each other on, or leave components to; a body that nothing holds; supports that contradict each other; contacts that cannot be
-        meant; loads that cannot be meant; too few Gauss points for a body's weights.
+        conform; a support that turns too often in a load step, goes or turns too far from the origin, or goes by motion and by force at
+        once; a rigid body that supports contradict each other on, leave components to, or press; a body that nothing holds; supports that
+        contradict each other; contacts and loads that cannot be meant; too few Gauss points for a body's weights.
     """
     _check_settings(problem.settings)
     for body in problem.bodies:
@@ -59,6 +59,7 @@ def check(problem: Problem) -> None:
     _check_turns(problem)
     _check_ways(problem)
     _check_carried(problem)
+    _check_forces(problem)
     _check_held(problem)
     numbering = Numbering(problem)
     for one, other in combinations(problem.supports, 2):
@@ -173,6 +174,11 @@ def _check_carried(problem: Problem) -> None:
         name = support.place.body
         if not problem.body(name).rigid:
             continue
+        if support.pressed:
+            raise InputError(
+                f"is given, but body {name!r} is rigid, and goes where its support takes it; allowed: motions, or a body that deforms",
+                f"supports.{support.name}.force",
+            )
         if name in carried:
             raise InputError(
                 f"is on {named(whole[name], name)}, which is rigid and goes as a whole with support {carried[name]!r}; remove one",
@@ -185,6 +191,19 @@ def _check_carried(problem: Problem) -> None:
                 f"supports.{support.name}.components",
             )
         carried |= {body.name: support.name for body in whole[name]}
+
+
+def _check_forces(problem: Problem) -> None:
+    """A support goes along a component by a motion, or by a force."""
+    for support in problem.supports:
+        for stage, motion in zip(problem.stages, support.motions, strict=True):
+            both = [k for k in support.pressed if motion.translate[k]]
+            if both:
+                words = ", ".join("xyz"[k] for k in both)
+                raise InputError(
+                    f"moves support {support.name!r} along {words}, where supports.{support.name}.force does; allowed: 0 there",
+                    f"stages.{stage.name}.motions.{support.name}.translate",
+                )
 
 
 def _check_held(problem: Problem) -> None:
@@ -229,9 +248,17 @@ def _touch(problem: Problem, contact: Contact) -> bool:
 
 
 def _check_agreement(problem: Problem, numbering: Numbering, one: Support, other: Support) -> None:
-    """Two supports may share control points only where they prescribe the same."""
+    """Two supports may share control points only where they prescribe the same, and neither by a force."""
     first, second = (numbering.face_points(problem.body(s.place.body), s.place.face) for s in (one, other))
     shared = np.intersect1d(first, second)
+    for pressed, beside in ((one, other), (other, one)) if len(shared) else ():
+        both = sorted(set(pressed.pressed) & {*beside.components, *beside.pressed})
+        if both:
+            raise InputError(
+                f"moves {len(shared)} control points along {', '.join('xyz'[k] for k in both)} by a force, and so does support "
+                f"{beside.name!r}, or prescribes it; allowed: each component by one support, or faces without a common edge",
+                f"supports.{pressed.name}.force",
+            )
     for component in sorted(set(one.components) & set(other.components)):
         if len(shared) and not _agree(one, other, component):
             x, y, z = numbering.reference[shared[0]]

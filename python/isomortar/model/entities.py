@@ -207,7 +207,8 @@ class Motion:
 class Support:
     """Prescribed control points of a face: x = c + u(t) + R(axis, angle(t)) (X - c) in the given components.
 
-    `motions` has one entry a stage. u and angle accumulate over the stages.
+    `motions` has one entry a stage. u and angle accumulate over the stages. A component with a `force` is none of the `components`: there
+    u(t) is what makes the support exert that force, times its factor at the end of each stage (`factors`).
     """
 
     name: str
@@ -216,6 +217,13 @@ class Support:
     components: tuple[int, ...] = (0, 1, 2)
     centre: tuple[float, float, float] = (0.0, 0.0, 0.0)
     axis: tuple[float, float, float] = (0.0, 0.0, 1.0)
+    force: tuple[float | None, float | None, float | None] = (None, None, None)
+    factors: tuple[float, ...] = ()
+
+    @property
+    def pressed(self) -> tuple[int, ...]:
+        """Components with a force."""
+        return tuple(k for k, force in enumerate(self.force) if force is not None)
 
     @property
     def moves(self) -> bool:

@@ -51,18 +51,18 @@ def _check_supports(problem: Problem, load: Load) -> None:
         if support.place != load.place:
             continue
         if load.kind == "pressure":
-            if len(support.components) == 3:
+            if len({*support.components, *support.pressed}) == 3:
                 raise InputError(
-                    f"is {load.place.words}, where support {support.name!r} prescribes all components: the pressure would do nothing; "
-                    "remove one of them",
+                    f"is {load.place.words}, where support {support.name!r} prescribes all components or their forces: the pressure would "
+                    "do nothing to the body; remove one of them",
                     f"loads.{load.name}.face",
                 )
             continue
-        both = [k for k in support.components if load.value[k]]
+        both = [k for k in (*support.components, *support.pressed) if load.value[k]]
         if both:
             words = ", ".join("xyz"[k] for k in both)
             raise InputError(
-                f"acts along {words} on {load.place.words}, where support {support.name!r} prescribes {words}: it would do nothing; "
-                "take that component from one of them",
+                f"acts along {words} on {load.place.words}, where support {support.name!r} prescribes {words} or the force there: it would "
+                "do nothing to the body; take that component from one of them",
                 f"loads.{load.name}.traction",
             )

@@ -110,7 +110,7 @@ def control_volumes(body: Body) -> FloatArray:
 
 
 def control_areas(patch: Patch, face: str) -> FloatArray:
-    """The same over the reference area of a face."""
+    """The same over the reference area of a face (theory 5.14)."""
     nodes, values, _, area = _face_tables(patch, face)
     shares = np.einsum("eqa,eq->ea", values, area)
     numbers = patch.face_points(face)[nodes]

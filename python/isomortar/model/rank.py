@@ -19,4 +19,8 @@ def rigid_rank(problem: Problem, piece: tuple[Body, ...]) -> int:
             direction = np.zeros_like(arms)
             direction[:, component] = 1.0
             rows.append(np.hstack([direction, np.cross(arms, direction)]))
+        for component in support.pressed:  # a plate goes along it as a whole
+            direction = np.zeros_like(arms)
+            direction[:, component] = 1.0
+            rows.append(np.hstack([0.0 * direction, np.cross(arms - arms[0], direction)]))
     return int(np.linalg.matrix_rank(np.vstack(rows), tol=1e-9)) if rows else 0

@@ -77,6 +77,11 @@ def _upper_half(body: Body, plane: SymmetryPlane) -> tuple[Body, str]:
 def _check_motions(problem: Problem, plane: SymmetryPlane) -> None:
     across = "xyz"[plane.axis]
     for support in problem.supports:
+        if plane.axis in support.pressed:
+            raise InputError(
+                f"has a component along {across}, through {plane.words}; allowed with symmetry: components along it",
+                f"supports.{support.name}.force",
+            )
         along_axis = np.abs(np.delete(unit(support.axis), plane.axis)).max() <= constants.NO_PART
         for stage, motion in zip(problem.stages, support.motions, strict=True):
             field = f"stages.{stage.name}.motions.{support.name}"

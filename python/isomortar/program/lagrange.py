@@ -48,6 +48,9 @@ class LagrangeProblem:
             raise self.refuse("is not told of glued bodies", "glue")
         if problem.loads:
             raise self.refuse("is not told of loads", f"loads.{problem.loads[0].name}")
+        for support in problem.supports:
+            if support.pressed:
+                raise self.refuse("is not told of forces of supports", f"supports.{support.name}.force")
         self._numbering = Numbering(problem)
         self._supports = Supports(problem, self._numbering)
         self.nodes, self.prescribed = self._numbering.reference, self._supports.prescribed

@@ -63,9 +63,9 @@ def _of_friction(unit: str, description: str, row: tuple[int, ...] = ()) -> Quan
     return Quantity(np.dtype(np.float64), unit, description, row, frictional=True)
 
 
-def _later(unit: str, description: str) -> Quantity:
-    """A number that files did not always hold; not a number where they do not."""
-    return Quantity(np.dtype(np.float64), unit, description, missing=np.nan)
+def _later(unit: str, description: str, row: tuple[int, ...] = ()) -> Quantity:
+    """Numbers that files did not always hold; not a number where they do not."""
+    return Quantity(np.dtype(np.float64), unit, description, row, missing=np.nan)
 
 
 def _exerted(unit: str, description: str) -> Quantity:
@@ -105,10 +105,11 @@ REACTION = {
     "force": _real("force", "force that the support exerts on its body", (3,)),
     "moment": _real("force*length", "moment that the support exerts on its body, about the moving centre", (3,)),
     "centre": _real("length", "moving centre of the support", (3,)),
+    "displacement": _later("length", "how far the support has gone from where it was at first, by motions and by forces", (3,)),
 }
 
-#: Of a support, from its motions and the load time, with units: no file holds them.
-MOTION = {"displacement": "length", "rotation": "degrees"}
+#: Of a support, from its motions and the load time, with units: no file holds it.
+MOTION = {"rotation": "degrees"}
 
 #: Named as in `LoadResult`.
 LOAD = {

@@ -193,11 +193,12 @@ class Results:
         return values[:, "xyz".index(component)]
 
     def _motion(self, support: str) -> dict[str, FloatArray]:
-        """What is computed of a support's motions, by name."""
+        """What the file does not hold of how a support moves, from its motions: files of format 3 do not say how far it went either."""
         chosen, stages = _named(self.problem.supports, support, "support"), self.problem.stages
         moved = [moved_by(chosen, progress(stages, time)) for time in self.curve("time")]
-        values = np.reshape([shift for shift, _ in moved], (-1, 3)), np.array([angle for _, angle in moved])
-        return dict(zip(layout.MOTION, values, strict=True))
+        computed = {"displacement": np.reshape([shift for shift, _ in moved], (-1, 3)), "rotation": np.array([angle for _, angle in moved])}
+        held = self._read(lambda file: set(file[f"curves/supports/{chosen.name}"]))
+        return {name: values for name, values in computed.items() if name not in held}
 
     def to_dataframe(self) -> pandas.DataFrame:
         """All curves as a frame of pandas: a row for each recorded load step, columns like ``force.top.x`` and ``active.floor``.
@@ -359,7 +360,7 @@ def _get(file: h5py.File, group: str, quantities: Mapping[str, layout.Quantity],
 def _column(file: h5py.File, path: str, quantity: layout.Quantity) -> Any:
     """A dataset; of a quantity that the file is too old for, what stands for it at every recorded load step; of none, zeros."""
     if quantity.missing is not None and path not in file:
-        return np.full(len(file["curves/step"]), quantity.missing)
+        return np.full((len(file["curves/step"]), *quantity.row), quantity.missing)
     if quantity.frictional and path not in file:
         return np.zeros((*file[f"{path.rpartition('/')[0]}/pressure"].shape, *quantity.row))
     return quantity.signed(file[path][()], layout.version_of(file)) if quantity.turned else file[path]

@@ -67,7 +67,10 @@ def build(scene: SceneTable, name: str, folder: Path) -> Problem:
         name=scene.name or name,
         bodies=bodies,
         contacts=(),
-        supports=tuple(_support(support, table, by_name, _motions(scene, support)) for support, table in scene.supports.items()),
+        supports=tuple(
+            _support(support, table, by_name, _motions(scene, support), _factors(scene, support))
+            for support, table in scene.supports.items()
+        ),
         stages=_stages(scene),
         settings=scene.solver,
         glue=tuple(_joint(faces, by_name, f"glue.{number}") for number, faces in enumerate(scene.glue)),
@@ -234,10 +237,13 @@ def _unit(vector: tuple[float, float, float], path: str) -> tuple[float, float, 
     return vector[0] / length, vector[1] / length, vector[2] / length
 
 
-def _support(name: str, table: SupportTable, bodies: dict[str, Body], motions: tuple[Motion, ...]) -> Support:
+def _support(name: str, table: SupportTable, bodies: dict[str, Body], motions: tuple[Motion, ...], factors: tuple[float, ...]) -> Support:
     place = _face(table.face, bodies, f"supports.{name}.face")
-    components = tuple(sorted("xyz".index(c) for c in table.components))
-    return Support(name, place, motions, components, table.centre, _unit(table.axis, f"supports.{name}.axis"))
+    force = (table.force.x, table.force.y, table.force.z)
+    given = [axis for axis, size in zip("xyz", force, strict=True) if size is None] if table.components is None else table.components
+    components = tuple(sorted("xyz".index(axis) for axis in given))
+    axis = _unit(table.axis, f"supports.{name}.axis")
+    return Support(name, place, motions, components, table.centre, axis, force, factors if table.force.model_fields_set else ())
 
 
 def _motions(scene: SceneTable, support: str) -> tuple[Motion, ...]:
@@ -259,9 +265,8 @@ def _load(name: str, table: LoadTable, bodies: dict[str, Body], factors: tuple[f
 
 
 def _factors(scene: SceneTable, load: str) -> tuple[float, ...]:
-    """Factors of a load at the ends of the stages."""
-    factor = 0.0 if any(load in stage.loads for stage in scene.stages) else 1.0
-    factors = []
+    """Factors of a load at the ends of the stages: what they name, else that of the stage before, of the first one 1."""
+    factor, factors = 1.0, []
     for stage in scene.stages:
         factor = stage.loads.get(load, factor)
         factors.append(factor)
@@ -269,11 +274,18 @@ def _factors(scene: SceneTable, load: str) -> tuple[float, ...]:
 
 
 def _stages(scene: SceneTable) -> tuple[Stage, ...]:
+    pressed = [name for name, support in scene.supports.items() if support.force.model_fields_set]
+    for name in pressed:
+        if name in scene.loads:
+            raise InputError(
+                "is the name of a load as well, and stages name both among loads; allowed: a name for each", f"supports.{name}"
+            )
+    loads = [*scene.loads, *pressed]
     for number, stage in enumerate(scene.stages):
         for name in stage.loads:
-            if name not in scene.loads:
+            if name not in loads:
                 field = f"stages.{stage.name}.loads.{name}"
-                raise InputError(f"there is no such load; allowed: {listed(name, scene.loads)}", field)
+                raise InputError(f"there is no such load, nor a support with a force; allowed: {listed(name, loads)}", field)
         for name in stage.motions:
             if name not in scene.supports:
                 field = f"stages.{stage.name}.motions.{name}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 import itertools
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import ValidationError
 
@@ -116,11 +116,14 @@ class Scene:
         """The curves to draw: the scene's own, or force and moment of every support that moves."""
         if self.record.curves is not None:
             return tuple(self.record.curves)
-        moving = [s for s in self.tables.supports if any(s in stage.motions and stage.motions[s].moves for stage in self.tables.stages)]
+        stages, supports = self.tables.stages, self.tables.supports
+        pressed = [name for name, support in supports.items() if support.force.model_fields_set]
+        moving = [s for s in supports if s in pressed or any(s in stage.motions and stage.motions[s].moves for stage in stages)]
+        quantities: tuple[Literal["force", "moment", "displacement"], ...] = ("force", "moment", "displacement")
         return tuple(
             CurveTable(name=f"{name} {quantity} {component}", support=name, quantity=quantity, component=component)
             for name in moving
-            for quantity in ("force", "moment")
+            for quantity in quantities[: 3 if name in pressed else 2]
             for component in ("x", "y", "z")
         )
 

@@ -213,17 +213,47 @@ class ContactTable(Table):
         return self
 
 
+class ForceTable(Table):
+    """Components of the force that a support is to exert: there its face moves as a plate, by as much as that takes."""
+
+    x: Real | None = None
+    """Along x, on its body."""
+    y: Real | None = None
+    """Along y."""
+    z: Real | None = None
+    """Along z."""
+
+
 class SupportTable(Table):
     """Prescribed control points of a face; without motion they are fixed."""
 
     face: FaceName
     """BODY.FACE"""
-    components: Annotated[tuple[Literal["x", "y", "z"], ...], Field(min_length=1)] = ("x", "y", "z")
-    """Prescribed components; default: all."""
+    components: Annotated[tuple[Literal["x", "y", "z"], ...], Field(min_length=1)] | None = None
+    """Prescribed components; default: all without a force."""
+    force: ForceTable = ForceTable()
+    """Forces in place of motions, by component, { z = -10 } say; they grow as loads do (stages[].loads)."""
     centre: Point = (0.0, 0.0, 0.0)
     """Centre of rotation, also that of the recorded moment; moves with the translation."""
     axis: Point = (0.0, 0.0, 1.0)
     """Axis of rotation, any length, right-hand rule."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _no_moment(cls, data: Any) -> Any:
+        if isinstance(data, dict) and "moment" in data:
+            raise PydanticCustomError(
+                "moment", "has a moment, but a plate turns by motions alone; allowed: force, and motions of its name with rotate"
+            )
+        return data
+
+    @model_validator(mode="after")
+    def _either_motion_or_force(self) -> SupportTable:
+        both = [axis for axis in self.components or () if getattr(self.force, axis) is not None]
+        if both:
+            facts = {"both": ", ".join(both)}
+            raise PydanticCustomError("force", "prescribes {both} both by components and by force; allowed: each by one of them", facts)
+        return self
 
     @field_validator("components", mode="before")
     @classmethod
@@ -270,18 +300,18 @@ class StageTable(Table):
     motions: dict[str, MotionTable] = Field({})
     """By name of support; supports without a motion stay where they are."""
     loads: dict[str, Real] = Field({})
-    """Factors at the end of the stage, by name of load; without one a load stays as it is; one that no stage names grows in the first."""
+    """Factors at the end of the stage, by name of load, or of support with a force; default: as in the stage before, in the first one 1."""
 
 
 class CurveTable(Table):
-    """A curve over the load steps: a component of a support's force or moment."""
+    """A curve over the load steps: a component of a support's force, moment or displacement."""
 
     name: str
     """Label of the curve."""
     support: str
     """Name of a support."""
-    quantity: Literal["force", "moment"] = "force"
-    """Force that the support exerts, or moment about its moving centre."""
+    quantity: Literal["force", "moment", "displacement"] = "force"
+    """Force that the support exerts, moment about its moving centre, or how far that has gone."""
     component: Literal["x", "y", "z", "norm"] = "norm"
     """Component, or the Euclidean norm."""
 
@@ -292,7 +322,7 @@ class RecordTable(Table):
     states: Literal["every", "last"] = "every"
     """Positions and multipliers of every load step, or of the last one only."""
     curves: list[CurveTable] | None = None
-    """Curves to draw; default: force and moment of every support that moves, by component."""
+    """Curves to draw; default: force and moment of every support that moves, by component, and how far one with a force goes."""
 
 
 class SceneTable(Table):

@@ -134,8 +134,7 @@ def _correction(
     equilibrium: Equilibrium, solution: FloatArray, targets: Sequence[Response], borders: Sequence[Border | None]
 ) -> Correction:
     """Newton's correction from the solution of the linear system."""
-    positions = np.zeros_like(equilibrium.numbering.reference)
-    positions.ravel()[equilibrium.supports.free] = -solution[: len(equilibrium.supports.free)]
+    positions = -equilibrium.supports.spread(solution)
     changes = [_multiplier_change(border, target, -solution) for border, target in zip(borders, targets, strict=True)]
     return Correction(positions, tuple(c[:, 0] for c in changes), tuple(c[:, 1:] for c in changes))
 
@@ -174,7 +173,7 @@ def _right_hand_side(
     """Forces, and distances of the multipliers from their targets, with what the prescribed increment adds to both."""
     right = np.zeros(size)
     free = equilibrium.supports.free
-    right[: len(free)] = balance.total.ravel()[free]
+    right[: len(free)] = balance.unbalanced.ravel()[free]
     for border, target, now in zip(borders, targets, balance.responses, strict=True):
         if border is not None:
             apart = np.column_stack([now.pressure - target.pressure, now.traction - target.traction])
@@ -191,7 +190,7 @@ def _add_product(pattern: Pattern, row_of: IntArray, block: FloatArray, vector: 
     """Add block times vector to the equations of the block's rows."""
     product = block_product(pattern, block, vector).ravel()
     kept = row_of >= 0
-    right[row_of[kept]] += product[kept]
+    np.add.at(right, row_of[kept], product[kept])
 
 
 def _multiplier_change(border: Border | None, target: Response, solution: FloatArray) -> FloatArray:

@@ -65,6 +65,7 @@ def doubts(problem: Problem, state: State) -> Iterator[str]:
     travel = _travel(problem)
     presses = any(contact.smoothing for contact in problem.contacts) or any(_overlaps(found) for found in stances)
     loaded = any(any(load.factors) and any(load.value) for load in problem.loads)
+    loaded |= any(any(support.factors) and any(support.force) for support in problem.supports)
     if not any(support.moves for support in problem.supports) and not presses and not loaded:
         yield "no support moves in any stage, and nothing overlaps at the start: nothing will happen"
     for contact, found, feet in zip(problem.contacts, stances, (contact.projected for contact in state.contacts), strict=True):

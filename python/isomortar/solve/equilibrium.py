@@ -34,11 +34,15 @@ from isomortar.solve.timing import Ledger
 
 @dataclass(frozen=True)
 class Balance:
-    """Forces at given positions, shape (control points, 3), with the contact kinematics and responses behind them."""
+    """Forces at given positions, shape (control points, 3), with the contact kinematics and responses behind them.
+
+    `total`: internal and contact forces, less loads; `unbalanced`: what is left of them at unknowns where nothing bears it.
+    """
 
     positions: FloatArray
     internal: FloatArray
     total: FloatArray
+    unbalanced: FloatArray
     kinematics: tuple[Kinematics, ...]
     responses: tuple[Response, ...]
 
@@ -97,7 +101,7 @@ class Equilibrium:
 
     @property
     def _loaded(self) -> bool:
-        return bool(self.problem.loads)
+        return bool(self.problem.loads or self.supports.plates)
 
     def _is_loose(self, piece: int) -> bool:
         """Whether supports leave a piece a rigid motion."""
@@ -171,7 +175,7 @@ class Equilibrium:
             kinematics.append(pair.kinematics(positions, state))
             responses.append(respond(k, kinematics[-1]))
             pair.add_forces(positions, kinematics[-1], responses[-1], total)
-        return Balance(positions, internal, total, tuple(kinematics), tuple(responses))
+        return Balance(positions, internal, total, self.supports.unbalanced(total, self.time), tuple(kinematics), tuple(responses))
 
     def bear(self, balance: Balance) -> bool:
         """Whether constraints that supports hold along the normal are inside their master, and bear on it from now on (theory 4.11)."""
@@ -207,19 +211,16 @@ class Equilibrium:
             Naming a body that nothing holds.
         """
         sources, values = self.tangents(balance, laws)
-        right = balance.total.copy()
+        right = balance.unbalanced.copy()
         if np.any(prescribed):
             for source, block in zip(sources, values, strict=True):
-                right += block_product(source.pattern, block, prescribed)
-        correction = prescribed.copy()
-        correction.ravel()[self.supports.free] -= self.solve(sources, values, right.ravel()[self.supports.free], balance.positions)
-        return correction
+                right += self.supports.gathered(block_product(source.pattern, block, prescribed))
+        solution = self.solve(sources, values, right.ravel()[self.supports.free], balance.positions)
+        return prescribed - self.supports.spread(solution)
 
     def kept_correction(self, balance: Balance) -> FloatArray:
         """Correction of all positions by the factors of the last tangent, with the prescribed positions as they are."""
-        correction = np.zeros_like(balance.positions)
-        correction.ravel()[self.supports.free] = -self.solve_again(balance.total.ravel()[self.supports.free])
-        return correction
+        return -self.supports.spread(self.solve_again(balance.unbalanced.ravel()[self.supports.free]))
 
     def solve(
         self,
@@ -242,7 +243,7 @@ class Equilibrium:
         try:
             system.factorise(values)
         except SingularSystemError as error:
-            raise explain(system.rcond, system.near_null(), self.supports.free, positions, self.numbering, multipliers) from error
+            raise explain(system.rcond, system.near_null(), self.supports, positions, self.numbering, multipliers) from error
         if system.ordering:
             self.orderings[len(sources)] = system.ordering
         return system.solve(right)

@@ -23,7 +23,7 @@ def with_rates(before: State, after: State, time: float, length: float) -> State
 
 def positions_ahead(start: State, rates: Rates, supports: Supports, time: float) -> FloatArray:
     """Positions at a load time, the prescribed ones where supports put them, shape (control points, 3) (theory 6.7)."""
-    return np.where(supports.held, supports.place(time), start.positions + (time - rates.time) * rates.positions)
+    return supports.placed(start.positions + (time - rates.time) * rates.positions, time)
 
 
 def multipliers_ahead(pair: PairMechanics, start: ContactState, rates: ContactRates, length: float) -> Multipliers:

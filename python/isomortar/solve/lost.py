@@ -31,7 +31,7 @@ class LostDigits:
         """Warnings that the end of a load step gives rise to."""
         equilibrium = self._equilibrium
         measures, problem = equilibrium.measures, equilibrium.problem
-        by_round_off = measures.free_norms(balance.total) > problem.settings.newton_tolerance * measures.norms(balance.internal)
+        by_round_off = measures.free_norms(balance.unbalanced) > problem.settings.newton_tolerance * measures.norms(balance.internal)
         for number in [k for k, so in enumerate(by_round_off) if so and k not in self._told]:
             own, piece = equilibrium.numbering.piece_points(number), equilibrium.numbering.pieces[number]
             if not _deforms(equilibrium.numbering.reference[own], balance.positions[own]):
@@ -50,7 +50,7 @@ class LostDigits:
         """The largest sum of a body's unbalanced forces, where it is and moved as it stands: one alone may be small by chance."""
         free = ~self._equilibrium.supports.held[own]
         moved = (self._equilibrium.solid.forces(balance.positions + k * size * np.array(APART)) for k in range(1, THROWS))
-        thrown = [balance.total, *(balance.total - balance.internal + forces for forces in moved)]
+        thrown = [balance.unbalanced, *(balance.unbalanced - balance.internal + forces for forces in moved)]
         return float(np.max([np.linalg.norm((forces[own] * free).sum(axis=0)) for forces in thrown]))
 
     def _borne(self, bodies: set[str], size: float, result: StepResult) -> float:

@@ -49,13 +49,27 @@ class ContactOutlook:
 
 @dataclass(frozen=True)
 class SupportOutlook:
-    """A support: its face, the components that it prescribes, and how far and by what angle it goes in all stages together."""
+    """A support: its face, the components that it prescribes, and how far and by what angle it goes in all stages together.
+
+    `force`: by component; none where it has none.
+    """
 
     name: str
     face: str
     components: str
     way: float
     degrees: float
+    force: tuple[float | None, ...]
+
+
+@dataclass(frozen=True)
+class LoadOutlook:
+    """A load: what kind, its face or body, and its value."""
+
+    name: str
+    kind: str
+    on: str
+    value: tuple[float, ...]
 
 
 @dataclass(frozen=True)
@@ -69,6 +83,7 @@ class Outlook:
     bodies: tuple[BodyOutlook, ...]
     contacts: tuple[ContactOutlook, ...]
     supports: tuple[SupportOutlook, ...]
+    loads: tuple[LoadOutlook, ...]
     warnings: tuple[str, ...]
 
 
@@ -83,7 +98,7 @@ def outlook(problem: Problem) -> Outlook:
     simulation = Simulation(problem)
     return Outlook(
         problem.name,
-        int(np.count_nonzero(simulation.equilibrium.supports.equation >= 0)),
+        len(simulation.equilibrium.supports.free),
         problem.total_steps,
         memory_needed(problem),
         tuple(_body(body) for body in problem.bodies),
@@ -91,6 +106,7 @@ def outlook(problem: Problem) -> Outlook:
             _contact(problem, contact, state.projected) for contact, state in zip(problem.contacts, simulation.state.contacts, strict=True)
         ),
         tuple(_support(support) for support in problem.given_supports),
+        tuple(LoadOutlook(load.name, load.kind, load.place.words if load.face else load.body, load.value) for load in problem.loads),
         tuple(simulation.doubts()),
     )
 
@@ -137,4 +153,5 @@ def _support(support: Support) -> SupportOutlook:
         "".join("xyz"[k] for k in support.components),
         float(np.sum(ways)),
         float(np.sum(np.abs([motion.rotate for motion in support.motions]))),
+        support.force if support.pressed else (),
     )

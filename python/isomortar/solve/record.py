@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -93,11 +93,15 @@ class AugmentationRecord:
 
 @dataclass(frozen=True)
 class Reaction:
-    """Force that a support exerts on its body, moment about the moving centre, and that centre; each shape (3,)."""
+    """Force that a support exerts on its body, moment about the moving centre, that centre, and how far it has gone; each shape (3,).
+
+    How far a program did not tell, or a file does not hold, is not a number.
+    """
 
     force: FloatArray
     moment: FloatArray
     centre: FloatArray
+    displacement: FloatArray = field(default_factory=lambda: np.full(3, np.nan))
 
 
 @dataclass(frozen=True)

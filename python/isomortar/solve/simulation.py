@@ -197,18 +197,17 @@ class Simulation:
         origin, supports = self.equilibrium.origin, self.equilibrium.supports
         if not np.any(origin):
             return result.state
-        positions = np.where(supports.held, supports.place(result.time), result.state.positions - origin)
-        return replace(result.state, positions=positions)
+        return replace(result.state, positions=supports.placed(result.state.positions - origin, result.time))
 
     def _reactions(self, time: float, positions: FloatArray, total: FloatArray) -> tuple[Reaction, ...]:
         """Forces that the supports exert: their shares of the residual at the components that they prescribe (theory 8.1)."""
         reactions = []
         supports = self.equilibrium.supports
         for support, points, share in zip(self.equilibrium.problem.supports, supports.points, supports.shares, strict=True):
-            centre, forces = supports.centre(support, time), share * total[points]
-            force, turning = forces.sum(axis=0), moment(positions[points] - centre, forces)
+            centre, forces = supports.centre(support, time, positions), share * total[points]
+            force, turning, way = forces.sum(axis=0), moment(positions[points] - centre, forces), centre - np.asarray(support.centre)
             centre = centre + self.equilibrium.origin
-            reactions.append(Reaction(*of_whole(self.problem, force, turning, centre), centre))
+            reactions.append(Reaction(*of_whole(self.problem, force, turning, centre), centre, way))
         return tuple(reactions)
 
     def _loads(self, time: float, positions: FloatArray) -> tuple[LoadResult, ...]:

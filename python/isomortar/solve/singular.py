@@ -12,6 +12,7 @@ from isomortar.errors import SingularSystemError
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model.glue import named
 from isomortar.model.numbering import Numbering
+from isomortar.model.supports import Supports
 from isomortar.solve.contact import Kinematics, PairMechanics
 
 #: A body moves rigidly where what is left of its motion after the closest rigid one is at most this share of it.
@@ -30,7 +31,7 @@ class PairConditions:
 
 
 def explain(
-    rcond: float, null: FloatArray, free: NDArray[np.intp], positions: FloatArray, numbering: Numbering, contacts: Sequence[PairConditions]
+    rcond: float, null: FloatArray, supports: Supports, positions: FloatArray, numbering: Numbering, contacts: Sequence[PairConditions]
 ) -> SingularSystemError:
     """The error that says what a singular tangent leaves free.
 
@@ -40,12 +41,12 @@ def explain(
         Reciprocal condition of the tangent.
     null : ndarray
         A direction, by equations, that the tangent maps to next to nothing.
-    free : ndarray of int
-        Unknowns of the first equations; those of multipliers follow.
+    supports : Supports
+        Whose unknowns are those of the first equations; multipliers follow.
     positions : ndarray, shape (control points, 3)
     """
     said = f"the tangent is singular (reciprocal condition {rcond:.1e})"
-    if not len(free):
+    if not len(supports.free):
         return SingularSystemError(
             f"{said}: supports hold all control points, also where they put them into a master, and contact has nothing that could give "
             "way. Hold fewer components, or end the motion at the master"
@@ -53,11 +54,7 @@ def explain(
     if not np.isfinite(null).all():
         return SingularSystemError(f"{said}, and nothing can be said of what it leaves free")
     shares = [_of_pair(contact, null) for contact in contacts]
-    motion = np.zeros(positions.size)
-    motion[free] = null[: len(free)]
-    moved = motion.reshape(-1, 3)
-    held = np.ones(positions.size, dtype=np.bool_)
-    held[free] = False
+    moved, held = supports.spread(null), supports.held.ravel()
     if shares and max(float(np.abs(share).max()) for share in shares) > np.abs(moved).max():
         largest = int(np.argmax([np.abs(share).max() for share in shares]))
         return _repeated(said, contacts[largest], np.flatnonzero(shares[largest] > _PART * shares[largest].max()), contacts, held)

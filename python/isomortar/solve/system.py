@@ -46,7 +46,9 @@ def entries(sources: Sequence[Source], size: int) -> sparse.csr_array:
     """Pattern of ones of several sources together, in the numbering of the system."""
     places = [source.places() for source in sources]
     row, column = (np.concatenate([place[k] for place in places]) for k in range(2))
-    return sparse.csr_array((np.ones(len(row), dtype=np.int8), (row, column)), shape=(size, size))
+    pattern = sparse.csr_array((np.ones(len(row), dtype=np.int8), (row, column)), shape=(size, size))
+    pattern.data[:] = 1  # however often an entry is met
+    return pattern
 
 
 class CheckedSystem(ABC):

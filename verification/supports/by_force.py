@@ -1,0 +1,120 @@
+"""Supports that exert a prescribed force: what they move by, prescribed in its place, makes that force."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from small_scenes import TIGHT
+
+from isomortar.harness import Bound, case
+from isomortar.model.entities import Motion, Problem, Stage
+from isomortar.scene import Scene
+from isomortar.solve.record import StepResult
+from isomortar.solve.simulation import Simulation
+
+#: Scenes with one support `top` that a force moves.
+SCENES = {
+    # A bar that is bent by a force across its end, which turns meanwhile.
+    "bar": """
+format = 1
+bodies.bar = { geometry = { kind = "box", lower = [0, 0, 0], upper = [2, 1, 1] }, mesh = { order = 2, elements = [3, 2, 2] } }
+supports.base.face = "bar.u0"
+supports.top = { face = "bar.u1", force = { y = 0.2, z = -0.1 }, centre = [2, 0.5, 0.5], axis = [1, 2, 3] }
+stages = [
+    { name = "bend", steps = 2, loads.top = 1 },
+    { name = "turn", steps = 2, loads.top = -0.5, motions.top = { translate = [0.1, 0, 0], rotate = 10 } },
+]
+""",
+    # A bowl that stands above a plane, is pressed onto it by a weight, and dragged.
+    "onto a plane": """
+format = 1
+bodies.pad = { geometry = { kind = "bowl", half_width = 0.5, bottom = 0.02, rise = 0.1, top = 1 }, mesh = { elements = [4, 4, 2] } }
+contacts.floor = { slave = "pad.w0", plane = {}, friction = 0.3 }
+supports.top = { face = "pad.w1", force.z = -0.4 }
+stages = [
+    { name = "press", steps = 2 },
+    { name = "drag", steps = 3, motions.top.translate = [0.1, 0, 0] },
+    { name = "more", steps = 2, loads.top = 1.5, motions.top.translate = [0, 0.05, 0] },
+]
+""",
+    # The same on a block, without friction, of Lagrange elements, glued on top to a stiffer one that the force acts on.
+    "onto a block": """
+format = 1
+glue = [["pad.w1", "head.w0"]]
+materials = { soft = {}, stiff = { young = 100.0 } }
+bodies.pad.geometry = { kind = "box", lower = [-0.3, -0.3, 0], upper = [0.3, 0.3, 0.4] }
+bodies.pad.mesh = { family = "L", order = 2, elements = [2, 2, 1] }
+bodies.pad.material = "soft"
+bodies.head.geometry = { kind = "box", lower = [-0.3, -0.3, 0.4], upper = [0.3, 0.3, 0.6] }
+bodies.head.mesh = { family = "L", order = 2, elements = [2, 2, 1] }
+bodies.head.material = "stiff"
+bodies.block.geometry = { kind = "box", lower = [-1, -1, -0.5], upper = [1, 1, 0] }
+bodies.block.mesh = { elements = [5, 5, 2] }
+bodies.block.material = "soft"
+contacts.pair = { slave = "pad.w0", master = "block.w1", friction = 0 }
+supports.base.face = "block.w0"
+supports.top = { face = "head.w1", force = { x = 0, y = 0, z = -0.3 } }
+supports.side = { face = "pad.u0", components = ["x"] }
+supports.front = { face = "pad.v0", components = ["y"] }
+stages = [{ name = "press", steps = 2, loads.top = 1 }]
+""",
+}
+
+
+def problem(scene: str, method: str) -> Problem:
+    """A scene at tight tolerances."""
+    found = Scene.from_toml(SCENES[scene], overrides=[f"solver.method={method}"]).problem()
+    return replace(found, settings=replace(found.settings, **TIGHT))  # type: ignore[arg-type]
+
+
+def by_displacement(given: Problem, results: list[StepResult]) -> Problem:
+    """The problem with the motions that its supports were found to make in place of forces, a stage for each load step."""
+    ends = np.cumsum([stage.steps for stage in given.stages])
+    of = [int(np.searchsorted(ends, step)) for step in range(1, given.total_steps + 1)]
+    supports = []
+    for k, support in enumerate(given.supports):
+        ways = np.diff([np.zeros(3), *(result.reactions[k].displacement for result in results)], axis=0)
+        turns = [support.motions[stage].rotate / given.stages[stage].steps for stage in of]
+        motions = tuple(Motion((float(x), float(y), float(z)), turn) for (x, y, z), turn in zip(ways, turns, strict=True))
+        components = tuple(sorted({*support.components, *support.pressed}))
+        supports.append(replace(support, motions=motions, components=components, force=(None, None, None), factors=()))
+    stages = tuple(Stage(f"step-{step}", 1) for step in range(1, given.total_steps + 1))
+    return replace(given, supports=tuple(supports), stages=stages)
+
+
+@case(
+    claim="A support by force goes where the same support by displacement makes that force.",
+    tier="gate",
+    grid={"scene": tuple(SCENES), "method": ("monolithic", "uzawa")},
+    bounds={
+        "prescribed": Bound(at_most=1e-10, reason="theory: forces on all control points are in balance to 1e-12 of the internal ones"),
+        "force": Bound(at_most=1e-10, reason="theory: the same equations, the unknown exchanged; both to tight tolerances"),
+        "positions": Bound(at_most=1e-10, reason="theory: as above"),
+        "plate": Bound(at_most=1e-14, reason="round-off: the face is in shape"),
+    },
+)
+def exchanged(scene: str, method: str) -> dict[str, float]:
+    """Force of the support off the one prescribed; that by displacement off it; positions of both runs; the face off its shape."""
+    given = problem(scene, method)
+    simulation = Simulation(given)
+    pressed, supports, reference = list(simulation.run()), simulation.equilibrium.supports, simulation.equilibrium.numbering.reference
+    moved = list(Simulation(by_displacement(given, pressed)).run())
+    top = next(k for k, support in enumerate(given.supports) if support.pressed)
+    support, own = given.supports[top], list(given.supports[top].pressed)
+    ends = np.cumsum([0, *(stage.steps for stage in given.stages)])
+    factors = np.interp(np.arange(1, given.total_steps + 1), ends, [0.0, *support.factors])
+    wanted = factors[:, None] * np.array([support.force[k] for k in own], dtype=np.float64)
+    found, again = (np.array([result.reactions[top].force[own] for result in run]) for run in (pressed, moved))
+    apart = [np.abs(a.state.positions - b.state.positions).max() for a, b in zip(pressed, moved, strict=True)]
+    shapes = []
+    for result in pressed:
+        off = (result.state.positions - supports.place(result.time))[supports.points[top]][:, own]
+        shapes.append(np.ptp(off, axis=0).max() / np.ptp(reference))
+    size = np.abs(wanted).max()
+    return {
+        "prescribed": float(np.abs(found - wanted).max() / size),
+        "force": float(np.abs(again - wanted).max() / size),
+        "positions": float(max(apart)),
+        "plate": float(max(shapes)),
+    }
