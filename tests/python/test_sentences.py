@@ -37,6 +37,9 @@ from test_scene_errors import CASES, GOOD
 from test_sides import GOOD as SIDES
 from test_sides import WRONG as NO_SIDES
 from test_singular import BLOCK, CORNER, STICKING, Heard, error, explained
+from test_support_forces import GOOD as PRESSED
+from test_support_forces import HALVED as HALF_PRESSED
+from test_support_forces import WRONG as UNMOVING
 
 SENTENCES: dict[str, dict[str, str]] = tomllib.loads((Path(__file__).parent / "sentences.toml").read_text(encoding="utf-8"))
 
@@ -86,6 +89,14 @@ def bad_loads(_: pytest.MonkeyPatch) -> Told:
         yield name, refused(LOADED.replace(old, new))
     for name, (load, *_) in UNEVEN.items():
         yield name, refused(HALVED.replace("LOAD", load))
+
+
+def bad_forces(_: pytest.MonkeyPatch) -> Told:
+    """Refused for forces that supports cannot exert."""
+    for name, (old, new, *_) in UNMOVING.items():
+        yield name, refused(PRESSED.replace(old, new))
+    halved = HALF_PRESSED.replace("FORCE", "force.y = 0") + "symmetry = { y = 0.0 }"
+    yield "through the plane", refused(halved)
 
 
 def bad_raised_faces(_: pytest.MonkeyPatch) -> Told:
@@ -266,6 +277,7 @@ KINDS = (
     bad_joints,
     bad_rigid_bodies,
     bad_loads,
+    bad_forces,
     bad_raised_faces,
     bad_sides,
     bad_words,

@@ -142,7 +142,7 @@ class Supports:
         return forces
 
     def spread(self, solution: FloatArray) -> FloatArray:
-        """A field of control points, shape (control points, 3), from its values by equation; zero where positions are prescribed."""
+        """A field of control points, shape (control points, 3), from its values by equation, zero where it is prescribed (theory 5.17)."""
         field, free = np.zeros(len(self.equation)), self.equation >= 0
         field[free] = solution[self.equation[free]]
         return field.reshape(-1, 3)
@@ -185,7 +185,7 @@ class Supports:
         return lacking
 
     def placed(self, positions: FloatArray, time: float) -> FloatArray:
-        """Positions with the prescribed ones where their supports put them, and plates in shape with their first control point."""
+        """Positions with the prescribed ones in their places, and plates in shape with their first control point (theory 5.17)."""
         places = self.place(time)
         placed = np.where(self.held, places, positions)
         for plate in self.plates:

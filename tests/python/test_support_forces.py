@@ -1,0 +1,176 @@
+"""Supports by force: what cannot be meant is refused; results hold what it exerts and how far it went, to the last bit when resumed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+from isomortar import run
+from isomortar.errors import InputError
+from isomortar.model.numbering import Numbering
+from isomortar.model.rank import rigid_rank
+from isomortar.model.supports import Supports
+from isomortar.program.getfem import GetFEM
+from isomortar.results.files import read, sealed
+from isomortar.results.reader import Results
+from isomortar.scene import Scene
+from isomortar.solve.record import Observer, StepResult
+from isomortar.solve.simulation import Simulation
+
+# A pad above a rigid die, which a force presses down; each case below changes one place.
+GOOD = """
+format = 1
+[bodies.pad]
+geometry = { kind = "box", lower = [0, 0, 0.03], upper = [1, 1, 0.5] }
+mesh = { order = 2, elements = [2, 2, 1] }
+[bodies.die]
+rigid = true
+geometry = { kind = "box", lower = [-1, -1, -1], upper = [2, 2, 0] }
+mesh = { order = 1 }
+[contacts.die]
+slave = "pad.w0"
+master = "die.w1"
+friction = 0.2
+[supports.top]
+face = "pad.w1"
+force.z = -0.3
+[supports.die]
+face = "die.w0"
+[[stages]]
+name = "press"
+steps = 2
+[[stages]]
+name = "drag"
+steps = 2
+motions.top.translate = [0.05, 0, 0]
+loads.top = 1.5
+"""
+
+_BESIDE = '[supports.beside]\nface = "pad.u0"\n{}\n[supports.die]'
+# What is replaced, by what, the field that the error names, and a part of its text.
+WRONG = {
+    "not a number": ("force.z = -0.3", "force.z = nan", "supports.top.force.z", "allowed: a finite number"),
+    "another component": ("force.z = -0.3", "force.w = -0.3", "supports.top.force.w", "unknown key; allowed here: x, y, z"),
+    "by components too": (
+        "force.z = -0.3", 'force.z = -0.3\ncomponents = ["y", "z"]', "supports.top", "prescribes z both by components and by force",
+    ),
+    "no components": ("force.z = -0.3", "force.z = -0.3\ncomponents = []", "supports.top.components", "has 0 entries"),
+    "moved too": ("[0.05, 0, 0]", "[0.05, 0, -0.1]", "stages.drag.motions.top.translate", "moves support 'top' along z"),
+    "moment": ("force.z = -0.3", "moment.y = 0", "supports.top", "a plate turns by motions alone"),
+    "rigid": ('[supports.die]\nface = "die.w0"', '[supports.die]\nface = "die.w0"\nforce.z = 1', "supports.die.force", "'die' is rigid"),
+    "no such load": ("loads.top = 1.5", "loads.tip = 1.5", "stages.drag.loads.tip", "nor a support with a force; allowed: top"),
+    "name of a load": (
+        "[supports.die]", '[loads.top]\nface = "pad.u0"\npressure = 1\n[supports.die]', "supports.top", "is the name of a load as well",
+    ),
+    "prescribed beside": ("[supports.die]", _BESIDE.format('components = ["z"]'), "supports.top.force", "moves 4 control points along z"),
+    "pressed beside": (
+        "[supports.die]", _BESIDE.format('components = ["x"]\nforce.z = 1'), "supports.top.force", "and so does support 'beside'",
+    ),
+    "pressure on it": (
+        "[supports.die]", '[loads.wind]\nface = "pad.w1"\npressure = 1\n[supports.die]', "loads.wind.face", "or their forces",
+    ),
+    "traction on it": (
+        "[supports.die]", '[loads.pull]\nface = "pad.w1"\ntraction = [0, 0, 1]\n[supports.die]', "loads.pull.traction", "acts along z",
+    ),
+}  # fmt: skip
+
+#: A block that is cut by a plane of symmetry.
+HALVED = """
+format = 1
+bodies.block.geometry = { kind = "box", lower = [0, -1, 0], upper = [2, 1, 0.6] }
+bodies.block.mesh = { family = "L", order = 2, elements = [2, 2, 1] }
+supports.wall.face = "block.u0"
+supports.end = { face = "block.u1", FORCE }
+stages = [{ name = "load", steps = 1 }]
+"""
+
+
+class Stopped(Observer):
+    """Ends a run after some load steps."""
+
+    def recorded(self, result: StepResult) -> None:
+        if result.step == 3:
+            raise KeyboardInterrupt
+
+
+@pytest.mark.parametrize(("old", "new", "field", "text"), WRONG.values(), ids=list(WRONG))
+def test_what_cannot_be_meant_is_refused(old: str, new: str, field: str, text: str) -> None:
+    assert GOOD.count(old) == 1
+    with pytest.raises(InputError) as raised:
+        Scene.from_toml(GOOD.replace(old, new)).problem()
+    assert raised.value.field == field
+    assert text in str(raised.value)
+
+
+def test_a_force_through_a_plane_of_symmetry_is_refused() -> None:
+    text = HALVED.replace("FORCE", "force.y = 0") + "symmetry = { y = 0.0 }\n"
+    with pytest.raises(InputError, match="has a component along y, through the plane y = 0"):
+        Scene.from_toml(text).problem()
+
+
+def test_a_force_is_that_of_the_whole() -> None:
+    text = HALVED.replace("FORCE", "force = { x = 0.1, z = 0.2 }")
+    whole, half = (list(Simulation(Scene.from_toml(text + more).problem()).run())[-1] for more in ("", "symmetry = { y = 0.0 }\n"))
+    for one, other in zip(whole.reactions, half.reactions[:2], strict=True):
+        np.testing.assert_allclose(one.force, other.force, atol=1e-9)
+        np.testing.assert_allclose(one.moment, other.moment, atol=1e-9)
+        np.testing.assert_allclose(one.displacement, other.displacement, atol=1e-9)
+
+
+def test_other_programs_are_not_told_of_forces() -> None:
+    with pytest.raises(InputError, match="is not told of forces of supports"):
+        GetFEM().run(Scene.from_toml(HALVED.replace("FORCE", "force.z = 1").replace("order = 2", "order = 1")).problem())
+
+
+def test_a_plate_is_one_unknown() -> None:
+    problem = Scene.from_toml(GOOD).problem()
+    supports = Supports(problem, Numbering(problem))
+    (plate,) = supports.plates
+    assert len(np.unique(supports.equation[plate.unknowns])) == 1
+    assert len(supports.free) == supports.equation.max() + 1
+    forces = np.random.default_rng(0).standard_normal((len(supports.held), 3))
+    solution = np.random.default_rng(1).standard_normal(len(supports.free))
+    work = float(np.sum(forces * supports.spread(solution)))
+    np.testing.assert_allclose(supports.gathered(forces).ravel()[supports.free] @ solution, work, rtol=1e-13)  # virtual work is the same
+    left = supports.unbalanced(forces, 1.0) - supports.gathered(forces)
+    np.testing.assert_allclose(left.sum(axis=0), [0.0, 0.0, 0.15], atol=1e-14)
+    assert rigid_rank(problem, (problem.body("pad"),)) == 5  # it may go along z, and not tilt
+
+
+def test_results_hold_forces_and_ways_to_the_last_bit(tmp_path: Path) -> None:
+    scene = Scene.from_toml(GOOD)
+    run(scene, tmp_path / "whole.h5")
+    with pytest.raises(KeyboardInterrupt):
+        run(scene, tmp_path / "parts.h5", observer=Stopped())
+    run(scene, tmp_path / "parts.h5", resume=True)
+    with Results(tmp_path / "whole.h5") as one, Results(tmp_path / "parts.h5") as other:
+        for quantity in ("force", "displacement"):
+            np.testing.assert_array_equal(one.curve(quantity, support="top"), other.curve(quantity, support="top"))
+        np.testing.assert_array_equal(one.step(4).state.positions, other.step(4).state.positions)
+        np.testing.assert_allclose(one.curve("force", support="top", component="z"), [-0.15, -0.3, -0.375, -0.45], rtol=1e-8)
+        ways = one.curve("displacement", support="top")
+        np.testing.assert_allclose(ways[:, 0], [0.0, 0.0, 0.025, 0.05], atol=1e-15)
+        assert np.all(np.diff(ways[:, 2]) < 0.0)
+        np.testing.assert_array_equal(one.problem.supports[0].force, (None, None, -0.3))
+
+
+def test_files_from_before_have_no_ways(tmp_path: Path) -> None:
+    scene = Scene.from_toml(HALVED.replace("FORCE", "components = ['z']"))
+    run(scene, tmp_path / "now.h5")
+    (tmp_path / "before.h5").write_bytes(read(tmp_path / "now.h5"))
+    with h5py.File(tmp_path / "before.h5", "a") as file:
+        del file["curves/supports/end/displacement"]
+    content = (tmp_path / "before.h5").read_bytes()
+    (tmp_path / "before.h5").write_bytes(sealed(content))
+    with Results(tmp_path / "before.h5") as before:
+        assert np.isnan(before.curve("displacement", support="end")).all()
+        assert np.isnan(before.step(1).reactions[1].displacement).all()
+
+
+def test_default_curves_show_how_far_a_force_goes() -> None:
+    names = [curve.name for curve in Scene.from_toml(GOOD).curves()]
+    assert "top displacement z" in names
+    assert not [name for name in names if name.startswith("die")]
