@@ -64,9 +64,7 @@ def doubts(problem: Problem, state: State) -> Iterator[str]:
     stances = [stance(problem, contact) for contact in problem.contacts]
     travel = _travel(problem)
     presses = any(contact.smoothing for contact in problem.contacts) or any(_overlaps(found) for found in stances)
-    loaded = any(any(load.factors) and any(load.value) for load in problem.loads)
-    loaded |= any(any(support.factors) and any(support.force) for support in problem.supports)
-    if not any(support.moves for support in problem.supports) and not presses and not loaded:
+    if not any(support.moves for support in problem.supports) and not presses and not _loaded(problem):
         yield "no support moves in any stage, and nothing overlaps at the start: nothing will happen"
     for contact, found, feet in zip(problem.contacts, stances, (contact.projected for contact in state.contacts), strict=True):
         too_deep = _too_deep(problem, contact, state.positions, feet) if found.depth > 0.0 else 0
@@ -223,9 +221,15 @@ def _of_contact(problem: Problem, contact: Contact) -> Iterator[str]:
         yield f"contact {contact.name!r} can move nothing: its slave face is held by {holders[0]}, and its master is {holders[1]}"
 
 
+def _loaded(problem: Problem) -> bool:
+    """Whether a load, or the force of a support, ever is other than zero."""
+    loads = [(load.factors, load.value) for load in problem.loads] + [(s.factors, s.force) for s in problem.supports]
+    return any(any(factors) and any(value) for factors, value in loads)
+
+
 def _travel(problem: Problem) -> float:
-    """No prescribed point goes farther than this, over all stages."""
-    travel = 0.0
+    """No prescribed point goes farther than this, over all stages; what forces move may go anywhere."""
+    travel = np.inf if _loaded(problem) else 0.0
     for support in problem.supports:
         arms = problem.body(support.place.body).patch.control_points - np.asarray(support.centre)
         reach = float(np.linalg.norm(arms, axis=1).max())

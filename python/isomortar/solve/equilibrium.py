@@ -168,8 +168,9 @@ class Equilibrium:
             internal = self.solid.forces(positions)
         self.ledger.counts["solid residuals"] += 1
         total = internal.copy()
-        for load in self.loads.forces(positions, self.time):
-            total -= load
+        with self.ledger.phase("solid"):
+            for load in self.loads.forces(positions, self.time):
+                total -= load
         kinematics, responses = [], []
         for k, (pair, state) in enumerate(zip(self.pairs, start.contacts, strict=True)):
             kinematics.append(pair.kinematics(positions, state))
@@ -199,7 +200,8 @@ class Equilibrium:
 
     def load_tangents(self, positions: FloatArray) -> tuple[list[Source], list[FloatArray]]:
         """What pressures on faces add to the tangent, as sources of the linear system with their values."""
-        tangents, equation = list(self.loads.tangents(positions, self.time)), self.supports.equation
+        with self.ledger.phase("solid"):
+            tangents, equation = list(self.loads.tangents(positions, self.time)), self.supports.equation
         return [Source(pattern, equation, equation) for pattern, _ in tangents], [-values for _, values in tangents]
 
     def correction(self, balance: Balance, laws: Sequence[Law], prescribed: FloatArray) -> FloatArray:
