@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
@@ -14,6 +15,7 @@ from isomortar.errors import InputError, ResultsError
 from isomortar.results import Results, ResultsWriter
 from isomortar.results.abscissa import abscissa
 from isomortar.results.curves import draw_curve, draw_reactions
+from isomortar.results.files import sealed
 from isomortar.results.pictures import plot
 from results_samples import problem, step_result
 from test_results_files import ended
@@ -30,6 +32,10 @@ def path(tmp_path: Path) -> Path:
     writer = ResultsWriter(tmp_path / "run.h5", problem(), "format = 1", "0")
     for number in range(1, 6):
         writer.recorded(step_result(number))
+    with h5py.File(writer.path, "a") as file:  # like one of format 3, whose displacements are those of motions
+        for support in ("rim", "bed"):
+            del file[f"curves/supports/{support}/displacement"]
+    writer.path.write_bytes(sealed(writer.path.read_bytes()))
     return writer.path
 
 

@@ -143,8 +143,8 @@ def balance(scene: str, method: str) -> dict[str, float]:
         turned = [contact.moment_slave + contact.moment_master for contact in result.contacts]
         if scene == "on a plane":
             borne, turned = [result.contacts[0].force_slave], [result.contacts[0].moment_slave]
-        force.append(np.linalg.norm(np.sum(forces, axis=0) - np.sum([np.zeros(3), *borne], axis=0)) / size)
-        moment.append(np.linalg.norm(np.sum(moments, axis=0) - np.sum([np.zeros(3), *turned], axis=0)) / size)
+        force.append(np.linalg.norm(np.sum([*forces, *borne], axis=0)) / size)
+        moment.append(np.linalg.norm(np.sum([*moments, *turned], axis=0)) / size)
         smallest = min(float(np.linalg.norm(load.force)) for load in result.loads) / size
     return {"force": float(max(force)), "moment": float(max(moment)), "smallest": smallest}
 
