@@ -118,3 +118,33 @@ def exchanged(scene: str, method: str) -> dict[str, float]:
         "positions": float(max(apart)),
         "plate": float(max(shapes)),
     }
+
+
+#: A bar that is symmetric across y = 0, and bent by a force in that plane.
+_BENT = """
+format = 1
+bodies.bar.geometry = { kind = "box", lower = [0, -1, 0], upper = [2, 1, 0.6] }
+bodies.bar.mesh = { family = "L", order = 2, elements = [2, 2, 1] }
+supports.wall.face = "bar.u0"
+supports.end = { face = "bar.u1", force = { x = 0.1, z = 0.2 } }
+stages = [{ name = "bend", steps = 2 }]
+"""
+
+
+@case(
+    claim="A force that is prescribed is the whole's, where symmetry halves a scene.",
+    tier="gate",
+    bounds={
+        "force": Bound(at_most=1e-10, reason="theory: Lagrange elements of the halves have the same functions"),
+        "way": Bound(at_most=1e-10, reason="theory: as above"),
+    },
+)
+def halved() -> dict[str, float]:
+    """Differences between the half and the whole of the force of the support over it, and of how far it goes over that."""
+    problems = [Scene.from_toml(_BENT + more).problem() for more in ("", "symmetry = { y = 0.0 }\n")]
+    tight = [replace(found, settings=replace(found.settings, **TIGHT)) for found in problems]  # type: ignore[arg-type]
+    whole, half = (list(Simulation(found).run())[-1].reactions[1] for found in tight)
+    return {
+        "force": float(np.linalg.norm(whole.force - half.force) / np.linalg.norm(whole.force)),
+        "way": float(np.linalg.norm(whole.displacement - half.displacement) / np.linalg.norm(whole.displacement)),
+    }

@@ -35,6 +35,19 @@ class Loads:
                 yield part.pattern, factor_at(self._problem.stages, load.factors, time) * part.tangent(positions)
 
 
+class _Dead:
+    """A load that does not follow its body."""
+
+    def __init__(self, shares: FloatArray, value: tuple[float, ...], body: Body, numbering: Numbering) -> None:
+        """`shares`: area or volume of each control point of the body's patch."""
+        self._forces = np.zeros_like(numbering.reference)
+        numbering.add_of_patch(body.name, shares[:, None] * np.array(value), self._forces)
+
+    def forces(self, positions: FloatArray) -> FloatArray:  # noqa: ARG002  they stay
+        """Forces on the body, shape (control points, 3) (theory 5.14)."""
+        return self._forces
+
+
 class Pressure:
     """A pressure of a given size on a face, along the normal of where it is.
 
@@ -81,19 +94,6 @@ class Pressure:
         """Tangent vectors of the face at its quadrature points, each of shape (elements, points, 3)."""
         points = positions[self._points]
         return self._slopes[:, 0] @ points, self._slopes[:, 1] @ points
-
-
-class _Dead:
-    """A load that does not follow its body."""
-
-    def __init__(self, shares: FloatArray, value: tuple[float, ...], body: Body, numbering: Numbering) -> None:
-        """`shares`: area or volume of each control point of the body's patch."""
-        self._forces = np.zeros_like(numbering.reference)
-        numbering.add_of_patch(body.name, shares[:, None] * np.array(value), self._forces)
-
-    def forces(self, positions: FloatArray) -> FloatArray:  # noqa: ARG002  they stay
-        """Forces on the body, shape (control points, 3) (theory 5.14)."""
-        return self._forces
 
 
 def _part(load: Load, body: Body, numbering: Numbering) -> Pressure | _Dead:
