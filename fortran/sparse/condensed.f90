@@ -15,6 +15,7 @@ module isomortar_sparse_condensed
   use isomortar_base_predicate, only: is_compressed, is_permutation
   use isomortar_sparse_cholmod, only: cholesky_analyse, cholesky_back, cholesky_done, cholesky_factorise, cholesky_forget, &
     cholesky_forth, cholesky_out_of_memory
+  use isomortar_sparse_dense, only: eliminate_dense, pivots_apart, substitute_dense
   implicit none
   private
 
@@ -42,23 +43,6 @@ module isomortar_sparse_condensed
       real(c_double), intent(in) :: alpha, beta, a(lda, *)
       real(c_double), intent(inout) :: c(ldc, *)
     end subroutine dsyrk
-    subroutine dgetrf(m, n, a, lda, ipiv, info)
-      import :: c_double, c_int
-      implicit none
-      integer(c_int), intent(in) :: m, n, lda
-      real(c_double), intent(inout) :: a(lda, *)
-      integer(c_int), intent(out) :: ipiv(*), info
-    end subroutine dgetrf
-    subroutine dgetrs(trans, n, nrhs, a, lda, ipiv, b, ldb, info)
-      import :: c_double, c_int
-      implicit none
-      character, intent(in) :: trans
-      integer(c_int), intent(in) :: n, nrhs, lda, ldb
-      real(c_double), intent(in) :: a(lda, *)
-      integer(c_int), intent(in) :: ipiv(*)
-      real(c_double), intent(inout) :: b(ldb, *)
-      integer(c_int), intent(out) :: info
-    end subroutine dgetrs
   end interface
 
 contains
@@ -118,14 +102,14 @@ contains
       return
     end if
     rcond = least
-    if (n == 0) return ! LAPACK takes no leading dimension of zero
+    if (n == 0) return
     call complement_faces(self, added, shift, failure)
     if (failure /= 0) then
       code = cholesky_out_of_memory
       call forget_numbers(self)
       return
     end if
-    call dgetrf(n, n, self%complement, n, self%pivot, failure)
+    call eliminate_dense(self%complement, self%pivot)
     rcond = min(least, pivots_apart(self%complement))
   end subroutine eliminate_condensed
 
@@ -152,19 +136,6 @@ contains
     end associate
   end subroutine complement_faces
 
-  !> Smallest over largest pivot of LU factors, `lu` (n, n); zero where one is zero or not finite.
-  pure recursive function pivots_apart(lu) result(ratio)
-    real(c_double), intent(in) :: lu(:, :)
-    real(c_double) :: ratio
-    real(c_double) :: pivots(size(lu, 1))
-    integer :: k
-
-    pivots = [(abs(lu(k, k)), k=1, size(pivots))]
-    ratio = 1
-    if (maxval(pivots) > 0) ratio = minval(pivots) / maxval(pivots)
-    if (any(.not. (pivots > 0 .and. pivots <= huge(pivots)))) ratio = 0
-  end function pivots_apart
-
   !> Solve with the factors (theory 5.12): `b` (size), `x` (size): unknowns of K, then multipliers.
   recursive subroutine substitute_condensed(self, b, x, code)
     type(condensed_t), intent(in) :: self
@@ -172,17 +143,15 @@ contains
     real(c_double), contiguous, intent(out) :: x(:)
     integer(c_int), intent(out) :: code
     real(c_double) :: within(self%unknowns), trailing(size(self%pivot), 1)
-    integer(c_int) :: n, failure
 
     if (contracts) call require(size(b) == self%unknowns - self%faces + size(self%pivot), "substitute_condensed: all unknowns")
     if (contracts) call require(size(x) == size(b), "substitute_condensed: and a place for each")
-    n = size(trailing, 1)
     code = cholesky_forth(self%body, b, within)
     if (code /= cholesky_done) return
     associate (faces => within(self%unknowns - self%faces + 1:))
       trailing(:self%faces, 1) = matmul(self%corner, faces)
       trailing(self%faces + 1:, 1) = b(self%unknowns + 1:)
-      if (n > 0) call dgetrs("N", n, 1_c_int, self%complement, n, self%pivot, trailing, n, failure)
+      call substitute_dense(self%complement, self%pivot, trailing)
       faces = matmul(trailing(:self%faces, 1), self%corner)
     end associate
     code = cholesky_back(self%body, within, x)

@@ -17,6 +17,7 @@ import importlib.util
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 from types import ModuleType
 
@@ -89,4 +90,14 @@ with _settings():
     if KERNEL in os.environ:
         kernel = kernel_at(Path(os.environ[KERNEL]), kernel)
 
-__all__ = ["KERNEL", "kernel", "kernel_at", "processor_kind"]
+
+
+@cache
+def mumps() -> ModuleType:
+    """The extension of the engine mumps, which brings MPI: loaded where it is asked for, and not before."""
+    with _settings():
+        from isomortar import _mumps
+    return _mumps
+
+
+__all__ = ["KERNEL", "kernel", "kernel_at", "mumps", "processor_kind"]

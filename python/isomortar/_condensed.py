@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import weakref
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
 import numpy as np
@@ -77,11 +78,11 @@ class SymmetricPattern:
         return order, flops
 
 
-class CondensedFactors:
+class BodyFactors(ABC):
     """Factors of ``K + C``: K symmetric and sparse, C dense, on some unknowns of K, the faces, and on others that are not of K.
 
-    K is factorised by Cholesky with the faces last, what is left on these, with C, by LU. The pattern of K is analysed here,
-    once. Different objects may work in different threads at the same time; calls on one object wait for each other.
+    K is factorised with the faces last, what is left on these, with C, by LU. Different objects may work in different threads at the same
+    time; calls on one object wait for each other.
 
     Parameters
     ----------
@@ -96,20 +97,18 @@ class CondensedFactors:
     ------
     InputError
         The faces or the order are not as above.
-    KernelError
-        Memory ran out, or CHOLMOD failed.
 
     Attributes
     ----------
     faces : int
         Number of unknowns of faces.
-    flops : float
-        Floating-point operations of a factorisation of K.
     factor_entries : int
-        Entries of its factor.
+        Entries of the factor of K.
     rcond : float
         Estimate of the reciprocal condition of the last matrix; NaN before the first.
     """
+
+    factor_entries: int
 
     def __init__(self, pattern: SymmetricPattern, on_face: NDArray[np.bool_], order: LongArray) -> None:
         n = len(pattern)
@@ -119,13 +118,14 @@ class CondensedFactors:
         self.faces, self.rcond = int(np.count_nonzero(on_face)), float("nan")
         self._pattern, self._others = pattern, -1
         self._lock = threading.Lock()
-        self._handle, self.flops, entries, place, status = _kernel.condensed_analyse(
-            pattern.indptr, pattern.indices, on_face.astype(np.int32), order
-        )
-        _check_status(status, place)
-        self.factor_entries = int(entries)
-        release = weakref.finalize(self, _kernel.sparse_release, self._handle)
-        release.atexit = False  # a thread may still be at work, and the memory goes with the process
+
+    @abstractmethod
+    def _eliminate(self, values: FloatArray, added: FloatArray, rcond_min: float) -> None:
+        """Factorise what is checked."""
+
+    @abstractmethod
+    def _substitute(self, b: FloatArray) -> FloatArray:
+        """Solve for a right-hand side that is checked."""
 
     def factorise(self, values: FloatArray, added: FloatArray, *, rcond_min: float = 1e-13) -> None:
         """Factorise ``K + C``; its factors take the place of the last ones.
@@ -142,10 +142,10 @@ class CondensedFactors:
         Raises
         ------
         SingularSystemError
-            K is not definite, nor is it with its faces' diagonals doubled, or `rcond` is below `rcond_min`: what is so may be regular, and
-            is for `SparseLU` to judge. `place` is -1.
+            K is not definite within, or `rcond` is below `rcond_min`: what is so may be regular, and is for `SparseLU` to judge. `place`
+            is -1.
         KernelError
-            An entry is not finite (`place`: its row), memory ran out, or CHOLMOD failed.
+            An entry is not finite (`place`: its row), memory ran out, or the library failed.
         InputError
             Wrong type or shape of an argument.
         """
@@ -159,8 +159,7 @@ class CondensedFactors:
             raise KernelError("what is added to the matrix is not finite", -1)
         with self._lock:
             self._others = -1
-            self.rcond, status = _kernel.condensed_factorise(self._handle, values, added, rcond_min)
-            _check_status(status, -1)
+            self._eliminate(values, added, rcond_min)
             self._others = len(added) - self.faces
 
     def solve(self, b: FloatArray) -> FloatArray:
@@ -189,8 +188,49 @@ class CondensedFactors:
             if not finite.all():
                 row = int(np.argmin(finite))
                 raise KernelError(f"the right-hand side is not finite in row {row}", row)
-            x, status = _kernel.condensed_solve(self._handle, b)
-            _check_status(status, -1)
+            return self._substitute(b)
+
+
+class CondensedFactors(BodyFactors):
+    """The same by Cholesky (CHOLMOD) in this process; the diagonals of faces are doubled meanwhile.
+
+    The pattern of K is analysed here, once.
+
+    Parameters
+    ----------
+    pattern, on_face, order
+        As above.
+
+    Raises
+    ------
+    InputError
+        The faces or the order are not as above.
+    KernelError
+        Memory ran out, or CHOLMOD failed.
+
+    Attributes
+    ----------
+    flops : float
+        Floating-point operations of a factorisation of K.
+    """
+
+    def __init__(self, pattern: SymmetricPattern, on_face: NDArray[np.bool_], order: LongArray) -> None:
+        super().__init__(pattern, on_face, order)
+        self._handle, self.flops, entries, place, status = _kernel.condensed_analyse(
+            pattern.indptr, pattern.indices, on_face.astype(np.int32), order
+        )
+        _check_status(status, place)
+        self.factor_entries = int(entries)
+        release = weakref.finalize(self, _kernel.sparse_release, self._handle)
+        release.atexit = False  # a thread may still be at work, and the memory goes with the process
+
+    def _eliminate(self, values: FloatArray, added: FloatArray, rcond_min: float) -> None:
+        self.rcond, status = _kernel.condensed_factorise(self._handle, values, added, rcond_min)
+        _check_status(status, -1)
+
+    def _substitute(self, b: FloatArray) -> FloatArray:
+        x, status = _kernel.condensed_solve(self._handle, b)
+        _check_status(status, -1)
         return np.asarray(x)
 
 

@@ -29,6 +29,8 @@ SOLVER = {
     "max_cuts": 8,
     "measures": ("forgiving", "margin", "reversal", "halving", "keeping", "extrapolation"),
     "path_tolerance": None,
+    "engine": "own",
+    "compression": 0.0,
 }
 _FRICTION = {"cohesion": 0.0, "traction_max": None, "elastic_slip": 0.0, "smoothing": 0.0}
 #: By entity of a problem; those that are not named have none.

@@ -3,19 +3,39 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 
 import numpy as np
 from scipy import sparse
 
 from isomortar import _bindings
 from isomortar._bindings import LongArray
-from isomortar._condensed import CondensedFactors, SymmetricPattern
+from isomortar._condensed import BodyFactors, CondensedFactors, SymmetricPattern
+from isomortar._distributed import DistributedFactors, ranks
 from isomortar._sparse import Ordering
 from isomortar.errors import SingularSystemError
 from isomortar.geometry.patch import FloatArray
+from isomortar.model.entities import SolverSettings
 from isomortar.model.supports import BoolArray
 from isomortar.solve.system import CheckedSystem, LinearSystem, Source, orderings
 from isomortar.solve.timing import Ledger
+
+#: Makes factors of a pattern, with the unknowns of faces last, in an order of the others.
+Engine = Callable[[SymmetricPattern, BoolArray, LongArray], BodyFactors]
+
+
+def engine_of(settings: SolverSettings) -> Engine | None:
+    """What makes the bodies' factors; nothing where this process does it by itself. Other ranks listen from here on.
+
+    Raises
+    ------
+    InputError
+        The build does not have the engine, or this process is not the first one.
+    """
+    if settings.engine == "own":
+        return None
+    ranks()
+    return partial(DistributedFactors, compression=settings.compression)
 
 
 class Bodies:
@@ -28,6 +48,8 @@ class Bodies:
     among : csr_array, shape (unknowns, unknowns)
         Where it has entries, among the free unknowns.
     ledger : Ledger
+    engine : callable, optional
+        Makes the factors, in the place of this process' own.
 
     Attributes
     ----------
@@ -37,12 +59,10 @@ class Bodies:
         Of the entries of the source in it.
     on_face : ndarray of bool, shape (unknowns,)
         Unknowns that contact acts on.
-    factors : CondensedFactors
-        With these last.
     """
 
-    def __init__(self, solid: Source, among: sparse.csr_array, ledger: Ledger) -> None:
-        self._ledger = ledger
+    def __init__(self, solid: Source, among: sparse.csr_array, ledger: Ledger, engine: Engine | None = None) -> None:
+        self._ledger, self._engine = ledger, engine
         with ledger.phase("factor"):
             self.pattern = SymmetricPattern(among.indptr.astype(np.int64), among.indices.astype(np.int64))
             self.places = _bindings.find_places(
@@ -59,13 +79,25 @@ class Bodies:
             self._analyse(on_face)
 
     def _analyse(self, on_face: BoolArray) -> None:
+        self._factors: BodyFactors | None = None  # they go before others come
         with self._ledger.phase("factor"):
-            self.on_face, self.factors = on_face, CondensedFactors(self.pattern, on_face, self._order)
+            analysed = CondensedFactors(self.pattern, on_face, self._order)
+        self.on_face, self._faces, self._flops = on_face, float(analysed.faces), analysed.flops
+        if self._engine is None:
+            self._factors = analysed
+
+    @property
+    def factors(self) -> BodyFactors:
+        """Factors with the unknowns that contact acts on last; an engine's are made when they are asked for."""
+        if self._factors is None:
+            assert self._engine is not None, "own factors are there"
+            with self._ledger.phase("factor"):
+                self._factors = self._engine(self.pattern, self.on_face, self._order)
+        return self._factors
 
     def condense(self, others: int) -> bool:
         """Whether what is dense, with so many unknowns more than faces have, takes no more operations than the bodies (theory 5.13)."""
-        faces = float(self.factors.faces)
-        return faces**3 + 2.0 / 3.0 * (faces + others) ** 3 <= self.factors.flops
+        return self._faces**3 + 2.0 / 3.0 * (self._faces + others) ** 3 <= self._flops
 
 
 def touched(sources: Sequence[Source], unknowns: int) -> BoolArray:

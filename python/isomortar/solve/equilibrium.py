@@ -23,7 +23,7 @@ from isomortar.model.pairs import Pair
 from isomortar.model.rank import rigid_rank
 from isomortar.model.solid import Solid
 from isomortar.model.supports import Supports
-from isomortar.solve.condensed import Bodies, CondensedSystem, touched
+from isomortar.solve.condensed import Bodies, CondensedSystem, engine_of, touched
 from isomortar.solve.contact import Kinematics, PairMechanics
 from isomortar.solve.record import State
 from isomortar.solve.scales import PieceMeasures, Scales
@@ -94,6 +94,7 @@ class Equilibrium:
             pair.drifts = self._loaded and any(self._is_loose(k) for k in pair.pair.pieces)
         self.time = 0.0
         self.solid_source = Source(self.solid.pattern, self.supports.equation, self.supports.equation)
+        self._engine = engine_of(problem.settings)
         self._bodies: Bodies | None = None
         self._system: CheckedSystem | None = None
         self._system_patterns: list[object] = []
@@ -283,7 +284,7 @@ class Equilibrium:
         if free == 0:  # multipliers alone
             return general()
         if self._bodies is None:
-            self._bodies = Bodies(self.solid_source, self._solid_entries, self.ledger)
+            self._bodies = Bodies(self.solid_source, self._solid_entries, self.ledger, self._engine)
         self._bodies.act_on(touched(sources[1:], free))
         if self._bodies.condense(size - free):
             return CondensedSystem(self._bodies, size, sources, general, self.ledger)

@@ -1,0 +1,170 @@
+"""The engine mumps: factors of the bodies on several ranks (MUMPS, MPI), by an extension that not every build has."""
+
+from __future__ import annotations
+
+import atexit
+import importlib.util
+import os
+import threading
+import weakref
+from collections import deque
+from functools import cache
+from types import ModuleType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from isomortar._codes import Status
+from isomortar._compiled import mumps
+from isomortar._condensed import BodyFactors, SymmetricPattern
+from isomortar._sparse import FloatArray, LongArray
+from isomortar.errors import InputError, KernelError, SingularSystemError
+
+#: Variables of the environment by which MPI's starters tell a process how many there are (Open MPI; MPICH and its like).
+SIZES = ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE")
+#: What a run on several ranks is started by.
+STARTED_BY = "mpirun -n 1 isomortar run SCENE : -n 7 isomortar-factor"
+
+#: All ranks do the same at the same time: one task after another.
+_one_task = threading.Lock()
+#: Handles of objects that are gone; a collection of garbage may come in the middle of a task.
+_left: deque[int] = deque()
+
+
+def is_built() -> bool:
+    """Whether this build has the engine."""
+    return importlib.util.find_spec("isomortar._mumps") is not None
+
+
+def refuse_unbuilt() -> None:
+    """Refuse the engine where this build does not have it.
+
+    Raises
+    ------
+    InputError
+    """
+    if not is_built():
+        raise InputError(
+            'is "mumps", which this build does not have; build it in with `bash tools/setup.sh --mumps` (docs/engines.md), or take "own"',
+            "solver.engine",
+        )
+
+
+@cache
+def ranks() -> int:
+    """How many processes factorise together, this one, the first, among them; from here on they listen.
+
+    Raises
+    ------
+    InputError
+        This process is not the first one, or the build does not have the engine.
+    KernelError
+        MPI has ended.
+    """
+    refuse_unbuilt()
+    count, rank = mumps().mumps_join()
+    if count == 0:
+        raise KernelError("MPI has ended in this process, and can not begin again")
+    if rank > 0:
+        raise InputError(f"is of the first rank, and this is rank {rank}: {STARTED_BY}", "solver.engine")
+    atexit.register(_end)
+    return int(count)
+
+
+def serve() -> int:
+    """Do what the first rank sets, until it ends; the number of this rank, from 0: on the first one nothing is done.
+
+    Raises
+    ------
+    InputError
+        The build does not have the engine.
+    """
+    refuse_unbuilt()
+    return int(mumps().mumps_serve())
+
+
+def waited_for() -> bool:
+    """Whether other ranks were started beside this process, which `ranks` has not met."""
+    return any(int(os.environ.get(size, "1")) > 1 for size in SIZES) and not ranks.cache_info().currsize
+
+
+def _end() -> None:
+    """End the other ranks with this process."""
+    with _one_task:
+        mumps().mumps_end()
+
+
+def _forget(handle: int) -> None:
+    """Have a handle released, now or before the next task."""
+    _left.append(handle)
+    if _one_task.acquire(blocking=False):
+        try:
+            _release_left(mumps())
+        finally:
+            _one_task.release()
+
+
+def _release_left(kernel: ModuleType) -> None:
+    while _left:
+        kernel.mumps_release(_left.popleft())
+
+
+class DistributedFactors(BodyFactors):
+    """Factors of bodies with what contact adds on their faces, K by MUMPS on all ranks; the dense part is in this process.
+
+    Parameters
+    ----------
+    pattern, on_face, order
+        As in `BodyFactors`.
+    compression : float
+        Bound of what blocks of low rank leave out, of a matrix with a unit diagonal; 0: nothing.
+
+    Raises
+    ------
+    InputError
+        The faces or the order are not as above, or there are no ranks (`ranks`).
+    KernelError
+        Memory ran out, or MUMPS failed.
+    """
+
+    def __init__(self, pattern: SymmetricPattern, on_face: NDArray[np.bool_], order: LongArray, compression: float = 0.0) -> None:
+        super().__init__(pattern, on_face, order)
+        ranks()
+        self._kernel, self.factor_entries = mumps(), 0
+        with _one_task:
+            _release_left(self._kernel)
+            self._handle, place, status = self._kernel.mumps_analyse(
+                pattern.indptr, pattern.indices, on_face.astype(np.int32), order, compression
+            )
+        _check_status(status, place)
+        release = weakref.finalize(self, _forget, self._handle)
+        release.atexit = False  # all that is left goes with the ranks
+
+    def _eliminate(self, values: FloatArray, added: FloatArray, rcond_min: float) -> None:
+        with _one_task:
+            _release_left(self._kernel)
+            self.rcond, entries, place, status = self._kernel.mumps_factorise(self._handle, values, added, rcond_min)
+        _check_status(status, place)
+        self.factor_entries = int(entries)
+
+    def _substitute(self, b: FloatArray) -> FloatArray:
+        with _one_task:
+            x, place, status = self._kernel.mumps_solve(self._handle, b)
+        _check_status(status, place)
+        return np.asarray(x)
+
+
+def _check_status(status: int, place: int) -> None:
+    """Raise the sentence of a status code."""
+    if status == Status.SINGULAR:
+        raise SingularSystemError("the stiffness of the bodies is not definite, or what is left on their faces is singular", -1)
+    if status == Status.OUT_OF_MEMORY:
+        raise KernelError(
+            f"too many factorisations are alive: the ranks hold {place} of them; let some go"
+            if place >= 0
+            else "memory ran out on one of the ranks: start more of them, on more machines, or take fewer elements"
+        )
+    if status == Status.STALE_HANDLE:
+        raise KernelError("the factorisation was released before, or never made")
+    if status != Status.OK:
+        raise KernelError(f"MUMPS failed with its code {place}")
