@@ -1,6 +1,6 @@
 # What a person does with a working copy. `make` alone prints this list.
 .DEFAULT_GOAL := help
-.PHONY: help setup demo verify nightly manual wheel test lint format
+.PHONY: help setup setup-mumps demo verify nightly manual wheel test lint format
 
 # One BLAS thread is as fast as two on systems of this size; the cores go to cases.
 export OPENBLAS_NUM_THREADS ?= 1
@@ -12,6 +12,9 @@ help: ## print this list
 	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 16
 
 setup: $(READY) ## install what is missing, build, once
+
+setup-mumps: ## the same with the engine mumps, for runs on several machines: docs/engines.md
+	@bash tools/setup.sh --mumps
 
 $(READY): pyproject.toml meson.build tools/setup.sh
 	@bash tools/setup.sh

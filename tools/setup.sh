@@ -1,8 +1,22 @@
 #!/usr/bin/env bash
 # Set up a working copy: system packages (Debian), the virtual environment .venv, the package itself (editable).
 # Installs only what is missing, and says so before it does. Called by `make`, which repeats it only when needed.
+# With --mumps the engine mumps is built in, for runs on several machines (docs/engines.md): MUMPS and MPI are installed, too.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+
+engine_packages=() options=()
+case "${1-}" in
+  "") ;;
+  --mumps)
+    engine_packages=(libmumps-dev libopenmpi-dev openmpi-bin)
+    options=(-Csetup-args=-Dmumps=enabled)
+    ;;
+  *)
+    printf 'set-up stopped: it has no option %s; allowed: --mumps\n' "$1" >&2
+    exit 2
+    ;;
+esac
 
 say() { printf '==> %s\n' "$*"; }
 fail() { printf 'set-up stopped: %s\n' "$*" >&2; exit 1; }
@@ -14,7 +28,7 @@ python_has_venv() { python_can 'import ensurepip, venv'; }
 
 missing_packages() {
   local package
-  for package in gcc gfortran libc6-dev libopenblas-dev libsuitesparse-dev; do
+  for package in gcc gfortran libc6-dev libopenblas-dev libsuitesparse-dev "${engine_packages[@]}"; do
     [ "$(dpkg-query --show --showformat='${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || echo "$package"
   done
   python_has_headers || echo python3-dev
@@ -30,7 +44,7 @@ then repeat your command."
 install_system_packages() {
   local packages as_root=()
   if ! command -v apt-get >/dev/null; then
-    say "This is not Debian: taking the compilers gcc and gfortran, OpenBLAS, SuiteSparse and Python's headers to be installed."
+    say "This is not Debian: taking the compilers gcc and gfortran, OpenBLAS, SuiteSparse and Python's headers${options:+, MUMPS and MPI} to be installed."
     return
   fi
   mapfile -t packages < <(missing_packages)
@@ -64,7 +78,7 @@ make_environment() {
   python -m pip install --quiet --upgrade 'pip>=25.1'
   python -m pip install --quiet --group build --group dev
   rm -rf build/cp* # a build that is there would keep the options it was made with
-  python -m pip install --quiet --no-build-isolation --editable .
+  python -m pip install --quiet --no-build-isolation --editable . "${options[@]}"
   { echo "#!$PWD/.venv/bin/python" && cat tools/launch.py; } > .venv/bin/isomortar # in the place of pip's, which shows tracebacks
 }
 

@@ -106,9 +106,12 @@ class BodyFactors(ABC):
         Entries of the factor of K.
     rcond : float
         Estimate of the reciprocal condition of the last matrix; NaN before the first.
+    compression : float
+        What the factor of K may leave out; 0: nothing.
     """
 
     factor_entries: int
+    compression: float = 0.0
 
     def __init__(self, pattern: SymmetricPattern, on_face: NDArray[np.bool_], order: LongArray) -> None:
         n = len(pattern)

@@ -20,8 +20,8 @@ from isomortar._condensed import BodyFactors, SymmetricPattern
 from isomortar._sparse import FloatArray, LongArray
 from isomortar.errors import InputError, KernelError, SingularSystemError
 
-#: Variables of the environment by which MPI's starters tell a process how many there are (Open MPI; MPICH and its like).
-SIZES = ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE")
+#: Variable of the environment by which Open MPI's mpirun says how many programs it has started, as ``A : B``.
+PROGRAMS = "OMPI_NUM_APP_CTX"
 #: What a run on several ranks is started by.
 STARTED_BY = "mpirun -n 1 isomortar run SCENE : -n 7 isomortar-factor"
 
@@ -83,9 +83,28 @@ def serve() -> int:
     return int(mumps().mumps_serve())
 
 
-def waited_for() -> bool:
-    """Whether other ranks were started beside this process, which `ranks` has not met."""
-    return any(int(os.environ.get(size, "1")) > 1 for size in SIZES) and not ranks.cache_info().currsize
+def refuse_idle(engine: str) -> None:
+    """Refuse to run alone where ranks were started beside this process: they would wait for it for ever.
+
+    Raises
+    ------
+    InputError
+    """
+    if engine == "own" and _has_company():
+        raise InputError(
+            f'is "own", and ranks were started beside this run, which would wait for it; take "mumps", as in {STARTED_BY}, or run it alone',
+            "solver.engine",
+        )
+
+
+def dismiss() -> None:
+    """Let ranks that were started beside this process end with it, where nothing was to be factorised."""
+    if _has_company():
+        ranks()
+
+
+def _has_company() -> bool:
+    return int(os.environ.get(PROGRAMS, "1")) > 1
 
 
 def _end() -> None:
@@ -130,7 +149,7 @@ class DistributedFactors(BodyFactors):
     def __init__(self, pattern: SymmetricPattern, on_face: NDArray[np.bool_], order: LongArray, compression: float = 0.0) -> None:
         super().__init__(pattern, on_face, order)
         ranks()
-        self._kernel, self.factor_entries = mumps(), 0
+        self._kernel, self.factor_entries, self.compression = mumps(), 0, compression
         with _one_task:
             _release_left(self._kernel)
             self._handle, place, status = self._kernel.mumps_analyse(

@@ -93,11 +93,13 @@ def run(
     if resume and overwrite:
         raise InputError("--resume and --overwrite exclude each other: go on with the results file, or begin anew")
     with loading():
+        from isomortar._distributed import dismiss, refuse_idle
         from isomortar.cli.progress import progress
         from isomortar.driver import compute, results_path
 
         chosen = isomortar.Scene.load(scene, overrides or ()).with_more_steps(*(steps or ()))
         problem = chosen.problem()
+    refuse_idle(problem.settings.engine)
     path = output or results_path(chosen)
     with progress(problem, quiet) as observer:
         try:
@@ -106,6 +108,7 @@ def run(
             observer.stopped(path, interrupted=isinstance(error, KeyboardInterrupt))
             raise
         observer.finished()
+    dismiss()
     with results:
         if cost:
             from rich.console import Console

@@ -102,5 +102,7 @@ UNDOUBTED = (1000, 5000)
 REFINED_ABOVE = 1e-6
 #: A refined solution that leaves more than this share is none: it has not one digit.
 REFUSED_ABOVE = 0.1
+#: Most steps of refinement by factors that leave something out; each that is of use takes half of what is left or more.
+REFINEMENTS = 30
 #: What the diagonal of a singular matrix gets to be factorised, as a share of its largest entry: it is asked for what it leaves free.
 SHIFT = 1e-11

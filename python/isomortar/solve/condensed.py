@@ -13,8 +13,9 @@ from isomortar._bindings import LongArray
 from isomortar._condensed import BodyFactors, CondensedFactors, SymmetricPattern
 from isomortar._distributed import DistributedFactors, ranks
 from isomortar._sparse import Ordering
-from isomortar.errors import SingularSystemError
+from isomortar.errors import KernelError, SingularSystemError
 from isomortar.geometry.patch import FloatArray
+from isomortar.model import constants
 from isomortar.model.entities import SolverSettings
 from isomortar.model.supports import BoolArray
 from isomortar.solve.system import CheckedSystem, LinearSystem, Source, orderings
@@ -191,7 +192,25 @@ class CondensedSystem(CheckedSystem):
     def _refined(self, solution: FloatArray, right: FloatArray) -> FloatArray:
         if self._general is not None:
             return self._general._refined(solution, right)
-        return solution + self._bodies.factors.solve(right - self._product(solution))
+        factors = self._bodies.factors
+        if not factors.compression:
+            return solution + factors.solve(right - self._product(solution))
+        return self._refined_often(solution, right)
+
+    def _refined_often(self, solution: FloatArray, right: FloatArray) -> FloatArray:
+        """By factors that leave something out: until what is left is small."""
+        factors, left = self._bodies.factors, self._left(solution, right)
+        for _ in range(constants.REFINEMENTS):
+            solution = solution + factors.solve(right - self._product(solution))
+            before, left = left, self._left(solution, right)
+            if left <= constants.REFINED_ABOVE:
+                return solution
+            if not left <= 0.5 * before:
+                break
+        raise KernelError(
+            f"solver.compression = {factors.compression:g} leaves out too much of this matrix: refined solutions leave {left:.1e} of their "
+            "right-hand side; take a smaller one, or 0"
+        )
 
     def _product(self, solution: FloatArray) -> FloatArray:
         """By parts too (theory 5.11)."""

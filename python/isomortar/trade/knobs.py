@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from isomortar._distributed import is_built
 from isomortar.accuracy.discretisations import coarse_geometry, lowest_order
 from isomortar.errors import InputError
 from isomortar.geometry.patch import MAX_ORDER, Direction
@@ -22,6 +23,8 @@ TOLERANCES, LOOSEST = (1e5, 1e3, 1.0, 1e-2), 1e-3
 SLIPS = (1e-2, 1e-3)
 #: Pressure times distance of smooth contact over Young's modulus times the size of the slave body.
 SMOOTHINGS = (1e-5, 1e-7)
+#: What blocks of low rank may leave out of factors by the engine mumps.
+COMPRESSIONS = (1e-3, 1e-6, 1e-9, 0.0)
 #: Orders that a search goes through.
 HIGHEST = 5
 
@@ -277,6 +280,14 @@ def _smoothings(scene: Scene, spoils: str) -> Iterator[Dial]:
             yield _values(f"contacts.{contact.name}.smoothing", f"smoothing of {contact.name}", values, spoils, contact.smoothing)
 
 
+def _compressions(scene: Scene, spoils: str) -> Iterator[Dial]:
+    """What blocks of low rank may leave out of the bodies' factors."""
+    solver = scene.whole().settings
+    if solver.engine == "mumps" and is_built():
+        bounds = sorted({solver.compression, *COMPRESSIONS}, key=lambda bound: -bound)
+        yield _values("solver.compression", "compression", bounds, spoils, solver.compression, refines=True)
+
+
 def _values(key: str, name: str, values: Sequence[object], spoils: str, own: object, refines: bool = False) -> Dial:
     """The values of one key of a scene file."""
     settings = tuple(Setting(str(value), None if value == own else given([f"{key}={value}"])) for value in values)
@@ -334,4 +345,5 @@ KNOBS: tuple[Knob, ...] = (
     Knob("projection", "gaps where the master is curved", _projections),
     Knob("elastic slip", "tractions where contact sticks", _elastic_slips),
     Knob("smoothing", "gaps, and pressures at the contact's edge", _smoothings),
+    Knob("compression", "nothing: what factors leave out is refined, or the run ends", _compressions),
 )
