@@ -1,4 +1,4 @@
-! What Python sees of factors of bodies on several ranks (isomortar_sparse_distributed), an extension of its own: `_mumps`, which
+! What Python sees of factors of bodies on several ranks (isomortar_sparse_distributed), in an extension of its own, which
 ! is built where MUMPS and MPI are to be used. Compressed rows, all numbers from 0. On the first rank, one call at a time.
 !
 ! - `handle`: a pattern that was analysed, and the factors of the last matrix of that pattern; `mumps_release` frees it.

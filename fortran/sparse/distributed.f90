@@ -197,7 +197,7 @@ contains
     if (status /= status_ok) deallocate (self%schur)
   end subroutine eliminate_inner
 
-  !> The lower triangle, scaled to a unit diagonal; the status is singular where the diagonal is not positive.
+  !> The lower triangle, scaled to a unit diagonal (theory 5.14); the status is singular where the diagonal is not positive.
   subroutine scale_lower(self, values, status)
     type(distributed_t), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: values(:)

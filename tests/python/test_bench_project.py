@@ -55,6 +55,18 @@ def check_that_nothing_is_met_alone(answer: Answer) -> None:
         assert standing.state in ("not compared", "missed")
 
 
+def test_one_rank_and_two_give_the_force_of_none() -> None:
+    answer = tried("mumps")
+    assert not answer.failed, answer.cost.message
+    own, *others = answer.rows
+    assert (own["engine"], own["force off"], len(others)) == ("own", 0.0, 8)
+    for row in others:
+        if "note" in row:
+            assert "tools/setup.sh --mumps" in str(row["note"])
+        else:
+            assert float(row["force off"]) < 1e-10
+
+
 def test_phases_add_up() -> None:
     (row,) = tried("iteration_phases").rows
     parts = [float(row[phase]) for phase in ("solid", "projection", "contact", "factor", "solve", "other")]

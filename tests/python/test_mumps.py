@@ -304,7 +304,8 @@ def test_ranks_that_would_wait_for_ever_are_refused(tmp_path):
     ended = ranks_of(FACTOR)
     assert ended.returncode == 2
     assert "isomortar-factor is no program of its own: mpirun -n 1 isomortar run SCENE : -n 7 isomortar-factor" in ended.stderr
-    ended = ranks_of([*run, "--set", "solver.engine=mumps"], [*run, "--set", "solver.engine=mumps"])
+    run = [*run[:-1], str(tmp_path / "first.h5"), "--set", "solver.engine=mumps"]
+    ended = ranks_of(run, [*run, "--output", str(tmp_path / "other.h5")])
     assert ended.returncode != 0
     assert "is of the first rank, and this is rank 1" in ended.stderr
 

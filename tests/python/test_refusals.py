@@ -16,8 +16,9 @@ import splinepy
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from isomortar import Results, Scene, film, plot
+from isomortar import Results, Scene, _distributed, film, plot
 from isomortar._codes import Status
+from isomortar._condensed import CondensedFactors
 from isomortar.errors import FoldedElementError
 from isomortar.geometry import primitives
 from isomortar.geometry.halves import upper_half
@@ -107,7 +108,12 @@ stages = [{ name = "pull", steps = 1, motions.top.translate = [0, 0, 0.1] }]
 
 
 def of_problems(patch: pytest.MonkeyPatch) -> Told:
-    """Bodies and contacts that cannot be meant, or that no number holds."""
+    """Bodies, contacts and engines that cannot be meant, or that no number holds."""
+    with pytest.MonkeyPatch.context() as within:
+        within.setattr(_distributed, "is_built", lambda: False)
+        within.setenv(_distributed.PROGRAMS, "2")
+        yield "engine that is not built in", _of(PRESS, "solver.engine=mumps")
+        yield "ranks that would wait", refusal(lambda: _distributed.refuse_idle("own"))
     yield "digits", _of(PRESS, "bodies.block.geometry.centre=[1e15,0]", "contacts.floor.plane.point=[1e15,0,0]")
     pair = Scene.from_toml(PAIR).problem()
     for name, body, face, change in (
@@ -222,6 +228,12 @@ def _but_the_end(text: str) -> str:
 
 def on_the_way(patch: pytest.MonkeyPatch) -> Told:
     """What stops a run."""
+    with pytest.MonkeyPatch.context() as within:
+        solve = CondensedFactors.solve
+        within.setattr(CondensedFactors, "compression", 1e-3)
+        within.setattr(CondensedFactors, "solve", lambda self, b: 0.3 * solve(self, b))
+        by_parts = Scene.load("press", ["bodies.block.mesh.elements=[6,6,4]"])
+        yield "compression", without_digits(refusal(lambda: list(Simulation(by_parts.problem()).run())))
     yield "foot on an axis", refusal(lambda: loaded(on_the_axis()))
     yield "foot on a line", refusal(lambda: loaded(ridge(0.3, 0.41)))
     yield "foot beside a pole", refusal(lambda: loaded(cone(0.3)))

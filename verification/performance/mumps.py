@@ -117,7 +117,7 @@ def mumps(quick: bool) -> Iterator[Row]:
             *(("mumps", ranks, compression) for ranks in (1, 2) for compression in (0.0, 1e-9, 1e-6, 1e-3)),
         ):
             shape = f"{elements}x{elements}x{elements // 2}"
-            row: Row = {"elements": shape, "engine": engine, "ranks": ranks, "compression": compression}
+            row: Row = {"elements": shape, "engine": engine, "ranks": ranks, "compression": f"{compression:g}"}
             if engine == "mumps" and not (_distributed.is_built() and shutil.which("mpirun")):
                 yield {**row, "note": "not installed; bash tools/setup.sh --mumps"}
                 continue
