@@ -3,7 +3,7 @@
 !
 ! - `handle`: a pattern that was analysed, and the factors of the last matrix of that pattern; `mumps_release` frees it.
 ! - `n`, `nnz`: numbers of the bodies' unknowns, of the entries of their stiffness. `trailing`: unknowns of faces and others.
-! - `status`, `place`: how it ended (isomortar_base_status); where all handles are taken, their number; MUMPS's own code where it failed.
+! - `status`, `place`: how it ended (isomortar_base_status); where all handles are taken, their number; else MUMPS's own code.
 
 !> Begin MPI, where that was not done.
 !>

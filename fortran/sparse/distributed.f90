@@ -1,10 +1,11 @@
 !> Factors of a symmetric body by MUMPS on all ranks, with what is not symmetric on its faces by dense LU on the first one.
 !>
-!> The system is that of `isomortar_sparse_condensed`. K comes scaled to a unit diagonal, so that its pivots are shares of that; MUMPS leaves
-!> its Schur complement on the faces (theory 5.14).
+!> The system is that of `isomortar_sparse_condensed`. K comes scaled to a unit diagonal, so that its pivots are shares of that;
+!> MUMPS leaves its Schur complement on the faces (theory 5.14).
 !>
 !> - `handle`: a pattern that was analysed, and the factors of the last matrix of that pattern.
-!> - `place`, `status`: how it ended (isomortar_base_status); where all handles are taken, their number; MUMPS's own code where it failed.
+!> - `place`, `status`: how it ended (isomortar_base_status); where all handles are taken, their number; where MUMPS failed, its
+!>   code.
 module isomortar_sparse_distributed
   use, intrinsic :: iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_base_contract, only: contracts, require
@@ -24,8 +25,8 @@ module isomortar_sparse_distributed
   !> What the first rank keeps of a factorisation.
   type :: distributed_t
     integer :: unknowns = 0, faces = 0
-    !> Of the lower triangle: where its entries stand among the values, their rows and columns from 1, the entries. Of each row: where its
-    !> diagonal stands, its place in the order, the inverse root of its diagonal.
+    !> Of the lower triangle: where its entries stand among the values, their rows and columns from 1, the entries. Of each row:
+    !> where its diagonal stands, its place in the order, the inverse root of its diagonal.
     integer(c_int64_t), allocatable :: place(:), diagonal(:)
     integer, pointer :: row(:) => null(), column(:) => null(), order(:) => null(), face(:) => null()
     real(c_double), pointer :: lower(:) => null(), schur(:) => null(), right(:) => null(), reduced(:) => null()
@@ -51,6 +52,7 @@ contains
     integer(c_int), intent(out) :: handle
     integer(c_int64_t), intent(out) :: place
     integer, intent(out) :: status
+    integer :: failure
 
     if (contracts) call require(is_compressed(indptr, size(indices)), "analyse_distributed: rows follow one another")
     if (contracts) call require(size(on_face) == size(indptr) - 1, "analyse_distributed: each unknown is on a face or not")
@@ -59,6 +61,9 @@ contains
     place = instances
     status = status_out_of_memory
     if (handle == instances) return
+    place = -1
+    call make_room(table(handle), size(indices, kind=c_int64_t), on_face, failure)
+    if (failure /= 0) return
     call keep_pattern(table(handle), indptr, indices, on_face, order)
     call perform(task_begin, handle, 0, compression)
     call show_pattern(table(handle), handle)
@@ -66,6 +71,29 @@ contains
     call judge(handle, place, status)
     if (status /= status_ok) call release_distributed(handle)
   end subroutine analyse_distributed
+
+  !> Room for a pattern of so many `entries`; `failure`: not zero where memory ran out.
+  subroutine make_room(self, entries, on_face, failure)
+    type(distributed_t), intent(inout) :: self
+    integer(c_int64_t), intent(in) :: entries
+    integer(c_int), contiguous, intent(in) :: on_face(:)
+    integer, intent(out) :: failure
+    integer(c_int64_t) :: lower
+
+    self%unknowns = size(on_face)
+    self%faces = sum(on_face)
+    lower = (entries + self%unknowns) / 2
+    allocate (self%place(lower), stat=failure)
+    if (failure == 0) allocate (self%row(lower), stat=failure)
+    if (failure == 0) allocate (self%column(lower), stat=failure)
+    if (failure == 0) allocate (self%diagonal(self%unknowns), stat=failure)
+    if (failure == 0) allocate (self%scale(self%unknowns), stat=failure)
+    if (failure == 0) allocate (self%order(self%unknowns), stat=failure)
+    if (failure == 0) allocate (self%right(self%unknowns), stat=failure)
+    if (failure == 0) allocate (self%reduced(self%faces), stat=failure)
+    if (failure == 0) allocate (self%face(self%faces), stat=failure)
+    if (failure /= 0) call forget_pattern(self)
+  end subroutine make_room
 
   !> The lower triangle of the pattern, and its order with the faces last.
   subroutine keep_pattern(self, indptr, indices, on_face, order)
@@ -75,14 +103,6 @@ contains
     integer(c_int64_t) :: entry, next
     integer :: row, k
 
-    self%unknowns = size(on_face)
-    self%faces = sum(on_face)
-    next = (size(indices, kind=c_int64_t) + self%unknowns) / 2
-    allocate (self%place(next), self%row(next), self%column(next))
-    allocate (self%diagonal(self%unknowns), self%order(self%unknowns), self%right(self%unknowns))
-    allocate (self%reduced(self%faces))
-    self%face => null()
-    allocate (self%face(self%faces))
     self%face(:) = pack([(row, row=1, self%unknowns)], on_face == 1)
     next = 0
     do row = 1, self%unknowns
@@ -125,7 +145,8 @@ contains
   !> Factorise a stiffness of the pattern analysed, with what is added on faces and beyond; takes the place of the factors before.
   !>
   !> - `values` (entries): of the stiffness. `added` (trailing, trailing): unknowns of faces by their numbers, then others.
-  !> - `rcond`: estimate of the reciprocal condition; below `rcond_min`, or where the stiffness is not definite, the status is singular.
+  !> - `rcond`: estimate of the reciprocal condition; below `rcond_min`, or where the stiffness is not definite, the status is
+  !>   singular.
   !> - `factor_entries`: entries of the factors on all ranks, as they are kept.
   subroutine factorise_distributed(handle, values, added, rcond_min, rcond, factor_entries, place, status)
     integer(c_int), intent(in) :: handle
@@ -144,10 +165,12 @@ contains
     if (contracts) call require(size(added, 1) == size(added, 2), "factorise_distributed: the trailing block is square")
     if (contracts) call require(size(added, 1) >= table(handle)%faces, "factorise_distributed: faces and more")
     associate (self => table(handle))
-      if (allocated(self%complement)) deallocate (self%complement, self%pivot)
+      if (allocated(self%complement)) deallocate (self%complement)
+      if (allocated(self%pivot)) deallocate (self%pivot)
       call eliminate_inner(self, handle, values, rcond, factor_entries, place, status)
       if (status /= status_ok) return
-      allocate (self%complement(size(added, 1), size(added, 2)), self%pivot(size(added, 1)), stat=failure)
+      allocate (self%complement(size(added, 1), size(added, 2)), stat=failure)
+      if (failure == 0) allocate (self%pivot(size(added, 1)), stat=failure)
       if (failure == 0) call complement_schur(self, added)
       if (associated(self%schur)) deallocate (self%schur)
       status = status_out_of_memory
@@ -202,14 +225,16 @@ contains
     type(distributed_t), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: values(:)
     integer, intent(out) :: status
-    real(c_double) :: diagonal(self%unknowns)
     integer(c_int64_t) :: k
-    integer :: failure
+    integer :: failure, row
 
-    diagonal = values(self%place(self%diagonal))
     status = status_singular
-    if (any(.not. diagonal > 0)) return
-    self%scale = 1 / sqrt(diagonal)
+    do row = 1, self%unknowns
+      associate (diagonal => values(self%place(self%diagonal(row))))
+        if (.not. diagonal > 0) return
+        self%scale(row) = 1 / sqrt(diagonal)
+      end associate
+    end do
     status = status_out_of_memory
     allocate (self%lower(size(self%row, kind=c_int64_t)), stat=failure)
     if (failure /= 0) return
@@ -219,7 +244,7 @@ contains
     status = status_ok
   end subroutine scale_lower
 
-  !> The Schur complement of K on the faces, with what is added (theory 5.14): its lower triangle by rows is what MUMPS leaves.
+  !> The Schur complement of K on the faces, with what is added (theory 5.14): MUMPS leaves its lower triangle, by rows.
   subroutine complement_schur(self, added)
     type(distributed_t), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: added(:, :)
@@ -246,16 +271,19 @@ contains
     integer(c_int64_t), intent(out) :: place
     integer, intent(out) :: status
     real(c_double), allocatable :: trailing(:, :)
+    integer :: failure
 
     x = 0
     place = -1
     status = status_stale_handle
     if (.not. is_taken(handle)) return
-    if (.not. allocated(table(handle)%complement)) return
+    if (.not. allocated(table(handle)%pivot)) return
     associate (self => table(handle))
       if (contracts) call require(size(b) == self%unknowns - self%faces + size(self%pivot), "solve_distributed: all unknowns")
       if (contracts) call require(size(x) == size(b), "solve_distributed: and a place for each")
-      allocate (trailing(size(self%pivot), 1))
+      status = status_out_of_memory
+      allocate (trailing(size(self%pivot), 1), stat=failure)
+      if (failure /= 0) return
       trailing(self%faces + 1:, 1) = b(self%unknowns + 1:)
       self%right(:) = self%scale * b(:self%unknowns)
       if (self%faces > 0) then
@@ -308,13 +336,23 @@ contains
       mumps%schur => null()
     end associate
     call perform(task_release, handle, 0, 0.0_c_double)
-    associate (self => table(handle))
-      deallocate (self%row, self%column, self%order, self%face, self%right, self%reduced)
-      if (associated(self%lower)) deallocate (self%lower)
-      if (associated(self%schur)) deallocate (self%schur)
-    end associate
-    table(handle) = distributed_t()
+    call forget_pattern(table(handle))
   end subroutine release_distributed
+
+  !> Free what the first rank keeps.
+  subroutine forget_pattern(self)
+    type(distributed_t), intent(inout) :: self
+
+    if (associated(self%row)) deallocate (self%row)
+    if (associated(self%column)) deallocate (self%column)
+    if (associated(self%order)) deallocate (self%order)
+    if (associated(self%face)) deallocate (self%face)
+    if (associated(self%right)) deallocate (self%right)
+    if (associated(self%reduced)) deallocate (self%reduced)
+    if (associated(self%lower)) deallocate (self%lower)
+    if (associated(self%schur)) deallocate (self%schur)
+    self = distributed_t()
+  end subroutine forget_pattern
 
   !> Whether a handle is one.
   function is_taken(handle)

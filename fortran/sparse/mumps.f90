@@ -1,8 +1,9 @@
 !> Instances of MUMPS, one a factorisation, on all ranks alike: each task that the first rank sets is done by all of them.
 !>
-!> - `slot`: which instance, from 0. `choice`: what the task leaves open: of `task_factorise` per cent of memory more than estimated, of
-!>   `task_solve` what is solved (`whole`, `condense`, `expand`). `compression`: of `task_begin` the bound below which blocks of low rank
-!>   leave out what is left; 0: none.
+!> - `slot`: which instance, from 0.
+!> - `choice`: what the task leaves open: of `task_factorise` per cent of memory more than estimated, of `task_solve` what is solved
+!>   (`whole`, `condense`, `expand`).
+!> - `compression`: of `task_begin` the bound below which blocks of low rank leave out what is left; 0: none.
 module isomortar_sparse_mumps
   use, intrinsic :: iso_c_binding, only: c_double, c_int64_t
   use isomortar_sparse_ranks, only: all_ranks, hear, join, leave, tell
@@ -105,7 +106,7 @@ contains
       case (task_solve)
         mumps%job = 3
         mumps%icntl(26) = choice
-      case (task_release)
+      case default ! task_release
         mumps%job = -2
       end select
       call dmumps(mumps)

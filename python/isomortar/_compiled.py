@@ -91,7 +91,6 @@ with _settings():
         kernel = kernel_at(Path(os.environ[KERNEL]), kernel)
 
 
-
 @cache
 def mumps() -> ModuleType:
     """The extension of the engine mumps, which brings MPI: loaded where it is asked for, and not before."""

@@ -197,7 +197,7 @@ def test_poor_factors_are_refined_often_and_no_good_ones_end_the_run(monkeypatch
     np.testing.assert_allclose(forces("press", *compressed), own, rtol=1e-8, atol=1e-8 * np.abs(own).max())
     assert len(calls) > 50
     monkeypatch.setattr(DistributedFactors, "solve", lambda self, b: 0.3 * solve(self, b))
-    with pytest.raises(KernelError, match=r"solver.compression = 0.001 leaves out too much of this matrix: refined solutions leave 4.9e-01"):
+    with pytest.raises(KernelError, match=r"0.001 leaves out too much of this matrix: refined solutions leave 4.9e-01"):
         forces("press", *compressed)
 
 
@@ -218,7 +218,7 @@ def test_compression_is_a_knob_of_scenes_that_take_the_engine(monkeypatch):
 
 @started
 def test_two_ranks_give_the_forces_of_none():
-    first = f"""
+    first = """
 import json
 from test_mumps import PRESS, TWIST, forces
 from isomortar._distributed import ranks
@@ -330,7 +330,8 @@ def test_nothing_of_the_engine_is_loaded_where_it_is_not_asked_for():
 
 def test_without_the_engine_what_asks_for_it_is_refused(monkeypatch, capsys):
     monkeypatch.setattr(_distributed, "is_built", lambda: False)
-    for asked in (_distributed.ranks.__wrapped__, _distributed.serve, lambda: Simulation(Scene.load("press", ["solver.engine=mumps"]).problem())):
+    problem = Scene.load("press", ["solver.engine=mumps"]).problem()
+    for asked in (_distributed.ranks.__wrapped__, _distributed.serve, lambda: Simulation(problem)):
         with pytest.raises(InputError, match="this build does not have"):
             asked()
     with pytest.raises(SystemExit):

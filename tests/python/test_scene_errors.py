@@ -213,7 +213,7 @@ CASES = {
         "max_cuts = 4",
         "compression = 1e-6",
         "solver.compression",
-        "is 1e-06, and solver.engine is \"own\", whose factors are whole",
+        'is 1e-06, and solver.engine is "own", whose factors are whole',
     ),
     "coarse compression": ("max_cuts = 4", "compression = 0.1", "solver.compression", "is 0.1; allowed: less than or equal to 0.01"),
     "engine": ("max_cuts = 4", 'engine = "petsc"', "solver.engine", "is 'petsc'; allowed: 'own' or 'mumps'"),

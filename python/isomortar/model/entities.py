@@ -336,7 +336,7 @@ class SolverSettings:
     path_tolerance: Annotated[Positive, Field(le=1)] | None = None
     """Error of the multipliers that a load increment may make, estimated by halving it; absent: the load steps as given."""
     engine: Literal["own", "mumps"] = "own"
-    """What factorises the bodies: this process (own), or MUMPS on several ranks, maybe of several machines (mumps, where it is built in)."""
+    """What factorises the bodies: this process (own), or MUMPS on several ranks, of several machines too (mumps, where it is built in)."""
     compression: Annotated[Real, Field(ge=0, le=0.01)] = 0.0
     """By mumps: what blocks of low rank may leave out of the bodies' factors, over their diagonal; solutions are refined. 0: nothing."""
 
