@@ -6,7 +6,7 @@
 !> - `compression`: of `task_begin` the bound below which blocks of low rank leave out what is left; 0: none.
 module isomortar_sparse_mumps
   use, intrinsic :: iso_c_binding, only: c_double, c_int64_t
-  use isomortar_sparse_ranks, only: all_ranks, hear, join, leave, tell
+  use isomortar_sparse_ranks, only: all_ranks, are_joined, hear, join, leave, tell
   implicit none
   private
 
@@ -78,10 +78,11 @@ contains
     call leave()
   end subroutine serve_first_rank
 
-  !> On the first rank: end the others, and MPI.
+  !> On the first rank: end the others, and MPI, where that was not done.
   subroutine end_ranks()
     real(c_double) :: word(4)
 
+    if (.not. are_joined()) return
     word = 0
     call tell(word)
     call leave()

@@ -8,7 +8,7 @@ module isomortar_sparse_ranks
   implicit none
   private
 
-  public :: hear, join, leave, tell
+  public :: are_joined, hear, join, leave, tell
 
   !> The communicator of all of them.
   integer, parameter, public :: all_ranks = mpi_comm_world
@@ -47,6 +47,17 @@ contains
     call mpi_comm_size(all_ranks, ranks, failure)
     call mpi_comm_rank(all_ranks, rank, failure)
   end subroutine join
+
+  !> Whether ranks hear each other: MPI was begun, and has not ended.
+  function are_joined()
+    logical :: are_joined
+    logical :: ended
+    integer :: failure
+
+    call mpi_initialized(are_joined, failure)
+    call mpi_finalized(ended, failure)
+    are_joined = are_joined .and. .not. ended
+  end function are_joined
 
   !> End MPI, where it was begun here; all ranks have to.
   subroutine leave()

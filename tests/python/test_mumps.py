@@ -330,7 +330,7 @@ def test_nothing_of_the_engine_is_loaded_where_it_is_not_asked_for():
 
 def test_without_the_engine_what_asks_for_it_is_refused(monkeypatch, capsys):
     monkeypatch.setattr(_distributed, "is_built", lambda: False)
-    problem = Scene.load("press", ["solver.engine=mumps"]).problem()
+    problem = Scene.load("press", ["solver.engine=mumps"]).problem()  # may be looked at, as in a results file from elsewhere
     for asked in (_distributed.ranks.__wrapped__, _distributed.serve, lambda: Simulation(problem)):
         with pytest.raises(InputError, match="this build does not have"):
             asked()

@@ -112,7 +112,7 @@ def of_problems(patch: pytest.MonkeyPatch) -> Told:
     with pytest.MonkeyPatch.context() as within:
         within.setattr(_distributed, "is_built", lambda: False)
         within.setenv(_distributed.PROGRAMS, "2")
-        yield "engine that is not built in", _of(PRESS, "solver.engine=mumps")
+        yield "engine that is not built in", _stopped(PRESS, "solver.engine=mumps")
         yield "ranks that would wait", refusal(lambda: _distributed.refuse_idle("own"))
     yield "digits", _of(PRESS, "bodies.block.geometry.centre=[1e15,0]", "contacts.floor.plane.point=[1e15,0,0]")
     pair = Scene.from_toml(PAIR).problem()

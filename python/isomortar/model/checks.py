@@ -10,7 +10,6 @@ from itertools import combinations
 import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
-from isomortar._distributed import refuse_unbuilt
 from isomortar.errors import FoldedElementError, InputError
 from isomortar.geometry.patch import FloatArray
 from isomortar.geometry.refinement import surface_samples
@@ -87,9 +86,7 @@ def _check_settings(settings: SolverSettings) -> None:
             "increment is small enough; take that one smaller, too",
             "solver.path_tolerance",
         )
-    if settings.engine == "mumps":
-        refuse_unbuilt()
-    elif settings.compression:
+    if settings.engine == "own" and settings.compression:
         raise InputError(
             f'is {settings.compression:g}, and solver.engine is "own", whose factors are whole; remove it, or take engine = "mumps"',
             "solver.compression",

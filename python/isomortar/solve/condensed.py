@@ -11,7 +11,7 @@ from scipy import sparse
 from isomortar import _bindings
 from isomortar._bindings import LongArray
 from isomortar._condensed import BodyFactors, CondensedFactors, SymmetricPattern
-from isomortar._distributed import DistributedFactors, ranks
+from isomortar._distributed import DistributedFactors, ranks, refuse_unbuilt
 from isomortar._sparse import Ordering
 from isomortar.errors import KernelError, SingularSystemError
 from isomortar.geometry.patch import FloatArray
@@ -35,6 +35,7 @@ def engine_of(settings: SolverSettings) -> Engine | None:
     """
     if settings.engine == "own":
         return None
+    refuse_unbuilt()
     ranks()
     return partial(DistributedFactors, compression=settings.compression)
 
