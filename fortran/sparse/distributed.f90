@@ -1,7 +1,7 @@
 !> Factors of a symmetric body by MUMPS on all ranks, with what is not symmetric on its faces by dense LU on the first one.
 !>
 !> The system is that of `isomortar_sparse_condensed`. K comes scaled to a unit diagonal, so that its pivots are shares of that;
-!> MUMPS leaves its Schur complement on the faces (theory 5.14).
+!> MUMPS leaves its Schur complement on the faces (theory 5.18).
 !>
 !> - `handle`: a pattern that was analysed, and the factors of the last matrix of that pattern.
 !> - `place`, `status`: how it ended (isomortar_base_status); where all handles are taken, their number; where MUMPS failed, its
@@ -220,7 +220,7 @@ contains
     if (status /= status_ok) deallocate (self%schur)
   end subroutine eliminate_inner
 
-  !> The lower triangle, scaled to a unit diagonal (theory 5.14); the status is singular where the diagonal is not positive.
+  !> The lower triangle, scaled to a unit diagonal (theory 5.18); the status is singular where the diagonal is not positive.
   subroutine scale_lower(self, values, status)
     type(distributed_t), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: values(:)
@@ -244,7 +244,7 @@ contains
     status = status_ok
   end subroutine scale_lower
 
-  !> The Schur complement of K on the faces, with what is added (theory 5.14): MUMPS leaves its lower triangle, by rows.
+  !> The Schur complement of K on the faces, with what is added (theory 5.18): MUMPS leaves its lower triangle, by rows.
   subroutine complement_schur(self, added)
     type(distributed_t), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: added(:, :)

@@ -199,7 +199,7 @@ class CondensedSystem(CheckedSystem):
         return self._refined_often(solution, right)
 
     def _refined_often(self, solution: FloatArray, right: FloatArray) -> FloatArray:
-        """By factors that leave something out: until what is left is small (theory 5.15)."""
+        """By factors that leave something out: until what is left is small (theory 5.19)."""
         factors, left = self._bodies.factors, self._left(solution, right)
         for _ in range(constants.REFINEMENTS):
             solution = solution + factors.solve(right - self._product(solution))
