@@ -265,4 +265,45 @@ motions.hand = { translate = [0.1, 0.0, 0.0], rotate = 30.0 }
 max_cuts = 3
 """
 
-TEXTS = (PRESS, BOWL, UZAWA, TYRE, PATCH, PLATES, DIE, BEAM)
+#: A bowl that its weight, a force and a pressure press on a block, which a traction pulls at; they grow, stay and fall.
+LOADED = """
+format = 1
+name = "loaded"
+[bodies.bowl]
+geometry = { kind = "bowl", half_width = 0.4, bottom = 0.0, rise = 0.08, top = 0.4 }
+mesh = { order = [2, 2, 1], elements = [2, 2, 1] }
+[bodies.block]
+geometry = { kind = "box", lower = [-0.6, -0.6, -0.4], upper = [0.6, 0.6, 0.0] }
+mesh = { order = [2, 2, 1], elements = [2, 2, 1] }
+[contacts.interface]
+slave = "bowl.w0"
+master = "block.w1"
+friction = 0.3
+[supports.top]
+face = "bowl.w1"
+force.z = -0.2
+[supports.bed]
+face = "block.w0"
+[loads.own]
+body = "bowl"
+weight = [0.0, 0.0, -0.3]
+[loads.wind]
+face = "bowl.u0"
+pressure = 0.1
+[loads.pull]
+face = "block.u1"
+traction = [0.05, 0.0, 0.02]
+[[stages]]
+name = "press"
+steps = 1
+loads = { wind = 0.0 }
+[[stages]]
+name = "blow"
+steps = 2
+loads = { wind = 1.0, own = 0.5 }
+motions.top.translate = [0.01, 0.0, 0.0]
+[solver]
+max_cuts = 3
+"""
+
+TEXTS = (PRESS, BOWL, UZAWA, TYRE, PATCH, PLATES, DIE, BEAM, LOADED)

@@ -30,6 +30,8 @@ LENGTHS = {
 }  # fmt: skip
 #: Keys of contacts that hold stresses.
 STRESSES = ("cohesion", "traction_max", "smoothing")
+#: Keys of loads, and by which power of the length they go beside the modulus.
+LOADS = {"pressure": 0, "traction": 0, "weight": -1}
 #: Numbers within this range have twins, in the other units, that are as far from under- and overflow.
 ORDINARY = 1e12
 #: Share by which forces, and contact conditions, may be off beyond the scene's own tolerances; and what that is of a tolerance.
@@ -80,6 +82,7 @@ def _look(results: Results) -> None:
     if results.steps.tolist() != list(range(1, problem.total_steps + 1)):
         raise Wrong(f"exit code 0 with load steps {results.steps}")
     forces = [results.curve("force", support=s.name) for s in problem.supports]
+    forces += [results.curve("force", load=load.name) for load in problem.loads]
     for contact in problem.contacts:
         values = {name: results.curve(name, contact=contact.name) for name in layout.CONTACT}
         for name, value in values.items():
@@ -165,6 +168,12 @@ def _twin(data: Any, number: int) -> tuple[Any, float, float] | None:
         contact.update({key: contact[key] * MODULUS for key in STRESSES if key in contact})
         if "tangent" not in contact.get("plane", {"tangent": ()}):
             contact["plane"].setdefault("point", [0.0, 0.0, 0.0])
+    for load in twin.get("loads", {}).values():
+        for key, power in LOADS.items():
+            if key in load:
+                load[key] = np.multiply(load[key], MODULUS * LENGTH**power).tolist()
+    for support in twin.get("supports", {}).values():  # of x, y and z lengths are scaled already
+        support.update({"force": {axis: size * MODULUS * LENGTH for axis, size in support["force"].items()}} if "force" in support else {})
     return twin, LENGTH, MODULUS
 
 
