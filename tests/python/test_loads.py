@@ -10,11 +10,15 @@ import numpy as np
 import pytest
 
 from isomortar import run
+from isomortar.cli.check import lines
 from isomortar.errors import InputError
+from isomortar.model.entities import Stage
+from isomortar.model.supports import factor_at
 from isomortar.program.getfem import GetFEM
 from isomortar.results.definition import read_problem, write_problem
 from isomortar.results.reader import Results
 from isomortar.scene import Scene
+from isomortar.solve.outlook import outlook
 from isomortar.solve.record import LoadResult, Observer, StepResult
 from isomortar.solve.simulation import Simulation
 
@@ -177,6 +181,18 @@ def test_results_hold_what_acts_and_go_on_to_the_last_bit(tmp_path: Path) -> Non
         np.testing.assert_array_equal(a.force, b.force)
         np.testing.assert_array_equal(a.moment, b.moment)
     np.testing.assert_allclose(wind, [-0.1, -0.2, -0.3, -0.4], rtol=0.05)
+
+
+def test_without_factors_loads_are_whole_after_the_first_stage() -> None:
+    stages = (Stage("one", 2), Stage("two", 3))
+    assert [factor_at(stages, (), time) for time in (0.0, 1.0, 2.0, 3.5, 5.0)] == [0.0, 0.5, 1.0, 1.0, 1.0]
+    assert [factor_at(stages, (1.0, -2.0), time) for time in (0.5, 2.0, 3.0, 5.0)] == [0.25, 1.0, 0.0, -2.0]
+
+
+def test_a_look_at_a_scene_tells_of_loads() -> None:
+    said = list(lines(outlook(Scene.from_toml(GOOD).problem())))
+    assert "load wind: pressure 0.1 on left.w1" in said
+    assert "load own: weight 0, 0, -0.2 on right" in said
 
 
 def test_what_loads_do_is_no_doubt() -> None:

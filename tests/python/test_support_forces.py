@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from isomortar import run
+from isomortar.cli.check import lines
 from isomortar.errors import InputError
 from isomortar.model.numbering import Numbering
 from isomortar.model.rank import rigid_rank
@@ -17,6 +18,7 @@ from isomortar.program.getfem import GetFEM
 from isomortar.results.files import read, sealed
 from isomortar.results.reader import Results
 from isomortar.scene import Scene
+from isomortar.solve.outlook import outlook
 from isomortar.solve.record import Observer, StepResult
 from isomortar.solve.simulation import Simulation
 
@@ -168,6 +170,11 @@ def test_in_files_from_before_ways_are_those_of_motions(tmp_path: Path) -> None:
     with Results(tmp_path / "before.h5") as before:
         assert not before.curve("displacement", support="end").any()
         assert np.isnan(before.step(1).reactions[1].displacement).all()
+
+
+def test_a_look_at_a_scene_tells_of_forces() -> None:
+    said = list(lines(outlook(Scene.from_toml(GOOD).problem())))
+    assert "support top: prescribes x, y of pad.w1; goes 0.05 and presses z by -0.3" in said
 
 
 def test_default_curves_show_how_far_a_force_goes() -> None:

@@ -208,7 +208,7 @@ class Support:
     """Prescribed control points of a face: x = c + u(t) + R(axis, angle(t)) (X - c) in the given components.
 
     `motions` has one entry a stage. u and angle accumulate over the stages. A component with a `force` is none of the `components`: there
-    u(t) is what makes the support exert that force, times its factor at the end of each stage (`factors`).
+    u(t) is what makes the support exert that force, times its factor at the end of each stage (`factors`; none: 1).
     """
 
     name: str
@@ -270,7 +270,7 @@ class Load:
     """A load on a body: `pressure` on its current face (one value), `traction` on its reference face, or `weight` on its reference volume.
 
     `value` is force per area, or per volume, along x, y, z; `face` is None for a weight.
-    `factors` has one entry a stage: by what the value is multiplied at the end of the stage.
+    `factors` has one entry a stage: by what the value is multiplied at the end of the stage; none: 1 at all of them.
     """
 
     name: str
@@ -278,7 +278,7 @@ class Load:
     body: str
     face: str | None
     value: tuple[float, ...]
-    factors: tuple[float, ...]
+    factors: tuple[float, ...] = ()
 
     @property
     def place(self) -> Face:

@@ -23,8 +23,8 @@ def progress(stages: Sequence[Stage], time: float) -> FloatArray:
 
 
 def factor_at(stages: Sequence[Stage], factors: Sequence[float], time: float) -> float:
-    """A factor that grows linearly from stage to stage, from zero to what it is at the end of each (theory 5.14)."""
-    return float(np.interp(time, np.cumsum([0] + [stage.steps for stage in stages]), [0.0, *factors]))
+    """A factor that grows linearly from stage to stage, from zero to what it is at the end of each, 1 if not given (theory 5.14)."""
+    return float(np.interp(time, np.cumsum([0] + [stage.steps for stage in stages]), [0.0, *(factors or np.ones(len(stages)))]))
 
 
 def rotation(axis: FloatArray, angle: float) -> FloatArray:

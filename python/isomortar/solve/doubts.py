@@ -224,7 +224,7 @@ def _of_contact(problem: Problem, contact: Contact) -> Iterator[str]:
 def _loaded(problem: Problem) -> bool:
     """Whether a load, or the force of a support, ever is other than zero."""
     loads = [(load.factors, load.value) for load in problem.loads] + [(s.factors, s.force) for s in problem.supports]
-    return any(any(factors) and any(value) for factors, value in loads)
+    return any((not factors or any(factors)) and any(value) for factors, value in loads)
 
 
 def _travel(problem: Problem) -> float:
