@@ -5,18 +5,20 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-engine_packages=() options=()
+remembered=.venv/with-mumps # a later set-up of this copy does the same
 case "${1-}" in
   "") ;;
-  --mumps)
-    engine_packages=(libmumps-dev libopenmpi-dev openmpi-bin)
-    options=(-Csetup-args=-Dmumps=enabled)
-    ;;
+  --mumps) mkdir -p .venv && touch "$remembered" ;;
   *)
     printf 'set-up stopped: it has no option %s; allowed: --mumps\n' "$1" >&2
     exit 2
     ;;
 esac
+engine_packages=() options=()
+if [ -f "$remembered" ]; then
+  engine_packages=(libmumps-dev libopenmpi-dev openmpi-bin)
+  options=(-Csetup-args=-Dmumps=enabled)
+fi
 
 say() { printf '==> %s\n' "$*"; }
 fail() { printf 'set-up stopped: %s\n' "$*" >&2; exit 1; }
@@ -71,6 +73,7 @@ make_environment() {
   if ! .venv/bin/python -c '' 2>/dev/null; then
     say "Making the virtual environment .venv with $(python3 --version)"
     python3 -m venv --clear .venv
+    [ ${#options[@]} -eq 0 ] || touch "$remembered"
   fi
   # The build runs meson and ninja of the environment, activated or not.
   export PATH="$PWD/.venv/bin:$PATH"
