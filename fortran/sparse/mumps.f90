@@ -3,7 +3,7 @@
 !> - `slot`: which instance, from 0.
 !> - `choice`: what the task leaves open: of `task_factorise` per cent of memory more than estimated, of `task_solve` what is solved
 !>   (`whole`, `condense`, `expand`).
-!> - `compression`: of `task_begin` the bound below which blocks of low rank leave out what is left; 0: none.
+!> - `compression`: the bound below which blocks of low rank leave out what is left, or zero; for `task_begin`.
 module isomortar_sparse_mumps
   use, intrinsic :: iso_c_binding, only: c_double, c_int64_t
   use isomortar_sparse_ranks, only: all_ranks, are_joined, hear, join, leave, tell
