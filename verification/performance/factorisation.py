@@ -35,7 +35,7 @@ class Times:
         "residual": "",
         "isomortar takes": "",
     },
-    limits={"isomortar takes": (1.2, "isomortar's time for the factors over this program's: no slower than the fastest by more than a fifth")},
+    limits={"isomortar takes": (1.2, "isomortar's time for the factors over this program's: at most a fifth slower than the fastest")},
 )
 def factorisation(quick: bool) -> Iterator[Row]:
     """Systems as Newton's method has them, all taken to each program in the same process: CPU seconds to order, factorise, solve.

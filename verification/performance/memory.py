@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from itertools import islice
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 from performance.problems import problem
@@ -19,6 +20,7 @@ from isomortar.model.entities import Problem
 from isomortar.solve.simulation import Simulation
 
 Mesh = tuple[str, str, tuple[int, int, int]]
+Answer = TypeVar("Answer")
 #: How far the slave is pushed into the master where contact alone is measured.
 DEPTH = 0.1
 
@@ -56,7 +58,7 @@ def memory(quick: bool) -> Iterator[Row]:
         yield {"scene": scene, "kind": kind, **size, "whole": 1e-6 * whole, "contact": 1e-6 * contact, **each}
 
 
-def in_own_process(work: Callable[[Mesh], tuple[int, int, float]], mesh: Mesh) -> tuple[int, int, float]:
+def in_own_process(work: Callable[[Mesh], Answer], mesh: Mesh) -> Answer:
     """What some work returns when nothing ran before in its process."""
     with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
         return pool.submit(work, mesh).result()

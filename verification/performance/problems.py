@@ -96,9 +96,7 @@ def last_system(problem: Problem, steps: int) -> System:
     solved: list[System] = []
     solve = Equilibrium.solve
 
-    def note(
-        equilibrium: Equilibrium, sources: list[Source], values: list[FloatArray], right: FloatArray, *where: Any
-    ) -> FloatArray:
+    def note(equilibrium: Equilibrium, sources: list[Source], values: list[FloatArray], right: FloatArray, *where: Any) -> FloatArray:
         solved[:] = [System(equilibrium, sources, [value.copy() for value in values], right.copy())]
         return solve(equilibrium, sources, values, right, *where)
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import islice
 
-from performance.memory import in_own_process
+from performance.memory import Mesh, in_own_process
 from performance.problems import problem
 
 from isomortar.harness.bench import Plot, Row, benchmark
@@ -65,7 +65,7 @@ def sizes(quick: bool) -> Iterator[Row]:
         yield {**size, "unknowns": found.unknowns, "on faces": found.faces, **times, "a step": sum(times.values()), **counts}
 
 
-def first_step(mesh: tuple[str, str, tuple[int, int, int]]) -> Step:
+def first_step(mesh: Mesh) -> Step:
     """The first load step of a scene."""
     simulation = Simulation(problem(*mesh))
     (step,) = islice(simulation.run(), 1)

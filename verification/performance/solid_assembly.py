@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from performance.problems import deformed, solid_block, solid_system
+from performance.problems import deformed, solid_system
 
 from isomortar.harness.bench import Plot, Row, benchmark, cpu_seconds
 from isomortar.harness.bench.machine import dgemm_rate
