@@ -80,7 +80,7 @@ def is_longer(stored: Problem, given: Problem) -> bool:
 
 def differences(stored: Problem, given: Problem) -> list[str]:
     """Where two problems differ: one sentence a field, by its dotted path. Their own names, which may be those of files, are no part."""
-    old, new = (_flat(replace(problem, name="")) | _order(problem) for problem in (stored, given))
+    old, new = (_flat(replace(problem, name="")) | _order(problem) | _order_of_loads(problem) for problem in (stored, given))
     missing = object()
     paths = [path for path in {**old, **new} if old.get(path, missing) != new.get(path, missing)]
     return [f"{path}: {_shown(old, path)} in the file, {_shown(new, path)} in the scene" for path in paths]
@@ -143,7 +143,11 @@ def _flat(value: Any, path: str = "") -> dict[str, Any]:
 
 def _order(problem: Problem) -> dict[str, Any]:
     """Names in the order in which numbers of the results file stand."""
-    return {kind: [entry.name for entry in getattr(problem, kind)] for kind in ("bodies", "contacts", "supports", "loads", "stages")}
+    return {kind: [entry.name for entry in getattr(problem, kind)] for kind in ("bodies", "contacts", "supports", "stages")}
+
+
+def _order_of_loads(problem: Problem) -> dict[str, Any]:
+    return {"loads": [load.name for load in problem.loads]}
 
 
 def _shown(leaves: dict[str, Any], path: str) -> str:
