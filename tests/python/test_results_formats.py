@@ -30,6 +30,8 @@ def as_before(path: Path, number: int | None) -> None:
         for contact in file["curves/contacts"].values():
             for name in TURNED:
                 contact[name][...] = -contact[name][()]
+        for support in file["curves/supports"].values():
+            del support["displacement"]
         del file.attrs["format_version"]
         if number is not None:
             file.attrs["format_version"] = number

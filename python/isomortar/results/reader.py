@@ -180,12 +180,11 @@ class Results:
             known, place = layout.LOAD, f"loads/{_named(self.problem.loads, load, 'load').name}/"
         else:
             known, place = {name: kind for name, kind in layout.STEP.items() if name != "stage"}, ""
+        if quantity not in known and quantity not in motion:
+            raise ResultsError(f"there is no curve {quantity!r} here; there are: {', '.join(dict.fromkeys((*known, *motion)))}")
+        values = self._read(lambda file: _column(file, f"curves/{place}{quantity}", known[quantity])[()]) if quantity in known else np.nan
         if quantity in motion:
-            values = motion[quantity]
-        elif quantity in known:
-            values = self._read(lambda file: _column(file, f"curves/{place}{quantity}", known[quantity])[()])
-        else:
-            raise ResultsError(f"there is no curve {quantity!r} here; there are: {', '.join((*known, *motion))}")
+            values = np.where(np.isnan(values), motion[quantity], values)
         if component is None:
             return values
         if values.ndim != 2 or values.shape[1] != 3:
@@ -193,12 +192,10 @@ class Results:
         return values[:, "xyz".index(component)]
 
     def _motion(self, support: str) -> dict[str, FloatArray]:
-        """What the file does not hold of how a support moves, from its motions: files of format 3 do not say how far it went either."""
+        """What files do not hold of how a support moves, from its motions: those of format 3, which knew no forces, not even how far."""
         chosen, stages = _named(self.problem.supports, support, "support"), self.problem.stages
         moved = [moved_by(chosen, progress(stages, time)) for time in self.curve("time")]
-        computed = {"displacement": np.reshape([shift for shift, _ in moved], (-1, 3)), "rotation": np.array([angle for _, angle in moved])}
-        held = self._read(lambda file: set(file[f"curves/supports/{chosen.name}"]))
-        return {name: values for name, values in computed.items() if name not in held}
+        return {"displacement": np.reshape([shift for shift, _ in moved], (-1, 3)), "rotation": np.array([angle for _, angle in moved])}
 
     def to_dataframe(self) -> pandas.DataFrame:
         """All curves as a frame of pandas: a row for each recorded load step, columns like ``force.top.x`` and ``active.floor``.
