@@ -337,7 +337,7 @@ def test_a_results_file_tells_what_it_holds(invoke: Invoke) -> None:
     end = last("half.h5")
     assert (code, found["name"], found["recorded"], found["stages"]) == (0, "press", 2, {"press": [2, 2]})
     assert found["supports"] == [
-        {"name": name, "force": list(reaction.force), "moment": list(reaction.moment)}
+        {"name": name, "force": list(reaction.force), "moment": list(reaction.moment), "displacement": list(reaction.displacement)}
         for name, reaction in zip(("top",), end.reactions, strict=True)
     ]
     (contact,) = found["contacts"]
@@ -348,6 +348,20 @@ def test_a_results_file_tells_what_it_holds(invoke: Invoke) -> None:
     assert f"contact floor: {contact['active']} of {contact['constraints']} constraints active" in text
     assert "not at its end" not in text
     assert invoke("info", "none.h5")[0] == 1
+
+
+def test_a_results_file_tells_of_loads(invoke: Invoke) -> None:
+    text = """format = 1
+    bodies.block.geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 2] }
+    supports.bed.face = "block.w0"
+    loads.own = { body = "block", weight = [0, 0, -0.25] }
+    stages = [{ name = "settle", steps = 1 }]"""
+    Path("own.toml").write_text(text)
+    assert invoke("run", "own.toml", "--output", "own.h5", "--quiet")[0] == 0
+    (line,) = [line for line in invoke("info", "own.h5")[1].splitlines() if line.startswith("load ")]
+    assert line.startswith("load own: force (0, 0, -0.5), moment (-0.25, 0.25, 0)")
+    (load,) = json.loads(invoke("info", "own.h5", "--json")[1])["loads"]
+    assert (load["name"], load["force"]) == ("own", pytest.approx([0, 0, -0.5], abs=1e-15))
 
 
 def _until(last: int) -> Callable[[ResultsWriter, StepResult], None]:

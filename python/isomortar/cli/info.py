@@ -30,7 +30,17 @@ class ContactEnd:
 
 @dataclass(frozen=True)
 class SupportEnd:
-    """A support at the last recorded load step: force on its body, moment about its moving centre."""
+    """A support at the last recorded load step: force on its body, moment about its moving centre, how far that has gone."""
+
+    name: str
+    force: tuple[float, ...]
+    moment: tuple[float, ...]
+    displacement: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class LoadEnd:
+    """A load at the last recorded load step: force on its body, moment about the origin."""
 
     name: str
     force: tuple[float, ...]
@@ -39,7 +49,7 @@ class SupportEnd:
 
 @dataclass(frozen=True)
 class Information:
-    """What a results file holds; lists of contacts and supports are empty as long as it has no load step.
+    """What a results file holds; lists of contacts, supports and loads are empty as long as it has no load step.
 
     Parameters
     ----------
@@ -53,6 +63,7 @@ class Information:
         Of all recorded load steps.
     contacts : tuple of ContactEnd
     supports : tuple of SupportEnd
+    loads : tuple of LoadEnd
     """
 
     name: str
@@ -66,6 +77,7 @@ class Information:
     cpu_seconds: float
     contacts: tuple[ContactEnd, ...]
     supports: tuple[SupportEnd, ...]
+    loads: tuple[LoadEnd, ...]
 
 
 def info(
@@ -109,6 +121,7 @@ def information(results: isomortar.Results) -> Information:
         cpu_seconds=float(np.nansum(results.timings().get("total", np.zeros(0)))),
         contacts=tuple(_contacts(results, last)) if last else (),
         supports=tuple(_supports(results, last)) if last else (),
+        loads=tuple(_loads(results, last)) if last else (),
     )
 
 
@@ -120,7 +133,13 @@ def _contacts(results: isomortar.Results, last: StepResult) -> Iterator[ContactE
 
 def _supports(results: isomortar.Results, last: StepResult) -> Iterator[SupportEnd]:
     for support, reaction in zip(results.problem.supports, last.reactions, strict=True):
-        yield SupportEnd(support.name, tuple(map(float, reaction.force)), tuple(map(float, reaction.moment)))
+        way = results.curve("displacement", support=support.name)[-1]
+        yield SupportEnd(support.name, *(tuple(map(float, vector)) for vector in (reaction.force, reaction.moment, way)))
+
+
+def _loads(results: isomortar.Results, last: StepResult) -> Iterator[LoadEnd]:
+    for load, end in zip(results.problem.loads, last.loads, strict=True):
+        yield LoadEnd(load.name, tuple(map(float, end.force)), tuple(map(float, end.moment)))
 
 
 def lines(found: Information, path: Path) -> Iterator[str]:
@@ -138,7 +157,9 @@ def lines(found: Information, path: Path) -> Iterator[str]:
             f"pressures {low:.4g} to {high:.4g}, penetration {contact.penetration:.2g}"
         )
     for support in found.supports:
-        yield f"support {support.name}: force ({_row(support.force)}), moment ({_row(support.moment)})"
+        yield f"support {support.name}: force ({_row(support.force)}), moment ({_row(support.moment)}), gone ({_row(support.displacement)})"
+    for load in found.loads:
+        yield f"load {load.name}: force ({_row(load.force)}), moment ({_row(load.moment)})"
     if found.recorded < found.load_steps:
         yield f"not at its end: isomortar run SCENE --resume --output {path} goes on"
 

@@ -182,7 +182,9 @@ class Results:
             known, place = {name: kind for name, kind in layout.STEP.items() if name != "stage"}, ""
         if quantity not in known and quantity not in motion:
             raise ResultsError(f"there is no curve {quantity!r} here; there are: {', '.join(dict.fromkeys((*known, *motion)))}")
-        values = self._read(lambda file: _column(file, f"curves/{place}{quantity}", known[quantity])[()]) if quantity in known else np.nan
+        values: NDArray[Any] = np.array(np.nan)
+        if quantity in known:
+            values = self._read(lambda file: _column(file, f"curves/{place}{quantity}", known[quantity])[()])
         if quantity in motion:
             values = np.where(np.isnan(values), motion[quantity], values)
         if component is None:
