@@ -75,6 +75,15 @@ def test_phases_add_up() -> None:
     assert row["contact share"] == pytest.approx(100.0 * (parts[1] + parts[2]) / float(row["total"]))
 
 
+def test_what_grows_with_sizes_grows() -> None:
+    small, large = tried("sizes").rows
+    for name in ("unknowns", "memory", "expected"):
+        assert float(small[name]) < float(large[name])
+    assert small["tangents"]
+    parts = [float(small[phase]) for phase in ("solid", "projection", "contact", "factor", "solve", "other")]
+    assert sum(parts) == pytest.approx(float(small["a step"]))
+
+
 def test_every_benchmark_is_tried_here() -> None:
     text = Path(__file__).read_text()
     assert all(f'"{name}"' in text for name in BENCHMARKS)

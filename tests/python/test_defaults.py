@@ -39,12 +39,19 @@ ENTITIES = {
     "Body": {"closed": None, "rigid": False, "raised": None},
     "Contact": {"reference_area": None, **_FRICTION, "projection": "closest", "by_default": False, "enforcement": "mortar", "subcells": 0},
     "Motion": {"translate": (0.0, 0.0, 0.0), "rotate": 0.0},
-    "Support": {"components": (0, 1, 2), "centre": (0.0, 0.0, 0.0), "axis": (0.0, 0.0, 1.0)},
+    "Support": {
+        "components": (0, 1, 2),
+        "centre": (0.0, 0.0, 0.0),
+        "axis": (0.0, 0.0, 1.0),
+        "force": (None, None, None),
+        "factors": (),
+    },
     "SolverSettings": SOLVER,
-    "Problem": {"settings": SOLVER, "glue": (), "symmetry": ()},
+    "Problem": {"settings": SOLVER, "glue": (), "symmetry": (), "loads": ()},
 }
 _MESH = {"family": ("N", "N", "N"), "order": None, "contact_order": None, "elements": None, "quadrature": None}
 _RECORD = {"states": "every", "curves": None}
+_FORCE = {"x": None, "y": None, "z": None}
 #: By table of a scene file that is none of these.
 TABLES = {
     "BowlTable": {"centre": (0.0, 0.0)},
@@ -64,8 +71,10 @@ TABLES = {
         "subcells": None,
         "reference_area": None,
     },
-    "SupportTable": {"components": ("x", "y", "z"), "centre": (0.0, 0.0, 0.0), "axis": (0.0, 0.0, 1.0)},
-    "StageTable": {"motions": {}},
+    "ForceTable": _FORCE,
+    "SupportTable": {"components": None, "force": _FORCE, "centre": (0.0, 0.0, 0.0), "axis": (0.0, 0.0, 1.0)},
+    "LoadTable": {"face": None, "body": None, "pressure": None, "traction": None, "weight": None},
+    "StageTable": {"motions": {}, "loads": {}},
     "CurveTable": {"quantity": "force", "component": "norm"},
     "RecordTable": _RECORD,
     "SceneTable": {
@@ -76,6 +85,7 @@ TABLES = {
         "symmetry": {},
         "contacts": {},
         "supports": {},
+        "loads": {},
         "solver": SOLVER,
         "record": _RECORD,
     },

@@ -86,7 +86,7 @@ def test_rates_are_changes_by_length() -> None:
     assert np.array_equal(after.rates.contacts[0].pressure, np.full(3, 4.0))
     assert np.array_equal(after.rates.contacts[0].traction, np.full((3, 2), -4.0))
     held = np.array([[True, False, False], [False, False, False]])
-    supports = SimpleNamespace(held=held, place=lambda time: np.full((2, 3), 10.0 * time))
+    supports = SimpleNamespace(placed=lambda positions, time: np.where(held, 10.0 * time, positions))
     ahead = positions_ahead(after, after.rates, supports, 4.75)  # type: ignore[arg-type]
     assert np.array_equal(ahead, [[47.5, 2.5, 2.5], [2.5, 2.5, 2.5]])
 
