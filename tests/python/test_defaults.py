@@ -46,6 +46,7 @@ ENTITIES = {
         "force": (None, None, None),
         "factors": (),
     },
+    "Load": {"factors": ()},
     "SolverSettings": SOLVER,
     "Problem": {"settings": SOLVER, "glue": (), "symmetry": (), "loads": ()},
 }
