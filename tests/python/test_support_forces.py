@@ -169,7 +169,7 @@ def test_in_files_from_before_ways_are_those_of_motions(tmp_path: Path) -> None:
     (tmp_path / "before.h5").write_bytes(sealed(content))
     with Results(tmp_path / "before.h5") as before:
         assert not before.curve("displacement", support="end").any()
-        assert np.isnan(before.step(1).reactions[1].displacement).all()
+        assert not before.step(1).reactions[1].displacement.any()
 
 
 def test_a_look_at_a_scene_tells_of_forces() -> None:

@@ -167,13 +167,17 @@ class Supports:
 
     def centre(self, support: Support, time: float, positions: FloatArray | None = None) -> FloatArray:
         """The moving centre c + u(t) of a support, shape (3,); without positions plates are where they were at first."""
-        centre = np.asarray(support.centre, dtype=np.float64) + moved_by(support, progress(self._problem.stages, time))[0]
+        return np.asarray(support.centre, dtype=np.float64) + self.way(support, time, positions)
+
+    def way(self, support: Support, time: float, positions: FloatArray | None = None) -> FloatArray:
+        """How far a support has gone, u(t), shape (3,): by its motions, and where positions are given by its forces as well."""
+        way, _ = moved_by(support, progress(self._problem.stages, time))
         if positions is None or not support.pressed:
-            return centre
+            return way
         number = self._problem.supports.index(support)
         first, own = self.points[number][0], list(support.pressed)
-        centre[own] += (positions - self.place(time))[first, own]
-        return centre
+        way[own] += (positions - self.place(time))[first, own]
+        return way
 
     def increment(self, positions: FloatArray, time: float) -> FloatArray:
         """What prescribed positions lack to where supports put them, and plates of their shape; zero elsewhere, (control points, 3)."""

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from isomortar.errors import ResultsError
 from isomortar.geometry.patch import FloatArray, IntArray
-from isomortar.model.entities import Contact, Problem
+from isomortar.model.entities import Contact, Problem, Support
 from isomortar.model.numbering import Numbering
 from isomortar.model.supports import moved_by, progress
 from isomortar.results import layout
@@ -315,7 +315,7 @@ def _step_result(file: h5py.File, problem: Problem, number: int, row: int, kept:
     return StepResult(
         **values,
         state=state,
-        reactions=tuple(Reaction(**_get(file, f"curves/supports/{s.name}", layout.REACTION, row)) for s in problem.supports),
+        reactions=tuple(_reaction(file, problem, support, row) for support in problem.supports),
         contacts=tuple(
             ContactResult(**_get(file, curve, layout.CONTACT, row), **_get(file, state, layout.CONTACT_VALUES, kept))
             for curve, state in zip(curves, states, strict=True)
@@ -348,6 +348,14 @@ def _rates(file: h5py.File, problem: Problem, kept: int) -> Rates | None:
         return None
     of_contacts = (_get(file, f"rates/contacts/{contact.name}", layout.CONTACT_RATES, kept) for contact in problem.contacts)
     return Rates(**values, contacts=tuple(ContactRates(**of_contact) for of_contact in of_contacts))
+
+
+def _reaction(file: h5py.File, problem: Problem, support: Support, row: int) -> Reaction:
+    """What a support bears; how far it has gone is that of its motions in what format 3 recorded."""
+    values = _get(file, f"curves/supports/{support.name}", layout.REACTION, row)
+    if np.isnan(values["displacement"]).all():
+        values["displacement"], _ = moved_by(support, progress(problem.stages, float(file["curves/time"][row])))
+    return Reaction(**values)
 
 
 def _get(file: h5py.File, group: str, quantities: Mapping[str, layout.Quantity], row: int) -> dict[str, Any]:

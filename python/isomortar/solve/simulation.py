@@ -205,7 +205,7 @@ class Simulation:
         supports = self.equilibrium.supports
         for support, points, share in zip(self.equilibrium.problem.supports, supports.points, supports.shares, strict=True):
             centre, forces = supports.centre(support, time, positions), share * total[points]
-            force, turning, way = forces.sum(axis=0), moment(positions[points] - centre, forces), centre - np.asarray(support.centre)
+            force, turning, way = forces.sum(axis=0), moment(positions[points] - centre, forces), supports.way(support, time, positions)
             centre = centre + self.equilibrium.origin
             reactions.append(Reaction(*of_whole(self.problem, force, turning, centre), centre, way))
         return tuple(reactions)
