@@ -186,7 +186,7 @@ def of_files(patch: pytest.MonkeyPatch) -> Told:
     writer.recorded(step_result(2))
     yield "not kept", refusal(lambda: Results("run.h5").step(1))
     yield "drawn over: words", refusal(lambda: plot("run.h5", "figures", x="strain"))
-    yield "drawn over: still", refusal(lambda: plot("run.h5", "figures", x="displacement of bed"))
+    yield "drawn over: still", refusal(lambda: plot("run.h5", "figures", x="rotation of bed"))
     with patch.context() as within:
         within.setitem(sys.modules, "pandas", None)
         yield "no pandas", refusal(lambda: Results("run.h5").to_dataframe())
