@@ -68,7 +68,7 @@ _PRESSURE, _LENGTH = (-1.0, 1.0, 0.7), (0.0, 0.5, 2.0)
 
 def tangent_bounds(method: Enforcement, master: str) -> dict[str, Bound]:  # noqa: ARG001
     """A bound for every part that there is, and for the balances."""
-    absent = ("loads", "symmetry", "tangential, projection") if master == "averaged" else ("loads",)
+    absent = ("symmetry", "tangential, projection") if master == "averaged" else ()
     parts = {
         part: Bound(
             at_most=SYMMETRY_BOUND if part == "symmetry" else BOUND,
