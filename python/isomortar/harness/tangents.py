@@ -32,7 +32,6 @@ HARDLY = 1e-3
 #: The parts, in the order of the report.
 PARTS = {
     "solid": "internal forces",
-    "loads": "forces of pressures on faces",
     "normal, geometric": "contact forces, pressures held, tractions left out",
     "normal, gap": "<R g> of active constraints",
     "normal, pressure": "control pressures",
@@ -46,6 +45,8 @@ PARTS = {
     "whole": "all forces, multipliers condensed",
     "symmetry": "solid and normal parts, relative to their norm",
 }
+#: What scenes with loads have besides.
+LOADS = {"loads": "forces of pressures on faces"}
 
 
 @dataclass(frozen=True)
@@ -152,7 +153,7 @@ def measure(problem: Problem, step: int, visits: Iterable[Visit], directions: in
         idle -= {pair.pair.pair.contact.name for pair in pairs if np.any(_active(pair.response.state))}
         samples += _sample(equilibrium, visit, pairs, directions, random, length)
     active, stick, slip = (tuple(int(np.count_nonzero(kind(s))) for s in states) for kind in (_active, _sticks, _slips))
-    rows = (_part_error(part, samples) for part in PARTS)
+    rows = (_part_error(part, samples) for part in PARTS | LOADS)
     return TangentReport(problem.name, step, active, stick, slip, tuple(sorted(idle)), tuple(row for row in rows if row))
 
 
@@ -179,7 +180,7 @@ def _part_error(part: str, samples: list[Sample]) -> PartError | None:
     least = HARDLY * float(np.max([np.linalg.norm(twin) for _, twin in mine]))
     errors = [_relative(ours, twin, least) for ours, twin in mine]
     largest = float(np.max(errors))  # of which one that is not a number is the largest
-    return PartError(part, PARTS[part], len(errors), largest, {"symmetry": SYMMETRY_BOUND, "loads": LOADS_BOUND}.get(part, BOUND))
+    return PartError(part, (PARTS | LOADS)[part], len(errors), largest, {"symmetry": SYMMETRY_BOUND, "loads": LOADS_BOUND}.get(part, BOUND))
 
 
 def _relative(ours: FloatArray, twin: FloatArray, least: float) -> float:
