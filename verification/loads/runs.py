@@ -138,14 +138,14 @@ def balance(scene: str, method: str) -> dict[str, float]:
     for result in computed(found):
         forces = [r.force for r in result.reactions] + [load.force for load in result.loads]
         moments = [r.moment + np.cross(r.centre, r.force) for r in result.reactions] + [load.moment for load in result.loads]
-        size = max(float(np.linalg.norm(vector)) for vector in forces)
+        size = float(np.max([np.linalg.norm(vector) for vector in forces]))
         borne = [contact.force_slave + contact.force_master for contact in result.contacts]
         turned = [contact.moment_slave + contact.moment_master for contact in result.contacts]
         if scene == "on a plane":
             borne, turned = [result.contacts[0].force_slave], [result.contacts[0].moment_slave]
         force.append(np.linalg.norm(np.sum([*forces, *borne], axis=0)) / size)
         moment.append(np.linalg.norm(np.sum([*moments, *turned], axis=0)) / size)
-        smallest = min(float(np.linalg.norm(load.force)) for load in result.loads) / size
+        smallest = float(np.min([np.linalg.norm(load.force) for load in result.loads])) / size
     return {"force": float(max(force)), "moment": float(max(moment)), "smallest": smallest}
 
 
@@ -206,11 +206,11 @@ stages = [{ name = "load", steps = 2 }]
     size = float(np.linalg.norm(whole.reactions[0].force))
 
     def apart(one: Reaction | LoadResult, other: Reaction | LoadResult) -> float:
-        return max(float(np.abs(getattr(one, name) - getattr(other, name)).max()) for name in ("force", "moment")) / size
+        return float(np.max([np.abs(getattr(one, name) - getattr(other, name)).max() for name in ("force", "moment")])) / size
 
     return {
         "reaction": apart(whole.reactions[0], half.reactions[0]),
-        "load": max(apart(one, other) for one, other in zip(whole.loads, half.loads, strict=True)),
+        "load": float(np.max([apart(one, other) for one, other in zip(whole.loads, half.loads, strict=True)])),
     }
 
 
