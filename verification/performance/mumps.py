@@ -15,6 +15,7 @@ from typing import Any
 from unittest.mock import patch
 
 import numpy as np
+
 from isomortar import _distributed
 from isomortar._condensed import BodyFactors
 from isomortar.geometry.patch import FloatArray
