@@ -84,8 +84,8 @@ contains
     end do
   end subroutine sample_element
 
-  !> Derivatives by the parameters of a rational field: (component, parameter) (theory 1.3). `denominator` (4), `numerator` (3, 4): value
-  !> and derivatives by the three parameters.
+  !> Derivatives by the parameters of a rational field: (component, parameter) (theory 1.3). `denominator` (4), `numerator` (3, 4):
+  !> value and derivatives by the three parameters.
   pure function quotient(denominator, numerator) result(slope)
     real(wp), intent(in) :: denominator(4), numerator(3, 4)
     real(wp) :: slope(3, 3), scale
