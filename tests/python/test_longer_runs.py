@@ -35,6 +35,15 @@ contacts.floor = { slave = "block.w0", plane = { point = [0, 0, 0], normal = [0,
 supports.top.face = "block.w1"
 stages = [{ name = "press", steps = 2, motions.top.translate = [0.1, 0, -0.1] }]
 """
+LOADED = """
+format = 1
+bodies.block.geometry = { kind = "box", lower = [0, -1, 0], upper = [1, 1, 1] }
+bodies.block.mesh.elements = [2, 2, 1]
+contacts.floor = { slave = "block.w0", plane = { point = [0, 0, 0], normal = [0, 0, 1] }, friction = 0.3 }
+supports.top = { face = "block.w1", force.z = -0.5 }
+loads.wind = { face = "block.u0", pressure = 0.1 }
+stages = [{ name = "press", steps = 2, motions.top.translate = [0.05, 0, 0], loads.wind = 0.5 }]
+"""
 TURN = {"name": "back", "steps": 2, "motions": {"top": {"translate": [-0.1, 0.0, 0.0], "rotate": 10.0}}}
 
 
@@ -65,6 +74,7 @@ SCENES = {
     "augmentations": Scene.load("press", PRESS | {"solver.method": "uzawa"}),
     "the last state": Scene.load("press", PRESS | {"record.states": "last"}),
     "half": Scene.from_toml(HALF),
+    "loads": Scene.from_toml(LOADED),
 }
 
 

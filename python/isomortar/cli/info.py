@@ -133,8 +133,7 @@ def _contacts(results: isomortar.Results, last: StepResult) -> Iterator[ContactE
 
 def _supports(results: isomortar.Results, last: StepResult) -> Iterator[SupportEnd]:
     for support, reaction in zip(results.problem.supports, last.reactions, strict=True):
-        way = results.curve("displacement", support=support.name)[-1]
-        yield SupportEnd(support.name, *(tuple(map(float, vector)) for vector in (reaction.force, reaction.moment, way)))
+        yield SupportEnd(support.name, *(tuple(map(float, v)) for v in (reaction.force, reaction.moment, reaction.displacement)))
 
 
 def _loads(results: isomortar.Results, last: StepResult) -> Iterator[LoadEnd]:

@@ -48,8 +48,8 @@ def write_problem(group: h5py.Group, problem: Problem) -> None:
 
 
 def write_stages(group: h5py.Group, problem: Problem) -> None:
-    """Store the stages of a problem, and what supports do in them, in the place of fewer."""
-    for name in ("stages", "supports"):
+    """Store the stages of a problem, and what supports and loads do in them, in the place of fewer."""
+    for name in ("stages", "supports", "loads"):
         group.attrs[name] = _json(getattr(problem, name))
 
 
@@ -74,8 +74,10 @@ def read_problem(group: h5py.Group) -> Problem:
 def is_longer(stored: Problem, given: Problem) -> bool:
     """Whether a problem is another one with stages added at its end, and nothing else."""
     count = len(stored.stages)
-    supports = tuple(replace(support, motions=support.motions[:count]) for support in given.supports)
-    return len(given.stages) > count and not differences(stored, replace(given, stages=given.stages[:count], supports=supports))
+    supports = tuple(replace(s, motions=s.motions[:count], factors=s.factors[:count]) for s in given.supports)
+    loads = tuple(replace(load, factors=load.factors[:count]) for load in given.loads)
+    shorter = replace(given, stages=given.stages[:count], supports=supports, loads=loads)
+    return len(given.stages) > count and not differences(stored, shorter)
 
 
 def differences(stored: Problem, given: Problem) -> list[str]:

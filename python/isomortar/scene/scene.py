@@ -76,7 +76,7 @@ class Scene:
         return cls(text, "scene", Path(folder), overrides)
 
     def with_more_steps(self, *counts: int) -> Scene:
-        """The scene with a stage more for each count: so many load steps at the rate of its last stage.
+        """The scene with a stage more for each count: so many load steps at the rate of its last stage; loads and forces stay as they are.
 
         A run that is resumed with it goes on where the scene ended.
         """
