@@ -200,3 +200,12 @@ def test_what_loads_do_is_no_doubt() -> None:
     assert not [words for words in Simulation(Scene.from_toml(text).problem()).doubts() if "nothing will happen" in words]
     idle = text.replace("steps = 1 }", "steps = 1, loads.own = 0 }")
     assert [words for words in Simulation(Scene.from_toml(idle).problem()).doubts() if "nothing will happen" in words]
+
+
+def test_arrays_have_loads(tmp_path: Path) -> None:
+    with run(Scene.from_toml(GOOD), tmp_path / "run.h5") as results:
+        arrays = results.to_xarray()
+        for load in results.problem.loads:
+            for quantity in ("force", "moment"):
+                expected = results.curve(quantity, load=load.name)
+                np.testing.assert_array_equal(arrays[f"load_{quantity}"].sel(load=load.name), expected)

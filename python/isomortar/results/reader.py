@@ -210,9 +210,9 @@ class Results:
         return data_frame(self)
 
     def to_xarray(self) -> xarray.Dataset:
-        """All curves as arrays of xarray over load steps, supports or contacts, and components, with units and meanings.
+        """All curves as arrays of xarray over load steps, supports, contacts or loads, and components, with units and meanings.
 
-        For example ``results.to_xarray().force.sel(support="top", component="z")``.
+        For example ``results.to_xarray().force.sel(support="top", component="z")``; of loads, ``load_force``.
 
         Raises
         ------

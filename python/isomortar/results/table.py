@@ -75,8 +75,12 @@ def data_set(results: Results) -> xarray.Dataset:
     for name in layout.CONTACT if contacts else ():
         values = np.stack([results.curve(name, contact=contact) for contact in contacts], axis=1)
         arrays[name] = _array(layout.CONTACT[name], ("step", "contact"), values)
+    loads = [load.name for load in results.problem.loads]
+    for name in layout.LOAD if loads else ():
+        values = np.stack([results.curve(name, load=load) for load in loads], axis=1)
+        arrays[f"load_{name}"] = _array(layout.LOAD[name], ("step", "load"), values)
     places = {"step": results.steps, "time": ("step", results.curve("time")), "stage": ("step", np.array(results.stages, dtype=str))}
-    named = {"support": supports, "contact": contacts, "component": list(_COMPONENTS), "end": list(_ENDS)}
+    named = {"support": supports, "contact": contacts, "load": loads, "component": list(_COMPONENTS), "end": list(_ENDS)}
     used = {dimension for dimensions, *_ in arrays.values() for dimension in dimensions}
     places |= {name: names for name, names in named.items() if name in used}
     return xarray.Dataset(arrays, coords=places, attrs={"name": results.problem.name, "program_version": results.version})
