@@ -17,7 +17,7 @@ from isomortar.trade.want import Want
 class CheaperSearch(Search):
     """The cheapest variant of a scene within a loss of what is wanted; the scene as it is is the truth."""
 
-    def find_truth(self, target: float) -> None:  # noqa: ARG002
+    def find_truth(self, targets: Sequence[float]) -> None:  # noqa: ARG002
         """The scene as it is."""
         self.truth = self.rival = self.own
 

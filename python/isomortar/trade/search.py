@@ -21,8 +21,8 @@ RESOLVED = 3.0
 AIM = 0.9
 #: Another combination is tried where it should cost less than this share of the best one so far.
 WORTH = 0.9
-#: What changes the result by less than this share of the truth's own error is not what that comes from.
-SETTLED = 1.0 / 30.0
+#: What changes the result by less than this share of the error that the truth has, or may have for a target, is not what that comes from.
+SETTLED = 1.0 / 10.0
 #: Combinations that are tried for one target.
 TRIES = 12
 #: Share of the budget that over-refined runs may take.
@@ -118,29 +118,23 @@ class Search:
             singles += [self.single(number, setting) for setting in near if 0 <= setting < len(dial.settings)]
         self.laboratory.run([self.own.choice, *singles])
 
-    def find_truth(self, target: float) -> None:
-        """Two over-refined runs of other orders and other meshes, refined until they tell the target or half of the budget is spent.
+    def find_truth(self, targets: Sequence[float]) -> None:
+        """Two over-refined runs of other orders and other meshes, refined from the largest target to the smallest until they tell it.
+
+        They are as good as a target asks: what for 5 % spends nothing on load steps that change a thousandth may be enough for 1 % as well.
+        Ends where all is told or half of the budget is spent.
 
         Raises
         ------
         IsomortarError
             Such a run does not come to its end, or the two are one: nothing can be refined.
         """
-        for level in range(1, 1 + max(len(dial.settings) for dial in self.dials)):
-            pair = self._refined(1, level, 1), self._refined(2, max(0, level - 1), 2)
-            if self.truth and (pair[0] == self.truth.choice or self.laboratory.spent + sum(map(self._cost, pair)) > TRUTH * self.budget):
-                return
-            if pair[0] == pair[1]:
-                raise IsomortarError("nothing of the scene can be refined further, so that two runs cannot tell what the truth is")
-            truth, rival = self.laboratory.run(pair)
-            failed = [outcome for outcome in (truth, rival) if outcome.failure]
-            if failed and self.truth:
-                return
-            if failed:
-                raise IsomortarError(f"an over-refined run, which tells the truth, does not come to its end: {failed[0].failure}")
-            self.truth, self.rival = truth, rival
-            if RESOLVED * self.uncertainty <= target:
-                return
+        levels = iter(range(1, 1 + max(len(dial.settings) for dial in self.dials)))
+        for target in sorted(targets, reverse=True):
+            while self.truth is None or RESOLVED * self.uncertainty > target:
+                level = next(levels, None)
+                if level is None or not self._refine(level, target):
+                    return
 
     def answer(self, target: float) -> Recommendation:
         """The cheapest settings for a target, as a whole and by order."""
@@ -171,12 +165,28 @@ class Search:
     def _over(self) -> bool:
         return self.laboratory.spent > self.budget
 
-    def _refined(self, orders: int, meshes: int, last: int) -> Choice:
+    def _refine(self, level: int, target: float) -> bool:
+        """Run a pair of over-refined runs; whether they tell the truth better than the pair before."""
+        settled = self._settled(target)
+        pair = self._refined(settled, 1, level, 1), self._refined(settled, 2, max(0, level - 1), 2)
+        if self.truth and (pair[0] == self.truth.choice or self.laboratory.spent + sum(map(self._cost, pair)) > TRUTH * self.budget):
+            return False
+        if pair[0] == pair[1]:
+            raise IsomortarError("nothing of the scene can be refined further, so that two runs cannot tell what the truth is")
+        truth, rival = self.laboratory.run(pair)
+        failed = [outcome for outcome in (truth, rival) if outcome.failure]
+        if failed and self.truth:
+            return False
+        if failed:
+            raise IsomortarError(f"an over-refined run, which tells the truth, does not come to its end: {failed[0].failure}")
+        self.truth, self.rival = truth, rival
+        return True
+
+    def _refined(self, settled: set[int], orders: int, meshes: int, last: int) -> Choice:
         """Orders and meshes so many settings dearer than the scene's own; of all else that refines the dearest setting, or the last but.
 
         What is settled is not refined on: its mesh by one setting, all else by one or not at all.
         """
-        settled = self._settled()
 
         def setting(number: int, dial: Dial) -> int:
             if dial.part == "order":
@@ -189,11 +199,12 @@ class Search:
 
         return tuple(min(len(d.settings) - 1, setting(number, d)) for number, d in enumerate(self.dials))
 
-    def _settled(self) -> set[int]:
-        """Dials whose next dearer setting changes next to nothing of what is wanted, beside the truth's own error."""
-        if self.truth is None:
-            return set()
-        model, limit = self.model, SETTLED * self.uncertainty
+    def _settled(self, target: float) -> set[int]:
+        """Dials whose next dearer setting changes next to nothing of what is wanted, beside the error that the truth may have or has."""
+        known = self.truth or self.own
+        yardsticks = self.yardsticks if self.truth else [Yardstick(want, known, known) for want in self.wants]
+        limit = SETTLED * max(target / RESOLVED, *(yardstick.uncertainty for yardstick in yardsticks))
+        model = Model(self.dials, self.laboratory.own, self.laboratory.outcomes, yardsticks)
         dearer = {number: dial.own + 1 for number, dial in enumerate(self.dials) if dial.own + 1 in model.settings(number)}
         return {number for number, setting in dearer.items() if model.effect(number, setting) <= limit}
 
