@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from isomortar.errors import InputError
+from isomortar.geometry.elevation import elevated
 from isomortar.geometry.patch import MAX_ORDER, Direction, Family, FloatArray, Patch
 from isomortar.geometry.splines import Spline
 
@@ -103,19 +104,27 @@ def _check(patch: Patch, families: Sequence[Family], orders: Sequence[int], elem
 
 def _k_refined(patch: Patch, orders: Sequence[int], elements: Sequence[int]) -> Patch:
     """Order elevation, then knot insertion; a patch that needs neither stays as it is."""
-    raises = [axis for axis, own in enumerate(patch.directions) for _ in range(orders[axis] - own.order)]
     fresh = [np.setdiff1d(d.subdivided(n // d.elements), d.boundaries) for d, n in zip(patch.directions, elements, strict=True)]
-    if not raises and not any(map(len, fresh)):
+    plain = bool(np.all(patch.weights == 1.0))  # plain B-splines keep their weights of exactly 1
+    for axis, order in enumerate(orders):
+        for _ in range(order - patch.directions[axis].order):
+            patch = _elevated(patch, axis, plain)
+    if not any(map(len, fresh)):
         return patch
-    plain = np.all(patch.weights == 1.0)  # plain B-splines keep their weights of exactly 1
     spline = Spline(patch.directions, patch.control_points, None if plain else patch.weights)
-    if raises:
-        spline.elevate(raises)
     for axis, knots in enumerate(fresh):
         if len(knots):
             spline.insert(axis, knots)
     u, v, w = (Direction("N", order, knots) for order, knots in zip(orders, spline.knots, strict=True))
     return Patch((u, v, w), spline.control_points, spline.weights)
+
+
+def _elevated(patch: Patch, axis: int, plain: bool) -> Patch:
+    """The patch of the next order along an axis."""
+    raised, grid = elevated(patch.directions[axis], homogeneous(patch)[..., : 3 if plain else 4], axis)
+    u, v, w = (raised if number == axis else own for number, own in enumerate(patch.directions))
+    flat = grid.reshape(-1, grid.shape[-1], order="F")
+    return Patch((u, v, w), flat if plain else flat[:, :3] / flat[:, 3:], np.ones(len(flat)) if plain else flat[:, 3])
 
 
 def homogeneous(patch: Patch) -> FloatArray:

@@ -1,4 +1,4 @@
-"""B-splines and NURBS of any number of directions, by splinepy: evaluated, of a higher order, with more knots.
+"""B-splines and NURBS of any number of directions, by splinepy: evaluated, with more knots.
 
 Of splinepy the compiled module does all of that. It is loaded alone: the package brings SciPy's solvers and what fits, reads and draws
 splines, for which a small scene waited longer than for anything else.
@@ -60,10 +60,6 @@ class Spline:
     def evaluate(self, parameters: FloatArray) -> FloatArray:
         """Points at parameters of shape (k, directions), shape (k, m)."""
         return np.asarray(self._spline.evaluate(np.ascontiguousarray(parameters, dtype=np.float64), 1))
-
-    def elevate(self, axes: Sequence[int]) -> None:
-        """Raise the order by one along each direction that is named, as often as it is."""
-        self._spline.elevate_degrees(list(axes))
 
     def insert(self, axis: int, knots: FloatArray) -> None:
         """Add knots to a direction."""
