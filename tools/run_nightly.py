@@ -52,7 +52,8 @@ class Ending:
 
 PARTS = (
     Part("verification", ("verify", "--tier", "nightly"), Path("results/verification/report.html")),
-    Part("extremes", ("report", "extremes", "--tier", "nightly"), Path("results/extremes/report.html")),
+    Part("extremes", ("report", "extremes", "--tier", "nightly"), Path("results/verification/extremes.html")),
+    Part("published", ("report", "published"), Path("results/verification/published.html")),
     *(Part(f"orders-{s}", ("report", "orders", s), Path(f"results/orders-{s}/report.html")) for s in ("press", "twist", "iron", "tire")),
     Part("benchmarks", ("bench",), Path("results/bench/bench.html")),
 )

@@ -47,3 +47,4 @@ def test_parts_are_commands_that_there_are(nightly):
         shown = CliRunner().invoke(app, [*options[: 2 if options[0] == "report" else 1], "--help"])
         assert shown.exit_code == 0, part.command
         assert all(word in shown.output for word in part.arguments if word.startswith("--")), part.command
+        assert str(part.page.parent) in shown.output.replace("NAME", options[-1]), part.command
