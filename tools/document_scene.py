@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from string import ascii_lowercase
 from typing import Any
 
 from pages import Page
 
+from isomortar.model.entities import PLACES
 from isomortar.scene import json_schema
 
 PAGE = Path(__file__).parent.parent / "docs" / "scene.md"
@@ -15,7 +17,9 @@ _BEGIN, _END = "<!-- tables: python tools/document_scene.py -->\n", "<!-- end of
 #: Headings of the tables, in the order of the page.
 _HEADINGS = {
     "Material": "materials.NAME", "BodyTable": "bodies.NAME", "BoxTable": 'geometry, kind = "box"', "BowlTable": 'geometry, kind = "bowl"',
-    "RingTable": 'geometry, kind = "ring"', "PatchTable": "bodies.NAME.patch", "MeshTable": "bodies.NAME.mesh",
+    "CapTable": 'geometry, kind = "cap"', "WedgeTable": 'geometry, kind = "wedge"', "RingTable": 'geometry, kind = "ring"',
+    "SphereTable": 'geometry, kind = "sphere"', "TorusTable": 'geometry, kind = "torus"',
+    "PatchTable": "bodies.NAME.patch", "MeshTable": "bodies.NAME.mesh",
     "ContactTable": "contacts.NAME", "PlaneTable": "contacts.NAME.plane", "SupportTable": "supports.NAME",
     "ForceTable": "supports.NAME.force",
     "LoadTable": "loads.NAME", "StageTable": "stages",
@@ -82,7 +86,8 @@ def _single(entry: dict[str, Any]) -> str:
         entry.get("type", ""), "one for all"
     )
     if "pattern" in entry:
-        kind = "face" if "[uvw]" in entry["pattern"] else "name"
+        ends = re.search(r"\[uvw\]\[01\]\)?(?:\{(\d)\})?", entry["pattern"])
+        kind = PLACES[int(ends[1] or 1) - 1] if ends else "name"
     limits = {"minimum": "at least", "exclusiveMinimum": "more than", "exclusiveMaximum": "less than", "maximum": "at most"}
     return ", ".join([kind, *(f"{words} {entry[limit]:g}" for limit, words in limits.items() if limit in entry)])
 

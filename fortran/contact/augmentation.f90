@@ -109,7 +109,7 @@ contains
     response%multipliers%pressure = 0.0_wp
     response%pressure_slope = 0.0_wp
     do i = 1, size(whole)
-      if (control%weight(i) <= least_weight * whole(i) .or. .not. law%bears(i)) cycle
+      if (control%weight(i) <= least_weight * max(whole(i), 0.0_wp) .or. .not. law%bears(i)) cycle
       trial = law%pressure(i) + law%normal_penalty * control%gap(i) / control%weight(i)
       associate (pressure => response%multipliers%pressure(i))
         call positive_part(trial, law%normal_penalty * law%smoothing, pressure, share)

@@ -64,6 +64,18 @@ _LINEAR = PRESS.replace("[bodies.block]", '[materials.steel]\nlaw = "linear-elas
 
 _FLOOR = PRESS[PRESS.index("[contacts.floor]") : PRESS.index("[supports.top]")]
 
+#: A block on a dome, whose pole is where it touches, and a bowl with its pole there, of quadratic Lagrange elements.
+DOME = PAIR.replace(
+    'geometry = { kind = "box", lower = [-1, -1, -1], upper = [1, 1, 0] }\nmesh = { elements = [2, 2, 1] }',
+    'geometry = { kind = "sphere", centre = [0, 0, -1], inner = 0.5, outer = 1, latitudes = [0, 90] }\nmesh = { elements = [8, 1, 4] }',
+)
+DOME = DOME.replace("lower.w1", "lower.v1").replace("lower.w0", "lower.w1")
+HOLLOW = PAIR.replace(
+    'kind = "box", lower = [-0.4, -0.4, 0.0], upper = [0.4, 0.4, 0.6]',
+    'kind = "sphere", centre = [0, 0, 0.4], inner = 0.2, outer = 0.4, latitudes = [-90, 0]',
+)
+HOLLOW = HOLLOW.replace("upper.w0", "upper.v1").replace("upper.w1", "upper.w0")
+
 # Scene, what is replaced, by what, and words of the one warning.
 DOUBTFUL = {
     "overlap": (PRESS, "point = [0, 0, 0]", "point = [0, 0, 0.3]", "overlap by 0.3 at the start"),
@@ -103,6 +115,13 @@ DOUBTFUL = {
     "all rigid": (PRESS.replace(_FLOOR, ""), "[bodies.block]", "[bodies.block]\nrigid = true", "all bodies are rigid"),
     "ring that is not closed": (SLIT, "", "", "faces u0 and u1 lie on each other, but are not joined"),
     "both ways": (*UNUSUAL["both ways"], "are the same one, both ways"),
+    "pole under friction": (DOME, "", "", "the master lower.v1 has a pole, an edge that is one point, at (0, 0, 0)"),
+    "pole without area": (
+        HOLLOW,
+        "[2, 2, 1] }\n\n[bodies.lower]",
+        '[4, 1, 2], family = "L" }\n[bodies.lower]',
+        "the slave upper.v1 has a pole",
+    ),
 }
 
 

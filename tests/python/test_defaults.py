@@ -9,7 +9,7 @@ from pydantic import BaseModel
 from isomortar.geometry.patch import Direction
 from isomortar.geometry.quadrature import contact_points, volume_points
 from isomortar.model import constants, entities
-from isomortar.scene import Scene, schema
+from isomortar.scene import Scene, primitives, schema
 from isomortar.solve.record import StepResult
 from isomortar.solve.simulation import Simulation
 
@@ -50,13 +50,17 @@ ENTITIES = {
     "SolverSettings": SOLVER,
     "Problem": {"settings": SOLVER, "glue": (), "symmetry": (), "loads": ()},
 }
-_MESH = {"family": ("N", "N", "N"), "order": None, "contact_order": None, "elements": None, "quadrature": None}
+_MESH = {"family": ("N", "N", "N"), "order": None, "contact_order": None, "elements": None, "grading": (1.0, 1.0, 1.0), "quadrature": None}
+_ROUND = {"centre": (0.0, 0.0, 0.0), "angles": (0.0, 360.0)}
 _RECORD = {"states": "every", "curves": None}
 _FORCE = {"x": None, "y": None, "z": None}
 #: By table of a scene file that is none of these.
 TABLES = {
     "BowlTable": {"centre": (0.0, 0.0)},
-    "RingTable": {"centre": (0.0, 0.0, 0.0)},
+    "CapTable": {"centre": (0.0, 0.0)},
+    "RingTable": {**_ROUND, "axis": "y"},
+    "SphereTable": {**_ROUND, "inner": 0.0, "latitudes": (-90.0, 90.0), "axis": "z"},
+    "TorusTable": {**_ROUND, "inner": 0.0, "latitudes": (-180.0, 180.0), "axis": "z"},
     "PatchTable": {"family": ("N", "N", "N"), "weights": None},
     "MeshTable": _MESH,
     "BodyTable": {"material": None, "geometry": None, "file": None, "patch": None, "mesh": _MESH, "closed": None, "rigid": False},
@@ -73,7 +77,7 @@ TABLES = {
         "reference_area": None,
     },
     "ForceTable": _FORCE,
-    "SupportTable": {"components": None, "force": _FORCE, "centre": (0.0, 0.0, 0.0), "axis": (0.0, 0.0, 1.0)},
+    "SupportTable": {"face": None, "edge": None, "corner": None, "components": None, "force": _FORCE, "centre": (0.0, 0.0, 0.0), "axis": (0.0, 0.0, 1.0)},
     "LoadTable": {"face": None, "body": None, "pressure": None, "traction": None, "weight": None},
     "StageTable": {"motions": {}, "loads": {}},
     "CurveTable": {"quantity": "force", "component": "norm"},
@@ -117,7 +121,7 @@ def test_defaults_of_a_problem():
 
 def test_defaults_of_a_scene_file():
     found = {}
-    for table in own_classes(schema):
+    for table in (*own_classes(primitives), *own_classes(schema)):
         if issubclass(table, BaseModel):
             given = {name: field for name, field in table.model_fields.items() if not field.is_required()}
             found[table.__name__] = {name: plain(field.get_default(call_default_factory=True)) for name, field in given.items()}

@@ -13,15 +13,26 @@ from hypothesis import strategies as st
 from isomortar.errors import InputError
 from isomortar.geometry.files import read_spline
 from isomortar.geometry.patch import Direction, FloatArray, Patch
-from isomortar.geometry.primitives import bowl, box, ring
+from isomortar.geometry.primitives import bowl, box, cap, ring, sphere, torus, wedge
 from isomortar.geometry.quadrature import contact_points, volume_points
-from isomortar.geometry.refinement import mesh
+from isomortar.geometry.refinement import cut, mesh
 from isomortar.scene.geometry_file import read_geometry, write_geometry
 
 BOX = box((-1.0, 0.5, 2.0), (3.0, 1.0, 2.25))
 BOWL = bowl((0.6, -0.2), 0.375, 0.04, 0.25, 0.79)
 RING = ring((0.1, 0.2, 0.5), 0.25, 0.5, 0.3)
-PRIMITIVES = {"box": BOX, "bowl": BOWL, "ring": RING}
+PRIMITIVES = {
+    "box": BOX,
+    "bowl": BOWL,
+    "cap": cap((0.6, -0.2), 1.5, 0.9, 0.04, 2.0),
+    "wedge": wedge((-1.0, 1.0), (0.2, 0.2), (0.0, 2.0), (0.5, 1.5)),
+    "ring": RING,
+    "half-pipe": ring((0.1, 0.2, 0.5), 0.25, 0.5, 0.3, (-100.0, 80.0), "x"),
+    "cylinder": ring((0.1, 0.2, 0.5), 0.0, 0.5, 0.3, (20.0, 220.0), "z"),
+    "octant": sphere((0.0, 0.0, 1.0), 0.0, 1.0, (0.0, 90.0), (0.0, 90.0)),
+    "hemisphere": sphere((0.3, 0.0, 1.0), 0.6, 1.0, (-90.0, 90.0), (-180.0, 0.0), "x"),
+    "torus": torus((0.3, 0.1, 0.2), 2.0, 0.1, 0.5, (-170.0, 20.0), (10.0, 300.0), "y"),
+}
 
 
 def as_spline(patch: Patch) -> splinepy.NURBS:
@@ -74,17 +85,90 @@ def test_ring_is_exactly_round() -> None:
     np.testing.assert_allclose(quarters, np.array([[0, 0, 1], [1, 0, 0], [0, 0, -1], [-1, 0, 0], [0, 0, 1]]) * 0.5, atol=1e-16 * 4)
 
 
+def test_a_cap_has_a_sphere_below_and_a_flat_top() -> None:
+    spline = as_spline(PRIMITIVES["cap"])
+    u, v = np.meshgrid(np.linspace(0, 1, 7), np.linspace(0, 1, 7))
+    below, above = (spline.evaluate(np.stack([u, v, 0 * u + w], axis=-1).reshape(-1, 3)) - [0.6, -0.2, 1.54] for w in (0.0, 1.0))
+    np.testing.assert_allclose(np.linalg.norm(below, axis=1), 1.5, rtol=1e-15 * 8)
+    np.testing.assert_allclose(above, np.column_stack([below[:, :2], np.full(49, 0.46)]), rtol=0, atol=1e-15 * 4)
+    middles = spline.evaluate([[0.0, 0.5, 0.0], [1.0, 0.5, 0.0], [0.5, 0.0, 0.0], [0.5, 1.0, 0.0]]) - [0.6, -0.2, 0.0]
+    np.testing.assert_allclose(middles[:, :2], [[-0.9, 0.0], [0.9, 0.0], [0.0, -0.9], [0.0, 0.9]], atol=1e-15 * 4)
+    with pytest.raises(InputError, match="below 0.943 radius"):
+        cap((0.0, 0.0), 1.0, 0.95, 0.0, 3.0)
+
+
+def test_a_wedge_has_slopes_and_an_edge() -> None:
+    patch = PRIMITIVES["wedge"]
+    assert volume(patch) == pytest.approx(0.5 * 2.0 * 2.0 * 1.0, rel=1e-14)
+    edge = patch.control_points[patch.face_points("w1")]
+    np.testing.assert_array_equal(edge, [[0.2, 0.0, 1.5], [0.2, 0.0, 1.5], [0.2, 2.0, 1.5], [0.2, 2.0, 1.5]])
+
+
+@pytest.mark.parametrize("axis", ["x", "y", "z"])
+@pytest.mark.parametrize("angles", [(0.0, 90.0), (-30.0, 60.0), (-180.0, 0.0), (17.0, 150.0), (90.0, 271.0), (-200.0, 160.0)])
+def test_bodies_turned_about_an_axis_go_round_it_by_the_right_hand_rule(angles: tuple[float, float], axis: str) -> None:
+    up = "xyz".index(axis)
+    centre = np.array([0.1, 0.2, 0.3])
+    patch = sphere((0.1, 0.2, 0.3), 0.4, 0.9, (-50.0, 70.0), angles, axis)  # type: ignore[arg-type]
+    part = np.radians(angles[1] - angles[0]) * (np.sin(np.radians(70.0)) + np.sin(np.radians(50.0))) * (0.9**3 - 0.4**3) / 3.0
+    assert volume(patch) == pytest.approx(part, rel=1e-13)
+    ends = [d.boundaries[[0, -1]] for d in patch.directions]
+    grid = np.stack(np.meshgrid(*(np.linspace(*end, 9) for end in ends), indexing="ij"), axis=-1)
+    points = np.roll(as_spline(patch).evaluate(grid.reshape(-1, 3)) - centre, 2 - up, axis=1).reshape(9, 9, 9, 3)
+    np.testing.assert_allclose(np.linalg.norm(points[:, 0], axis=-1), 0.4, rtol=1e-14)
+    np.testing.assert_allclose(np.linalg.norm(points[:, -1], axis=-1), 0.9, rtol=1e-14)
+    for end, angle in ((0, angles[0]), (-1, angles[1])):
+        across = [-np.sin(np.radians(angle)), np.cos(np.radians(angle)), 0.0]
+        np.testing.assert_allclose(points[end] @ across, 0.0, atol=1e-14)
+        assert np.all(points[end, :, 4] @ [np.cos(np.radians(angle)), np.sin(np.radians(angle)), 0.0] > 0.0)
+    for end, latitude in ((0, 70.0), (-1, -50.0)):
+        np.testing.assert_allclose(points[:, -1, end, 2], 0.9 * np.sin(np.radians(latitude)), atol=1e-14)
+
+
+def test_arcs_up_to_half_a_circle_are_smooth() -> None:
+    for name, direction, smooth in (("hemisphere", 0, True), ("hemisphere", 2, True), ("cylinder", 0, False), ("ring", 0, False)):
+        assert PRIMITIVES[name].directions[direction].kinks != smooth
+    coarse = PRIMITIVES["hemisphere"]
+    at = np.array([[1.0 - 1e-9, 1.0, 0.3], [1.0 + 1e-9, 1.0, 0.3]])
+    slopes = as_spline(coarse).jacobian(at)[:, :, 0]
+    np.testing.assert_allclose(slopes[0], slopes[1], atol=1e-7)
+
+
+def test_axes_are_hit_exactly() -> None:
+    """What lies on planes of symmetry lies there to the last bit: poles are one point, and halves of the same are the same."""
+    patch = sphere((0.0, 0.0, 0.0), 0.0, 1.0, (0.0, 90.0), (0.0, 90.0))
+    for face, component in (("u0", 1), ("u1", 0), ("w1", 2)):
+        assert np.all(patch.control_points[patch.face_points(face), component] == 0.0)
+    assert np.ptp(patch.control_points[patch.face_points("v0")], axis=0).max() == 0.0
+    again = ring((0.0, 0.0, 0.0), 0.25, 0.5, 1.0, (360.0, 720.0))
+    assert np.array_equal(again.control_points, ring((0.0, 0.0, 0.0), 0.25, 0.5, 1.0).control_points)
+
+
+@pytest.mark.parametrize("ratio", [0.1, 0.5, 1.0, 7.0])
+def test_graded_elements_are_a_geometric_progression(ratio: float) -> None:
+    lengths = np.diff(cut(BOX.directions[0], 6, ratio))
+    np.testing.assert_allclose(lengths[1:] / lengths[:-1], ratio**0.2, rtol=1e-13)
+    assert lengths[-1] / lengths[0] == pytest.approx(ratio, rel=1e-13)
+    assert cut(BOX.directions[0], 1, ratio).tolist() == [0.0, 1.0]
+    spans = np.diff(cut(RING.directions[0], 12, ratio)).reshape(4, 3)  # four knot spans: their knots stay
+    np.testing.assert_allclose(spans.sum(axis=1), 1.0, rtol=1e-14)
+    np.testing.assert_allclose(spans[:, 1:] / spans[:, :-1], ratio ** (1 / 11), rtol=1e-13)
+
+
 @settings(max_examples=40, deadline=None)
 @given(
     name=st.sampled_from(sorted(PRIMITIVES)),
     raises=st.tuples(*[st.integers(0, 4)] * 3),
     parts=st.tuples(*[st.integers(1, 4)] * 3),
+    grading=st.tuples(*[st.floats(0.2, 5.0)] * 3),
 )
-def test_k_refinement_leaves_the_geometry_unchanged(name: str, raises: tuple[int, ...], parts: tuple[int, ...]) -> None:
+def test_k_refinement_leaves_the_geometry_unchanged(
+    name: str, raises: tuple[int, ...], parts: tuple[int, ...], grading: tuple[float, ...]
+) -> None:
     coarse = PRIMITIVES[name]
     orders = [d.order + more for d, more in zip(coarse.directions, raises, strict=True)]
     elements = [d.elements * n for d, n in zip(coarse.directions, parts, strict=True)]
-    fine = mesh(coarse, "NNN", orders, elements)
+    fine = mesh(coarse, "NNN", orders, elements, grading)
     assert [d.order for d in fine.directions] == orders
     assert [d.elements for d in fine.directions] == elements
     np.testing.assert_allclose(evaluate(fine), evaluate(coarse), rtol=0, atol=1e-13 * np.abs(coarse.control_points).max())

@@ -53,13 +53,58 @@ motions.top.rotate = 10
 max_cuts = 4
 """
 
+_BOWL = 'geometry = { kind = "bowl", half_width = 0.5, bottom = 0.1, rise = 0.2, top = 1.0 }'
+
 # What is replaced, by what, the field that the error names, and a part of its text.
 CASES = {
     "version": ("format = 1", "format = 2", "format", "is 2; allowed: 1"),
     "unknown key": ("steps = 3", "step = 3", "stages.press.step", "unknown key; allowed here: steps, name, motions"),
     "unknown table": ("[solver]", "[solvers]", "solvers", "unknown key; allowed here: solver, "),
     "unknown key of a primitive": ("rise = 0.2", "raise = 0.2", "bodies.upper.geometry.raise", "rise, kind, centre, half_width"),
-    "unknown primitive": ('kind = "bowl"', 'kind = "ball"', "bodies.upper.geometry.kind", "is 'ball'; allowed: 'box', 'bowl', 'ring'"),
+    "unknown primitive": ('kind = "bowl"', 'kind = "ball"', "bodies.upper.geometry.kind", "is 'ball'; allowed: 'box', 'bowl', 'cap'"),
+    "half a turn too far": (
+        _BOWL,
+        'geometry = { kind = "sphere", outer = 1, angles = [0, 400] }',
+        "bodies.upper.geometry.angles",
+        "up to 360 degrees",
+    ),
+    "no interval": (
+        _BOWL,
+        'geometry = { kind = "sphere", outer = 1, latitudes = 90 }',
+        "bodies.upper.geometry.latitudes",
+        "a list of 2 numbers",
+    ),
+    "coarse grading": (
+        "elements = [2, 2, 1]",
+        "grading = 1e-4",
+        "bodies.upper.mesh.grading",
+        "is 0.0001; allowed: greater than or equal to 0.001",
+    ),
+    "no place": (
+        '[supports.base]\nface = "lower.w0"',
+        "[supports.base]",
+        "supports.base",
+        "has no place; allowed: exactly one of face, edge, corner",
+    ),
+    "two places": (
+        'face = "lower.w0"',
+        'face = "lower.w0"\nedge = "lower.u0.w0"',
+        "supports.base",
+        "has face and edge; allowed: exactly one of",
+    ),
+    "no edge": (
+        'face = "lower.w0"',
+        'edge = "lower.u0.u1"',
+        "supports.base.edge",
+        "allowed: BODY.FACE.FACE with faces that meet, such as lower.u0.w1",
+    ),
+    "half a corner": ('face = "lower.w0"', 'corner = "lower.u0.w1"', "supports.base.corner", "such as lower.u0.v0.w1"),
+    "edge of a face that is not": (
+        'face = "lower.w0"',
+        'edge = "lower.u0.w2"',
+        "supports.base.edge",
+        "is 'lower.w2', but lower has no face 'w2'",
+    ),
     "missing": ('name = "turn"\n', "", "stages.1.name", "is missing, but must be given"),
     "not a number": ("young = 10.0", 'young = "hard"', "materials.rubber.young", "is 'hard'; allowed: a valid number"),
     "Young": ("young = 10.0", "young = 0", "materials.rubber.young", "is 0; allowed: greater than 0"),

@@ -10,7 +10,7 @@ from isomortar.geometry.patch import Direction, FloatArray
 def elevated(direction: Direction, grid: FloatArray, axis: int) -> tuple[Direction, FloatArray]:
     """A direction of the next order, and the control values that it takes along an axis of a grid; each distinct knot is there once more.
 
-    A control value is the mean of the blossom's over all knots but one of those that belong to it (theory 2.13).
+    A control value is the mean of the blossom's over all knots but one of those that belong to it (theory 2.17).
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def elevated(direction: Direction, grid: FloatArray, axis: int) -> tuple[Directi
 
 
 def _blossom(direction: Direction, control: FloatArray, span: int, arguments: FloatArray) -> FloatArray:
-    """The blossom of the polynomial between knots `span` and `span` + 1, by de Boor's algorithm with a parameter a level (theory 2.13)."""
+    """The blossom of the polynomial between knots `span` and `span` + 1, by de Boor's algorithm with a parameter a level (theory 2.17)."""
     knots, order = direction.knots, direction.order
     values = control[span - order : span + 1]
     for level, argument in enumerate(arguments, start=1):

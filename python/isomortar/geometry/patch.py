@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, reduce
 from typing import Literal
 
 import numpy as np
@@ -12,6 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 from isomortar.errors import InputError
 
 Family = Literal["N", "L"]
+#: Directions in which a body meets itself: one, or two of a torus.
+Closed = Literal["u", "v", "w", "uv", "uw", "vw"]
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int32]
 
@@ -203,6 +206,10 @@ class Patch:
         if face[0] == "v":  # the two others in cyclic order are (w, u), np.take leaves (u, w)
             layer = layer.T
         return layer.ravel(order="F")
+
+    def common_points(self, faces: Iterable[str]) -> IntArray:
+        """Numbers of the control points that are on all of some faces, ascending: of a face, an edge or a corner."""
+        return reduce(np.intersect1d, map(self.face_points, faces), np.arange(np.prod(self.shape), dtype=np.int32))
 
     def face_directions(self, face: str) -> tuple[Direction, Direction]:
         """The two surface directions of a face, in the order of its surface coordinates."""

@@ -12,7 +12,13 @@ from isomortar.geometry.patch import MAX_ORDER, Direction, Family, FloatArray, P
 from isomortar.geometry.splines import Spline
 
 
-def mesh(patch: Patch, families: Sequence[Family], orders: Sequence[int], elements: Sequence[int]) -> Patch:
+def mesh(
+    patch: Patch,
+    families: Sequence[Family],
+    orders: Sequence[int],
+    elements: Sequence[int],
+    grading: Sequence[float] = (1.0, 1.0, 1.0),
+) -> Patch:
     """Discretise a NURBS geometry.
 
     An ``N`` direction is k-refined: order elevation first, knot insertion second; the geometry does not change.
@@ -27,8 +33,10 @@ def mesh(patch: Patch, families: Sequence[Family], orders: Sequence[int], elemen
     orders : three ints
         Not below the geometry's own in an ``N`` direction.
     elements : three ints
-        Elements by direction. Each knot span of the geometry is cut into equal parts, so that they must be a
+        Elements by direction. Each knot span of the geometry is cut into as many, so that they must be a
         multiple of its number of spans.
+    grading : three floats
+        By direction the length of the last element over that of the first, in the parameter (theory 2.16).
 
     Returns
     -------
@@ -43,13 +51,16 @@ def mesh(patch: Patch, families: Sequence[Family], orders: Sequence[int], elemen
     refined = _k_refined(
         patch,
         [p if family == "N" else own.order for family, p, own in zip(families, orders, patch.directions, strict=True)],
-        [n if family == "N" else own.elements for family, n, own in zip(families, elements, patch.directions, strict=True)],
+        [
+            cut(d, n, g) if family == "N" else d.boundaries
+            for family, d, n, g in zip(families, patch.directions, elements, grading, strict=True)
+        ],
     )
     directions = list(refined.directions)
     grid = homogeneous(refined)
     for axis in (a for a in range(3) if families[a] == "L"):
         source = directions[axis]
-        directions[axis] = Direction("L", orders[axis], source.subdivided(elements[axis] // source.elements))
+        directions[axis] = Direction("L", orders[axis], cut(source, elements[axis], grading[axis]))
         grid = _evaluated(source, grid, axis, directions[axis].greville)
     weights = grid[..., 3]
     points = grid[..., :3] / weights[..., None]
@@ -74,7 +85,19 @@ def raised_along(patch: Patch, face: str, order: int) -> Patch:
         families = "" if all(direction.family == "N" for direction in along) else ", of NURBS"
         raise InputError(f"is {order} along {face}; allowed there{families}: {lowest} to {MAX_ORDER['N']}")
     orders = [d.order if axis == face[0] else max(order, d.order) for axis, d in zip("uvw", patch.directions, strict=True)]
-    return _k_refined(patch, orders, [direction.elements for direction in patch.directions])
+    return _k_refined(patch, orders, [direction.boundaries for direction in patch.directions])
+
+
+def cut(direction: Direction, elements: int, grading: float) -> FloatArray:
+    """Element boundaries of a direction cut into elements, as many in each knot span, shape (elements + 1,) (theory 2.16)."""
+    parts = elements // direction.elements
+    if grading == 1.0:
+        return direction.subdivided(parts)
+    lengths = grading ** (np.arange(elements) / max(1, elements - 1)).reshape(-1, parts)
+    ends = np.cumsum(lengths, axis=1)
+    shares = (ends - lengths) / ends[:, -1:]
+    inside = direction.boundaries[:-1, None] + np.diff(direction.boundaries)[:, None] * shares
+    return np.append(inside, direction.boundaries[-1])
 
 
 def _evaluated(direction: Direction, grid: FloatArray, axis: int, parameters: FloatArray) -> FloatArray:
@@ -102,9 +125,9 @@ def _check(patch: Patch, families: Sequence[Family], orders: Sequence[int], elem
             raise InputError(f"is {count} in direction {name}; allowed there: multiples of {own.elements}", "elements")
 
 
-def _k_refined(patch: Patch, orders: Sequence[int], elements: Sequence[int]) -> Patch:
-    """Order elevation, then knot insertion; a patch that needs neither stays as it is."""
-    fresh = [np.setdiff1d(d.subdivided(n // d.elements), d.boundaries) for d, n in zip(patch.directions, elements, strict=True)]
+def _k_refined(patch: Patch, orders: Sequence[int], boundaries: Sequence[FloatArray]) -> Patch:
+    """Order elevation, then knot insertion at element boundaries; a patch that needs neither stays as it is."""
+    fresh = [np.setdiff1d(wanted, d.boundaries) for d, wanted in zip(patch.directions, boundaries, strict=True)]
     plain = bool(np.all(patch.weights == 1.0))  # plain B-splines keep their weights of exactly 1
     for axis, order in enumerate(orders):
         for _ in range(order - patch.directions[axis].order):

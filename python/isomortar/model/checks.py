@@ -254,7 +254,7 @@ def _touch(problem: Problem, contact: Contact) -> bool:
 
 def _check_agreement(problem: Problem, numbering: Numbering, one: Support, other: Support) -> None:
     """Two supports may share control points only where they prescribe the same, and neither by a force."""
-    first, second = (numbering.face_points(problem.body(s.place.body), s.place.face) for s in (one, other))
+    first, second = (numbering.points_at(problem.body(s.place.body), s.place) for s in (one, other))
     shared = np.intersect1d(first, second)
     for pressed, beside in ((one, other), (other, one)) if len(shared) else ():
         both = sorted(set(pressed.pressed) & {*beside.components, *beside.pressed})

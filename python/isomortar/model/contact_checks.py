@@ -8,6 +8,7 @@ import numpy as np
 
 from isomortar.errors import InputError
 from isomortar.geometry.net import Net
+from isomortar.geometry.patch import FloatArray
 from isomortar.model.constants import SAME_POINT
 from isomortar.model.entities import Contact, Face, Problem, RigidPlane
 from isomortar.model.messages import located
@@ -198,10 +199,16 @@ def _check_subcells(contact: Contact) -> None:
         )
 
 
+def poles(sheet: Sheet) -> list[tuple[int, FloatArray]]:
+    """Edges of a sheet's face that are one point: which of its coordinates (0, 1) ends there, and the point, shape (3,)."""
+    grid = Net.of(sheet.patch, sheet.face).points
+    edges = ((1, grid[0]), (1, grid[-1]), (0, grid[:, 0]), (0, grid[:, -1]))
+    return [(across, edge[0]) for across, edge in edges if float(np.ptp(edge, axis=0).max()) <= SAME_POINT * sheet.size]
+
+
 def has_pole(sheet: Sheet) -> bool:
     """Whether an edge of a sheet's face is one point."""
-    grid = Net.of(sheet.patch, sheet.face).points
-    return any(float(np.ptp(edge, axis=0).max()) <= SAME_POINT * sheet.size for edge in (grid[0], grid[-1], grid[:, 0], grid[:, -1]))
+    return bool(poles(sheet))
 
 
 def _check_area(problem: Problem, contact: Contact, found: Stance) -> None:

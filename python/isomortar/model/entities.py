@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from isomortar._arrays import FRICTION_LAWS, LAWS, FrictionArrays, MaterialArrays, MaterialLaw
-from isomortar.geometry.patch import FloatArray, Patch
+from isomortar.geometry.patch import Closed, FloatArray, Patch
 from isomortar.model.values import TABLE, Count, Point, Positive, Real
 
 #: How a slave point finds its point on a face of its master: the closest one, or along the averaged normal.
@@ -66,7 +66,7 @@ class Body:
     """A body: one volume patch with its material.
 
     `quadrature` are Gauss points per element and direction. `closed` names the direction ("u", "v", "w")
-    whose last row of control points is the same unknown as the first (a ring), or is None.
+    whose last row of control points is the same unknown as the first (a ring), or two of them (a torus), or is None.
     A `rigid` one does not deform: all of its control points go where its support does, or stand still; it needs no material.
     `raised`: its functions are of the patch's order at a face alone (theory 2.12).
     """
@@ -75,7 +75,7 @@ class Body:
     patch: Patch
     material: Material
     quadrature: tuple[int, int, int]
-    closed: Literal["u", "v", "w"] | None = None
+    closed: Closed | None = None
     rigid: bool = False
     raised: Raised | None = None
 
@@ -96,6 +96,10 @@ class Body:
         return float(np.ptp(self.patch.control_points, axis=0).max())
 
 
+#: What one face of a body is, two that meet, and three.
+PLACES = ("face", "edge", "corner")
+
+
 @dataclass(frozen=True)
 class Face:
     """A face of a body: a contact patch, or the place of a support."""
@@ -109,9 +113,14 @@ class Face:
         return (self,)
 
     @property
+    def meeting(self) -> tuple[str, ...]:
+        """Names of the faces of its body on all of which its points are."""
+        return (self.face,)
+
+    @property
     def words(self) -> str:
         """As scene files name it."""
-        return ", ".join(f"{face.body}.{face.face}" for face in self.faces)
+        return ", ".join(".".join((face.body, *face.meeting)) for face in self.faces)
 
 
 @dataclass(frozen=True)
@@ -124,6 +133,18 @@ class Faces(Face):
     def faces(self) -> tuple[Face, ...]:
         """The single faces that it is of."""
         return (Face(self.body, self.face), *self.beside)
+
+
+@dataclass(frozen=True)
+class Edge(Face):
+    """Where a face meets one or two `others` of its body, in an edge or a corner: the place of a support."""
+
+    others: tuple[str, ...]
+
+    @property
+    def meeting(self) -> tuple[str, ...]:
+        """Names of the faces of its body on all of which its points are."""
+        return (self.face, *self.others)
 
 
 @dataclass(frozen=True)
@@ -205,14 +226,14 @@ class Motion:
 
 @dataclass(frozen=True)
 class Support:
-    """Prescribed control points of a face: x = c + u(t) + R(axis, angle(t)) (X - c) in the given components.
+    """Prescribed control points of a face, an edge or a corner: x = c + u(t) + R(axis, angle(t)) (X - c) in the given components.
 
     `motions` has one entry a stage. u and angle accumulate over the stages. A component with a `force` is none of the `components`: there
     u(t) is what makes the support exert that force, times its factor at the end of each stage (`factors`; none: 1).
     """
 
     name: str
-    place: Face
+    place: Edge | Face
     motions: tuple[Motion, ...]
     components: tuple[int, ...] = (0, 1, 2)
     centre: tuple[float, float, float] = (0.0, 0.0, 0.0)

@@ -82,6 +82,10 @@ class Numbering:
         """Global numbers of the control points of a face, in the order of its net, shape (n2 * n1,)."""
         return self.points[body.name][body.patch.face_points(face)]
 
+    def points_at(self, body: Body, place: Face) -> IntArray:
+        """Global numbers of the control points of a face, an edge or a corner of a body, ascending, each once."""
+        return np.unique(self.points[body.name][body.patch.common_points(place.meeting)])
+
     def of_patch(self, body: str, field: FloatArray) -> FloatArray:
         """A field at the control points of a body's patch, from all control points, shape (control points of the patch, ...)."""
         if body in self.rows:
@@ -107,13 +111,13 @@ def patch_arrays(patch: Patch, points: IntArray) -> PatchArrays:
 
 
 def same_points(patch: Patch, closed: str | None) -> IntArray:
-    """For each control point of a patch the first one that is the same: across a ring's seam, and on a line that is one point.
+    """For each control point of a patch the first one that is the same: across the seams of a ring, and on a line that is one point.
 
     Such a line is on the body's faces, as round the pole of a sphere: its points are one, or the body would open there.
     """
     first = np.arange(len(patch.weights), dtype=np.int32)
-    if closed is not None:
-        first[patch.face_points(closed + "1")] = patch.face_points(closed + "0")
+    for axis in closed or "":
+        first[patch.face_points(axis + "1")] = first[patch.face_points(axis + "0")]
     size = np.linalg.norm(np.ptp(patch.control_points, axis=0))
     numbers = np.arange(len(first), dtype=np.int32).reshape(patch.shape[::-1])
     for axis in range(3):
@@ -137,15 +141,14 @@ def check_closed(body: Body) -> None:
     InputError
         Its first and last control points, or their weights, differ.
     """
-    if body.closed is None:
-        return
-    apart = ends_apart(body.patch, body.closed)
-    first, last = (body.patch.weights[body.patch.face_points(body.closed + end)] for end in "01")
-    if apart > constants.SAME_POINT * body.size or not np.allclose(first, last, rtol=constants.SAME_POINT):
-        raise InputError(
-            f"is {body.closed!r}, but the first and last control points along {body.closed} differ (by {apart:g}, or in their weights)",
-            f"bodies.{body.name}.closed",
-        )
+    for axis in body.closed or "":
+        apart = ends_apart(body.patch, axis)
+        first, last = (body.patch.weights[body.patch.face_points(axis + end)] for end in "01")
+        if apart > constants.SAME_POINT * body.size or not np.allclose(first, last, rtol=constants.SAME_POINT):
+            raise InputError(
+                f"is {body.closed!r}, but the first and last control points along {axis} differ (by {apart:g}, or in their weights)",
+                f"bodies.{body.name}.closed",
+            )
 
 
 def check_raised(body: Body) -> None:

@@ -14,7 +14,7 @@ def rigid_rank(problem: Problem, piece: tuple[Body, ...]) -> int:
     centre, size = together.mean(axis=0), np.ptp(together, axis=0).max()
     for support in (s for s in problem.supports if s.place.body in {body.name for body in piece}):
         patch = problem.body(support.place.body).patch
-        arms = (patch.control_points[patch.face_points(support.place.face)] - centre) / size
+        arms = (patch.control_points[patch.common_points(support.place.meeting)] - centre) / size
         for component in support.components:
             direction = np.zeros_like(arms)
             direction[:, component] = 1.0

@@ -59,7 +59,7 @@ class Sheet:
     def of_face(cls, body: Body, face: str) -> Sheet:
         """The sheet of a single face."""
         net = Net.of(body.patch, face)
-        first, second = (letter == body.closed for letter in net.letters)
+        first, second = (letter in (body.closed or "") for letter in net.letters)
         tile = _Tile(0, body, face, net)
         return _sheet([[tile]], tile, (body,), (first, second))
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model import constants
-from isomortar.model.entities import Body, Problem, Stage, Support, unit
+from isomortar.model.entities import Body, Face, Problem, Stage, Support, unit
 from isomortar.model.numbering import Numbering
 
 BoolArray = NDArray[np.bool_]
@@ -41,11 +41,9 @@ def moved_by(support: Support, shares: FloatArray) -> tuple[FloatArray, float]:
     return shift, sum(share * motion.rotate for share, motion in parts)
 
 
-def _carried(body: Body, face: str, numbering: Numbering) -> IntArray:
-    """Control points that a support on a face of a body prescribes."""
-    if body.rigid:
-        return numbering.whole(body)
-    return np.unique(numbering.face_points(body, face))
+def _carried(body: Body, place: Face, numbering: Numbering) -> IntArray:
+    """Control points that a support at a place of a body prescribes."""
+    return numbering.whole(body) if body.rigid else numbering.points_at(body, place)
 
 
 @dataclass(frozen=True)
@@ -81,7 +79,7 @@ class Supports:
     held : ndarray of bool, shape (control points, 3)
         Components that are prescribed.
     points : list of ndarray of int
-        Control points of each support: those of its face, or of the whole of a rigid body with all that is glued to it.
+        Control points of each support: those of its face, edge or corner, or of the whole of a rigid body with all that is glued to it.
     shares : list of ndarray, shapes (control points of the support, 3)
         What each support bears of the forces at its control points: nothing of a component that it leaves free, equal parts of one that
         several supports prescribe.
@@ -90,7 +88,7 @@ class Supports:
     def __init__(self, problem: Problem, numbering: Numbering) -> None:
         self._problem = problem
         self._numbering = numbering
-        self.points: list[IntArray] = [_carried(problem.body(s.place.body), s.place.face, numbering) for s in problem.supports]
+        self.points: list[IntArray] = [_carried(problem.body(s.place.body), s.place, numbering) for s in problem.supports]
         unknowns = [self._unknowns(k) for k in range(len(problem.supports))]
         self.plates = tuple(
             Plate(k, component, self.points[k], float(support.force[component] or 0.0) / problem.images)

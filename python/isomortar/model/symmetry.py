@@ -11,7 +11,7 @@ from isomortar.errors import InputError
 from isomortar.geometry.halves import upper_half
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
-from isomortar.model.entities import Body, Face, Motion, Problem, RigidPlane, Support, SymmetryPlane, unit
+from isomortar.model.entities import PLACES, Body, Face, Motion, Problem, RigidPlane, Support, SymmetryPlane, unit
 from isomortar.model.messages import located
 
 #: A face of a body that a plane has cut.
@@ -69,7 +69,7 @@ def _upper_half(body: Body, plane: SymmetryPlane) -> tuple[Body, str]:
         if body.raised:
             raise InputError("is halved by symmetry, and its functions are of another order at a face; remove one", "mesh.contact_order")
         half, face = upper_half(body.patch, plane.axis, plane.place)
-        if body.closed == face[0]:
+        if face[0] in (body.closed or ""):
             raise InputError(f"is closed in {face[0]}, the direction that {plane.words} halves; allowed: planes that cut another one")
     return replace(body, patch=half), face
 
@@ -119,7 +119,8 @@ def _check_faces(problem: Problem, cuts: tuple[Cut, ...]) -> None:
 def _faces_in_use(problem: Problem) -> Iterator[tuple[str, Face]]:
     """Faces of supports, loads, contacts and glue with the keys that name them."""
     for support in problem.supports:
-        yield f"supports.{support.name}.face", support.place
+        key = PLACES[len(support.place.meeting) - 1]
+        yield from ((f"supports.{support.name}.{key}", Face(support.place.body, face)) for face in support.place.meeting)
     for load in problem.loads:
         if load.face is not None:
             yield f"loads.{load.name}.face", load.place

@@ -200,7 +200,7 @@ def add_body(
         Faces that are not drawn: what is glued to them hides them.
     """
     for name in FACES:
-        if name[0] == body.closed or name in inside:
+        if name[0] in (body.closed or "") or name in inside:
             continue  # the two ends of a ring are inside it
         numbers = body.patch.face_points(name)
         directions = body.patch.face_directions(name)

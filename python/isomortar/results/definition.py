@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import json
 from dataclasses import fields, is_dataclass, replace
-from typing import Any, Literal
+from typing import Any
 
 import h5py
 import numpy as np
 from pydantic import TypeAdapter
 
-from isomortar.geometry.patch import Direction, Patch
+from isomortar.geometry.patch import Closed, Direction, Patch
 from isomortar.model.entities import Body, Contact, Face, Load, Material, Problem, Raised, SolverSettings, Stage, Support, SymmetryPlane
 from isomortar.results.layout import CONTROL_POINTS, KNOTS, WEIGHTS, Quantity
 
@@ -33,7 +33,7 @@ _BODY: dict[str, Any] = {
     "name": str,
     "material": Material,
     "quadrature": tuple[int, int, int],
-    "closed": Literal["u", "v", "w"] | None,
+    "closed": Closed | None,
     "rigid": bool,
     "raised": Raised | None,
 }

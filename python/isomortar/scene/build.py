@@ -14,8 +14,10 @@ from isomortar.model import constants
 from isomortar.model.contact_checks import has_pole
 from isomortar.model.enforcement.integration import integrated
 from isomortar.model.entities import (
+    PLACES,
     Body,
     Contact,
+    Edge,
     Face,
     Faces,
     Load,
@@ -38,6 +40,8 @@ from isomortar.scene.types import listed
 
 #: Scenes above this number of unknowns are taken for mistakes: their factorisation would not fit a large machine.
 MAX_UNKNOWNS = 5_000_000
+#: Examples of faces that meet.
+_MEETING = {"edge": "u0.w1", "corner": "u0.v0.w1"}
 
 
 def build(scene: SceneTable, name: str, folder: Path) -> Problem:
@@ -95,13 +99,14 @@ def coarse_patch(name: str, table: BodyTable, folder: Path) -> Patch:
 
 
 class _MeshPlan:
-    """Families, orders and numbers of elements that a body is to have, with the defaults filled in."""
+    """Families, orders, numbers and grading of elements that a body is to have, with the defaults filled in."""
 
     def __init__(self, table: MeshTable, own: tuple[Direction, ...], lowest_order: int) -> None:
         self.asked_for = bool(table.model_fields_set - {"quadrature"}) or lowest_order > 1
         self.families = table.family if "family" in table.model_fields_set else tuple(d.family for d in own)
         self.orders = table.order or tuple(max(d.order, lowest_order) for d in own)
         self.elements = table.elements or tuple(d.elements for d in own)
+        self.grading = table.grading
 
     @classmethod
     def of(cls, table: BodyTable, coarse: Patch) -> _MeshPlan:
@@ -128,7 +133,7 @@ def _body(name: str, table: BodyTable, coarse: Patch, plan: _MeshPlan, scene: Sc
     patch, raised = coarse, None
     if plan.asked_for:
         with located(f"bodies.{name}.mesh"):
-            patch = mesh(coarse, plan.families, plan.orders, plan.elements)
+            patch = mesh(coarse, plan.families, plan.orders, plan.elements, plan.grading)
     below = patch.directions
     if table.mesh.contact_order:
         raised = Raised(_face_in_contact(scene, name), (below[0].order, below[1].order, below[2].order))
@@ -165,11 +170,24 @@ def _face(text: str, bodies: dict[str, Body], field: str) -> Face:
     body, _, face = text.rpartition(".")
     if body not in bodies:
         raise InputError(f"is {text!r}, but there is no body {body!r}; allowed: BODY.FACE with BODY one of {listed(body, bodies)}", field)
-    faces = [f for f in FACES if f[0] != bodies[body].closed]
+    faces = [f for f in FACES if f[0] not in (bodies[body].closed or "")]
     if face not in faces:
         closed = f" ({body} is closed in {bodies[body].closed})" if face in FACES else ""
         raise InputError(f"is {text!r}, but {body} has no face {face!r}{closed}; allowed: {', '.join(faces)}", field)
     return Face(body, face)
+
+
+def _place(table: SupportTable, bodies: dict[str, Body], field: str) -> Edge | Face:
+    """Where a support is."""
+    key, text = next((key, text) for key in PLACES if (text := getattr(table, key)) is not None)
+    if key == "face":
+        return _face(text, bodies, f"{field}.face")
+    body, *names = text.split(".")
+    faces = [_face(f"{body}.{name}", bodies, f"{field}.{key}") for name in names]
+    if not len(faces) == len({name[0] for name in names}) == 1 + PLACES.index(key):
+        form = ".".join(["BODY", *["FACE"] * (1 + PLACES.index(key))])
+        raise InputError(f"is {text!r}; allowed: {form} with faces that meet, such as {body}.{_MEETING[key]}", f"{field}.{key}")
+    return Edge(body, names[0], tuple(names[1:]))
 
 
 def _joint(faces: tuple[str, str], bodies: dict[str, Body], field: str) -> tuple[Face, Face]:
@@ -238,7 +256,7 @@ def _unit(vector: tuple[float, float, float], path: str) -> tuple[float, float, 
 
 
 def _support(name: str, table: SupportTable, bodies: dict[str, Body], motions: tuple[Motion, ...], factors: tuple[float, ...]) -> Support:
-    place = _face(table.face, bodies, f"supports.{name}.face")
+    place = _place(table, bodies, f"supports.{name}")
     force = (table.force.x, table.force.y, table.force.z)
     given = [axis for axis, size in zip("xyz", force, strict=True) if size is None] if table.components is None else table.components
     components = tuple(sorted("xyz".index(axis) for axis in given))

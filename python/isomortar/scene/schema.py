@@ -6,25 +6,26 @@ import ast
 import inspect
 from itertools import pairwise
 from textwrap import dedent
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field, StrictBool, TypeAdapter, field_validator, model_validator
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import PydanticCustomError, core_schema
 
-from isomortar.geometry.patch import Direction, Family, Patch
-from isomortar.geometry.primitives import bowl, box, ring
-from isomortar.model.entities import Enforcement, Material, Motion, Projection, SolverSettings
+from isomortar.geometry.patch import Closed, Direction, Family, Patch
+from isomortar.model.entities import PLACES, Enforcement, Material, Motion, Projection, SolverSettings
 from isomortar.model.values import Count, Point, Positive, Real
+from isomortar.scene.primitives import Primitive
 from isomortar.scene.types import (
-    Axis,
+    CornerName,
+    EdgeName,
     FaceName,
     GaussPoints,
+    Grading,
     Name,
     PerDirection,
     PerSurfaceDirection,
-    PlanePoint,
     Side,
     Table,
     entity,
@@ -34,61 +35,6 @@ from isomortar.scene.types import (
 MaterialTable = Annotated[Material, entity(Material)]
 MotionTable = Annotated[Motion, entity(Motion)]
 SolverTable = Annotated[SolverSettings, entity(SolverSettings)]
-
-
-class BoxTable(Table):
-    """Axis-parallel box; u, v, w run along x, y, z."""
-
-    closed: ClassVar[Axis | None] = None
-    kind: Literal["box"]
-    lower: Point
-    """Corner with the smallest coordinates."""
-    upper: Point
-    """Corner with the largest coordinates."""
-
-    def patch(self) -> Patch:
-        """The coarse geometry."""
-        return box(self.lower, self.upper)
-
-
-class BowlTable(Table):
-    """Block with a flat top and a paraboloid below; u, v, w run along x, y, z."""
-
-    closed: ClassVar[Axis | None] = None
-    kind: Literal["bowl"]
-    centre: PlanePoint = (0.0, 0.0)
-    """Middle of the square, [x, y]."""
-    half_width: Positive
-    """Half the side of the square."""
-    bottom: Real
-    """Height z of the lowest point."""
-    rise: Real
-    """By how much the mid-edges of the underside are higher; its corners by twice that."""
-    top: Real
-    """Height z of the flat top."""
-
-    def patch(self) -> Patch:
-        """The coarse geometry."""
-        return bowl(self.centre, self.half_width, self.bottom, self.rise, self.top)
-
-
-class RingTable(Table):
-    """Ring about the y-axis; u runs round it (closed), v outwards, w along -y."""
-
-    closed: ClassVar[Axis | None] = "u"
-    kind: Literal["ring"]
-    centre: Point = (0.0, 0.0, 0.0)
-    """Centre of the ring."""
-    inner: Positive
-    """Inner radius: face v0."""
-    outer: Positive
-    """Outer radius: face v1."""
-    width: Positive
-    """Extent along y."""
-
-    def patch(self) -> Patch:
-        """The coarse geometry."""
-        return ring(self.centre, self.inner, self.outer, self.width)
 
 
 class PatchTable(Table):
@@ -118,11 +64,13 @@ class MeshTable(Table):
     family: PerDirection[Family] = ("N", "N", "N")
     """N: NURBS by k-refinement. L: Lagrange elements with their nodes on the geometry."""
     order: PerDirection[Count] | None = None
-    """Polynomial order; default: 2 for box, bowl and ring, else the geometry's own."""
+    """Polynomial order; default: 2 for primitives, else the geometry's own."""
     contact_order: Count | None = None
     """Order along the body's one face in contact in the row of control points there, above `order` and no smoother; default: `order`."""
     elements: PerDirection[Count] | None = None
     """Elements; a multiple of the geometry's knot spans; default: these."""
+    grading: PerDirection[Grading] = (1.0, 1.0, 1.0)
+    """Length of the last element over that of the first, from each to the next by the same factor: below 1 finer towards the end."""
     quadrature: PerDirection[GaussPoints] | None = None
     """Gauss points per volume element; default by family and order (Table 1 of the paper; above 5: order + 2), above contact_order."""
 
@@ -132,16 +80,16 @@ class BodyTable(Table):
 
     material: str | None = None
     """Name of a material; default: the only one there is, or the paper's."""
-    geometry: Annotated[BoxTable | BowlTable | RingTable, Field(discriminator="kind")] | None = None
-    """A primitive: kind = "box", "bowl" or "ring" with its dimensions."""
+    geometry: Annotated[Primitive, Field(discriminator="kind")] | None = None
+    """A primitive: kind = "box", "bowl", "cap", "wedge", "ring", "sphere" or "torus" with its dimensions."""
     file: str | None = None
     """A geometry file: .toml (keys of patch) or a volume spline that splinepy reads; relative to the scene file."""
     patch: PatchTable | None = None
     """Knots, control points and weights."""
     mesh: MeshTable = MeshTable()
     """Discretisation."""
-    closed: Axis | None = None
-    """Direction whose last row of control points is the first one again; a ring is closed by itself."""
+    closed: Closed | None = None
+    """Direction whose last row of control points is the first one again, or two of a torus; primitives are closed by themselves."""
     rigid: StrictBool = False
     """Does not deform: goes as a whole with the support on one of its faces, or stands still; has no material and no unknowns."""
 
@@ -225,10 +173,14 @@ class ForceTable(Table):
 
 
 class SupportTable(Table):
-    """Prescribed control points of a face; without motion they are fixed."""
+    """Prescribed control points of a face, an edge or a corner; without motion they are fixed."""
 
-    face: FaceName
+    face: FaceName | None = None
     """BODY.FACE"""
+    edge: EdgeName | None = None
+    """BODY.FACE.FACE: the row of control points where two faces meet, instead of face."""
+    corner: CornerName | None = None
+    """BODY.FACE.FACE.FACE: the control point where three faces meet, instead of face."""
     components: Annotated[tuple[Literal["x", "y", "z"], ...], Field(min_length=1)] | None = None
     """Prescribed components; default: all without a force."""
     force: ForceTable = ForceTable()
@@ -246,6 +198,14 @@ class SupportTable(Table):
                 "moment", "has a moment, but a plate turns by motions alone; allowed: force, and motions of its name with rotate"
             )
         return data
+
+    @model_validator(mode="after")
+    def _one_place(self) -> SupportTable:
+        given = [key for key in PLACES if getattr(self, key) is not None]
+        if len(given) != 1:
+            facts = {"given": " and ".join(given) or "no place"}
+            raise PydanticCustomError("place", "has {given}; allowed: exactly one of face, edge, corner", facts)
+        return self
 
     @model_validator(mode="after")
     def _either_motion_or_force(self) -> SupportTable:

@@ -59,17 +59,20 @@ def _spread(count: int) -> Callable[[Any], Any]:
     return spread
 
 
+Grading = Annotated[Real, Field(ge=1e-3, le=1e3)]
 GaussPoints = Annotated[int, Strict(), Field(ge=1, le=64)]
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+$")]
 FaceName = Annotated[str, Field(json_schema_extra={"pattern": r"^[A-Za-z0-9_-]+\.[uvw][01]$"})]
+EdgeName = Annotated[str, Field(json_schema_extra={"pattern": r"^[A-Za-z0-9_-]+(\.[uvw][01]){2}$"})]
+CornerName = Annotated[str, Field(json_schema_extra={"pattern": r"^[A-Za-z0-9_-]+(\.[uvw][01]){3}$"})]
 #: A side of a contact: a face, or several.
 Side = Annotated[
     tuple[FaceName, ...],
     Field(min_length=1),
     BeforeValidator(lambda value: (value,) if isinstance(value, str) else value, json_schema_input_type=FaceName | list[FaceName]),
 ]
-Axis = Literal["u", "v", "w"]
 
+Interval = Annotated[tuple[Real, Real], coordinates(2)]
 PlanePoint = Annotated[tuple[Real, Real], coordinates(2)]
 #: One value a parametric direction; a single value stands for all three.
 PerDirection = Annotated[tuple[T, T, T], BeforeValidator(_spread(3), json_schema_input_type=T | tuple[T, T, T])]

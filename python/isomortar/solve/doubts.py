@@ -22,6 +22,7 @@ from isomortar.model.sheet import Sheet
 from isomortar.model.stance import Stance, stance
 from isomortar.model.supports import Supports
 from isomortar.solve.feet import gaps
+from isomortar.solve.poles import doubts_at_poles
 from isomortar.solve.record import State
 
 #: An overlap of less than this share of the thinner body may be round-off of the geometry; what is more is told.
@@ -70,6 +71,7 @@ def doubts(problem: Problem, state: State) -> Iterator[str]:
         too_deep = _too_deep(problem, contact, state.positions, feet) if found.depth > 0.0 else 0
         yield from _of_stance(contact, found, travel, too_deep, beside=not np.any(feet))
         yield from _of_contact(problem, contact)
+        yield from doubts_at_poles(problem, contact, travel)
     for one, other in combinations(problem.contacts, 2):
         if (one.slave, one.master) == (other.master, other.slave):
             yield (
@@ -157,7 +159,7 @@ def _pushed_in(problem: Problem) -> Iterator[str]:
 def _seam(body: Body) -> Iterator[str]:
     """Opposite faces that lie on each other and are not joined."""
     for axis in "uvw":
-        if axis != body.closed and ends_apart(body.patch, axis) <= constants.SAME_POINT * body.size:
+        if axis not in (body.closed or "") and ends_apart(body.patch, axis) <= constants.SAME_POINT * body.size:
             yield (
                 f"body {body.name!r}: faces {axis}0 and {axis}1 lie on each other, but are not joined, and will part; "
                 f'bodies.{body.name}.closed = "{axis}" joins them'

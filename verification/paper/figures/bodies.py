@@ -74,7 +74,12 @@ def _values(problem: Problem, record: StepResult, field: Field | None) -> _Value
     if field is None:
         return {}
     points = body_points(problem, record.state.positions)
-    return {(b.name, face): _face_values(b, points[b.name], face, field) for b in problem.bodies for face in FACES if face[0] != b.closed}
+    return {
+        (b.name, face): _face_values(b, points[b.name], face, field)
+        for b in problem.bodies
+        for face in FACES
+        if face[0] not in (b.closed or "")
+    }
 
 
 def _face_values(body: Body, points: FloatArray, face: str, field: Field) -> FloatArray:
