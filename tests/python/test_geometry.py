@@ -93,7 +93,7 @@ def test_a_cap_has_a_sphere_below_and_a_flat_top() -> None:
     np.testing.assert_allclose(above, np.column_stack([below[:, :2], np.full(49, 0.46)]), rtol=0, atol=1e-15 * 4)
     middles = spline.evaluate([[0.0, 0.5, 0.0], [1.0, 0.5, 0.0], [0.5, 0.0, 0.0], [0.5, 1.0, 0.0]]) - [0.6, -0.2, 0.0]
     np.testing.assert_allclose(middles[:, :2], [[-0.9, 0.0], [0.9, 0.0], [0.0, -0.9], [0.0, 0.9]], atol=1e-15 * 4)
-    with pytest.raises(InputError, match="below 0.943 radius"):
+    with pytest.raises(InputError, match=r"below 0\.943 radius"):
         cap((0.0, 0.0), 1.0, 0.95, 0.0, 3.0)
 
 

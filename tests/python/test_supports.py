@@ -8,6 +8,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
+from isomortar.errors import InputError
 from isomortar.model.entities import Motion, Problem, RigidPlane, unit
 from isomortar.model.held import Held, held_by
 from isomortar.model.numbering import Numbering
@@ -31,6 +32,41 @@ def test_small_turns_keep_their_digits():
     # about a skew axis the product of its components comes with 1 - cos, 5e-19 here, of which a difference from one keeps nothing
     turned = rotation(unit((1.0, 1.0, 0.0)), 1e-9)
     np.testing.assert_allclose(turned[0, 1], 0.25e-18, rtol=1e-12)
+
+
+def test_a_support_is_on_a_face_an_edge_or_a_corner() -> None:
+    """Whichever face is named first; of a rigid body it carries the whole."""
+    block = """
+format = 1
+bodies.block = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }, mesh = { order = 2, elements = [2, 3, 1] } }
+supports.foot.face = "block.w0"
+supports.side.PLACE
+stages = [{ name = "one", steps = 1 }]
+"""
+    for place, where in {
+        'face = "block.u1"': (1.0, None, None),
+        'edge = "block.u1.w1"': (1.0, None, 1.0),
+        'edge = "block.v0.u1"': (1.0, 0.0, None),
+        'corner = "block.w1.u0.v1"': (0.0, 1.0, 1.0),
+    }.items():
+        problem = Scene.from_toml(block.replace("PLACE", place)).problem()
+        numbering = Numbering(problem)
+        there = [numbering.reference[:, k] == x for k, x in enumerate(where) if x is not None]
+        assert np.array_equal(Supports(problem, numbering).points[1], np.flatnonzero(np.all(there, axis=0)))
+        assert problem.supports[1].place.words == place.split('"')[1]
+    rigid = Scene.from_toml(
+        block.replace('supports.foot.face = "block.w0"\n', "").replace("PLACE", place), overrides=["bodies.block.rigid=true"]
+    )
+    assert len(Supports(rigid.problem(), Numbering(rigid.problem())).points[0]) == len(numbering.reference)
+
+
+def test_an_edge_beside_a_plane_of_symmetry_is_refused() -> None:
+    text = CUBE.replace('side.face = "cube.u0"', 'side = { edge = "cube.v0.w1", components = ["z"] }').replace(
+        "order = [1, 1, 1]", "elements = 2"
+    )
+    assert len(Scene.from_toml(text, overrides=["symmetry={ x = 0.5 }"]).problem().supports) == 3
+    with pytest.raises(InputError, match=r"supports\.side\.edge: is 'cube\.v0', a face beside the plane y = 0\.5"):
+        Scene.from_toml(text, overrides=["symmetry={ y = 0.5 }"]).problem()
 
 
 #: A cube of eight control points; "side" holds four of them, two of these on the contact face.

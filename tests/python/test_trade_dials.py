@@ -37,6 +37,18 @@ def test_the_area_of_a_trade_is_the_wholes(tmp_path: Path) -> None:
     np.testing.assert_allclose(areas[1], areas[0], rtol=0.05)  # cells are counted, of which a part has more
 
 
+def test_other_elements_are_graded_as_the_scenes_own() -> None:
+    scene = Scene.from_toml(PLANE, overrides=["bodies.block.mesh.grading=[1, 1, 4]"])
+    dials = dials_of(scene, knobs=[knob for knob in KNOBS if knob.name in ("elements", "order")])
+    upwards = next(dial for dial in dials if dial.name == "elements of block along w")
+    for setting in upwards.settings:
+        lengths = np.diff(changed(scene, [setting]).problem().body("block").patch.directions[2].boundaries)
+        np.testing.assert_allclose(lengths[-1] / lengths[0], 4.0 if len(lengths) > 1 else 1.0, rtol=1e-12)
+    assert len(upwards.settings) > 2
+    order = next(dial for dial in dials if dial.name == "order of block")
+    assert all(changed(scene, [setting]).tables.bodies["block"].mesh.grading == (1.0, 1.0, 4.0) for setting in order.settings)
+
+
 def test_the_order_at_the_contact_is_a_knob() -> None:
     scene = Scene.from_toml(RAISED.replace("elements = [2, 2, 1], contact_order = 3", "elements = [2, 2, 1]"))
     (dial,) = dials_of(scene, knobs=[knob for knob in KNOBS if knob.name == "contact order"])

@@ -7,8 +7,8 @@ from geometry.bodies import BODIES, refined
 from patch_tests.bulk import GRADIENT, MATERIAL, SHIFT
 
 from isomortar import _bindings
-from isomortar.geometry.patch import FACES, IntArray
 from isomortar.geometry.faces import cells
+from isomortar.geometry.patch import FACES, IntArray
 from isomortar.harness import LAGRANGE, NURBS, Bound, case
 from isomortar.model.numbering import patch_arrays, same_points
 

@@ -1,4 +1,4 @@
-"""The built-in bodies beside their exact shapes, in coordinates of their own: whole and in part, solid and hollow, with and without poles."""
+"""The built-in bodies beside their exact shapes in coordinates of their own: whole, in part, solid, hollow, with poles and without."""
 
 from __future__ import annotations
 
@@ -159,7 +159,7 @@ BODIES = {
 
 @cache
 def refined(body: str, kind: str, grading: float = 1.0) -> Patch:
-    """A body in that discretisation where it is of that order or more, with two elements for each of its own; graded along all directions."""
+    """A body of that kind, or of its own order where that is higher, with two elements for each of its own; graded along all directions."""
     patch = BODIES[body].patch
     family, order = kind[0], int(kind[1:])
     orders = [order if family == "L" else max(order, d.order) for d in patch.directions]

@@ -11,7 +11,8 @@ from isomortar.scene import Scene
 _SCENE = """
 format = 1
 bodies.body = {{ geometry = {{ {geometry} }}, mesh = {{ {mesh} }} }}
-bodies.base = {{ geometry = {{ kind = "box", lower = [-1.1, -1, -1], upper = [1, 1.2, 0] }}, mesh = {{ order = [2, 2, 1], elements = [4, 4, 1] }} }}
+bodies.base.geometry = {{ kind = "box", lower = [-1.1, -1, -1], upper = [1, 1.2, 0] }}
+bodies.base.mesh = {{ order = [2, 2, 1], elements = [4, 4, 1] }}
 contacts.between = {{ slave = "body.{slave}", master = "base.w1", friction = 0.3, quadrature = 4, projection = "{projection}" }}
 supports.base.face = "base.w0"
 supports.top = {{ face = "body.{top}", axis = [0, 0, 1] }}

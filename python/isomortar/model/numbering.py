@@ -8,7 +8,7 @@ from isomortar._bindings import PatchArrays
 from isomortar.errors import InputError
 from isomortar.geometry.patch import FloatArray, IntArray, Patch
 from isomortar.model import constants
-from isomortar.model.entities import Body, Problem
+from isomortar.model.entities import Body, Face, Problem
 from isomortar.model.glue import pieces, shared_points
 from isomortar.model.raised import Rows
 

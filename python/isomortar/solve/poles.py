@@ -13,14 +13,14 @@ from isomortar.model.sheet import Sheet
 
 
 def doubts_at_poles(problem: Problem, contact: Contact, travel: float) -> Iterator[str]:
-    """Poles that friction may meet, no prescribed point going farther than `travel`, and poles of a slave that bear nothing."""
+    """Poles that friction may meet, where no prescribed point goes farther than `travel`, and those of a slave that bear nothing."""
     slave = Sheet.of(problem, contact.slave)
     if isinstance(contact.master, Face) and contact.friction_law.acts:
         yield from _met_by_friction(contact.name, slave, Sheet.of(problem, contact.master), contact.master.words, travel)
     if contact.of_averages and any(slave.directions[k].family == "L" and slave.directions[k].order % 2 == 0 for k, _ in poles(slave)):
         yield (
-            f"contact {contact.name!r}: the slave {contact.slave.words} has a pole, where Lagrange functions of order 2 and 4 have no area: "
-            "the pole itself bears no pressure. Take another order there, or family N"
+            f"contact {contact.name!r}: the slave {contact.slave.words} has a pole, where Lagrange functions of order 2 and 4 have no "
+            "area: the pole itself bears no pressure. Take another order there, or family N"
         )
 
 

@@ -71,7 +71,7 @@ def bowl(centre: tuple[float, float], half_width: float, bottom: float, rise: fl
 def cap(centre: tuple[float, float], radius: float, half_width: float, bottom: float, top: float) -> Patch:
     """Block with a flat top and a part of a sphere below; u, v, w run along x, y, z. One bi-quadratic by linear element (theory 2.15).
 
-    The underside is the stereographic image of a square round the lowest point, nowhere singular, with arcs for sides; columns are vertical.
+    The underside is the stereographic image of a square round the lowest point: nowhere singular, its sides arcs. Columns are vertical.
 
     Parameters
     ----------
