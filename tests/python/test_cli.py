@@ -65,7 +65,7 @@ def assert_same(one: StepResult, other: StepResult) -> None:
 #: A block pressed down, and contacts of its faces.
 SQUEEZED = """
 format = 1
-bodies.block = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }, mesh = { order = [2, 2, 2], elements = [1, 1, 1] } }
+bodies.block = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }, mesh = { order = [2, 2, 2], elements = [2, 2, 2] } }
 supports = { top.face = "block.w1", base = { face = "block.v0", components = ["y"] } }
 """
 PLANES = [("w0", "point = [0, 0, 0]"), ("u0", "point = [0, 0, 0], normal = [1, 0, 0]")]

@@ -15,4 +15,4 @@ def test_nearest_cells_are_those_of_a_tree(points: int, others: int, away: float
     """In one go and in parts, near the origin and far from it."""
     random = np.random.default_rng(0)
     some, more = random.random((points, 3)) + away, random.random((others, 3)) + away
-    np.testing.assert_array_equal(stance._nearest(some, more), KDTree(more).query(some)[1])
+    np.testing.assert_array_equal(stance.nearest(some, more), KDTree(more).query(some)[1])

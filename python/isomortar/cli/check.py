@@ -58,9 +58,10 @@ def lines(found: Outlook) -> Iterator[str]:
 def _body(body: BodyOutlook) -> str:
     kinds = " x ".join(f"{family}{order}" for family, order in zip(body.family, body.order, strict=True))
     weights = "" if body.weights[0] == body.weights[1] else f", weights {body.weights[0]:.3g} to {body.weights[1]:.3g}"
+    free = f"; supports leave {_many(body.left_free, 'rigid motion')} to contacts" if body.left_free else ""
     return (
         f"body {body.name}: {body.law}, {_by(body.size)} in size; {_by(body.elements)} elements of {kinds}, {body.shortest:.3g} to "
-        f"{body.longest:.3g} long, {_many(body.control_points, 'control point')}{weights}"
+        f"{body.longest:.3g} long, {_many(body.control_points, 'control point')}{weights}{free}"
     )
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from isomortar.geometry.faces import Cells, cells
 from isomortar.geometry.patch import FloatArray, IntArray
-from isomortar.model.entities import Contact, Face, Problem, RigidPlane
+from isomortar.model.entities import Contact, Face, Problem, RigidPlane, unit
 from isomortar.model.remembered import remembered
 from isomortar.model.sheet import Sheet
 
@@ -38,6 +38,8 @@ class Stance:
         What the slave would have to pass through: the thinner body, there.
     behind : bool
         The middle of the slave's body lies behind a plane.
+    towards : ndarray, shape (3,)
+        From slave to master, where they are nearest.
     """
 
     slave_area: float
@@ -47,6 +49,7 @@ class Stance:
     gap: float
     thickness: float
     behind: bool
+    towards: FloatArray
 
 
 @remembered
@@ -65,31 +68,35 @@ def _cells_of(problem: Problem, place: Face) -> Cells:
 
 
 def _on_plane(points: FloatArray, slave: Cells, plane: RigidPlane) -> Stance:
-    normal = np.asarray(plane.normal)
+    normal = unit(plane.normal)
     heights = (points - plane.point) @ normal
     thickness = np.full(len(slave.areas), np.ptp(heights))
     cosines = slave.normals @ normal
     above = (slave.centres - plane.point) @ normal
     depth, thick = _deepest(cosines, above, thickness)
     gap = max(float(above.min()), 0.0)
-    return Stance(float(slave.areas.sum()), np.inf, float(cosines.min()), depth, gap, thick, bool(heights.max() + heights.min() < 0.0))
+    return Stance(
+        float(slave.areas.sum()), np.inf, float(cosines.min()), depth, gap, thick, bool(heights.max() + heights.min() < 0.0), -normal
+    )
 
 
 def _on_face(slave: Cells, master: Cells) -> Stance:
-    nearest = _nearest(slave.centres, master.centres)
-    normals, arms = master.normals[nearest], slave.centres - master.centres[nearest]
+    found = nearest(slave.centres, master.centres)
+    normals, arms = master.normals[found], slave.centres - master.centres[found]
     distances = np.linalg.norm(arms, axis=1)
     cosines = np.einsum("ij,ij->i", slave.normals, normals)
     heights = np.einsum("ij,ij->i", arms, normals)
-    beside = np.linalg.norm(arms - heights[:, None] * normals, axis=1) > np.sqrt(2.0 * master.areas[nearest])
-    thickness = np.minimum(slave.thickness, master.thickness[nearest])
+    beside = np.linalg.norm(arms - heights[:, None] * normals, axis=1) > np.sqrt(2.0 * master.areas[found])
+    thickness = np.minimum(slave.thickness, master.thickness[found])
     depth, thick = _deepest(cosines, np.where(beside, np.inf, heights), thickness)
     cosine = float(_product(_some(slave.normals), _some(master.normals).T).min())
-    gap = 0.0 if depth > 0.0 else max(float((distances - np.sqrt(2.0 * master.areas[nearest])).min()), 0.0)
-    return Stance(float(slave.areas.sum()), float(master.areas.sum()), cosine, depth, gap, thick, False)
+    apart = np.where(beside, distances - np.sqrt(2.0 * master.areas[found]), heights)
+    closest = int(np.argmin(np.where(cosines < FACING, apart, np.inf)))
+    gap = 0.0 if depth > 0.0 else max(float(apart.min()), 0.0)
+    return Stance(float(slave.areas.sum()), float(master.areas.sum()), cosine, depth, gap, thick, False, -normals[closest])
 
 
-def _nearest(points: FloatArray, others: FloatArray) -> IntArray:
+def nearest(points: FloatArray, others: FloatArray) -> IntArray:
     """Numbers of the others that are nearest to each point, by all distances: SciPy's tree takes a tenth of a second to load."""
     middle = others.mean(axis=0)
     points, others = points - middle, others - middle  # far from the origin squares would have lost their differences

@@ -12,16 +12,19 @@ from isomortar import _bindings
 from isomortar.errors import FoldedElementError
 from isomortar.geometry.patch import MAX_ORDER, FloatArray, IntArray
 from isomortar.model import constants
+from isomortar.model.contact_checks import SAME_WAY
 from isomortar.model.contrasts import element_lengths
-from isomortar.model.entities import Body, Contact, Face, Problem, RigidPlane, Support, unit
+from isomortar.model.entities import Body, Contact, Face, Problem, RigidPlane
 from isomortar.model.memory import memory_needed, memory_of_machine
 from isomortar.model.numbering import Numbering, ends_apart
 from isomortar.model.pairs import Pair
 from isomortar.model.rational import QUADRATURE_TOLD, quadrature_error, too_few_points
-from isomortar.model.sheet import Sheet
-from isomortar.model.stance import Stance, stance
-from isomortar.model.supports import Supports
+from isomortar.model.stance import FACING, Stance, stance
+from isomortar.solve.doubtful_meshes import of_meshes
+from isomortar.solve.doubtful_motions import FLAT, approach, between, in_far_steps, nearest_approach, of_motions
+from isomortar.solve.doubtful_sizes import of_sizes
 from isomortar.solve.feet import gaps
+from isomortar.solve.left_out import of_what_is_left_out
 from isomortar.solve.poles import doubts_at_poles
 from isomortar.solve.record import State
 
@@ -58,10 +61,10 @@ def doubts(problem: Problem, state: State) -> Iterator[str]:
         yield from _weights(body)
     if not problem.deformable:
         yield "all bodies are rigid: nothing deforms, and all forces are zero. Let one of them deform"
-    for support in problem.supports:
-        yield from _far_steps(problem, support)
-        yield from _idle_motions(problem, support)
-    yield from _pushed_in(problem)
+    yield from of_motions(problem)
+    yield from of_meshes(problem)
+    yield from of_sizes(problem)
+    yield from of_what_is_left_out(problem)
     stances = [stance(problem, contact) for contact in problem.contacts]
     travel = _travel(problem)
     presses = any(contact.smoothing for contact in problem.contacts) or any(_overlaps(found) for found in stances)
@@ -70,6 +73,7 @@ def doubts(problem: Problem, state: State) -> Iterator[str]:
     for contact, found, feet in zip(problem.contacts, stances, (contact.projected for contact in state.contacts), strict=True):
         too_deep = _too_deep(problem, contact, state.positions, feet) if found.depth > 0.0 else 0
         yield from _of_stance(contact, found, travel, too_deep, beside=not np.any(feet))
+        yield from _of_ways(problem, contact, found, beside=not np.any(feet))
         yield from _of_contact(problem, contact)
         yield from doubts_at_poles(problem, contact, travel)
     for one, other in combinations(problem.contacts, 2):
@@ -111,49 +115,6 @@ def _weights(body: Body) -> Iterator[str]:
             yield too_few_points(body, error, QUADRATURE_TOLD)
     except FoldedElementError as folded:
         yield f"body {body.name!r}: between its Gauss points {folded}; look at its weights and at its control points"
-
-
-def _far_steps(problem: Problem, support: Support) -> Iterator[str]:
-    size = problem.body(support.place.body).size
-    for stage, motion in zip(problem.stages, support.motions, strict=True):
-        step = float(np.linalg.norm(motion.translate)) / stage.steps
-        if step > size:
-            yield (
-                f"support {support.name!r} moves by {step:.3g} in each load step of stage {stage.name!r}, and its body is {size:.3g} long. "
-                "Take more load steps; or are the units not the same?"
-            )
-
-
-def _idle_motions(problem: Problem, support: Support) -> Iterator[str]:
-    """Translations along what a support leaves free."""
-    for stage, motion in zip(problem.stages, support.motions, strict=True):
-        idle = [axis for k, axis in enumerate("xyz") if motion.translate[k] and k not in support.components]
-        if idle:
-            held = ", ".join("xyz"[k] for k in support.components)
-            yield (
-                f"support {support.name!r} is to move along {', '.join(idle)} in stage {stage.name!r}, but prescribes only {held}: "
-                "that motion does nothing"
-            )
-
-
-def _pushed_in(problem: Problem) -> Iterator[str]:
-    """Slave control points that supports put behind a rigid plane: they cannot give way."""
-    numbering = Numbering(problem)
-    supports = Supports(problem, numbering)
-    for contact in problem.contacts:
-        if isinstance(contact.master, RigidPlane):
-            sheet, normal = Sheet.of(problem, contact.slave), unit(contact.master.normal)
-            points = np.unique(sheet.points(numbering)[sheet.patch.face_points(sheet.face)])
-            points = points[np.all(supports.held[points] | (np.abs(normal) < constants.NO_PART), axis=1)]
-            ends = np.cumsum([stage.steps for stage in problem.stages])
-            depths = [-((supports.place(float(end))[points] - contact.master.point) @ normal).min(initial=np.inf) for end in ends]
-            if max(depths, default=0.0) > constants.NO_PART * sheet.size:
-                stage = problem.stages[int(np.argmax(depths))].name
-                yield (
-                    f"contact {contact.name!r}: supports put {len(points)} of its slave control points behind the plane, by "
-                    f"{max(depths):.3g} at the end of stage {stage!r}, and those cannot give way. Hold fewer components, or end the motion "
-                    "at the plane"
-                )
 
 
 def _seam(body: Body) -> Iterator[str]:
@@ -208,6 +169,38 @@ def _of_stance(contact: Contact, found: Stance, travel: float, too_deep: int, be
         yield (
             f"contact {contact.name!r}: the slave face is {ratio:.3g} times as large as the master face. Are the bodies given "
             "in the same unit of length?"
+        )
+
+
+def _of_ways(problem: Problem, contact: Contact, found: Stance, beside: bool) -> Iterator[str]:
+    """How the faces of a contact look at each other, and where motions bring them."""
+    if beside:
+        return
+    if FACING < found.cosine <= SAME_WAY and not any(support.turns for support in problem.supports):
+        yield (
+            f"contact {contact.name!r}: no part of {contact.slave.words} looks at its master, and nothing in the scene turns it. Name the "
+            "face that looks at the master"
+        )
+        return
+    way, nearest = approach(problem, contact, found.towards), nearest_approach(problem, contact)
+    far = any(in_far_steps(problem, support, number) for support in problem.supports for number in range(len(problem.stages)))
+    if way is None or nearest is None or far:
+        return
+    if nearest < 0.0 and found.depth == 0.0 and not contact.smoothing:
+        yield (
+            f"contact {contact.name!r}: motions take its sides away from each other, and nothing brings them back. Look at the signs of "
+            "the motions"
+        )
+    elif found.gap > 2.0 * nearest > 0.0 and found.gap <= 2.0 * _travel(problem):
+        yield (
+            f"contact {contact.name!r} is {found.gap:.3g} apart at the start, and motions bring its sides nearer by {nearest:.3g}: it "
+            "cannot close. Check places, motions and units"
+        )
+    elif way - found.gap > FLAT * between(problem, contact, found.towards) > 0.0:
+        yield (
+            f"contact {contact.name!r}: motions bring its sides nearer by {way:.3g}, and the bodies between them are "
+            f"{between(problem, contact, found.towards):.3g} thick: they would be pressed flat. End the motions earlier; translations of "
+            "stages add up"
         )
 
 

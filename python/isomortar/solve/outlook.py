@@ -9,14 +9,19 @@ import numpy as np
 from isomortar.geometry.patch import IntArray
 from isomortar.model.contrasts import element_lengths
 from isomortar.model.entities import Body, Contact, Problem, RigidPlane, Support
+from isomortar.model.glue import pieces
 from isomortar.model.memory import memory_needed
+from isomortar.model.rank import rigid_rank
 from isomortar.model.stance import stance
 from isomortar.solve.simulation import Simulation
 
 
 @dataclass(frozen=True)
 class BodyOutlook:
-    """A body: size along x, y, z, elements along u, v, w with their orders and how long they are, and the smallest and largest weight."""
+    """A body: size along x, y, z, elements along u, v, w with their orders and how long they are, and the smallest and largest weight.
+
+    `left_free`: how many of the six rigid motions supports leave to it, with what is glued to it.
+    """
 
     name: str
     law: str
@@ -28,6 +33,7 @@ class BodyOutlook:
     longest: float
     weights: tuple[float, float]
     control_points: int
+    left_free: int
 
 
 @dataclass(frozen=True)
@@ -101,7 +107,7 @@ def outlook(problem: Problem) -> Outlook:
         len(simulation.equilibrium.supports.free),
         problem.total_steps,
         memory_needed(problem),
-        tuple(_body(body) for body in problem.bodies),
+        tuple(_body(problem, body) for body in problem.bodies),
         tuple(
             _contact(problem, contact, state.projected) for contact, state in zip(problem.contacts, simulation.state.contacts, strict=True)
         ),
@@ -111,7 +117,7 @@ def outlook(problem: Problem) -> Outlook:
     )
 
 
-def _body(body: Body) -> BodyOutlook:
+def _body(problem: Problem, body: Body) -> BodyOutlook:
     directions, lengths = body.patch.directions, np.concatenate(element_lengths(body.patch))
     x, y, z = np.ptp(body.patch.control_points, axis=0)
     return BodyOutlook(
@@ -125,6 +131,7 @@ def _body(body: Body) -> BodyOutlook:
         float(lengths.max()),
         (float(body.patch.weights.min()), float(body.patch.weights.max())),
         len(body.patch.weights),
+        0 if body.rigid else 6 - rigid_rank(problem, next(piece for piece in pieces(problem) if body in piece)),
     )
 
 

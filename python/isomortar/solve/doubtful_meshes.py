@@ -1,0 +1,82 @@
+"""What is doubtful of meshes, quadratures and tolerances: numbers that cost digits of the result."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from isomortar.model.contrasts import element_lengths
+from isomortar.model.entities import Body, Contact, Problem
+from isomortar.model.sheet import Sheet
+
+#: Mean lengths of elements in two directions further apart make them slender, as when numbers of elements are in another order.
+SLENDER = 20.0
+#: Shares that solvers may leave open: more shows in the second digit of forces, and is told.
+LOOSE = {"newton_tolerance": 1e-4, "augmentation_tolerance": 0.01}
+
+
+def of_meshes(problem: Problem) -> Iterator[str]:
+    """Sentences on the discretisation of a problem, and on how far it is solved."""
+    for body in problem.deformable:
+        yield from _slender(body)
+        yield from _few_points(body)
+    for contact in problem.contacts:
+        yield from _one_element(problem, contact)
+        yield from _few_contact_points(problem, contact)
+    yield from _loose(problem)
+
+
+def _slender(body: Body) -> Iterator[str]:
+    """Elements that are short along a direction with many of them, and long along another one."""
+    lengths = [float(np.mean(along)) for along in element_lengths(body.patch)]
+    shortest, longest = int(np.argmin(lengths)), int(np.argmax(lengths))
+    if lengths[longest] > SLENDER * lengths[shortest] and body.patch.directions[shortest].elements > 1:
+        elements = [direction.elements for direction in body.patch.directions]
+        yield (
+            f"body {body.name!r}: its elements are {lengths[shortest]:.2g} long along {'uvw'[shortest]} and {lengths[longest]:.2g} along "
+            f"{'uvw'[longest]}, on average. bodies.{body.name}.mesh.elements, {elements}, are along u, v, w: take fewer along "
+            f"{'uvw'[shortest]}, or more along {'uvw'[longest]}"
+        )
+
+
+def _few_points(body: Body) -> Iterator[str]:
+    """Gauss points that do not see all ways in which an element can deform."""
+    needed = [max(2, direction.order) for direction in body.patch.directions]
+    if any(count < least for count, least in zip(body.quadrature, needed, strict=True)):
+        yield (
+            f"body {body.name!r}: {' x '.join(map(str, body.quadrature))} Gauss points an element do not see all ways in which it can "
+            f"deform: what they miss costs nothing, and grows. Take bodies.{body.name}.mesh.quadrature = {needed} or more, or none"
+        )
+
+
+def _one_element(problem: Problem, contact: Contact) -> Iterator[str]:
+    """A slave face of one element of a low order: a mesh that was not given."""
+    sheet = Sheet.of(problem, contact.slave)
+    if not sheet.rigid and all(direction.elements == 1 and direction.order <= 2 for direction in sheet.directions):
+        yield (
+            f"contact {contact.name!r}: the slave face {contact.slave.words} is a single element, and pressure has hardly a shape. Give "
+            f"bodies.{contact.slave.body}.mesh.elements"
+        )
+
+
+def _few_contact_points(problem: Problem, contact: Contact) -> Iterator[str]:
+    """Quadrature points that do not tell the functions of a slave element apart."""
+    needed = [direction.order + 1 for direction in Sheet.of(problem, contact.slave).directions]
+    if contact.of_averages and any(count < least for count, least in zip(contact.quadrature, needed, strict=True)):
+        yield (
+            f"contact {contact.name!r}: {' x '.join(map(str, contact.quadrature))} quadrature points an element do not tell its functions "
+            f"apart, and see no more of the master than that. Take contacts.{contact.name}.quadrature = {needed} or more, or none"
+        )
+
+
+def _loose(problem: Problem) -> Iterator[str]:
+    """Tolerances of the method in use that stand for errors of the result."""
+    settings = problem.settings
+    for name in ("newton_tolerance", "augmentation_tolerance")[: 2 if settings.method == "uzawa" else 1]:
+        value = getattr(settings, name)
+        if value > LOOSE[name]:
+            yield (
+                f"solver.{name} = {value:g} leaves that share of forces or contact conditions open, in each load step. Take "
+                f"{LOOSE[name]:g} or less, or none"
+            )

@@ -1,0 +1,175 @@
+"""What is doubtful of the motions of supports: units, signs, centres, and where they end."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from isomortar.geometry.faces import cells
+from isomortar.geometry.patch import FloatArray
+from isomortar.model import constants
+from isomortar.model.entities import Body, Contact, Face, Problem, RigidPlane, Support, unit
+from isomortar.model.glue import pieces
+from isomortar.model.numbering import Numbering
+from isomortar.model.sheet import Sheet
+from isomortar.model.supports import Supports
+
+#: Angles that people give in radians, over pi, and how near to one a number of degrees has to be: 3.14 is meant as well.
+RADIANS = {1 / 6: "pi/6", 1 / 4: "pi/4", 1 / 3: "pi/3", 1 / 2: "pi/2", 2 / 3: "2 pi/3", 3 / 4: "3 pi/4", 5 / 6: "5 pi/6", 1.0: "pi"}
+RADIANS |= {3 / 2: "3 pi/2", 2.0: "2 pi", 3.0: "3 pi", 4.0: "4 pi"}
+NEARLY = 1e-3
+#: Share of what is between the supports of two sides by which they may come nearer to each other: beyond, nothing is left between them.
+FLAT = 0.9
+
+
+def of_motions(problem: Problem) -> Iterator[str]:
+    """Sentences on the motions of a problem's supports, whatever they bring into contact."""
+    for support in problem.supports:
+        yield from _far_steps(problem, support)
+        yield from _idle_motions(problem, support)
+        yield from _radians(problem, support)
+        yield from _axis_beside(problem, support)
+        yield from _as_absolute(problem, support)
+    yield from _pushed_in(problem)
+
+
+def approach(problem: Problem, contact: Contact, towards: FloatArray) -> float | None:
+    """By how much motions bring the sides of a contact nearer to each other at most, at an end of a stage, along a unit vector.
+
+    `towards`, shape (3,), is from slave to master. None: something turns, or a side is not held along it, so that nobody knows.
+    """
+    slave = _ways(problem, contact.slave, towards)
+    master = [np.zeros(len(problem.stages))] if isinstance(contact.master, RigidPlane) else _ways(problem, contact.master, towards)
+    if not slave or not master:
+        return None
+    return float(max(np.max(way - other) for way in slave for other in master))
+
+
+def nearest_approach(problem: Problem, contact: Contact) -> float | None:
+    """The same wherever on the master: along the normal of that of its parts to which motions lead; None: nobody knows."""
+    if isinstance(contact.master, RigidPlane):
+        normals = unit(contact.master.normal)[None]
+    else:
+        sheet = Sheet.of(problem, contact.master)
+        normals = np.unique(np.round(cells(sheet.patch, sheet.face).normals, 2), axis=0)
+    ways = [approach(problem, contact, -normal) for normal in normals]
+    known = [way for way in ways if way is not None]
+    return max(known) if len(known) == len(ways) else None
+
+
+def _ways(problem: Problem, place: Face, towards: FloatArray) -> list[FloatArray]:
+    """How far each support of a side's bodies has gone along a vector at the end of each stage; none: nobody knows."""
+    names = {body.name for body in _piece(problem, place)}
+    supports = [support for support in problem.supports if support.place.body in names]
+    if any(support.turns or support.pressed for support in supports) or any(load.body in names for load in problem.loads):
+        return []
+    if not supports and problem.body(place.body).rigid:
+        return [np.zeros(len(problem.stages))]
+    held = [(support, np.isin(range(3), support.components) * towards) for support in supports]
+    return [
+        np.cumsum([np.asarray(motion.translate) @ along for motion in support.motions])
+        for support, along in held
+        if np.linalg.norm(along) > FLAT
+    ]
+
+
+def _piece(problem: Problem, place: Face) -> tuple[Body, ...]:
+    """The bodies of a side with what is glued to them."""
+    return next(piece for piece in pieces(problem) if place.body in {body.name for body in piece})
+
+
+def between(problem: Problem, contact: Contact, towards: FloatArray) -> float:
+    """How thick the deformable bodies of a contact are together along a unit vector."""
+    sides = [contact.slave] if isinstance(contact.master, RigidPlane) else [contact.slave, contact.master]
+    bodies = {body.name: body for place in sides for body in _piece(problem, place) if not body.rigid}
+    return float(sum(np.ptp(body.patch.control_points @ towards) for body in bodies.values()))
+
+
+def in_far_steps(problem: Problem, support: Support, number: int) -> bool:
+    """Whether a support goes farther in a load step of a stage, by its number, than its body is long."""
+    step = float(np.linalg.norm(support.motions[number].translate)) / problem.stages[number].steps
+    return step > problem.body(support.place.body).size
+
+
+def _far_steps(problem: Problem, support: Support) -> Iterator[str]:
+    size = problem.body(support.place.body).size
+    for number, (stage, motion) in enumerate(zip(problem.stages, support.motions, strict=True)):
+        step = float(np.linalg.norm(motion.translate)) / stage.steps
+        if in_far_steps(problem, support, number):
+            yield (
+                f"support {support.name!r} moves by {step:.3g} in each load step of stage {stage.name!r}, and its body is {size:.3g} long. "
+                "Take more load steps; or are the units not the same?"
+            )
+
+
+def _idle_motions(problem: Problem, support: Support) -> Iterator[str]:
+    """Translations along what a support leaves free."""
+    for stage, motion in zip(problem.stages, support.motions, strict=True):
+        idle = [axis for k, axis in enumerate("xyz") if motion.translate[k] and k not in support.components]
+        if idle:
+            held = ", ".join("xyz"[k] for k in support.components)
+            yield (
+                f"support {support.name!r} is to move along {', '.join(idle)} in stage {stage.name!r}, but prescribes only {held}: "
+                "that motion does nothing"
+            )
+
+
+def _pushed_in(problem: Problem) -> Iterator[str]:
+    """Slave control points that supports put behind a rigid plane: they cannot give way."""
+    numbering = Numbering(problem)
+    supports = Supports(problem, numbering)
+    for contact in problem.contacts:
+        if isinstance(contact.master, RigidPlane):
+            sheet, normal = Sheet.of(problem, contact.slave), unit(contact.master.normal)
+            points = np.unique(sheet.points(numbering)[sheet.patch.face_points(sheet.face)])
+            points = points[np.all(supports.held[points] | (np.abs(normal) < constants.NO_PART), axis=1)]
+            ends = np.cumsum([stage.steps for stage in problem.stages])
+            depths = [-((supports.place(float(end))[points] - contact.master.point) @ normal).min(initial=np.inf) for end in ends]
+            if max(depths, default=0.0) > constants.NO_PART * sheet.size:
+                stage = problem.stages[int(np.argmax(depths))].name
+                yield (
+                    f"contact {contact.name!r}: supports put {len(points)} of its slave control points behind the plane, by "
+                    f"{max(depths):.3g} at the end of stage {stage!r}, and those cannot give way. Hold fewer components, or end the motion "
+                    "at the plane"
+                )
+
+
+def _radians(problem: Problem, support: Support) -> Iterator[str]:
+    """Angles in radians."""
+    for stage, motion in zip(problem.stages, support.motions, strict=True):
+        meant = [(share, words) for share, words in RADIANS.items() if abs(abs(motion.rotate) / np.pi - share) < NEARLY * share]
+        if meant:
+            (share, words), *_ = meant
+            yield (
+                f"stage {stage.name!r} turns support {support.name!r} by {motion.rotate:g} degrees, and {words} is as much: angles are in "
+                f"degrees. If radians were meant, give {np.copysign(180.0 * share, motion.rotate):g}"
+            )
+
+
+def _axis_beside(problem: Problem, support: Support) -> Iterator[str]:
+    """A turn about an axis that is not where the body is."""
+    body = problem.body(support.place.body)
+    arms = body.patch.control_points - np.asarray(support.centre)
+    along = arms @ unit(support.axis)
+    beside = float(np.linalg.norm(arms - along[:, None] * unit(support.axis), axis=1).min())
+    if support.turns and beside > body.size:
+        yield (
+            f"support {support.name!r} turns about an axis that is {beside:.3g} beside its body, which is {body.size:.3g} long: it goes "
+            f"round on a large circle. If it is to turn where it is, give supports.{support.name}.centre (the origin by default), "
+            "and axis"
+        )
+
+
+def _as_absolute(problem: Problem, support: Support) -> Iterator[str]:
+    """Translations that say again where the support is already, while it goes on in another component."""
+    ways = np.array([motion.translate for motion in support.motions])
+    before = np.cumsum(ways, axis=0) - ways
+    for stage, way, reached in zip(problem.stages, ways, before, strict=True):
+        again = (way == reached) & (way != 0.0)
+        if again.any() and np.any(way[~again]):
+            axes = ", ".join("xyz"[k] for k in np.flatnonzero(again))
+            yield (
+                f"support {support.name!r} goes by as much along {axes} in stage {stage.name!r} as in all stages before it: translations "
+                f"count from where the stage before ended. If it is to stay there along {axes}, give 0"
+            )

@@ -1,0 +1,158 @@
+"""What a model may lack: a contact between bodies that meet, what moves a body, the other half."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
+
+import numpy as np
+
+from isomortar.geometry.faces import cells
+from isomortar.geometry.patch import FACES, FloatArray, Patch
+from isomortar.model.constants import NO_PART, SAME_POINT
+from isomortar.model.entities import Body, Face, Problem
+from isomortar.model.glue import pieces
+from isomortar.model.stance import FACING, nearest
+
+#: Cells of a body's outside that are compared with those of another one.
+SOME = 1500
+
+
+def of_what_is_left_out(problem: Problem) -> Iterator[str]:
+    """Sentences on what a problem may lack."""
+    through = _without_contact(problem)
+    for one, other in through:
+        yield (
+            f"bodies {one!r} and {other!r} meet, and no contact is between them: nothing keeps them apart. Give them a table "
+            "contacts.NAME with slave and master, or glue"
+        )
+    yield from _idle_bodies(problem, {name for pair in through for name in pair})
+    yield from _missing_symmetry(problem)
+
+
+def _pieces(problem: Problem) -> list[set[str]]:
+    """Names of bodies that are glued together."""
+    return [{body.name for body in piece} for piece in pieces(problem)]
+
+
+def _in_contact(problem: Problem) -> list[set[str]]:
+    """Names of the bodies of each contact."""
+    sides = [[c.slave.faces, getattr(c.master, "faces", ())] for c in problem.contacts]
+    return [{face.body for faces in both for face in faces} for both in sides]
+
+
+def _without_contact(problem: Problem) -> list[tuple[str, str]]:
+    """Bodies that are at or in each other, or come to be by their supports, and neither in contact nor glued."""
+    contacts, whole = _in_contact(problem), _pieces(problem)
+    found = []
+    for one, other in combinations(problem.bodies, 2):
+        if any({one.name, other.name} <= names for names in (*contacts, *whole)):
+            continue
+        ways = [np.zeros(3), *(a - b for a, b in zip(_ways(problem, one, whole), _ways(problem, other, whole), strict=True))]
+        if any(_meet(one, other, way) for way in np.unique(ways, axis=0)):
+            found.append((one.name, other.name))
+    return found
+
+
+def _ways(problem: Problem, body: Body, whole: list[set[str]]) -> FloatArray:
+    """How far the support that goes farthest has taken a body at the end of each stage, turns aside; shape (stages, 3)."""
+    names = next(names for names in whole if body.name in names)
+    ways = [
+        np.cumsum([np.isin(range(3), s.components) * np.asarray(m.translate) for m in s.motions], axis=0)
+        for s in problem.supports
+        if s.place.body in names
+    ]
+    return max(ways, key=np.linalg.norm, default=np.zeros((len(problem.stages), 3)))
+
+
+def _meet(one: Body, other: Body, way: FloatArray) -> bool:
+    """Whether a body that has gone some way is within or at another one, by cells of their faces."""
+    first, second = one.patch.control_points + way, other.patch.control_points
+    size = float(np.ptp(np.concatenate([first, second]), axis=0).max())
+    low, high = np.maximum(first.min(axis=0), second.min(axis=0)), np.minimum(first.max(axis=0), second.max(axis=0))
+    if np.any(high < low - SAME_POINT * size):
+        return False
+    centres, normals, _ = _outside(one)
+    step = max(1, len(centres) // SOME)
+    points, normals = centres[::step] + way, normals[::step]
+    theirs, out, areas = _outside(other)
+    found = nearest(points, theirs)
+    arms = points - theirs[found]
+    heights = np.einsum("ij,ij->i", arms, out[found])
+    beside = np.linalg.norm(arms - heights[:, None] * out[found], axis=1) > np.sqrt(areas[found])
+    facing = np.einsum("ij,ij->i", normals, out[found]) < FACING
+    return bool(np.any(~beside & ((heights < -NO_PART * size) | (facing & (heights < NO_PART * size)))))
+
+
+def _outside(body: Body) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Centres, normals and areas of the cells of all faces of a body."""
+    sides = [cells(body.patch, face) for face in _faces(body)]
+    centres, normals, areas = (np.concatenate([getattr(side, name) for side in sides]) for name in ("centres", "normals", "areas"))
+    return centres, normals, areas
+
+
+def _faces(body: Body) -> list[str]:
+    """Faces of a body, without those at which it meets itself."""
+    return [face for face in FACES if face[0] != body.closed]
+
+
+def _idle_bodies(problem: Problem, told: set[str]) -> Iterator[str]:
+    """Bodies that nothing touches, loads or moves; but for some."""
+    touched = told | {name for names in _in_contact(problem) for name in names}
+    loaded = {load.body for load in problem.loads} | {s.place.body for s in problem.supports if s.moves or s.pressed}
+    if len(problem.bodies) > 1:
+        for names in _pieces(problem):
+            if not names & (touched | loaded):
+                yield (
+                    f"body {sorted(names)[0]!r} is in no contact, and nothing moves or loads it: it only costs time. Give it a contact, or "
+                    "take it out"
+                )
+
+
+def _missing_symmetry(problem: Problem) -> Iterator[str]:
+    """A flat end that all bodies have in common, where they would go on smoothly as their mirror images, and that nothing holds."""
+    for axis in range(3) if problem.contacts else ():
+        low, high = (_cuts(problem, axis, end) for end in (0, 1))
+        for cut, opposite in ((low, high), (high, low)):
+            if cut and not opposite and not any(_taken(problem, face) for face in cut):
+                yield (
+                    f"all bodies end at one plane across {'xyz'[axis]}, as halves of a whole do, and nothing holds them there: they bulge "
+                    f'through it. If they are halves, give supports with components = ["{"xyz"[axis]}"] to '
+                    f"{', '.join(face.words for face in cut)}"
+                )
+
+
+def _cuts(problem: Problem, axis: int, end: int) -> list[Face]:
+    """Of every deformable body a face in the one plane across an axis where bodies and contacts end, that goes on smoothly; else none."""
+    bodies = problem.deformable
+    if not bodies:
+        return []
+    ends = [float((np.max if end else np.min)(body.patch.control_points[:, axis])) for body in problem.bodies]
+    near = SAME_POINT * max(body.size for body in problem.bodies)
+    faces = [[Face(body.name, face) for face in _faces(body) if _is_cut(body.patch, face, axis, ends[0], near)] for body in bodies]
+    sides = [face for c in problem.contacts for side in (c.slave.faces, getattr(c.master, "faces", ())) for face in side]
+    ends += [float((np.max if end else np.min)(_points(problem, side)[:, axis])) for side in sides]
+    return [face for found in faces for face in found] if np.ptp(ends) <= near and all(faces) else []
+
+
+def _points(problem: Problem, face: Face) -> FloatArray:
+    patch = problem.body(face.body).patch
+    return patch.control_points[patch.face_points(face.face)]
+
+
+def _is_cut(patch: Patch, face: str, axis: int, place: float, near: float) -> bool:
+    """Whether a face lies in a plane across an axis, and the body comes to it at right angles."""
+    grid = patch.control_points.reshape(*patch.shape, 3, order="F")
+    layers = np.moveaxis(grid, "uvw".index(face[0]), 0)
+    edge, inner = (layers[0], layers[1]) if face[1] == "0" else (layers[-1], layers[-2])
+    aside = np.delete(inner - edge, axis, axis=-1)
+    return bool(np.abs(edge[..., axis] - place).max() <= near and np.abs(aside).max() <= near)
+
+
+def _taken(problem: Problem, face: Face) -> bool:
+    """Whether a face is held, loaded, glued, or in contact."""
+    held = any(support.place == face for support in problem.supports)
+    loaded = any(load.face is not None and load.place == face for load in problem.loads)
+    glued = any(face in joint for joint in problem.glue)
+    touched = any(face in side for c in problem.contacts for side in (c.slave.faces, getattr(c.master, "faces", ())))
+    return held or loaded or glued or touched
