@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from isomortar.results.paraview import export as export
     from isomortar.results.pictures import plot as plot
     from isomortar.results.reader import Results as Results
+    from isomortar.results.view import view as view
     from isomortar.scene.scene import Scene as Scene
     from isomortar.solve.record import Observer as Observer
     from isomortar.solve.simulation import Simulation as Simulation
@@ -34,9 +35,10 @@ _HOMES = {
     "film": "results.film",
     "plot": "results.pictures",
     "run": "driver",
+    "view": "results.view",
 }
 
-__all__ = ["IsomortarError", "Observer", "Results", "Scene", "Simulation", "export", "film", "plot", "run"]
+__all__ = ["IsomortarError", "Observer", "Results", "Scene", "Simulation", "export", "film", "plot", "run", "view"]
 
 
 def __getattr__(name: str) -> Any:

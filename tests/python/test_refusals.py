@@ -16,7 +16,7 @@ import splinepy
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from isomortar import Results, Scene, _distributed, film, plot
+from isomortar import Results, Scene, _distributed, film, plot, view
 from isomortar._codes import Status
 from isomortar._condensed import CondensedFactors
 from isomortar.errors import FoldedElementError
@@ -191,6 +191,7 @@ def of_files(patch: pytest.MonkeyPatch) -> Told:
     yield "value", _but_the_end(refusal(lambda: apply_overrides({"solver": {}}, ["solver.max_cuts=[1"])))
     writer = ResultsWriter("run.h5", problem(), "", "0", states="last")
     yield "plotted: no step", refusal(lambda: plot("run.h5", "figures"))
+    yield "viewed: no step", refusal(lambda: view("run.h5", "run.html"))
     yield "contact: no step", refusal(lambda: Results("run.h5").contact("tread"))
     writer.recorded(step_result(1))
     writer.recorded(step_result(2))

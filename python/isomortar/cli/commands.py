@@ -210,6 +210,21 @@ def film(
 
 
 @app.command()
+def view(
+    results: ResultsArgument,
+    output: Annotated[Path | None, typer.Option(dir_okay=False, help="The page.", show_default="RESULTS.html, beside the file")] = None,
+) -> None:
+    """Write a page that shows the bodies, load step by load step, in colours by a field, and print where it lies.
+
+    One file that any browser opens, without a network: pressure, traction, gap and status of contacts, displacement, stress and J of
+    bodies; it turns, zooms, plays the load steps and tells values.
+
+    For example: `isomortar view results/iron.h5`, then open results/iron.html
+    """
+    print(isomortar.view(results, output or results.with_suffix(".html")))
+
+
+@app.command()
 def check_tangent(
     scene: SceneArgument,
     overrides: Overrides = None,

@@ -143,6 +143,11 @@ def _face(surface: ContactSurface) -> Pressed:
     return Pressed(peak, bool(pressure.min() < -style.NOTHING * peak), normal / np.linalg.norm(normal))
 
 
+def towards(surface: ContactSurface) -> Camera:
+    """A camera that looks onto a slave face from the master's side."""
+    return _camera_towards(_face(surface).normal)
+
+
 def _camera_towards(normal: FloatArray) -> Camera:
     """A camera that looks onto a face of that outward normal, a little from the side."""
     level = float(np.hypot(normal[0], normal[1]))

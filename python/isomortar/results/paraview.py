@@ -56,7 +56,7 @@ def export(results_path: str | os.PathLike[str], outdir: str | os.PathLike[str])
         make_folder(folder)
         root = ElementTree.Element("VTKFile", type="Collection", version="1.0", byte_order="LittleEndian")
         entries = ElementTree.SubElement(root, "Collection")
-        for time, number, parts in _states(results):
+        for time, number, parts in states(results):
             for part, (name, grids) in enumerate(parts.items()):
                 path = folder / f"{name}-{number:04d}.vtu"
                 with writing(path):
@@ -68,7 +68,7 @@ def export(results_path: str | os.PathLike[str], outdir: str | os.PathLike[str])
     return collection
 
 
-def _states(results: Results) -> Iterator[tuple[float, int, dict[str, list[BezierGrid]]]]:
+def states(results: Results) -> Iterator[tuple[float, int, dict[str, list[BezierGrid]]]]:
     """Load time, number and grids of the rest, which is number 0, and of every kept state."""
     problem = results.problem
     for number in results.kept_states:

@@ -1,0 +1,270 @@
+"""A run as a page to look at: one HTML file with all surfaces as rational Bezier nets, which the browser draws as finely as it likes."""
+
+from __future__ import annotations
+
+import base64
+import json
+import os
+import zlib
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import jinja2
+import numpy as np
+from matplotlib.colors import Colormap, to_rgb
+from numpy.typing import NDArray
+
+from isomortar.errors import ResultsError
+from isomortar.geometry.patch import FACES, FloatArray
+from isomortar.model.entities import Face, Problem, RigidPlane, unit
+from isomortar.results import style
+from isomortar.results.bezier import bernstein, functions_at, rational
+from isomortar.results.bodies import plane_corners, towards
+from isomortar.results.fields import contact_surfaces
+from isomortar.results.files import writing
+from isomortar.results.paraview import states
+from isomortar.results.reader import Results
+from isomortar.results.vtu import BezierGrid
+from isomortar.solve.record import StepResult
+
+#: Fields of bodies and of slave faces that a page shows: column, label, unit, colours.
+BODY_FIELDS = (("von Mises stress", "force per deformed area", "field"), ("J", "volume over that at rest", "field"))
+CONTACT_FIELDS = (
+    ("pressure", "force per area", "pressure"),
+    ("traction", "force per area", "pressure"),
+    ("gap", "length; positive is penetration", "field"),
+)
+#: Colours by status: open, stick, slip.
+STATES = (("open", "#FFFFFF"), ("stick", style.BLUE), ("slip", style.ORANGE))
+#: Parts of an element at whose ends the ranges of colours are looked for.
+PARTS = 4
+
+
+@dataclass
+class Surface:
+    """A face of a body, or the slave face of a contact, as Bezier nets.
+
+    `columns`: names of fields by net point, x, y, z first; `rows`: their values by load step, shape (columns, points) each. `marks`:
+    by load step places of the constraints and their status, shape (4, constraints). `contact`: number of the contact whose slave face
+    it is, or of none, a face of a body; `slave_of`: of those in which that is the slave.
+    """
+
+    name: str
+    orders: tuple[int, ...]
+    elements: tuple[int, ...]
+    colour: str
+    contact: int | None
+    slave_of: tuple[int, ...]
+    columns: tuple[str, ...]
+    weights: FloatArray
+    rows: list[FloatArray] = field(default_factory=list)
+    marks: list[FloatArray] = field(default_factory=list)
+
+    def sampled(self, row: FloatArray, parts: int) -> FloatArray:
+        """Columns of a load step at equal parts of each element, shape (places, columns), first direction fastest."""
+        matrices = [_at_parts(order, elements, parts) for order, elements in zip(self.orders, self.elements, strict=True)]
+        return rational(matrices, self.weights, row.T)[0]
+
+
+def view(results_path: str | os.PathLike[str], output: str | os.PathLike[str]) -> Path:
+    """Write a page that shows the bodies, at rest and at every kept state, in colours by a field; it needs no network, and turns and zooms.
+
+    Parameters
+    ----------
+    results_path : path-like
+    output : path-like
+        The page, a .html file.
+
+    Returns
+    -------
+    Path
+        The page's.
+
+    Raises
+    ------
+    ResultsError
+        The results file is missing, damaged, or holds no state; or the page cannot be written.
+    """
+    with Results(results_path) as results:
+        if not len(results.kept_states):
+            raise ResultsError(f"{results.path} holds no load step yet: nothing to look at")
+        text = _page(results)
+    with writing(Path(output)):
+        Path(output).write_text(text, encoding="utf-8")
+    return Path(output)
+
+
+def _page(results: Results) -> str:
+    problem, steps = results.problem, []
+    surfaces: list[Surface] = []
+    for _, number, grids in states(results):
+        last = results.step(max(number, int(results.kept_states[0])))
+        found = [*_of_bodies(problem, grids["bodies"]), *_of_contacts(problem, grids.get("contacts", []), last, number == 0)]
+        surfaces = surfaces or found
+        for surface, now in zip(surfaces, found, strict=True) if surfaces is not found else ():
+            surface.rows += now.rows
+            surface.marks += now.marks
+        steps.append({"step": number, "stage": last.stage if number else "at rest"})
+    ends = np.array([end(row[:3], axis=1) for surface in surfaces for row in surface.rows for end in (np.min, np.max)])
+    low, high = ends.min(axis=0), ends.max(axis=0)
+    sides = [towards(face) for face in contact_surfaces(problem, results.step(int(results.kept_states[-1])))]
+    data = {
+        "name": problem.name,
+        "title": f"{int(results.kept_states[-1])} load steps",
+        "steps": steps,
+        "fields": [*_fields(problem, surfaces)],
+        "surfaces": [_described(surface) for surface in surfaces],
+        "planes": [*_planes(problem, surfaces, 0.5 * (low + high))],
+        "sides": [{"azimuth": camera.azimuth, "elevation": camera.elevation} for camera in sides],
+        "planeColour": to_rgb(style.PLANE),
+        "states": [{"name": name, "colour": to_rgb(colour)} for name, colour in STATES],
+        "colours": {"pressure": _colours(style.pressure_colours()), "field": _colours(style.field_colours())},
+        "centre": (0.5 * (low + high)).tolist(),
+        "radius": 0.5 * float(np.linalg.norm(high - low)),
+    }
+    folder = files("isomortar.results") / "viewer"
+    template = jinja2.Environment(undefined=jinja2.StrictUndefined, autoescape=False).from_string((folder / "page.html").read_text())
+    return template.render(
+        page=data,
+        style=(folder / "page.css").read_text(),
+        script=(folder / "bezier.js").read_text() + (folder / "page.js").read_text(),
+        data=json.dumps(data).replace("<", "\\u003c"),
+        numbers=base64.b64encode(zlib.compress(_numbers(surfaces, 0.5 * (low + high)).tobytes(), 9)).decode(),
+    )
+
+
+def _of_bodies(problem: Problem, grids: Sequence[BezierGrid]) -> Iterator[Surface]:
+    """The outer faces of all bodies in one state: sides of their Bezier nets."""
+    glued = {face for joint in problem.glue for face in joint}
+    slaves = {face for contact in problem.contacts for face in contact.slave.faces}
+    names = tuple(name for name, *_ in BODY_FIELDS)
+    for body, grid in zip(problem.bodies, grids, strict=True):
+        u, v, w = (d.order * d.elements + 1 for d in body.patch.directions)
+        numbers = np.arange(u * v * w).reshape(u, v, w, order="F")
+        columns = np.concatenate([grid.points.T, *(grid.fields[name].T for name in names)])
+        for name in FACES:
+            if name[0] == body.closed or Face(body.name, name) in glued:
+                continue
+            layer = np.take(numbers, 0 if name[1] == "0" else -1, axis="uvw".index(name[0]))
+            of_face = (layer.T if name[0] == "v" else layer).ravel(order="F")  # coordinates of a face are in cyclic order
+            directions = body.patch.face_directions(name)
+            yield Surface(
+                body.name,
+                tuple(d.order for d in directions),
+                tuple(d.elements for d in directions),
+                style.SLAVE if any(face.body == body.name for face in slaves) else style.MASTER,
+                None,
+                tuple(k for k, contact in enumerate(problem.contacts) if Face(body.name, name) in contact.slave.faces),
+                ("x", "y", "z", *names),
+                grid.weights[of_face],
+                [columns[:, of_face]],
+                [np.zeros((4, 0))],
+            )
+
+
+def _of_contacts(problem: Problem, grids: Sequence[BezierGrid], step: StepResult, at_rest: bool) -> Iterator[Surface]:
+    """The slave faces in one state, with marks at the Greville abscissae of their functions."""
+    names = tuple(name for name, *_ in CONTACT_FIELDS)
+    for number, (grid, surface) in enumerate(zip(grids, contact_surfaces(problem, step), strict=True)):
+        at_marks = tuple(functions_at(d, d.greville)[0] for d in surface.directions)
+        places = surface.field((at_marks[0], at_marks[1]), surface.reference_points if at_rest else surface.points)
+        yield Surface(
+            surface.contact.name,
+            tuple(d.order for d in surface.directions),
+            tuple(d.elements for d in surface.directions),
+            style.SLAVE,
+            number,
+            (),
+            ("x", "y", "z", *names),
+            grid.weights,
+            [np.concatenate([grid.points.T, *(grid.fields[name].T for name in names)])],
+            [np.vstack([places.T, np.zeros(len(places)) if at_rest else surface.status])],
+        )
+
+
+def _fields(problem: Problem, surfaces: Sequence[Surface]) -> Iterator[dict[str, Any]]:
+    """What can be in colours: of each contact its fields, then those of the bodies; with the range over all load steps."""
+    for number, contact in enumerate(problem.contacts):
+        of = f" of {contact.name}" if len(problem.contacts) > 1 else ""
+        face = next(surface for surface in surfaces if surface.contact == number)
+        for column, unit_of, colours in CONTACT_FIELDS:
+            low, high = _range([face], column)
+            bare = colours == "pressure"
+            yield _field(f"{column}{of}", column, unit_of, colours, number, (0.0 if bare else low, high), bare)
+        yield _field(f"status{of}", "status", "", "field", number, (0.0, 2.0), False)
+    bodies = [surface for surface in surfaces if surface.contact is None]
+    way = max(float(np.linalg.norm(row[:3] - surface.rows[0][:3], axis=0).max()) for surface in bodies for row in surface.rows)
+    yield _field("displacement", "displacement", "length", "field", None, (0.0, way), False)
+    for column, unit_of, colours in BODY_FIELDS:
+        yield _field(column, column, unit_of, colours, None, _range(bodies, column), False)
+
+
+def _field(
+    label: str, column: str, of_unit: str, colours: str, contact: int | None, ends: tuple[float, float], bare: bool
+) -> dict[str, Any]:
+    """`bare`: where there is nothing of it the material is seen."""
+    return {"label": label, "column": column, "unit": of_unit, "colours": colours, "contact": contact, "range": ends, "bare": bare}
+
+
+def _range(surfaces: Sequence[Surface], column: str) -> tuple[float, float]:
+    """Least and largest value of a field over all load steps, at parts of elements."""
+    values = [
+        surface.sampled(row[[surface.columns.index(column)]], PARTS)[:, 0]
+        for surface in surfaces
+        for row in surface.rows
+        if np.isfinite(row[surface.columns.index(column)]).all()
+    ]
+    together = np.concatenate(values)
+    return float(together.min()), float(together.max())
+
+
+def _planes(problem: Problem, surfaces: Sequence[Surface], centre: FloatArray) -> Iterator[dict[str, Any]]:
+    """Rigid planes, as far as they are below the slave's ways."""
+    for surface in surfaces:
+        master = problem.contacts[surface.contact].master if surface.contact is not None else None
+        if isinstance(master, RigidPlane):
+            near = np.concatenate([row[:3].T for row in surface.rows])
+            corners = plane_corners(master, near, 0.2 * float(np.ptp(near, axis=0).max()))
+            yield {"normal": unit(master.normal).tolist(), "corners": (corners - centre).tolist()}
+
+
+def _described(surface: Surface) -> dict[str, Any]:
+    """What a page says of a surface, without its numbers."""
+    return {
+        "name": surface.name,
+        "orders": surface.orders,
+        "elements": surface.elements,
+        "colour": to_rgb(surface.colour),
+        "contact": surface.contact,
+        "slaveOf": surface.slave_of,
+        "columns": surface.columns,
+        "marks": surface.marks[0].shape[1],
+    }
+
+
+def _numbers(surfaces: Sequence[Surface], centre: FloatArray) -> NDArray[np.float32]:
+    """All numbers of all surfaces, as the page takes them apart again; places count from the centre, for the digits."""
+    parts = []
+    for surface in surfaces:
+        parts.append(surface.weights)
+        for values in (*surface.rows, *surface.marks):
+            parts.append((values - np.pad(centre, (0, len(values) - 3))[:, None]).ravel())
+    return np.concatenate(parts).astype("<f4")
+
+
+def _at_parts(order: int, elements: int, parts: int) -> FloatArray:
+    """Matrix from Bezier points of a direction to values at equal parts of its elements, shape (elements * parts + 1, points)."""
+    matrix = np.zeros((elements * parts + 1, elements * order + 1))
+    for element in range(elements):
+        matrix[element * parts : (element + 1) * parts + 1, element * order : (element + 1) * order + 1] = bernstein(
+            order, np.linspace(0.0, 1.0, parts + 1)
+        )
+    return matrix
+
+
+def _colours(chosen: Colormap) -> list[list[int]]:
+    """A colour map as 256 colours."""
+    return np.rint(255.0 * chosen(np.linspace(0.0, 1.0, 256))[:, :3]).astype(int).tolist()
