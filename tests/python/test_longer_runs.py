@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import isomortar
@@ -113,6 +114,35 @@ class Stops(isomortar.Observer):
             raise KeyboardInterrupt
 
 
+def lengthened(scene: Scene, steps: int, *stages: dict[str, Any]) -> Scene:
+    """The scene with a last stage of more load steps, which goes on as before: ways, angles and factors grow with it."""
+    *before, last = [stage.model_dump() for stage in scene.tables.stages]
+    share = steps / last["steps"]
+    for motion in last["motions"].values():
+        motion |= {"translate": [share * way for way in motion["translate"]], "rotate": share * motion["rotate"]}
+    begun = before[-1]["loads"] if before else {}
+    loads = {name: begun.get(name, 0.0) + share * (value - begun.get(name, 0.0)) for name, value in last["loads"].items()}
+    return Scene.from_toml(scene.to_toml(), overrides={"stages": [*before, last | {"steps": steps, "loads": loads}, *stages]})
+
+
+@pytest.mark.parametrize("name", ["plane", "block", "loads"])
+def test_a_longer_stage_comes_to_the_forces_of_a_run_from_the_start(tmp_path: Path, name: str) -> None:
+    """With a stage more behind it; to the tolerance of Newton's method, as increments begin elsewhere."""
+    scene, path = SCENES[name], tmp_path / "longer.h5"
+    if name == "loads":
+        scene = Scene.from_toml(LOADED.replace("loads.wind = 0.5", "loads = { wind = 0.5, top = 1.0 }"))
+    longer = lengthened(scene, scene.tables.stages[-1].steps + 2, TURN | {"steps": 1})
+    isomortar.run(scene, path).close()
+    isomortar.run(longer, path, resume=True).close()
+    isomortar.run(longer, tmp_path / "whole.h5").close()
+    with Results(path) as one, Results(tmp_path / "whole.h5") as two:
+        assert same(one.problem, two.problem)
+        forces = [results.curve("force", support="top") for results in (one, two)]
+        np.testing.assert_allclose(*forces, atol=1e-6 * np.abs(forces[1]).max())
+        assert len(forces[0]) == longer.problem().total_steps
+    assert [step.stage for step in steps_of(path)] == [step.stage for step in steps_of(tmp_path / "whole.h5")]
+
+
 def test_steps_more_go_on_at_the_same_rate() -> None:
     scene = Scene.load("twist")
     given, *more = [stage.model_dump() for stage in scene.with_more_steps(4, 2).tables.stages][len(scene.tables.stages) - 1 :]
@@ -125,6 +155,7 @@ def test_steps_more_go_on_at_the_same_rate() -> None:
     assert scene.with_more_steps() is scene
 
 
+LONGER = "the last stage may be longer at the same rate, and stages may be added at the end"
 CHANGES = {
     "friction": ({"contacts.floor.friction": 0.1}, "contacts.floor.friction"),
     "a longer stage": ({"stages.press.steps": 3}, "stages.press.steps"),
@@ -140,7 +171,7 @@ def test_anything_else_is_refused_as_ever(tmp_path: Path, what: str) -> None:
     before = path.read_bytes()
     changed = Scene.load("press", PRESS | changes)
     for scene in (changed, changed.with_more_steps(2)):
-        with pytest.raises(ResultsError, match=f"another scene.*{words}.*stages may be added at the end"):
+        with pytest.raises(ResultsError, match=f"another scene.*{words}.*{LONGER}"):
             isomortar.run(scene, path, resume=True)
     assert path.read_bytes() == before
 

@@ -75,14 +75,16 @@ def run(
     """Compute a scene.
 
     Every load step is on the disk when it is done: after Ctrl-C, a crash or a power cut `--resume` goes on from the last one, and
-    the results file can be read meanwhile. An existing file is an error without `--resume` or `--overwrite`. A scene that has stages
-    more at its end goes on as well, to the numbers of a run from the start; nothing else in it may have changed.
+    the results file can be read meanwhile. An existing file is an error without `--resume` or `--overwrite`. A scene goes on as well
+    that has stages more at its end, or a last stage of more load steps at the same rate (its motions and factors grow with it), to the
+    numbers of a run from the start; nothing else in it may have changed.
 
     For example:
 
     - `isomortar run iron`
     - `isomortar run iron --resume`
     - `isomortar run iron --resume --steps 10` goes on for ten load steps more; `--steps 10 --steps 5` then for another five
+    - `isomortar run press --resume --set stages.press.steps=10 --set stages.press.motions.top.translate=[0,0,-0.6]` lengthens a stage
     - `isomortar run my_scene.toml --output my_results.h5`
     - `isomortar run twist --set "bodies.master.mesh.order=[3,3,2]" --set contacts.interface.friction=0.5`
     - `isomortar run press --set stages.press.steps=10 --output fine.h5`

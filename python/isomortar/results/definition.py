@@ -14,7 +14,20 @@ import numpy as np
 from pydantic import TypeAdapter
 
 from isomortar.geometry.patch import Closed, Direction, Patch
-from isomortar.model.entities import Body, Contact, Face, Load, Material, Problem, Raised, SolverSettings, Stage, Support, SymmetryPlane
+from isomortar.model.entities import (
+    Body,
+    Contact,
+    Face,
+    Load,
+    Material,
+    Motion,
+    Problem,
+    Raised,
+    SolverSettings,
+    Stage,
+    Support,
+    SymmetryPlane,
+)
 from isomortar.results.layout import CONTROL_POINTS, KNOTS, WEIGHTS, Quantity
 
 _AXES = "uvw"
@@ -72,12 +85,45 @@ def read_problem(group: h5py.Group) -> Problem:
 
 
 def is_longer(stored: Problem, given: Problem) -> bool:
-    """Whether a problem is another one with stages added at its end, and nothing else."""
+    """Whether a problem is another one with stages added at its end, or its last stage longer at the same rate, and nothing else."""
     count = len(stored.stages)
-    supports = tuple(replace(s, motions=s.motions[:count], factors=s.factors[:count]) for s in given.supports)
-    loads = tuple(replace(load, factors=load.factors[:count]) for load in given.loads)
-    shorter = replace(given, stages=given.stages[:count], supports=supports, loads=loads)
-    return len(given.stages) > count and not differences(stored, shorter)
+    if given.total_steps <= stored.total_steps or len(given.stages) < count:
+        return False
+    last, longer = stored.stages[-1], given.stages[count - 1]
+    share = last.steps / longer.steps
+    supports = tuple(_first_stages(s, count, share) for s in given.supports)
+    loads = tuple(replace(load, factors=_factors(load.factors, count, share)) for load in given.loads)
+    stages = (*given.stages[: count - 1], replace(longer, steps=min(last.steps, longer.steps)))
+    return not differences(_rounded(stored), _rounded(replace(given, stages=stages, supports=supports, loads=loads)))
+
+
+def _first_stages(support: Support, count: int, share: float) -> Support:
+    """A support in the first stages, and in a share of the last of these."""
+    *before, last = support.motions[:count]
+    x, y, z = (share * way for way in last.translate)
+    motions = (*before, Motion((x, y, z), share * last.rotate))
+    return replace(support, motions=motions, factors=_factors(support.factors, count, share))
+
+
+def _factors(factors: tuple[float, ...], count: int, share: float) -> tuple[float, ...]:
+    """Factors at the ends of the first stages, and where a share of the last of these has passed."""
+    if not factors:
+        return ()
+    *before, last = factors[:count]
+    begun = before[-1] if before else 0.0
+    return (*before, begun + share * (last - begun))
+
+
+def _rounded(problem: Problem) -> Problem:
+    """What a problem does in its last stage, without the last digits: rates are those of other numbers, to round-off."""
+    supports = []
+    for support in problem.supports:
+        *before, last = support.motions
+        x, y, z, angle = (float(f"{value:.12g}") for value in (*last.translate, last.rotate))
+        rounded = tuple(float(f"{value:.12g}") for value in support.factors)
+        supports.append(replace(support, motions=(*before, Motion((x, y, z), angle)), factors=rounded))
+    loads = tuple(replace(load, factors=tuple(float(f"{value:.12g}") for value in load.factors)) for load in problem.loads)
+    return replace(problem, supports=tuple(supports), loads=loads)
 
 
 def differences(stored: Problem, given: Problem) -> list[str]:

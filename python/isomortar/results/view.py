@@ -31,7 +31,7 @@ from isomortar.results.vtu import BezierGrid
 from isomortar.solve.record import StepResult
 
 #: Fields of bodies and of slave faces that a page shows: column, label, unit, colours.
-BODY_FIELDS = (("von Mises stress", "force per deformed area", "field"), ("J", "volume over that at rest", "field"))
+BODY_FIELDS = (("von Mises stress", "force per deformed area", "field"), ("J", "volume over that before", "field"))
 CONTACT_FIELDS = (
     ("pressure", "force per area", "pressure"),
     ("traction", "force per area", "pressure"),

@@ -46,7 +46,8 @@ class ResultsWriter(Observer):
     states : {"every", "last"}
         Keep the full state of every step, or of the newest only. Curves and log keep every step.
     resume : bool
-        Append to an existing file (or begin one if there is none). The problem may have stages that the file's has not, at its end.
+        Append to an existing file (or begin one if there is none). The problem's last stage may be longer than in the file, at the same
+        rate, and it may have stages more at its end.
     overwrite : bool
         Begin anew in the place of an existing file. Without `resume` and `overwrite` the file must not exist yet.
 
@@ -109,8 +110,8 @@ class ResultsWriter(Observer):
             unlike = differences(stored.problem, self._problem)
             if unlike and is_longer(stored.problem, self._problem):
                 self._longer, unlike = scene_text, []
-            if unlike and is_longer(self._problem, stored.problem):
-                further = ", ".join(stage.name for stage in stored.problem.stages[len(self._problem.stages) :])
+            further = ", ".join(stage.name for stage in stored.problem.stages[len(self._problem.stages) :])
+            if unlike and further and is_longer(self._problem, stored.problem):
                 raise ResultsError(
                     f"{self.path} has stages that the scene does not have: {further}. Give them to resume it, as by the same --steps, or "
                     "name another results file"
@@ -119,7 +120,8 @@ class ResultsWriter(Observer):
             more = f"; and {len(unlike) - 5} more" if len(unlike) > 5 else ""
             raise ResultsError(
                 f"{self.path} belongs to another scene, so it cannot be resumed with this one: {'; '.join(unlike[:5])}{more}. "
-                "Undo these changes, or name another results file; stages may be added at the end"
+                "Undo these changes, or name another results file; the last stage may be longer at the same rate, and stages may be added "
+                "at the end"
             )
 
     @contextmanager
@@ -131,7 +133,7 @@ class ResultsWriter(Observer):
         replace(self.path, sealed(copy.getvalue()))
 
     def _lengthen(self, file: h5py.File) -> None:
-        """Put a scene that has stages more in the place of the file's own."""
+        """Put a scene that goes on for longer in the place of the file's own."""
         if self._longer is None:
             return
         del file["scene"]
