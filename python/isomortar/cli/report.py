@@ -135,3 +135,21 @@ def masters(
 
     folder = out or Path("results") / ("masters-quick" if quick else "masters")
     conduct(study_module(cases, "masters").study(quick), folder, jobs)
+
+
+@report.command()
+def published(
+    jobs: JobsOption = CORES,
+    out: Annotated[Path, typer.Option(file_okay=False, help="Folder of the page; what verify measured there counts.")] = RESULTS,
+    cases: CasesOption = CASES,
+) -> None:
+    """Benchmarks that others have published: values with their uncertainty beside theirs, and curves.
+
+    The runs are the cells of `isomortar verify --tier nightly --family published`; the page is published.html. Exit code 1 if one did not
+    come to its end or to what is claimed of it. Run it in a checkout, from its folder: the study stands in verification/published.
+
+    For example: `isomortar report published -j 2`
+    """
+    from isomortar.harness.study import study_module
+
+    conduct(study_module(cases, "published").study(cases / "published"), out, jobs)

@@ -1,0 +1,95 @@
+"""What a published benchmark is: cases that compute it, the numbers that are known of it, and what its sources leave open."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from isomortar.geometry.patch import FloatArray
+
+
+@dataclass(frozen=True)
+class Known:
+    """A published value of a quantity."""
+
+    source: str
+    value: float
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number of a case, and what is known of it.
+
+    Parameters
+    ----------
+    name : str
+        Its key among the numbers of the case.
+    label, unit : str
+    known : tuple of Known
+    remark : str
+        Why values differ, or what is open.
+    """
+
+    name: str
+    label: str
+    unit: str
+    known: tuple[Known, ...]
+    remark: str = ""
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """Numbers of a case that are drawn: `y` over `x`, and published points of the same, by source, shape (n, 2)."""
+
+    x: str
+    y: str
+    x_label: str
+    y_label: str
+    points: dict[str, FloatArray]
+
+
+@dataclass(frozen=True)
+class Benchmark:
+    """A published benchmark.
+
+    Parameters
+    ----------
+    case : str
+        Its case, whose setting ``mesh`` is a discretisation.
+    title, about : str
+        What is computed.
+    open : str
+        What the sources leave open, and how it is taken here; empty: nothing.
+    finest : two str
+        Discretisations of other order and other elements: the value is that of the first, what they differ by its uncertainty.
+    """
+
+    case: str
+    title: str
+    about: str
+    open: str
+    finest: tuple[str, str]
+    quantities: tuple[Quantity, ...]
+    drawings: tuple[Drawing, ...] = ()
+
+
+def points(benchmark: str, name: str) -> dict[str, FloatArray]:
+    """Published points of a curve by source, shape (n, 2)."""
+    table = tomllib.loads((Path(__file__).parent / "known.toml").read_text(encoding="utf-8"))[benchmark][name]
+    over = table["over"]
+    return {source: np.column_stack([over[: len(values)], values]) for source, values in table.items() if source != "over"}
+
+
+def among(curve: dict[str, FloatArray], x: float) -> tuple[Known, ...]:
+    """Values of published curves at one of their points."""
+    return tuple(Known(source, float(np.interp(x, *rows.T))) for source, rows in curve.items())
+
+
+def ratios(above: Sequence[Known], below: Sequence[Known]) -> tuple[Known, ...]:
+    """Quotients of values by the same sources."""
+    values = {known.source: known.value for known in below}
+    return tuple(Known(known.source, known.value / values[known.source]) for known in above)

@@ -1,0 +1,68 @@
+"""The page of published benchmarks: every quantity with its uncertainty beside what is known of it, and the curves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from published.benchmark import Benchmark, Drawing, Quantity
+
+from isomortar.harness.figures import look, page_style, svg_text
+from isomortar.harness.report import template
+from isomortar.harness.runner import Result
+from isomortar.harness.store import write_whole
+from isomortar.harness.study import Conclusion
+from isomortar.results import style
+
+#: Numbers of a case by discretisation.
+Found = Mapping[str, Mapping[str, Any]]
+_MARKS = "osD^vP"
+
+
+def write(folder: Path, benchmarks: Sequence[Benchmark], results: Sequence[Result], started: datetime) -> Conclusion:
+    """Write ``published.html``."""
+    sections = [_section(benchmark, [r for r in results if r.cell.case.name.split("/")[-1] == benchmark.case]) for benchmark in benchmarks]
+    path = folder / "published.html"
+    failed = sum(result.state != "passed" for result in results)
+    text = template("page.html", Path(__file__)).render(sections=sections, started=started, failed=failed, total=len(results))
+    write_whole(path, text)
+    return Conclusion(path, failed, not failed, f"{len(benchmarks)} benchmarks, {len(results)} runs")
+
+
+def _section(benchmark: Benchmark, results: Sequence[Result]) -> dict[str, Any]:
+    found: Found = {r.cell.settings["mesh"]: r.measurement.numbers for r in results if r.measurement.ending == "measured"}
+    return {
+        "benchmark": benchmark,
+        "rows": [_row(quantity, benchmark, found) for quantity in benchmark.quantities],
+        "figures": [_drawn(drawing, benchmark, found) for drawing in benchmark.drawings],
+        "runs": [(r.cell.settings["mesh"], r.state, r.measurement.reason, r.measurement.cpu_seconds) for r in results],
+    }
+
+
+def _row(quantity: Quantity, benchmark: Benchmark, found: Found) -> dict[str, Any]:
+    """A quantity: our value by the finest discretisation, how far the next one is off it, all others, and what is known."""
+    values = {mesh: float(numbers[quantity.name]) for mesh, numbers in found.items()}
+    first, second = (values.get(mesh, np.nan) for mesh in benchmark.finest)
+    known = [(known.source, known.value, known.value / first - 1.0) for known in quantity.known]
+    return {"quantity": quantity, "value": first, "uncertainty": abs(second - first), "known": known, "values": values}
+
+
+def _drawn(drawing: Drawing, benchmark: Benchmark, found: Found) -> str:
+    """All discretisations, the finest in black, and published points."""
+    with page_style():
+        figure = Figure(figsize=(9.6, 3.9), layout="constrained")
+        axes = figure.subplots()
+        for mesh, numbers in found.items():
+            finest = mesh == benchmark.finest[0]
+            looks = look(mesh.split()[0]) | {"marker": "", "linewidth": 1.8 if finest else 0.8}
+            looks |= {"color": "black", "zorder": 4} if finest else {"linestyle": "-" if "fine" in mesh else ":"}
+            axes.plot(numbers[drawing.x], numbers[drawing.y], label=mesh, **looks)
+        for mark, (source, rows) in zip(_MARKS, drawing.points.items(), strict=False):
+            axes.plot(*rows.T, mark, label=source, markersize=4.0, color=style.GREY, markerfacecolor="white", zorder=5)
+        axes.set(xlabel=drawing.x_label, ylabel=drawing.y_label)
+        figure.legend(loc="outside right upper")
+        return svg_text(figure, f"{benchmark.case}-{drawing.y}")

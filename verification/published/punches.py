@@ -1,0 +1,277 @@
+"""Round punches with rounded edges, pressed into a cylinder: one whose solution is known, and the second contact benchmark of NAFEMS."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from published.benchmark import Benchmark, Drawing, Known, Quantity
+from published.turned import disc, punch
+from scipy.integrate import quad
+
+from isomortar.geometry.patch import FloatArray, Patch
+from isomortar.harness import Bound, Shown, case
+from isomortar.model.entities import Problem
+from isomortar.model.numbering import Numbering
+from isomortar.results.bezier import sampling_matrix
+from isomortar.results.fields import contact_surfaces
+from isomortar.scene import Scene
+from isomortar.scene.geometry_file import patch_table
+from isomortar.scene.source import dump
+from isomortar.solve.record import StepResult
+from isomortar.solve.simulation import Simulation
+
+#: Both: radius and height of the punch, and of the cylinder below.
+PUNCH, CYLINDER = (50.0, 100.0), (100.0, 200.0)
+#: The one that is known: flat radius, radius of the edge, Young's modulus of both, Poisson's ratio, flat over contact radius, approach.
+FLAT, EDGE, YOUNG, POISSON, RATIO, APPROACH = 10.0, 100.0, 1e5, 0.3, 0.7, 0.32115
+#: Where elements end, in depth, and along the radius of either benchmark, closer to where contact ends.
+_DEPTHS = (1.0, 2.5, 5.0, 10.0, 20.0, 45.0)
+_ROUND = (2.5, 5.0, 7.5, 11.0, 12.0, 13.0, 13.7, 14.3, 15.0, 16.5, 19.0, 25.0, 35.0)
+_NAFEMS = (10.0, 20.0, 27.0, 32.0, 35.0, 37.5, 39.0, 40.5, 41.0, 42.0, 43.0, 45.0)
+#: Samples of the pressure an element.
+_SAMPLES = 8
+#: Orders, and parts of each element.
+MESHES = {f"N{order} {name}": (order, parts) for order in (2, 3) for name, parts in (("coarse", 1), ("fine", 2))}
+
+
+@dataclass(frozen=True)
+class Pressed:
+    """What is found of a punch: forces of the whole, pressures by radius, settlement of the cylinder's middle, and what is unbalanced."""
+
+    force: float
+    radii: FloatArray
+    pressure: FloatArray
+    middle: float
+    unbalanced: float
+
+
+def pressed(flat: float, edge: float, spans: tuple[float, ...], mesh: str, materials: dict[str, Any], push: dict[str, Any]) -> Pressed:
+    """Press a punch into the cylinder without friction, in small strain, in one load step; `push` is how, keys of a scene."""
+    order, parts = MESHES[mesh]
+    radius, height = PUNCH
+    wide, deep = CYLINDER
+    beyond = [r for r in (*spans, flat, radius, 65.0) if r < wide]
+    bodies = {
+        "punch": punch(flat, edge, radius, height, (spans, _DEPTHS)),
+        "cylinder": disc(wide, -deep, 0.0, (sorted(beyond), [-d for d in (*_DEPTHS, 100.0)[::-1]])),
+    }
+    held = {
+        f"{body}-{face}": {"face": f"{body}.{face}", "components": components}
+        for body in bodies
+        for face, components in (("u0", ["x", "y"]), ("v0", ["y"]), ("v1", ["x"]))
+    }
+    scene = {
+        "format": 1,
+        "name": "punch",
+        "materials": {name: {"law": "linear-elastic", "poisson": POISSON, **values} for name, values in materials.items()},
+        "bodies": {
+            name: {"material": material, "patch": patch_table(patch), "mesh": _mesh(patch, order, parts)}
+            for (name, patch), material in zip(bodies.items(), materials, strict=True)
+        },
+        "contacts": {"face": {"slave": "punch.w0", "master": "cylinder.w1", "friction": 0.0}},
+        "supports": {"below": {"face": "cylinder.w0"}, **held, **push.pop("supports", {})},
+        "stages": [{"name": "press", "steps": 1, "motions": push.pop("motions", {})}],
+        **push,
+    }
+    problem = Scene.from_toml(dump(scene)).problem()
+    *_, step = Simulation(problem).run()
+    return _found(problem, step)
+
+
+def _mesh(patch: Patch, order: int, parts: int) -> dict[str, Any]:
+    """Elements of a body of revolution: the exact one round the axis, and the patch's own, cut into parts."""
+    u, _, w = patch.directions
+    return {"order": [order, 2, order], "elements": [parts * u.elements, 1, parts * w.elements]}
+
+
+def _found(problem: Problem, step: StepResult) -> Pressed:
+    surface = contact_surfaces(problem, step)[0]
+    along, around = (sampling_matrix(line, _SAMPLES) for line in surface.directions)
+    places, pressure, _ = surface.fields((along, around[:1]))
+    numbering = Numbering(problem)
+    top = numbering.face_points(problem.body("cylinder"), "w1")
+    axis = top[np.argmin(np.linalg.norm(numbering.reference[top, :2], axis=1))]
+    below = next(r.force for s, r in zip(problem.supports, step.reactions, strict=True) if s.name == "below")
+    force, loads = -4.0 * float(step.contacts[0].force_master[2]), sum(float(load.force[2]) for load in step.loads)
+    others = sum(float(r.force[2]) for s, r in zip(problem.supports, step.reactions, strict=True) if s.name != "below")
+    settled = float((step.state.positions - numbering.reference)[axis, 2])
+    return Pressed(force, places[:, 0], pressure, settled, abs(float(below[2]) + loads + others) / abs(float(below[2])))
+
+
+@dataclass(frozen=True)
+class Exact:
+    """A rigid punch with a flat middle and a parabolic edge on a half-space in small strain, by contact radius (Sneddon; Ciavarella 1999).
+
+    Two bodies of one material act as one of half its modulus: what each gives way makes no shear between them.
+    """
+
+    radius: float
+
+    @property
+    def modulus(self) -> float:
+        """That of both bodies together."""
+        return 0.5 * YOUNG / (1.0 - POISSON**2)
+
+    @property
+    def approach(self) -> float:
+        """How far the punch goes in."""
+        return self.radius / EDGE * (np.sqrt(self.radius**2 - FLAT**2) - FLAT * np.arccos(FLAT / self.radius))
+
+    @property
+    def force(self) -> float:
+        """What it bears."""
+        return 2.0 * self.modulus * quad(lambda x: x * self._slope(x), FLAT, self.radius)[0]
+
+    def pressure(self, radius: float) -> float:
+        """Pressure at a radius, over the mean one; the variable is the height over the radius, which has no singularity."""
+        low, high = (np.sqrt(x**2 - radius**2) for x in (max(radius, FLAT), self.radius))
+
+        def share(height: float) -> float:
+            x = np.hypot(height, radius)
+            return self._slope(x) / x if x > 0.0 else 0.0
+
+        return self.modulus / np.pi * quad(share, low, high)[0] * np.pi * self.radius**2 / self.force
+
+    @staticmethod
+    def _slope(x: float) -> float:
+        """How the approach grows with the contact radius."""
+        return float((2.0 * np.sqrt(max(x**2 - FLAT**2, 0.0)) - FLAT * np.arccos(min(FLAT / x, 1.0))) / EDGE)
+
+
+_EXACT = Exact(FLAT / RATIO)
+#: Radii, over the contact radius, at which pressures are told.
+_AT = (0.0, 0.81)
+
+
+@case(
+    claim="A flat punch with a rounded edge goes as far in, bears as much, and has the pressures of theory, but for the bodies' size.",
+    tier=lambda mesh: "gate" if mesh == "N2 coarse" else "nightly",
+    grid={"mesh": tuple(MESHES)},
+    bounds={
+        "unbalanced": Bound(at_most=1e-8, reason="theory: equilibrium, to the tolerance of Newton's method times ten"),
+        "force off": Bound(
+            at_most=0.02, reason="theory: bodies of 7 and 3.5 contact radii in width for half-spaces: the square of a / width"
+        ),
+        "radius off": Bound(at_most=0.07, reason="discretisation: the edge of contact lies somewhere in an element of 0.7"),
+        "pressure in the middle": Bound(at_least=0.62, at_most=0.66, reason="theory: 0.642; the mean is over a radius known to an element"),
+        "force": Shown("N"),
+        "contact radius": Shown("mm"),
+        "pressure at 0.81": Shown("over the mean one, at 0.81 of the contact radius"),
+        "radii": Shown("of the samples, mm"),
+        "pressures": Shown("MPa"),
+    },
+)
+def rounded_punch(mesh: str) -> dict[str, Any]:
+    """The approach is given; both bodies are of one material, so that friction would not act."""
+    spans = (*(r for r in _ROUND if r != FLAT),)
+    found = pressed(
+        *(FLAT, EDGE, spans, mesh),
+        {"steel": {"young": YOUNG}, "base": {"young": YOUNG}},
+        {"supports": {"top": {"face": "punch.w1"}}, "motions": {"top": {"translate": [0, 0, -APPROACH]}}},
+    )
+    radius = float(found.radii[found.pressure > 0.0].max())
+    mean = found.force / (np.pi * _EXACT.radius**2)
+    told = [float(np.interp(share * _EXACT.radius, found.radii, found.pressure) / mean) for share in _AT]
+    return {
+        "unbalanced": found.unbalanced,
+        "force off": abs(found.force / _EXACT.force - 1.0),
+        "radius off": abs(radius / _EXACT.radius - 1.0),
+        "pressure in the middle": told[0],
+        "force": found.force,
+        "contact radius": radius,
+        "pressure at 0.81": told[1],
+        "radii": found.radii,
+        "pressures": found.pressure,
+    }
+
+
+@case(
+    claim="The cylinder below a punch settles as two other programs say, within what they differ by.",
+    tier="nightly",
+    grid={"mesh": tuple(MESHES)},
+    bounds={
+        "unbalanced": Bound(at_most=1e-8, reason="theory: equilibrium, to the tolerance of Newton's method times ten"),
+        "middle": Bound(at_least=-0.137, at_most=-0.129, reason="reference: -0.1310 (Marc) and -0.1329 (Code_Aster), coarser elements"),
+        "pressure in the middle": Shown("MPa; the mean one is 100 over the radius of the punch"),
+        "peak": Shown("MPa, where the edge begins: without limit under refinement"),
+        "contact radius": Shown("mm"),
+        "radii": Shown("of the samples, mm"),
+        "pressures": Shown("MPa"),
+    },
+)
+def nafems_punch(mesh: str) -> dict[str, Any]:
+    """NAFEMS 2 without friction: steel on aluminium, 100 MPa on top."""
+    materials = {"steel": {"young": 210e3}, "aluminium": {"young": 70e3}}
+    found = pressed(40.0, 10.0, _NAFEMS, mesh, materials, {"loads": {"top": {"face": "punch.w1", "pressure": 100.0}}})
+    return {
+        "unbalanced": found.unbalanced,
+        "middle": found.middle,
+        "pressure in the middle": float(found.pressure[0]),
+        "peak": float(found.pressure.max()),
+        "contact radius": float(found.radii[found.pressure > 0.0].max()),
+        "radii": found.radii,
+        "pressures": found.pressure,
+    }
+
+
+_THEORY = "theory, half-spaces"
+_CURVE = np.array([(share * _EXACT.radius, _EXACT.pressure(share * _EXACT.radius)) for share in np.linspace(0.0, 0.999, 60)])
+BENCHMARKS = (
+    Benchmark(
+        "rounded_punch",
+        "Flat punch with a rounded edge",
+        "A punch, flat to a radius of 10 with an edge of radius 100, and a cylinder, both of 100 GPa and Poisson's ratio 0.3, approach each "
+        "other by 0.32115, in small strain, without friction: contact to 10 / 0.7.",
+        "The force of 4657 N that goes round with this benchmark is not that of its own theory, which for this approach gives 446.6 kN.",
+        ("N3 fine", "N2 fine"),
+        (
+            Quantity("force", "force", "N", (Known(_THEORY, _EXACT.force), Known("as told", 4657.0)), "the bodies are no half-spaces"),
+            Quantity("contact radius", "contact radius", "mm", (Known(_THEORY, _EXACT.radius),), "to an element"),
+            Quantity(
+                "pressure in the middle",
+                "pressure in the middle over the mean one",
+                "",
+                (Known(_THEORY, _EXACT.pressure(0.0)), Known("as told", 0.648)),
+            ),
+            Quantity(
+                "pressure at 0.81",
+                "pressure at 0.81 of the contact radius over the mean one",
+                "",
+                (Known(_THEORY, _EXACT.pressure(0.81 * _EXACT.radius)), Known("as told", 1.418)),
+            ),
+        ),
+        (
+            Drawing(
+                "radii", "pressures", "radius, mm", "pressure, MPa", {_THEORY: _CURVE * [1.0, _EXACT.force / (np.pi * _EXACT.radius**2)]}
+            ),
+        ),
+    ),
+    Benchmark(
+        "nafems_punch",
+        "Punch on a foundation (NAFEMS 2)",
+        "A steel punch of radius 50 and height 100, whose edge is rounded with radius 10, on an aluminium cylinder of radius 100 and "
+        "height 200, under 100 MPa on top, without friction.",
+        "The corner of the contact, where the edge begins, has pressures without limit: peaks are no numbers. With friction feet are at "
+        "the pole of the cylinder's top, which is refused.",
+        ("N3 fine", "N2 fine"),
+        (
+            Quantity(
+                "middle",
+                "displacement of the foundation's middle",
+                "mm",
+                (Known("NAFEMS, Marc", -0.1310), Known("Code_Aster V6.01.122", -0.132897)),
+            ),
+            Quantity(
+                "pressure in the middle",
+                "pressure in the middle",
+                "MPa",
+                (Known("Code_Aster V6.01.122, stress at point M", 93.626),),
+                "stress of an element beside it",
+            ),
+            Quantity("contact radius", "contact radius", "mm", ()),
+        ),
+        (Drawing("radii", "pressures", "radius, mm", "pressure, MPa", {}),),
+    ),
+)

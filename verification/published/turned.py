@@ -1,0 +1,88 @@
+"""Bodies of revolution from their profiles: a quarter, exact, whose elements are where a benchmark needs them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from isomortar.geometry.patch import Direction, FloatArray, Patch
+from isomortar.geometry.splines import Spline
+
+#: A quarter of a circle, as the control points and weights of one element.
+_QUARTER = Direction("N", 2, np.array([0.0, 0.0, 0.0, 1.0, 1.0, 1.0]))
+_QUARTER_POINTS = np.array([[1.0, 0.0, 1.0], [np.sqrt(0.5), np.sqrt(0.5), np.sqrt(0.5)], [0.0, 1.0, 1.0]])
+
+
+def line(start: float, end: float) -> Direction:
+    """A direction of one linear element, whose parameter is a length."""
+    return Direction("N", 1, np.array([start, start, end, end]))
+
+
+def turned(along: Direction, up: Direction, profile: FloatArray, spans: Sequence[Sequence[float]]) -> Patch:
+    """A quarter turn about the z-axis; u, v, w run along the profile, round the axis and up.
+
+    Parameters
+    ----------
+    along, up : Direction
+    profile : ndarray, shape (control points along, control points up, 3)
+        Radius, height and weight.
+    spans : two sequences of float
+        Where elements end along and up, besides where they do already.
+    """
+    radius, height, weight = np.moveaxis(profile, 2, 0)
+    cosine, sine, arc = _QUARTER_POINTS.T
+    points = np.stack(
+        [
+            np.einsum("ac,b->cba", radius, cosine / arc),
+            np.einsum("ac,b->cba", radius, sine / arc),
+            np.einsum("ac,b->cba", height, np.ones(3)),
+        ],
+        axis=-1,
+    )
+    weights = np.einsum("ac,b->cba", weight, arc)
+    spline = Spline((along, _QUARTER, up), points.reshape(-1, 3), weights.ravel())
+    for axis, knots in zip((0, 2), spans, strict=True):
+        if len(knots):
+            spline.insert(axis, np.array(knots, dtype=np.float64))
+    u, w = (Direction("N", d.order, knots) for d, knots in zip((along, up), spline.knots[::2], strict=True))
+    return Patch((u, _QUARTER, w), spline.control_points, spline.weights)
+
+
+def disc(radius: float, bottom: float, top: float, spans: Sequence[Sequence[float]]) -> Patch:
+    """A quarter of a cylinder; parameters along and up are lengths."""
+    r, z = np.meshgrid([0.0, radius], [bottom, top], indexing="ij")
+    return turned(line(0.0, radius), line(bottom, top), np.stack([r, z, np.ones((2, 2))], axis=-1), spans)
+
+
+def punch(flat: float, fillet: float, radius: float, height: float, spans: Sequence[Sequence[float]]) -> Patch:
+    """A quarter of a round punch whose flat underside, at height zero, goes over into an arc up to its side.
+
+    Along the underside the parameter is the radius of the flat part, then goes on to `radius` along the arc.
+
+    Parameters
+    ----------
+    flat, fillet : float
+        Radius of the flat part, and of the arc that begins there.
+    radius, height : float
+        Of the punch; the arc ends at its side.
+    spans : two sequences of float
+    """
+    half = 0.5 * np.arcsin((radius - flat) / fillet)
+    rise = fillet * (1.0 - np.cos(2.0 * half))
+    below = [
+        (0.0, 0.0, 1.0),
+        (0.5 * flat, 0.0, 1.0),
+        (flat, 0.0, 1.0),
+        (flat + fillet * np.tan(half), 0.0, np.cos(half)),
+        (radius, rise, 1.0),
+    ]
+    above = [
+        (0.0, height, 1.0),
+        (0.5 * flat, height, 1.0),
+        (flat, height, 1.0),
+        (0.5 * (flat + radius), height, 1.0),
+        (radius, height, 1.0),
+    ]
+    along = Direction("N", 2, np.array([0.0, 0.0, 0.0, flat, flat, radius, radius, radius]))
+    return turned(along, line(0.0, height), np.stack([np.array(below), np.array(above)], axis=1), spans)
