@@ -67,7 +67,10 @@ def step_result(number: int) -> StepResult:
         stage="press" if number <= 3 else "roll",
         time=float(number),
         state=State(_positions(random), tuple(_contact_state(random) for _ in range(2))),
-        reactions=tuple(Reaction(*vectors, 2.0 * vectors[0]) for vectors in ([random.normal(size=3) for _ in range(3)] for _ in range(2))),
+        reactions=tuple(
+            Reaction(*vectors, 2.0 * vectors[0], float(vectors[1][0]))
+            for vectors in ([random.normal(size=3) for _ in range(3)] for _ in range(2))
+        ),
         contacts=tuple(_contact_result(random) for _ in range(2)),
         augmentations=augmentations,
         newton_order=float("nan") if number == 2 else random.normal(),

@@ -337,7 +337,13 @@ def test_a_results_file_tells_what_it_holds(invoke: Invoke) -> None:
     end = last("half.h5")
     assert (code, found["name"], found["recorded"], found["stages"]) == (0, "press", 2, {"press": [2, 2]})
     assert found["supports"] == [
-        {"name": name, "force": list(reaction.force), "moment": list(reaction.moment), "displacement": list(reaction.displacement)}
+        {
+            "name": name,
+            "force": list(reaction.force),
+            "moment": list(reaction.moment),
+            "displacement": list(reaction.displacement),
+            "rotation": reaction.rotation,
+        }
         for name, reaction in zip(("top",), end.reactions, strict=True)
     ]
     (contact,) = found["contacts"]

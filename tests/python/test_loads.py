@@ -79,7 +79,7 @@ WRONG = {
     "not a number": ("pressure = 0.1", "pressure = nan", "loads.wind.pressure", "allowed: a finite number"),
     "two components": ("[0, 0, -0.05]", "[0, -0.05]", "loads.pull.traction", "allowed: a list of 3 numbers"),
     "unknown key": ("pressure = 0.1", "pressures = 0.1", "loads.wind.pressures", "unknown key; allowed here: pressure"),
-    "no load": ("{ wind = 2.0,", "{ window = 2.0,", "stages.gust.loads.window", "nor a support with a force; allowed: wind, own, pull"),
+    "no load": ("{ wind = 2.0,", "{ window = 2.0,", "stages.gust.loads.window", "nor a support with a force or a moment; allowed: wind"),
     "no factor": ("{ wind = 2.0,", "{ wind = inf,", "stages.gust.loads.wind", "allowed: a finite number"),
     "rigid": ('body = "right"', 'body = "die"', "loads.own.body", "is on body 'die', which is rigid"),
     "face of a rigid body": ('face = "left.w1"', 'face = "die.w0"', "loads.wind.face", "is on body 'die', which is rigid"),

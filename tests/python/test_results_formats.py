@@ -40,7 +40,7 @@ def without_ways(path: Path) -> None:
     """Take what no file of format 3 held: how far supports had gone, by their motions alone."""
     with h5py.File(path, "a") as file:
         for support in file["curves/supports"].values():
-            del support["displacement"]
+            del support["displacement"], support["rotation"]
     path.write_bytes(sealed(path.read_bytes()))
 
 

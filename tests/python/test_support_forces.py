@@ -61,9 +61,8 @@ WRONG = {
     ),
     "no components": ("force.z = -0.3", "force.z = -0.3\ncomponents = []", "supports.top.components", "has 0 entries"),
     "moved too": ("[0.05, 0, 0]", "[0.05, 0, -0.1]", "stages.drag.motions.top.translate", "moves support 'top' along z"),
-    "moment": ("force.z = -0.3", "moment.y = 0", "supports.top", "a plate turns by motions alone"),
-    "rigid": ('[supports.die]\nface = "die.w0"', '[supports.die]\nface = "die.w0"\nforce.z = 1', "supports.die.force", "'die' is rigid"),
-    "no such load": ("loads.top = 1.5", "loads.tip = 1.5", "stages.drag.loads.tip", "nor a support with a force; allowed: top"),
+    "moment": ("force.z = -0.3", "moment.y = 0", "supports.top", "turns about one axis; allowed: moment, a number"),
+    "no such load": ("loads.top = 1.5", "loads.tip = 1.5", "stages.drag.loads.tip", "nor a support with a force or a moment; allowed: top"),
     "name of a load": (
         "[supports.die]", '[loads.top]\nface = "pad.u0"\npressure = 1\n[supports.die]', "supports.top", "is the name of a load as well",
     ),
@@ -131,13 +130,15 @@ def test_a_plate_is_one_unknown() -> None:
     problem = Scene.from_toml(GOOD).problem()
     supports = Supports(problem, Numbering(problem))
     (plate,) = supports.plates
-    assert len(np.unique(supports.equation[plate.unknowns])) == 1
+    assert len(np.unique(supports.equation[plate.unknowns(2)])) == 1
     assert len(supports.free) == supports.equation.max() + 1
-    forces = np.random.default_rng(0).standard_normal((len(supports.held), 3))
+    forces, here = np.random.default_rng(0).standard_normal((len(supports.held), 3)), supports.place(0.0)
     solution = np.random.default_rng(1).standard_normal(len(supports.free))
-    work = float(np.sum(forces * supports.spread(solution)))
-    np.testing.assert_allclose(supports.gathered(forces).ravel()[supports.free] @ solution, work, rtol=1e-13)  # virtual work is the same
-    left = supports.unbalanced(forces, 1.0) - supports.gathered(forces)
+    work = float(np.sum(forces * supports.spread(solution, here)))
+    np.testing.assert_allclose(
+        supports.gathered(forces, here).ravel()[supports.free] @ solution, work, rtol=1e-13
+    )  # virtual work is the same
+    left = supports.unbalanced(forces, here, 1.0) - supports.gathered(forces, here)
     np.testing.assert_allclose(left.sum(axis=0), [0.0, 0.0, 0.15], atol=1e-14)
     assert rigid_rank(problem, (problem.body("pad"),)) == 5  # it may go along z, and not tilt
 

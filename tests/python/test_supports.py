@@ -13,7 +13,8 @@ from isomortar.model.entities import Motion, Problem, RigidPlane, unit
 from isomortar.model.held import Held, held_by
 from isomortar.model.numbering import Numbering
 from isomortar.model.pairs import Pair
-from isomortar.model.supports import Supports, rotation
+from isomortar.model.plates import rotation
+from isomortar.model.supports import Supports
 from isomortar.scene import Scene
 
 coordinates = st.floats(-1.0, 1.0)

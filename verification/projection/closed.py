@@ -13,7 +13,7 @@ from isomortar.geometry.primitives import ring
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
 from isomortar.model.entities import Problem
-from isomortar.model.supports import rotation
+from isomortar.model.plates import rotation
 from isomortar.scene import Scene
 from isomortar.solve.contact import Kinematics
 from isomortar.solve.equilibrium import Equilibrium

@@ -16,7 +16,8 @@ from isomortar.harness.tangents import BOUND, PARTS, SYMMETRY_BOUND, measure
 from isomortar.harness.visits import visited_states
 from isomortar.model.entities import Face, Motion, Problem, Stage
 from isomortar.model.numbering import Numbering
-from isomortar.model.supports import Supports, rotation
+from isomortar.model.plates import rotation
+from isomortar.model.supports import Supports
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
 from isomortar.solve.simulation import Simulation

@@ -1,4 +1,4 @@
-"""Supports that exert a prescribed force: what they move by, prescribed in its place, makes that force."""
+"""Supports that exert a prescribed force or moment: what they move or turn by, prescribed in its place, makes that force or moment."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ import numpy as np
 from small_scenes import TIGHT
 
 from isomortar.harness import Bound, case
-from isomortar.model.entities import Motion, Problem, Stage
+from isomortar.model.entities import Motion, Problem, Stage, unit
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
 from isomortar.solve.simulation import Simulation
 
-#: Scenes with one support `top` that a force moves.
+#: Scenes with one support `top` that a force moves, or a moment turns.
 SCENES = {
     # A bar that is bent by a force across its end, which turns meanwhile.
     "bar": """
@@ -59,6 +59,36 @@ supports.side = { face = "pad.u0", components = ["x"] }
 supports.front = { face = "pad.v0", components = ["y"] }
 stages = [{ name = "press", steps = 2, loads.top = 1 }]
 """,
+    # A bar that a force and a moment bend, its end turning about an axis beside it and askew, and more while it is drawn out.
+    "bar, turned": """
+format = 1
+bodies.bar = { geometry = { kind = "box", lower = [0, 0, 0], upper = [2, 1, 1] }, mesh = { order = 2, elements = [3, 2, 2] } }
+supports.base.face = "bar.u0"
+supports.top = { face = "bar.u1", force.z = -0.1, moment = 0.3, centre = [2.2, 0.5, 0.3], axis = [1, 2, 3] }
+stages = [{ name = "bend", steps = 2 }, { name = "draw", steps = 2, loads.top = 2, motions.top.translate = [0.1, 0, 0] }]
+""",
+    # A pad that is pressed and dragged, and whose top tilts as it wants: all of its edge is on the face in contact as well.
+    "onto a plane, tilting": """
+format = 1
+bodies.pad = { geometry = { kind = "box", lower = [-0.5, -0.5, 0], upper = [0.5, 0.5, 0.4] }, mesh = { order = 2, elements = [3, 3, 1] } }
+contacts.floor = { slave = "pad.w0", plane = {}, friction = 0.3 }
+supports.top = { face = "pad.w1", force.z = -0.4, moment = 0, centre = [0, 0, 0.4], axis = [0, 1, 0] }
+stages = [{ name = "press", steps = 2 }, { name = "drag", steps = 2, motions.top.translate = [0.05, 0, 0] }]
+""",
+    # A rigid box that a force presses onto a block beside its middle: a moment keeps it from tilting, in part.
+    "a rigid box": """
+format = 1
+bodies.block.geometry = { kind = "box", lower = [-0.4, -0.3, -0.5], upper = [0.4, 0.3, 0] }
+bodies.block.mesh = { order = 2, elements = [4, 2, 2] }
+bodies.box.geometry = { kind = "box", lower = [-1, -1, 0], upper = [1, 1, 0.5] }
+bodies.box.mesh.order = 1
+bodies.box.rigid = true
+contacts.pair = { slave = "block.w1", master = "box.w0", friction = 0 }
+supports.base.face = "block.w0"
+supports.top = { face = "box.w1", force.z = -0.3, moment = -0.02, centre = [0.05, 0, 0.5], axis = [0, 1, 0] }
+solver.penalty_growth_max = 10
+stages = [{ name = "press", steps = 2 }, { name = "turn", steps = 2, loads.top = 1.2 }]
+""",
 }
 
 
@@ -70,37 +100,39 @@ def problem(scene: str, method: str) -> Problem:
 
 def by_displacement(given: Problem, results: list[StepResult]) -> Problem:
     """The problem with the motions that its supports were found to make in place of forces, a stage for each load step."""
-    ends = np.cumsum([stage.steps for stage in given.stages])
-    of = [int(np.searchsorted(ends, step)) for step in range(1, given.total_steps + 1)]
     supports = []
     for k, support in enumerate(given.supports):
         ways = np.diff([np.zeros(3), *(result.reactions[k].displacement for result in results)], axis=0)
-        turns = [support.motions[stage].rotate / given.stages[stage].steps for stage in of]
-        motions = tuple(Motion((float(x), float(y), float(z)), turn) for (x, y, z), turn in zip(ways, turns, strict=True))
-        components = tuple(sorted({*support.components, *support.pressed}))
-        supports.append(replace(support, motions=motions, components=components, force=(None, None, None), factors=()))
+        turns = np.diff([0.0, *(result.reactions[k].rotation for result in results)])
+        motions = tuple(Motion((float(x), float(y), float(z)), float(turn)) for (x, y, z), turn in zip(ways, turns, strict=True))
+        components = tuple(sorted(support.carried))
+        supports.append(replace(support, motions=motions, components=components, force=(None, None, None), factors=(), moment=None))
     stages = tuple(Stage(f"step-{step}", 1) for step in range(1, given.total_steps + 1))
     return replace(given, supports=tuple(supports), stages=stages)
 
 
 @case(
-    claim="A support by force goes where the same support by displacement makes that force.",
+    claim="A support by force or moment goes where the same support by displacement or angle makes that force or moment.",
     tier="gate",
     grid={"scene": tuple(SCENES), "method": ("monolithic", "uzawa")},
     bounds={
         "prescribed": Bound(at_most=1e-10, reason="theory: forces on all control points are in balance to 1e-12 of the internal ones"),
         "force": Bound(at_most=1e-10, reason="theory: the same equations, the unknown exchanged; both to tight tolerances"),
+        "moment": Bound(at_most=1e-10, reason="theory: as above"),
         "positions": Bound(at_most=1e-10, reason="theory: as above"),
         "plate": Bound(at_most=1e-14, reason="round-off: the face is in shape"),
     },
 )
 def exchanged(scene: str, method: str) -> dict[str, float]:
-    """Force of the support off the one prescribed; that by displacement off it; positions of both runs; the face off its shape."""
+    """Force of the support off the one prescribed, and that by displacement; moments of both over force times size; positions; the shape.
+
+    Moments are those about the axis, off what is prescribed; positions those of one run off the other's, and shape what the face is off.
+    """
     given = problem(scene, method)
     simulation = Simulation(given)
     pressed, supports, reference = list(simulation.run()), simulation.equilibrium.supports, simulation.equilibrium.numbering.reference
     moved = list(Simulation(by_displacement(given, pressed)).run())
-    top = next(k for k, support in enumerate(given.supports) if support.pressed)
+    top = next(k for k, support in enumerate(given.supports) if support.is_plate)
     support, own = given.supports[top], list(given.supports[top].pressed)
     ends = np.cumsum([0, *(stage.steps for stage in given.stages)])
     factors = np.interp(np.arange(1, given.total_steps + 1), ends, [0.0, *support.factors])
@@ -109,12 +141,16 @@ def exchanged(scene: str, method: str) -> dict[str, float]:
     apart = [np.abs(a.state.positions - b.state.positions).max() for a, b in zip(pressed, moved, strict=True)]
     shapes = []
     for result in pressed:
-        off = (result.state.positions - supports.place(result.time))[supports.points[top]][:, own]
+        off = (result.state.positions - supports.place(result.time, result.state.positions))[supports.points[top]][:, own]
         shapes.append(np.ptp(off, axis=0).max() / np.ptp(reference))
-    size = np.abs(wanted).max()
+    size, moments = np.abs(wanted).max(), np.zeros((2, 1))
+    if support.moment is not None:
+        moments = np.array([[result.reactions[top].moment @ unit(support.axis) for result in run] for run in (pressed, moved)])
+        moments -= factors * support.moment
     return {
         "prescribed": float(np.abs(found - wanted).max() / size),
         "force": float(np.abs(again - wanted).max() / size),
+        "moment": float(np.abs(moments).max() / (size * np.ptp(reference))),
         "positions": float(max(apart)),
         "plate": float(max(shapes)),
     }

@@ -78,8 +78,10 @@ def _contact(contact: ContactOutlook) -> str:
 def _support(support: SupportOutlook) -> str:
     ways = [f"goes {support.way:.3g}"] * (support.way > 0.0) + [f"turns by {support.degrees:.3g} degrees"] * (support.degrees > 0.0)
     ways += [f"presses {axis} by {force:.3g}" for axis, force in zip("xyz", support.force, strict=False) if force is not None]
+    ways += [f"turns by a moment of {support.moment:.3g}"] if support.moment is not None else []
     prescribed = ", ".join(support.components) or "nothing"
-    return f"support {support.name}: prescribes {prescribed} of {support.face}; {' and '.join(ways) or 'stands still'}"
+    where = f"; in {', '.join(support.stages)} alone" if support.stages else ""
+    return f"support {support.name}: prescribes {prescribed} of {support.face}; {' and '.join(ways) or 'stands still'}{where}"
 
 
 def _load(load: LoadOutlook) -> str:

@@ -30,12 +30,16 @@ class ContactEnd:
 
 @dataclass(frozen=True)
 class SupportEnd:
-    """A support at the last recorded load step: force on its body, moment about its moving centre, how far that has gone."""
+    """A support at the last recorded load step: force on its body, moment about its moving centre, how far that has gone.
+
+    `rotation`: by how many degrees it has turned about its axis.
+    """
 
     name: str
     force: tuple[float, ...]
     moment: tuple[float, ...]
     displacement: tuple[float, ...]
+    rotation: float
 
 
 @dataclass(frozen=True)
@@ -133,7 +137,8 @@ def _contacts(results: isomortar.Results, last: StepResult) -> Iterator[ContactE
 
 def _supports(results: isomortar.Results, last: StepResult) -> Iterator[SupportEnd]:
     for support, reaction in zip(results.problem.supports, last.reactions, strict=True):
-        yield SupportEnd(support.name, *(tuple(map(float, v)) for v in (reaction.force, reaction.moment, reaction.displacement)))
+        force, turning, way = (tuple(map(float, v)) for v in (reaction.force, reaction.moment, reaction.displacement))
+        yield SupportEnd(support.name, force, turning, way, float(reaction.rotation))
 
 
 def _loads(results: isomortar.Results, last: StepResult) -> Iterator[LoadEnd]:
@@ -156,7 +161,9 @@ def lines(found: Information, path: Path) -> Iterator[str]:
             f"pressures {low:.4g} to {high:.4g}, penetration {contact.penetration:.2g}"
         )
     for support in found.supports:
-        yield f"support {support.name}: force ({_row(support.force)}), moment ({_row(support.moment)}), gone ({_row(support.displacement)})"
+        turned = f", turned by {support.rotation:.5g} degrees" if support.rotation else ""
+        way = f"gone ({_row(support.displacement)}){turned}"
+        yield f"support {support.name}: force ({_row(support.force)}), moment ({_row(support.moment)}), {way}"
     for load in found.loads:
         yield f"load {load.name}: force ({_row(load.force)}), moment ({_row(load.moment)})"
     if found.recorded < found.load_steps:

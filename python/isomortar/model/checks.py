@@ -13,6 +13,7 @@ from pydantic import TypeAdapter, ValidationError
 from isomortar.errors import FoldedElementError, InputError
 from isomortar.geometry.patch import FloatArray
 from isomortar.geometry.refinement import surface_samples
+from isomortar.model import constants
 from isomortar.model.contact_checks import check_contacts
 from isomortar.model.entities import Body, Contact, Face, Problem, SolverSettings, Support, unit
 from isomortar.model.glue import check_glue, named, pieces
@@ -42,9 +43,10 @@ def check(problem: Problem) -> None:
     ------
     InputError
         Settings of the solver that are not allowed; units that no number holds; more memory than there is; glue of faces that do not
-        conform; a support that turns too often in a load step, goes or turns too far from the origin, or goes by motion and by force at
-        once; a rigid body that supports contradict each other on, leave components to, or press; a body that nothing holds; supports that
-        contradict each other; contacts and loads that cannot be meant; too few Gauss points for a body's weights.
+        conform; a support that turns too often in a load step, goes or turns too far from the origin, goes by motion and by force at once,
+        moves where it does not hold, or has a moment and no face to turn; a rigid body that supports contradict each other on, leave
+        components to, or release; a body that nothing holds; supports that contradict each other; contacts and loads that cannot be meant;
+        too few Gauss points for a body's weights.
     """
     _check_settings(problem.settings)
     for body in problem.bodies:
@@ -179,28 +181,41 @@ def _check_carried(problem: Problem) -> None:
         name = support.place.body
         if not problem.body(name).rigid:
             continue
-        if support.pressed:
+        if support.stages is not None:
             raise InputError(
-                f"is given, but body {name!r} is rigid, and goes where its support takes it; allowed: motions, or a body that deforms",
-                f"supports.{support.name}.force",
+                f"are given, but body {name!r} is rigid, and goes with its support throughout; allowed: none, and motions that stop",
+                f"supports.{support.name}.stages",
             )
         if name in carried:
             raise InputError(
                 f"is on {named(whole[name], name)}, which is rigid and goes as a whole with support {carried[name]!r}; remove one",
                 f"supports.{support.name}.face",
             )
-        if len(support.components) < 3:
+        if len(support.carried) < 3:
             held = ", ".join("xyz"[k] for k in support.components)
             raise InputError(
-                f"are {held}, but body {name!r} is rigid, and goes with its support along all of x, y, z; allowed: all three",
+                f"are {held}, but body {name!r} is rigid, and goes with its support along x, y, z; allowed: all three, by motion or force",
                 f"supports.{support.name}.components",
             )
         carried |= {body.name: support.name for body in whole[name]}
 
 
 def _check_forces(problem: Problem) -> None:
-    """A support goes along a component by a motion, or by a force."""
+    """A support goes along a component by a motion, or by a force, turns by one or by a moment, and does so where it holds."""
     for support in problem.supports:
+        if support.moment is not None:
+            _check_moment(problem, support)
+        for number, (stage, motion) in enumerate(zip(problem.stages, support.motions, strict=True)):
+            if motion.moves and not support.holds(number):
+                raise InputError(
+                    f"moves support {support.name!r}, which does not hold in that stage (supports.{support.name}.stages); allowed: nothing",
+                    f"stages.{stage.name}.motions.{support.name}",
+                )
+            if motion.rotate and support.moment is not None:
+                raise InputError(
+                    f"turns support {support.name!r}, and so does supports.{support.name}.moment; allowed: 0 there",
+                    f"stages.{stage.name}.motions.{support.name}.rotate",
+                )
         for stage, motion in zip(problem.stages, support.motions, strict=True):
             both = [k for k in support.pressed if motion.translate[k]]
             if both:
@@ -211,10 +226,25 @@ def _check_forces(problem: Problem) -> None:
                 )
 
 
+def _check_moment(problem: Problem, support: Support) -> None:
+    """A plate that turns needs its components across the axis, and control points off it."""
+    axis, patch = unit(support.axis), problem.body(support.place.body).patch
+    left = [k for k in range(3) if abs(axis[k]) < 1.0 and k not in support.carried]
+    if left:
+        raise InputError(
+            f"turns the face, of which {', '.join('xyz'[k] for k in left)} go free; allowed: with all components across the axis "
+            "prescribed, or moved by a force",
+            f"supports.{support.name}.moment",
+        )
+    arms = patch.control_points[patch.face_points(support.place.face)] - np.asarray(support.centre)
+    if not np.linalg.norm(np.cross(axis, arms), axis=1).max() > constants.NO_PART * problem.body(support.place.body).size:
+        raise InputError("goes through all control points of the face; allowed: an axis beside some", f"supports.{support.name}.axis")
+
+
 def _check_held(problem: Problem) -> None:
-    """Every body needs a support, or must be glued to or touch a held body from the start."""
+    """Every body needs a support, or must be glued to or touch a held body from the start; without one later it has to be in contact."""
     whole = {body.name: piece for piece in pieces(problem) for body in piece}
-    held = {body.name for support in problem.given_supports for body in whole[support.place.body]}
+    held = {body.name for support in problem.given_supports if support.holds(0) for body in whole[support.place.body]}
     held |= {body.name for body in problem.bodies if body.rigid}
     touching = [c for c in problem.contacts if _touch(problem, c)]
     for _ in problem.bodies:
@@ -232,12 +262,16 @@ def _check_held(problem: Problem) -> None:
                 "add a support on one of its faces",
                 f"bodies.{body.name}",
             )
-        if body.name not in in_contact and rigid_rank(problem, whole[body.name]) < 6:
-            raise InputError(
-                f"{named(whole[body.name], body.name)} is free to move: its supports leave a rigid motion, and it is in "
-                "no contact; support more components",
-                f"bodies.{body.name}",
-            )
+    hinged = replace(problem, supports=tuple(replace(s, moment=None) for s in problem.supports))  # on a hinge loads may hold it
+    for number, stage in enumerate(problem.stages):
+        for body in problem.bodies:
+            if body.name not in in_contact and rigid_rank(hinged, whole[body.name], number) < 6:
+                since = f" in stage {stage.name!r}" if number else ""
+                raise InputError(
+                    f"{named(whole[body.name], body.name)} is free to move{since}: its supports leave a rigid motion, and it is in "
+                    "no contact; support more components",
+                    f"bodies.{body.name}",
+                )
 
 
 def _touch(problem: Problem, contact: Contact) -> bool:
@@ -255,7 +289,8 @@ def _touch(problem: Problem, contact: Contact) -> bool:
 def _check_agreement(problem: Problem, numbering: Numbering, one: Support, other: Support) -> None:
     """Two supports may share control points only where they prescribe the same, and neither by a force."""
     first, second = (numbering.points_at(problem.body(s.place.body), s.place) for s in (one, other))
-    shared = np.intersect1d(first, second)
+    stages = [k for k in range(len(problem.stages)) if one.holds(k) and other.holds(k)]
+    shared = np.intersect1d(first, second) if stages else first[:0]
     for pressed, beside in ((one, other), (other, one)) if len(shared) else ():
         both = sorted(set(pressed.pressed) & {*beside.components, *beside.pressed})
         if both:
@@ -264,8 +299,15 @@ def _check_agreement(problem: Problem, numbering: Numbering, one: Support, other
                 f"{beside.name!r}, or prescribes it; allowed: each component by one support, or faces without a common edge",
                 f"supports.{pressed.name}.force",
             )
+        turned = [k for k in beside.carried if abs(unit(pressed.axis)[k]) < 1.0] if pressed.moment is not None else []
+        if turned:
+            raise InputError(
+                f"turns {len(shared)} control points that support {beside.name!r} holds or moves along "
+                f"{', '.join('xyz'[k] for k in sorted(turned))}; allowed: faces without a common edge, or other components",
+                f"supports.{pressed.name}.moment",
+            )
     for component in sorted(set(one.components) & set(other.components)):
-        if len(shared) and not _agree(one, other, component):
+        if len(shared) and not _agree(one, other, component, stages):
             x, y, z = numbering.reference[shared[0]]
             raise InputError(
                 f"prescribes {'xyz'[component]} of {len(shared)} control points (the first at {x:g}, {y:g}, {z:g}) "
@@ -274,9 +316,9 @@ def _check_agreement(problem: Problem, numbering: Numbering, one: Support, other
             )
 
 
-def _agree(one: Support, other: Support, component: int) -> bool:
+def _agree(one: Support, other: Support, component: int, stages: list[int]) -> bool:
     turned = [support for support in (one, other) if support.turns and abs(unit(support.axis)[component]) < 1.0]
     if not turned:
-        paths: list[FloatArray] = [np.array([motion.translate[component] for motion in s.motions]) for s in (one, other)]
+        paths: list[FloatArray] = [np.array([s.motions[k].translate[component] for k in stages]) for s in (one, other)]
         return bool(np.array_equal(paths[0], paths[1]))
     return (one.motions, one.centre, one.axis) == (other.motions, other.centre, other.axis)

@@ -229,7 +229,9 @@ class Support:
     """Prescribed control points of a face, an edge or a corner: x = c + u(t) + R(axis, angle(t)) (X - c) in the given components.
 
     `motions` has one entry a stage. u and angle accumulate over the stages. A component with a `force` is none of the `components`: there
-    u(t) is what makes the support exert that force, times its factor at the end of each stage (`factors`; none: 1).
+    u(t) is what makes the support exert that force, times its factor at the end of each stage (`factors`; none: 1). With a `moment` about
+    the axis the angle is what makes it exert that.
+    `stages`: numbers of those in which it holds; None: all.
     """
 
     name: str
@@ -240,6 +242,22 @@ class Support:
     axis: tuple[float, float, float] = (0.0, 0.0, 1.0)
     force: tuple[float | None, float | None, float | None] = (None, None, None)
     factors: tuple[float, ...] = ()
+    moment: float | None = None
+    stages: tuple[int, ...] | None = None
+
+    def holds(self, stage: int) -> bool:
+        """Whether it holds in a stage."""
+        return self.stages is None or stage in self.stages
+
+    @property
+    def carried(self) -> tuple[int, ...]:
+        """Components that go with it, by a motion or by a force."""
+        return (*self.components, *self.pressed)
+
+    @property
+    def is_plate(self) -> bool:
+        """Whether a force or a moment moves it."""
+        return bool(self.pressed) or self.moment is not None
 
     @property
     def pressed(self) -> tuple[int, ...]:

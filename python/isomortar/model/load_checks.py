@@ -48,17 +48,17 @@ def _check_face(problem: Problem, load: Load) -> None:
 def _check_supports(problem: Problem, load: Load) -> None:
     """Supports on the whole of a loaded face bear the load: the body would know nothing of it."""
     for support in problem.supports:
-        if support.place != load.place:
+        if support.place != load.place or support.stages is not None:
             continue
         if load.kind == "pressure":
-            if len({*support.components, *support.pressed}) == 3:
+            if len(support.carried) == 3:
                 raise InputError(
                     f"is {load.place.words}, where support {support.name!r} prescribes all components or their forces: the pressure would "
                     "do nothing to the body; remove one of them",
                     f"loads.{load.name}.face",
                 )
             continue
-        both = [k for k in (*support.components, *support.pressed) if load.value[k]]
+        both = [k for k in support.carried if load.value[k]]
         if both:
             words = ", ".join("xyz"[k] for k in both)
             raise InputError(

@@ -4,23 +4,34 @@ from __future__ import annotations
 
 import numpy as np
 
-from isomortar.model.entities import Body, Problem
+from isomortar.geometry.patch import FloatArray
+from isomortar.model.entities import Body, Problem, Support, unit
 
 
-def rigid_rank(problem: Problem, piece: tuple[Body, ...]) -> int:
-    """How many of the six rigid motions of a body, with what is glued to it, its supports prevent."""
-    rows = []
+def rigid_rank(problem: Problem, piece: tuple[Body, ...], stage: int = 0) -> int:
+    """How many of the six rigid motions of a body, with what is glued to it, its supports prevent in a stage."""
+    names = {body.name for body in piece}
+    holding = [support for support in problem.supports if support.place.body in names and support.holds(stage)]
+    if piece[0].rigid:
+        return 6 - sum(len(support.pressed) + (support.moment is not None) for support in holding)
     together = np.concatenate([body.patch.control_points for body in piece])
     centre, size = together.mean(axis=0), np.ptp(together, axis=0).max()
-    for support in (s for s in problem.supports if s.place.body in {body.name for body in piece}):
+    rows = []
+    for support in holding:
         patch = problem.body(support.place.body).patch
-        arms = (patch.control_points[patch.common_points(support.place.meeting)] - centre) / size
-        for component in support.components:
-            direction = np.zeros_like(arms)
-            direction[:, component] = 1.0
-            rows.append(np.hstack([direction, np.cross(arms, direction)]))
-        for component in support.pressed:  # a plate goes along it as a whole
-            direction = np.zeros_like(arms)
-            direction[:, component] = 1.0
-            rows.append(np.hstack([0.0 * direction, np.cross(arms - arms[0], direction)]))
+        arms = patch.control_points[patch.common_points(support.place.meeting)] - centre
+        rows.append(_prevented(support, arms / size, (np.asarray(support.centre) - centre) / size))
     return int(np.linalg.matrix_rank(np.vstack(rows), tol=1e-9)) if rows else 0
+
+
+def _prevented(support: Support, arms: FloatArray, centre: FloatArray) -> FloatArray:
+    """What rigid motions do to a support's face beyond what it goes along with as a plate, shape (rows, 6)."""
+    carried = list(support.carried)
+    motions = np.stack([*np.broadcast_to(np.eye(3)[:, None], (3, *arms.shape)), *(np.cross(axis, arms) for axis in np.eye(3))])
+    rows = motions[:, :, carried].reshape(6, -1).T
+    free = [motions[k] for k in support.pressed]
+    free += [np.cross(unit(support.axis), arms - centre)] if support.moment is not None else []
+    if not free:
+        return rows
+    basis = np.linalg.qr(np.stack(free)[:, :, carried].reshape(len(free), -1).T)[0]
+    return np.asarray(rows - basis @ (basis.T @ rows))

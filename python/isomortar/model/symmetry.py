@@ -83,6 +83,11 @@ def _check_motions(problem: Problem, plane: SymmetryPlane) -> None:
                 f"supports.{support.name}.force",
             )
         along_axis = np.abs(np.delete(unit(support.axis), plane.axis)).max() <= constants.NO_PART
+        if support.moment is not None and not along_axis:
+            raise InputError(
+                f"turns out of {plane.words}; allowed with symmetry: an axis of the support along {across}",
+                f"supports.{support.name}.moment",
+            )
         for stage, motion in zip(problem.stages, support.motions, strict=True):
             field = f"stages.{stage.name}.motions.{support.name}"
             if motion.translate[plane.axis]:

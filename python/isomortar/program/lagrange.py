@@ -49,8 +49,10 @@ class LagrangeProblem:
         if problem.loads:
             raise self.refuse("is not told of loads", f"loads.{problem.loads[0].name}")
         for support in problem.supports:
-            if support.pressed:
+            if support.is_plate:
                 raise self.refuse("is not told of forces of supports", f"supports.{support.name}.force")
+            if support.stages is not None:
+                raise self.refuse("is not told of supports of some stages", f"supports.{support.name}.stages")
         self._numbering = Numbering(problem)
         self._supports = Supports(problem, self._numbering)
         self.nodes, self.prescribed = self._numbering.reference, self._supports.prescribed

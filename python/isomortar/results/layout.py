@@ -106,10 +106,8 @@ REACTION = {
     "moment": _real("force*length", "moment that the support exerts on its body, about the moving centre", (3,)),
     "centre": _real("length", "moving centre of the support", (3,)),
     "displacement": _later("length", "how far the support has gone from where it was at first, by motions and by forces", (3,)),
+    "rotation": _later("degrees", "angle by which the support has turned, by motions or by its moment (-180 to 180)"),
 }
-
-#: Of a support, from its motions and the load time, with units: no file holds it.
-MOTION = {"rotation": "degrees"}
 
 #: Named as in `LoadResult`.
 LOAD = {

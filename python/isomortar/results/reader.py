@@ -180,11 +180,9 @@ class Results:
             known, place = layout.LOAD, f"loads/{_named(self.problem.loads, load, 'load').name}/"
         else:
             known, place = {name: kind for name, kind in layout.STEP.items() if name != "stage"}, ""
-        if quantity not in known and quantity not in motion:
-            raise ResultsError(f"there is no curve {quantity!r} here; there are: {', '.join(dict.fromkeys((*known, *motion)))}")
-        values: NDArray[Any] = np.array(np.nan)
-        if quantity in known:
-            values = self._read(lambda file: _column(file, f"curves/{place}{quantity}", known[quantity])[()])
+        if quantity not in known:
+            raise ResultsError(f"there is no curve {quantity!r} here; there are: {', '.join(known)}")
+        values: NDArray[Any] = self._read(lambda file: _column(file, f"curves/{place}{quantity}", known[quantity])[()])
         if quantity in motion:
             values = np.where(np.isnan(values), motion[quantity], values)
         if component is None:
@@ -194,7 +192,7 @@ class Results:
         return values[:, "xyz".index(component)]
 
     def _motion(self, support: str) -> dict[str, FloatArray]:
-        """What files do not hold of how a support moves, from its motions: those of format 3, which knew no forces, not even how far."""
+        """What files do not hold of how a support moves, from its motions: those from before there were forces, or moments."""
         chosen, stages = _named(self.problem.supports, support, "support"), self.problem.stages
         moved = [moved_by(chosen, progress(stages, time)) for time in self.curve("time")]
         return {"displacement": np.reshape([shift for shift, _ in moved], (-1, 3)), "rotation": np.array([angle for _, angle in moved])}
@@ -353,8 +351,11 @@ def _rates(file: h5py.File, problem: Problem, kept: int) -> Rates | None:
 def _reaction(file: h5py.File, problem: Problem, support: Support, row: int) -> Reaction:
     """What a support bears; how far it has gone is that of its motions in what format 3 recorded."""
     values = _get(file, f"curves/supports/{support.name}", layout.REACTION, row)
+    way, angle = moved_by(support, progress(problem.stages, float(file["curves/time"][row])))
     if np.isnan(values["displacement"]).all():
-        values["displacement"], _ = moved_by(support, progress(problem.stages, float(file["curves/time"][row])))
+        values["displacement"] = way
+    if np.isnan(values["rotation"]):
+        values["rotation"] = angle
     return Reaction(**values)
 
 

@@ -27,7 +27,7 @@ def columns(results: Results) -> dict[str, NDArray[Any]]:
     table: dict[str, NDArray[Any]] = {"time": results.curve("time"), "stage": np.array(results.stages)}
     table |= {name: results.curve(name) for name in _OF_STEPS}
     for support in results.problem.supports:
-        for quantity in (*layout.REACTION, *layout.MOTION):
+        for quantity in layout.REACTION:
             table |= _components(f"{quantity}.{support.name}", results.curve(quantity, support=support.name))
     for contact in results.problem.contacts:
         for quantity in layout.CONTACT:
@@ -69,9 +69,9 @@ def data_set(results: Results) -> xarray.Dataset:
     xarray = _optional("xarray", "to_xarray")
     supports, contacts = ([entry.name for entry in entries] for entries in (results.problem.supports, results.problem.contacts))
     arrays = {name: _array(layout.STEP[name], ("step",), results.curve(name)) for name in _OF_STEPS}
-    for name in (*layout.REACTION, *layout.MOTION) if supports else ():
+    for name in layout.REACTION if supports else ():
         values = np.stack([results.curve(name, support=support) for support in supports], axis=1)
-        arrays[name] = _array(layout.REACTION.get(name) or layout.MOTION[name], ("step", "support"), values)
+        arrays[name] = _array(layout.REACTION[name], ("step", "support"), values)
     for name in layout.CONTACT if contacts else ():
         values = np.stack([results.curve(name, contact=contact) for contact in contacts], axis=1)
         arrays[name] = _array(layout.CONTACT[name], ("step", "contact"), values)
@@ -86,12 +86,11 @@ def data_set(results: Results) -> xarray.Dataset:
     return xarray.Dataset(arrays, coords=places, attrs={"name": results.problem.name, "program_version": results.version})
 
 
-def _array(quantity: layout.Quantity | str, dimensions: tuple[str, ...], values: NDArray[Any]) -> tuple[Any, ...]:
-    """An array with its dimensions, those of a vector or a range among them, and what it is; of some the unit alone is told."""
+def _array(quantity: layout.Quantity, dimensions: tuple[str, ...], values: NDArray[Any]) -> tuple[Any, ...]:
+    """An array with its dimensions, those of a vector or a range among them, and what it is."""
     if values.ndim > len(dimensions):
         dimensions += ("component" if values.shape[-1] == 3 else "end",)
-    told = {"units": quantity} if isinstance(quantity, str) else {"units": quantity.unit, "long_name": quantity.description}
-    return dimensions, values, told
+    return dimensions, values, {"units": quantity.unit, "long_name": quantity.description}
 
 
 def _optional(package: str, asked: str) -> Any:

@@ -72,7 +72,7 @@ def build(scene: SceneTable, name: str, folder: Path) -> Problem:
         bodies=bodies,
         contacts=(),
         supports=tuple(
-            _support(support, table, by_name, _motions(scene, support), _factors(scene, support))
+            _support(support, table, by_name, _motions(scene, support), _factors(scene, support, table.stages), _held_in(scene, support))
             for support, table in scene.supports.items()
         ),
         stages=_stages(scene),
@@ -255,13 +255,32 @@ def _unit(vector: tuple[float, float, float], path: str) -> tuple[float, float, 
     return vector[0] / length, vector[1] / length, vector[2] / length
 
 
-def _support(name: str, table: SupportTable, bodies: dict[str, Body], motions: tuple[Motion, ...], factors: tuple[float, ...]) -> Support:
+def _support(
+    name: str,
+    table: SupportTable,
+    bodies: dict[str, Body],
+    motions: tuple[Motion, ...],
+    factors: tuple[float, ...],
+    stages: tuple[int, ...] | None,
+) -> Support:
     place = _place(table, bodies, f"supports.{name}")
     force = (table.force.x, table.force.y, table.force.z)
     given = [axis for axis, size in zip("xyz", force, strict=True) if size is None] if table.components is None else table.components
     components = tuple(sorted("xyz".index(axis) for axis in given))
     axis = _unit(table.axis, f"supports.{name}.axis")
-    return Support(name, place, motions, components, table.centre, axis, force, factors if table.force.model_fields_set else ())
+    factors = factors if table.by_force else ()
+    return Support(name, place, motions, components, table.centre, axis, force, factors, table.moment, stages)
+
+
+def _held_in(scene: SceneTable, support: str) -> tuple[int, ...] | None:
+    """Numbers of the stages in which a support holds; None: all, now and in longer scenes."""
+    wanted, names = scene.supports[support].stages, [stage.name for stage in scene.stages]
+    if wanted is None:
+        return None
+    for name in wanted:
+        if name not in names:
+            raise InputError(f"there is no stage {name!r}; allowed: {listed(name, names)}", f"supports.{support}.stages")
+    return tuple(number for number, name in enumerate(names) if name in wanted)
 
 
 def _motions(scene: SceneTable, support: str) -> tuple[Motion, ...]:
@@ -282,17 +301,20 @@ def _load(name: str, table: LoadTable, bodies: dict[str, Body], factors: tuple[f
     return Load(name, "pressure", place.body, place.face, (table.pressure,), factors)
 
 
-def _factors(scene: SceneTable, load: str) -> tuple[float, ...]:
-    """Factors of a load at the ends of the stages: what they name, else that of the stage before, of the first one 1."""
+def _factors(scene: SceneTable, load: str, stages: list[str] | None = None) -> tuple[float, ...]:
+    """Factors of a load at the ends of the stages: what they name, else that of the stage before, of the first one 1.
+
+    Of a support of some `stages` it is 0 in the others.
+    """
     factor, factors = 1.0, []
     for stage in scene.stages:
         factor = stage.loads.get(load, factor)
-        factors.append(factor)
+        factors.append(factor if stages is None or stage.name in stages else 0.0)
     return tuple(factors)
 
 
 def _stages(scene: SceneTable) -> tuple[Stage, ...]:
-    pressed = [name for name, support in scene.supports.items() if support.force.model_fields_set]
+    pressed = [name for name, support in scene.supports.items() if support.by_force]
     for name in pressed:
         if name in scene.loads:
             raise InputError(
@@ -303,7 +325,13 @@ def _stages(scene: SceneTable) -> tuple[Stage, ...]:
         for name in stage.loads:
             if name not in loads:
                 field = f"stages.{stage.name}.loads.{name}"
-                raise InputError(f"there is no such load, nor a support with a force; allowed: {listed(name, loads)}", field)
+                raise InputError(f"there is no such load, nor a support with a force or a moment; allowed: {listed(name, loads)}", field)
+            held = scene.supports[name].stages if name in pressed else None
+            if held is not None and stage.name not in held:
+                raise InputError(
+                    f"support {name!r} does not hold in that stage (supports.{name}.stages); allowed: factors of those in which it does",
+                    f"stages.{stage.name}.loads.{name}",
+                )
         for name in stage.motions:
             if name not in scene.supports:
                 field = f"stages.{stage.name}.motions.{name}"

@@ -117,7 +117,7 @@ class Scene:
         if self.record.curves is not None:
             return tuple(self.record.curves)
         stages, supports = self.tables.stages, self.tables.supports
-        pressed = [name for name, support in supports.items() if support.force.model_fields_set]
+        pressed = [name for name, support in supports.items() if support.by_force]
         moving = [s for s in supports if s in pressed or any(s in stage.motions and stage.motions[s].moves for stage in stages)]
         quantities: tuple[Literal["force", "moment", "displacement"], ...] = ("force", "moment", "displacement")
         return tuple(

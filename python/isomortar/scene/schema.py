@@ -185,6 +185,10 @@ class SupportTable(Table):
     """Prescribed components; default: all without a force."""
     force: ForceTable = ForceTable()
     """Forces in place of motions, by component, { z = -10 } say; they grow as loads do (stages[].loads)."""
+    moment: Real | None = None
+    """Moment about the axis through the moving centre, in place of turns; grows as the force does. 0: turns as its body wants."""
+    stages: Annotated[list[str], Field(min_length=1)] | None = None
+    """Names of the stages in which it holds; default: all. Released, its force goes linearly to zero within the stage that follows."""
     centre: Point = (0.0, 0.0, 0.0)
     """Centre of rotation, also that of the recorded moment; moves with the translation."""
     axis: Point = (0.0, 0.0, 1.0)
@@ -192,12 +196,17 @@ class SupportTable(Table):
 
     @model_validator(mode="before")
     @classmethod
-    def _no_moment(cls, data: Any) -> Any:
-        if isinstance(data, dict) and "moment" in data:
+    def _one_moment(cls, data: Any) -> Any:
+        if isinstance(data, dict) and isinstance(data.get("moment"), (dict, list)):
             raise PydanticCustomError(
-                "moment", "has a moment, but a plate turns by motions alone; allowed: force, and motions of its name with rotate"
+                "moment", "has a moment by component, but turns about one axis; allowed: moment, a number, with that axis"
             )
         return data
+
+    @property
+    def by_force(self) -> bool:
+        """Whether a force or a moment moves it."""
+        return bool(self.force.model_fields_set) or self.moment is not None
 
     @model_validator(mode="after")
     def _one_place(self) -> SupportTable:
@@ -260,7 +269,7 @@ class StageTable(Table):
     motions: dict[str, MotionTable] = Field({})
     """By name of support; supports without a motion stay where they are."""
     loads: dict[str, Real] = Field({})
-    """Factors at the end of the stage, by name of load, or of support with a force; default: as in the stage before, in the first one 1."""
+    """Factors at its end, by name of load, or support with force or moment; default: as in the stage before, in the first one 1."""
 
 
 class CurveTable(Table):

@@ -14,14 +14,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from isomortar._bindings import Law, Pattern, Response
+from isomortar._bindings import Law, Response
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model import constants
 from isomortar.model.supports import BoolArray
 from isomortar.solve.contact import Blocks, PairMechanics, median, pressure_share
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.singular import PairConditions
-from isomortar.solve.system import Source, block_product
+from isomortar.solve.system import Source, add_product, block_product
 
 
 @dataclass(frozen=True)
@@ -112,10 +112,11 @@ def solve_bordered(
         sources += more_sources
         values += more_values
         size += int(np.count_nonzero(border.equation >= 0))
+    sources, values = equilibrium.seen(sources, values, balance)
     right = _right_hand_side(equilibrium, balance, targets, borders, sources, values, prescribed, size)
     multipliers = [PairConditions(b.pair, b.equation, k) for b, k in zip(borders, balance.kinematics, strict=True) if b is not None]
     solution = equilibrium.solve(sources, values, right, balance.positions, multipliers)
-    correction = _correction(equilibrium, solution, targets, borders)
+    correction = _correction(equilibrium, solution, balance, targets, borders)
     if prescribed is not None:
         correction.positions[...] += prescribed
     return correction, borders
@@ -127,14 +128,14 @@ def solve_with_kept_factors(
     """Correction by the factors of the last `solve_bordered`, which gave `borders`; the states must be the same."""
     size = len(equilibrium.supports.free) + sum(int(np.count_nonzero(b.equation >= 0)) for b in borders if b is not None)
     right = _right_hand_side(equilibrium, balance, targets, borders, [], [], None, size)
-    return _correction(equilibrium, equilibrium.solve_again(right), targets, borders)
+    return _correction(equilibrium, equilibrium.solve_again(right), balance, targets, borders)
 
 
 def _correction(
-    equilibrium: Equilibrium, solution: FloatArray, targets: Sequence[Response], borders: Sequence[Border | None]
+    equilibrium: Equilibrium, solution: FloatArray, balance: Balance, targets: Sequence[Response], borders: Sequence[Border | None]
 ) -> Correction:
     """Newton's correction from the solution of the linear system."""
-    positions = -equilibrium.supports.spread(solution)
+    positions = -equilibrium.supports.spread(solution, balance.positions)
     changes = [_multiplier_change(border, target, -solution) for border, target in zip(borders, targets, strict=True)]
     return Correction(positions, tuple(c[:, 0] for c in changes), tuple(c[:, 1:] for c in changes))
 
@@ -181,16 +182,9 @@ def _right_hand_side(
             right[border.equation[kept]] = (border.row_scale * apart).ravel()[kept]
     if prescribed is not None and np.any(prescribed):
         for source, block in zip(sources, values, strict=True):
-            if source.column_of is equilibrium.supports.equation and not source.transposed:
-                _add_product(source.pattern, source.row_of, block, prescribed, right)
+            if source.column_of is equilibrium.supports.unknowns and not source.transposed:
+                add_product(source, block, prescribed, right)
     return right
-
-
-def _add_product(pattern: Pattern, row_of: IntArray, block: FloatArray, vector: FloatArray, right: FloatArray) -> None:
-    """Add block times vector to the equations of the block's rows."""
-    product = block_product(pattern, block, vector).ravel()
-    kept = row_of >= 0
-    np.add.at(right, row_of[kept], product[kept])
 
 
 def _multiplier_change(border: Border | None, target: Response, solution: FloatArray) -> FloatArray:

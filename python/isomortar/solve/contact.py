@@ -282,6 +282,13 @@ class PairMechanics:
                 self._ledger.work,
             )  # fmt: skip
 
+    def bearing(self, state: ContactState) -> Response:
+        """What the multipliers of a state are as a response, good for forces alone."""
+        n, q = self.pair.slave.test.count, len(self.pair.slave.area)
+        acts = (state.pressure != 0.0) | np.any(state.traction != 0.0, axis=1)
+        states = np.where(acts, PointState.STICK, PointState.OPEN).astype(np.int32)
+        return Response(state.pressure, state.traction, states, np.zeros(n), np.zeros((n, 6, 2)), np.zeros((q, 2)))
+
     def blocks(self, positions: FloatArray, kinematics: Kinematics, law: Law, response: Response) -> Blocks:
         """Constraint rows, derivatives of the multipliers and the geometric tangent."""
         patterns = self.reach.update(kinematics.projections, response.state)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from scipy import sparse
@@ -15,7 +14,7 @@ from isomortar._sparse import Ordering
 from isomortar.errors import SingularSystemError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
-from isomortar.model.entities import Problem
+from isomortar.model.entities import Contact, Face, Problem
 from isomortar.model.loads import Loads
 from isomortar.model.numbering import Numbering
 from isomortar.model.origin import about, by_near_points, origin_of
@@ -28,7 +27,7 @@ from isomortar.solve.contact import Kinematics, PairMechanics
 from isomortar.solve.record import State
 from isomortar.solve.scales import PieceMeasures, Scales
 from isomortar.solve.singular import PairConditions, explain
-from isomortar.solve.system import CheckedSystem, LinearSystem, Source, block_product, entries
+from isomortar.solve.system import CheckedSystem, LinearSystem, Source, add_product, entries
 from isomortar.solve.timing import Ledger
 
 
@@ -82,31 +81,58 @@ class Equilibrium:
         self.problem = problem = by_near_points(about(problem, self.origin))
         self.ledger = ledger
         self.numbering = Numbering(problem)
-        self.supports = Supports(problem, self.numbering)
         self.solid = Solid(problem, self.numbering, ledger.counts)
-        self.measures = PieceMeasures(self.numbering, self.supports, self.solid)
         pairs = [Pair(c, problem, self.numbering) for c in problem.contacts]
         self.pairs = [
             PairMechanics(pair, problem.settings, ledger, self.origin, pairs[:k] + pairs[k + 1 :]) for k, pair in enumerate(pairs)
         ]
         self.loads = Loads(problem, self.numbering)
-        for pair in self.pairs:
-            pair.drifts = self._loaded and any(self._is_loose(k) for k in pair.pair.pieces)
         self.time = 0.0
-        self.solid_source = Source(self.solid.pattern, self.supports.equation, self.supports.equation)
         self._engine = engine_of(problem.settings)
+        self.orderings: dict[int, Ordering] = {}
+        self._stand(0)
+
+    def _stand(self, stage: int) -> None:
+        """Let the supports of a stage hold."""
+        self.supports = Supports(self.problem, self.numbering, stage)
+        self.measures = PieceMeasures(self.numbering, self.supports, self.solid)
+        self.solid_source = Source(self.solid.pattern, self.supports.equation, self.supports.equation)
         self._bodies: Bodies | None = None
         self._system: CheckedSystem | None = None
         self._system_patterns: list[object] = []
-        self.orderings: dict[int, Ordering] = {}
+        self._solid_entries: sparse.csr_array | None = None
+        loaded = bool(self.problem.loads or self.supports.plates)
+        for pair in self.pairs:
+            pair.drifts = loaded and self._is_loose(pair.pair.contact)
+
+    def _is_loose(self, contact: Contact) -> bool:
+        """Whether supports leave a rigid motion to a body in a contact, with all that is glued to it."""
+        names = {face.body for side in (contact.slave, contact.master) if isinstance(side, Face) for face in side.faces}
+        pieces = [piece for piece in self.numbering.pieces if any(body.name in names for body in piece)]
+        return any(rigid_rank(self.problem, piece, self.supports.stage) < 6 for piece in pieces)
+
+    def standing(self, step: int) -> Supports:
+        """The supports of the stage of a load step."""
+        stage = int(np.searchsorted(np.cumsum([stage.steps for stage in self.problem.stages]), step))
+        if stage != self.supports.stage and self._changes:
+            self._stand(stage)
+        return self.supports
 
     @property
-    def _loaded(self) -> bool:
-        return bool(self.problem.loads or self.supports.plates)
+    def _changes(self) -> bool:
+        """Whether supports are released, or added."""
+        return any(support.stages is not None for support in self.problem.supports)
 
-    def _is_loose(self, piece: int) -> bool:
-        """Whether supports leave a piece a rigid motion."""
-        return rigid_rank(self.problem, self.numbering.pieces[piece]) < 6
+    def enter(self, step: int, state: State) -> None:
+        """Go into a load step from the state before it; what supports exerted that are released goes on, and fades (theory 5.23)."""
+        supports, time = self.standing(step), float(step - 1)
+        if not self._changes:
+            return
+        supports.anchor(state.positions, time)
+        supports.release(np.zeros_like(state.positions), time)
+        self.begin(state, time)
+        left = self.forces(state.positions, state, lambda k, _: self.pairs[k].bearing(state.contacts[k])).unbalanced
+        supports.release(left, time)
 
     def initial_state(self) -> State:
         """The reference configuration without contact."""
@@ -177,7 +203,8 @@ class Equilibrium:
             kinematics.append(pair.kinematics(positions, state))
             responses.append(respond(k, kinematics[-1]))
             pair.add_forces(positions, kinematics[-1], responses[-1], total)
-        return Balance(positions, internal, total, self.supports.unbalanced(total, self.time), tuple(kinematics), tuple(responses))
+        unbalanced = self.supports.unbalanced(total, positions, self.time)
+        return Balance(positions, internal, total, unbalanced, tuple(kinematics), tuple(responses))
 
     def bear(self, balance: Balance) -> bool:
         """Whether constraints that supports hold along the normal are inside their master, and bear on it from now on (theory 4.11)."""
@@ -213,17 +240,40 @@ class Equilibrium:
         SingularSystemError
             Naming a body that nothing holds.
         """
-        sources, values = self.tangents(balance, laws)
-        right = balance.unbalanced.copy()
+        sources, values = self.seen(*self.tangents(balance, laws), balance)
+        right = balance.unbalanced.ravel()[self.supports.free]
         if np.any(prescribed):
             for source, block in zip(sources, values, strict=True):
-                right += self.supports.gathered(block_product(source.pattern, block, prescribed))
-        solution = self.solve(sources, values, right.ravel()[self.supports.free], balance.positions)
-        return prescribed - self.supports.spread(solution)
+                add_product(source, block, prescribed, right)
+        solution = self.solve(sources, values, right, balance.positions)
+        return prescribed - self.supports.spread(solution, balance.positions)
 
     def kept_correction(self, balance: Balance) -> FloatArray:
         """Correction of all positions by the factors of the last tangent, with the prescribed positions as they are."""
-        return -self.supports.spread(self.solve_again(balance.unbalanced.ravel()[self.supports.free]))
+        return -self.supports.spread(self.solve_again(balance.unbalanced.ravel()[self.supports.free]), balance.positions)
+
+    def moved(self, positions: FloatArray, step: FloatArray) -> FloatArray:
+        """Positions after a step of an iteration, plates that turn in shape again (theory 5.20)."""
+        moved = positions + step
+        return self.supports.placed(moved, self.time) if len(self.supports.copies) else moved
+
+    def seen(self, sources: list[Source], values: list[FloatArray], balance: Balance) -> tuple[list[Source], list[FloatArray]]:
+        """Sources and their values, the first of them the solid's, as unknowns of plates see them that turn (theory 5.21)."""
+        supports = self.supports
+        if not len(supports.copies):
+            return sources, values
+        first, second = supports.slopes(balance.positions)
+        new, found = list(sources), list(values)
+        for number, source in enumerate(sources):
+            if source.column_of is not supports.equation:  # of multipliers alone
+                continue
+            square = source.row_of is supports.equation
+            wide = supports.seen(source.pattern, square)
+            new[number] = Source(wide.pattern, supports.unknowns if square else source.row_of, supports.unknowns, source.transposed)
+            found[number] = wide.values(values[number], first)
+            if number == 0:
+                found[0][wide.own] += np.einsum("ai,ij->aij", second * balance.total[supports.copies], np.eye(3))
+        return new, found
 
     def solve(
         self,
@@ -269,22 +319,20 @@ class Equilibrium:
             self._system_patterns = patterns
         return self._system
 
-    @cached_property
-    def _solid_entries(self) -> sparse.csr_array:
-        """Where the bodies' stiffness has entries, among free unknowns."""
-        return entries([self.solid_source], len(self.supports.free))
-
     def new_system(self, sources: Sequence[Source], size: int) -> CheckedSystem:
         """A linear system of some sources, the first of them the solid's: by parts, where that takes fewer operations (theory 5.13)."""
+        free = len(self.supports.free)
+        if self._solid_entries is None:
+            self._solid_entries = entries(sources[:1], free)
+        known = self._solid_entries
 
         def general() -> LinearSystem:
-            return LinearSystem(size, sources, self.ledger, self._solid_entries, self.orderings.get(len(sources)))
+            return LinearSystem(size, sources, self.ledger, known, self.orderings.get(len(sources)))
 
-        free = len(self.supports.free)
         if free == 0:  # multipliers alone
             return general()
         if self._bodies is None:
-            self._bodies = Bodies(self.solid_source, self._solid_entries, self.ledger, self._engine)
+            self._bodies = Bodies(sources[0], known, self.ledger, self._engine)
         self._bodies.act_on(touched(sources[1:], free))
         if self._bodies.condense(size - free):
             return CondensedSystem(self._bodies, size, sources, general, self.ledger)

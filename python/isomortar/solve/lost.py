@@ -31,7 +31,8 @@ class LostDigits:
         """Warnings that the end of a load step gives rise to."""
         equilibrium = self._equilibrium
         measures, problem = equilibrium.measures, equilibrium.problem
-        by_round_off = measures.free_norms(balance.unbalanced) > problem.settings.newton_tolerance * measures.norms(balance.internal)
+        sizes = measures.sizes(balance.internal, balance.total, balance.unbalanced)
+        by_round_off = measures.free_norms(balance.unbalanced) > problem.settings.newton_tolerance * sizes
         for number in [k for k, so in enumerate(by_round_off) if so and k not in self._told]:
             own, piece = equilibrium.numbering.piece_points(number), equilibrium.numbering.pieces[number]
             if not _deforms(equilibrium.numbering.reference[own], balance.positions[own]):

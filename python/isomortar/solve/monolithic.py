@@ -190,7 +190,7 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
     def _moved(self, iterate: _BorderedIterate, correction: Correction, share: float) -> _BorderedIterate:
         changes = zip(iterate.multipliers, correction.pressures, correction.tractions, strict=True)
         multipliers = [(pressure + share * dp, traction + share * dt) for (pressure, traction), dp, dt in changes]
-        return self._evaluate(iterate.balance.positions + share * correction.positions, multipliers)
+        return self._evaluate(self._equilibrium.moved(iterate.balance.positions, share * correction.positions), multipliers)
 
     def _reversals(self, k: int, iterate: _BorderedIterate, correction: Correction) -> np.ndarray:
         """Slipping constraints whose predicted trial change opposes their traction: t^a Dt_a < 0 (theory 6.5); elastic ones any."""

@@ -169,7 +169,8 @@ class Newton(ABC, Generic[Iterated, Corrected]):
         """
         floor = self._scales.round_off / self._settings.newton_tolerance
         measures = self._equilibrium.measures
-        residual, forces = measures.free_norms(balance.unbalanced), np.maximum(measures.norms(balance.internal), floor)
+        forces = np.maximum(measures.sizes(balance.internal, balance.total, balance.unbalanced), floor)
+        residual = measures.free_norms(balance.unbalanced)
         return float(np.max(np.divide(residual, forces, out=np.zeros_like(residual), where=residual != 0.0)))  # a body with nothing free: 0
 
     def _round_off(self, balance: Balance) -> float:

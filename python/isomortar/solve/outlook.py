@@ -57,7 +57,7 @@ class ContactOutlook:
 class SupportOutlook:
     """A support: its face, the components that it prescribes, and how far and by what angle it goes in all stages together.
 
-    `force`: by component; none where it has none.
+    `force`: by component; none where it has none. `moment`: about its axis. `stages`: names of those in which it holds; none: all.
     """
 
     name: str
@@ -66,6 +66,8 @@ class SupportOutlook:
     way: float
     degrees: float
     force: tuple[float | None, ...]
+    moment: float | None
+    stages: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -111,7 +113,7 @@ def outlook(problem: Problem) -> Outlook:
         tuple(
             _contact(problem, contact, state.projected) for contact, state in zip(problem.contacts, simulation.state.contacts, strict=True)
         ),
-        tuple(_support(support) for support in problem.given_supports),
+        tuple(_support(problem, support) for support in problem.given_supports),
         tuple(LoadOutlook(load.name, load.kind, load.place.words if load.face else load.body, load.value) for load in problem.loads),
         tuple(simulation.doubts()),
     )
@@ -152,7 +154,7 @@ def _contact(problem: Problem, contact: Contact, projected: IntArray) -> Contact
     )
 
 
-def _support(support: Support) -> SupportOutlook:
+def _support(problem: Problem, support: Support) -> SupportOutlook:
     ways = [np.linalg.norm(np.asarray(motion.translate)[list(support.components)]) for motion in support.motions]
     return SupportOutlook(
         support.name,
@@ -161,4 +163,6 @@ def _support(support: Support) -> SupportOutlook:
         float(np.sum(ways)),
         float(np.sum(np.abs([motion.rotate for motion in support.motions]))),
         support.force if support.pressed else (),
+        support.moment,
+        tuple(problem.stages[number].name for number in support.stages or ()),
     )

@@ -95,13 +95,14 @@ class AugmentationRecord:
 class Reaction:
     """Force that a support exerts on its body, moment about the moving centre, that centre, and how far it has gone; each shape (3,).
 
-    How far a program did not tell, or a file does not hold, is not a number.
+    `rotation`: by how many degrees it has turned about its axis. What a program did not tell, or a file does not hold, is not a number.
     """
 
     force: FloatArray
     moment: FloatArray
     centre: FloatArray
     displacement: FloatArray = field(default_factory=lambda: np.full(3, np.nan))
+    rotation: float = np.nan
 
 
 @dataclass(frozen=True)

@@ -39,7 +39,8 @@ class PieceMeasures:
     def __init__(self, numbering: Numbering, supports: Supports, solid: Solid) -> None:
         self._numbering, self._solid = numbering, solid
         self._starts = numbering.starts
-        self._free = (supports.equation >= 0).reshape(-1, 3)
+        self._free = supports.balanced
+        self._rigid = np.array([piece[0].rigid for piece in numbering.pieces])
 
     def norms(self, forces: FloatArray) -> FloatArray:
         """Norm of the forces, shape (control points, 3), on each piece, shape (pieces,)."""
@@ -50,6 +51,13 @@ class PieceMeasures:
     def free_norms(self, forces: FloatArray) -> FloatArray:
         """The same over the free unknowns."""
         return self.norms(np.where(self._free, forces, 0.0))
+
+    def sizes(self, internal: FloatArray, total: FloatArray, left: FloatArray) -> FloatArray:
+        """What forces `left` out of balance are measured against: those inside, on a rigid piece all; shape (pieces,) (theory 5.6)."""
+        inside = self.norms(internal)
+        if not self._rigid.any():
+            return inside
+        return np.where(self._rigid, np.maximum(self.norms(total), self.free_norms(left)), inside)
 
     def scales(self, positions: FloatArray) -> Scales:
         """Scales at given positions (theory 5.5).

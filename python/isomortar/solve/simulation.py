@@ -113,6 +113,7 @@ class Simulation:
         orders: list[float] = []
         cuts = substeps = 0
         work = np.zeros((len(self.equilibrium.pairs), 2))
+        self.equilibrium.enter(step, state)
         longest = self.equilibrium.supports.longest_increment(step)
         while time < step:
             increment = min(self._increment * longest, step - time)
@@ -194,10 +195,12 @@ class Simulation:
 
         Far from the origin these are fewer; supports then put what they prescribe in its place anew, or it would seem to move.
         """
-        origin, supports = self.equilibrium.origin, self.equilibrium.supports
+        origin = self.equilibrium.origin
         if not np.any(origin):
             return result.state
-        return replace(result.state, positions=supports.placed(result.state.positions - origin, result.time))
+        positions, supports = result.state.positions - origin, self.equilibrium.standing(result.step)
+        supports.anchor(positions, result.time)
+        return replace(result.state, positions=supports.placed(positions, result.time))
 
     def _reactions(self, time: float, positions: FloatArray, total: FloatArray) -> tuple[Reaction, ...]:
         """Forces that the supports exert: their shares of the residual at the components that they prescribe (theory 8.1)."""
@@ -207,7 +210,8 @@ class Simulation:
             centre, forces = supports.centre(support, time, positions), share * total[points]
             force, turning, way = forces.sum(axis=0), moment(positions[points] - centre, forces), supports.way(support, time, positions)
             centre = centre + self.equilibrium.origin
-            reactions.append(Reaction(*of_whole(self.problem, force, turning, centre), centre, way))
+            angle = supports.angle(support, time, positions)
+            reactions.append(Reaction(*of_whole(self.problem, force, turning, centre), centre, way, angle))
         return tuple(reactions)
 
     def _loads(self, time: float, positions: FloatArray) -> tuple[LoadResult, ...]:

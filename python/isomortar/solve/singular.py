@@ -54,11 +54,11 @@ def explain(
     if not np.isfinite(null).all():
         return SingularSystemError(f"{said}, and nothing can be said of what it leaves free")
     shares = [_of_pair(contact, null) for contact in contacts]
-    moved, held = supports.spread(null), supports.held.ravel()
+    moved, held = supports.spread(null, positions), supports.held.ravel()
     if shares and max(float(np.abs(share).max()) for share in shares) > np.abs(moved).max():
         largest = int(np.argmax([np.abs(share).max() for share in shares]))
         return _repeated(said, contacts[largest], np.flatnonzero(shares[largest] > _PART * shares[largest].max()), contacts, held)
-    place, sentence = _rigid(moved, positions, numbering)
+    place, sentence = _rigid(moved, positions, numbering, supports)
     for contact in contacts if not sentence else ():
         active = _active(contact)
         there, total = _points_around(contact, active)
@@ -130,7 +130,7 @@ def _shared(contact: PairConditions, among: NDArray[np.intp], other: PairConditi
     return int(np.count_nonzero(one.carriers[among] @ theirs.astype(np.float64)))
 
 
-def _rigid(moved: FloatArray, positions: FloatArray, numbering: Numbering) -> tuple[int, str]:
+def _rigid(moved: FloatArray, positions: FloatArray, numbering: Numbering, supports: Supports) -> tuple[int, str]:
     """The control point that moves most, and how its body moves without forces; empty if it deforms."""
     point = int(np.argmax(np.linalg.norm(moved, axis=1)))
     piece = numbering.piece_of(point)
@@ -146,10 +146,9 @@ def _rigid(moved: FloatArray, positions: FloatArray, numbering: Numbering) -> tu
         axis = amounts[3:] if turning else amounts[:3]
         along = ", ".join(f"{value:g}" for value in np.round(axis / axis[np.argmax(np.abs(axis))], 2) + 0.0)
         how = f"turn about an axis along ({along})" if turning else f"move along ({along})"
-        return (
-            point,
-            f"{named(numbering.pieces[piece], numbering.body_of(point))} can {how} freely; hold it by a support, or bring it into contact",
-        )
+        body, held = named(numbering.pieces[piece], numbering.body_of(point)), supports.released({b.name for b in numbering.pieces[piece]})
+        before = f" since support {' and '.join(map(repr, held))} was released" if held else ""
+        return point, f"{body} can {how} freely{before}; hold it by a support, or bring it into contact"
     return point, ""
 
 

@@ -221,6 +221,14 @@ class LinearSystem(CheckedSystem):
         return sparse.csr_array((self.values, self._column, self._start), shape=(len(self._start) - 1,) * 2)
 
 
+def add_product(source: Source, values: FloatArray, vector: FloatArray, right: FloatArray) -> None:
+    """Add a source with given values, times a field of control points, to the equations of its rows."""
+    copies = len(source.column_of) // 3 - len(vector)
+    product = block_product(source.pattern, values, np.pad(vector, ((0, copies), (0, 0))) if copies else vector).ravel()
+    kept = source.row_of >= 0
+    np.add.at(right, source.row_of[kept], product[kept])
+
+
 def block_product(pattern: Pattern, values: FloatArray, vector: FloatArray) -> FloatArray:
     """Product of a matrix of blocks with a field of control points, cheap where that is zero at most of them; (rows of blocks, 3)."""
     field = vector.reshape(-1, 3)

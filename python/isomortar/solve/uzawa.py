@@ -45,7 +45,7 @@ class _PositionNewton(Newton[Iterate, FloatArray]):
         return Iterate(balance, self._residual(balance))
 
     def _moved(self, iterate: Iterate, correction: FloatArray, share: float) -> Iterate:
-        return self._evaluate(iterate.balance.positions + share * correction)
+        return self._evaluate(self._equilibrium.moved(iterate.balance.positions, share * correction))
 
     def _correct(self, iterate: Iterate, prescribed: FloatArray | None) -> tuple[Iterate, FloatArray, tuple[str, ...]]:
         increment = np.zeros_like(iterate.balance.positions) if prescribed is None else prescribed

@@ -1,0 +1,110 @@
+"""Supports that are released, or added, from one stage to the next."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from small_scenes import TIGHT
+
+from isomortar.harness import Bound, case
+from isomortar.model.entities import Problem
+from isomortar.scene import Scene
+from isomortar.solve.record import StepResult
+from isomortar.solve.simulation import Simulation
+
+_TIGHT = "theory: forces on all control points are in balance to 1e-12 of the internal ones"
+_METHODS = ("monolithic", "uzawa")
+
+
+def problem(text: str, method: str) -> Problem:
+    """A scene at tight tolerances."""
+    found = Scene.from_toml(text, overrides=[f"solver.method={method}"]).problem()
+    return replace(found, settings=replace(found.settings, **TIGHT, augmentation_tolerance=1e-10))  # type: ignore[arg-type]
+
+
+def computed(text: str, method: str) -> list[StepResult]:
+    """All of its load steps."""
+    return list(Simulation(problem(text, method)).run())
+
+
+#: A bar that is bent and twisted by its end, let go, and bent again from where it then is.
+_SPRING = """
+format = 1
+bodies.bar = { geometry = { kind = "box", lower = [0, 0, 0], upper = [2, 1, 1] }, mesh = { order = 2, elements = [3, 2, 2] } }
+supports.base.face = "bar.u0"
+supports.end = { face = "bar.u1", axis = [1, 0, 0], centre = [2, 0.5, 0.5], stages = ["bend", "again"] }
+stages = [
+    { name = "bend", steps = 2, motions.end = { translate = [0.1, 0, 0.3], rotate = 20 } },
+    { name = "let-go", steps = 4 },
+    { name = "again", steps = 1, motions.end = { translate = [0.1, 0, 0] } },
+]
+"""
+
+
+@case(
+    claim="A body that is let go springs back; what held it fades linearly within the stage, and holds it anew where it then is.",
+    tier="gate",
+    bounds={
+        "fades": Bound(at_most=1e-9, reason=_TIGHT),
+        "back": Bound(at_most=1e-9, reason="theory: an elastic body without forces is at rest as it was; " + _TIGHT),
+        "force": Bound(at_most=1e-9, reason=_TIGHT),
+        "again": Bound(at_most=1e-9, reason="theory: drawn by the same from rest, it bears what it bears on a first way; " + _TIGHT),
+    },
+)
+def let_go() -> dict[str, float]:
+    """Force of the support off what is left of it; positions at rest off the first ones; all forces; the second way off a first one."""
+    results = computed(_SPRING, "monolithic")
+    simulation = Simulation(problem(_SPRING, "monolithic"))
+    whole = results[1].reactions[1].force
+    left = [result.reactions[1].force - share * whole for result, share in zip(results[2:6], (0.75, 0.5, 0.25, 0.0), strict=True)]
+    first = _SPRING.replace("[0.1, 0, 0.3], rotate = 20", "[0.1, 0, 0]").replace("steps = 2", "steps = 1")
+    drawn = computed(first.replace(', stages = ["bend", "again"]', ""), "monolithic")[0]
+    return {
+        "fades": float(np.linalg.norm(left, axis=1).max() / np.linalg.norm(whole)),
+        "back": float(np.abs(results[5].state.positions - simulation.state.positions).max()),
+        "force": float(np.max([np.linalg.norm(np.sum([r.force for r in result.reactions], axis=0)) for result in results])),
+        "again": float(np.abs(results[6].state.positions - drawn.state.positions).max()),
+    }
+
+
+#: A pad that is pushed onto a plane and aside.
+_PAD = """
+format = 1
+bodies.pad = { geometry = { kind = "box", lower = [-0.5, -0.5, 0], upper = [0.5, 0.5, 0.4] }, mesh = { order = 2, elements = [3, 3, 1] } }
+contacts.floor = { slave = "pad.w0", plane = {}, friction = 0.3 }
+supports.push = { face = "pad.w1", centre = [0, 0, 0.4], stages = ["push"] }
+stages = [{ name = "push", steps = 2, motions.push.translate = [0.02, 0, -0.02] }, { name = "rest", steps = 3 }]
+"""
+#: What holds it then, with the force and moment that it bears.
+_RESTS = {
+    "moved": "",
+    "plate": "force = {{ x = {0!r}, z = {2!r} }},",
+    "turning": "force = {{ x = {0!r}, y = 0, z = {2!r} }}, moment = {3!r}, axis = [0, 1, 0],",
+}
+
+
+@case(
+    claim="A support takes over from another one without a change: by standing still, by its force, or by its force and moment.",
+    tier="gate",
+    grid={"rest": tuple(_RESTS), "method": _METHODS},
+    bounds={
+        "still": Bound(at_most=1e-9, reason="theory: what fades and what grows are the same; " + _TIGHT),
+        "force": Bound(at_most=1e-9, reason=_TIGHT),
+        "moment": Bound(at_most=1e-9, reason=_TIGHT),
+    },
+)
+def handed_over(rest: str, method: str) -> dict[str, float]:
+    """Positions in the second stage off those before; force and moment of the support at the end off those of the first, over the force."""
+    pushed = computed(_PAD, method)[1].reactions[0]
+    given = _RESTS[rest].format(*map(float, (*pushed.force, pushed.moment[1])))
+    support = f'supports.rest = {{ face = "pad.w1", centre = [0, 0, 0.4], {given} stages = ["rest"] }}'
+    text = _PAD.replace("\nstages = [", f"\n{support}\nstages = [")
+    results = computed(text, method)
+    last, size = results[-1].reactions[1], np.linalg.norm(pushed.force)
+    moment = last.moment + np.cross(last.centre - pushed.centre, last.force)
+    return {
+        "still": float(np.max([np.abs(result.state.positions - results[1].state.positions).max() for result in results[2:]])),
+        "force": float(np.linalg.norm(last.force - pushed.force) / size),
+        "moment": float(np.linalg.norm(moment - pushed.moment) / size),
+    }
