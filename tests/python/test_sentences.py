@@ -28,6 +28,9 @@ from test_glue import WRONG as UNGLUED
 from test_loads import GOOD as LOADED
 from test_loads import HALVED, UNEVEN
 from test_loads import WRONG as UNBEARABLE
+from test_plates import ELSEWHERE, ROLLS
+from test_plates import GOOD as TILTING
+from test_plates import WRONG as UNTURNED
 from test_raised import WRONG as UNRAISED
 from test_raised import wrong
 from test_rigid import GOOD as DIE
@@ -97,6 +100,15 @@ def bad_forces(_: pytest.MonkeyPatch) -> Told:
         yield name, refused(PRESSED.replace(old, new))
     halved = HALF_PRESSED.replace("FORCE", "force.y = 0") + "symmetry = { y = 0.0 }"
     yield "through the plane", refused(halved)
+
+
+def bad_plates(_: pytest.MonkeyPatch) -> Told:
+    """Refused for moments that supports cannot exert, and stages in which they cannot hold; and what nothing holds any more."""
+    for name, (old, new, *_) in UNTURNED.items():
+        yield name, refused(TILTING.replace(old, new))
+    for name, (text, *_) in ELSEWHERE.items():
+        yield name, refused(text)
+    yield "rolls away", re.sub(r"condition [^)]*", "condition #", refusal(lambda: list(Simulation(Scene.from_toml(ROLLS).problem()).run())))
 
 
 def bad_raised_faces(_: pytest.MonkeyPatch) -> Told:
@@ -278,6 +290,7 @@ KINDS = (
     bad_rigid_bodies,
     bad_loads,
     bad_forces,
+    bad_plates,
     bad_raised_faces,
     bad_sides,
     bad_words,

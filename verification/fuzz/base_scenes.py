@@ -265,7 +265,8 @@ motions.hand = { translate = [0.1, 0.0, 0.0], rotate = 30.0 }
 max_cuts = 3
 """
 
-#: A bowl that its weight, a force and a pressure press on a block, which a traction pulls at; they grow, stay and fall.
+#: A bowl that its weight, a force and a pressure press on a block, which a traction pulls at; they grow, stay and fall. The bowl's top tilts,
+#: once it is let go, and the block is held at its side later on.
 LOADED = """
 format = 1
 name = "loaded"
@@ -282,8 +283,19 @@ friction = 0.3
 [supports.top]
 face = "bowl.w1"
 force.z = -0.2
+moment = 0.01
+axis = [0.0, 1.0, 0.0]
+centre = [0.0, 0.0, 0.4]
+stages = ["blow"]
+[supports.first]
+face = "bowl.w1"
+stages = ["press"]
 [supports.bed]
 face = "block.w0"
+[supports.side]
+face = "block.u0"
+components = ["x"]
+stages = ["blow"]
 [loads.own]
 body = "bowl"
 weight = [0.0, 0.0, -0.3]
@@ -297,6 +309,7 @@ traction = [0.05, 0.0, 0.02]
 name = "press"
 steps = 1
 loads = { wind = 0.0 }
+motions.first.translate = [0.0, 0.0, -0.02]
 [[stages]]
 name = "blow"
 steps = 2

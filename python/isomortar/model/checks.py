@@ -236,7 +236,7 @@ def _check_moment(problem: Problem, support: Support) -> None:
             "prescribed, or moved by a force",
             f"supports.{support.name}.moment",
         )
-    arms = patch.control_points[patch.face_points(support.place.face)] - np.asarray(support.centre)
+    arms = patch.control_points[patch.common_points(support.place.meeting)] - np.asarray(support.centre)
     if not np.linalg.norm(np.cross(axis, arms), axis=1).max() > constants.NO_PART * problem.body(support.place.body).size:
         raise InputError("goes through all control points of the face; allowed: an axis beside some", f"supports.{support.name}.axis")
 

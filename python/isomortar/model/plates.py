@@ -64,7 +64,7 @@ class Plate:
         return turn(self.axis, self.shape, positions[self.points])
 
     def arms(self, angle: float) -> FloatArray:
-        """From the centre to its control points after a turn, shape (points, 3)."""
+        """From the centre to its control points after a turn, shape (points, 3) (theory 5.20)."""
         return (self.shape - self.centre) @ rotation(self.axis, angle).T
 
     def slopes(self, angle: float) -> tuple[FloatArray, FloatArray]:

@@ -188,7 +188,7 @@ class Supports:
         return first, second
 
     def gathered(self, forces: FloatArray, positions: FloatArray) -> FloatArray:
-        """Forces, shape (control points, 3), as the unknowns of plates have them, at their `slots`; without plates the same array."""
+        """Forces, shape (control points, 3), as the unknowns of plates have them, at their `slots` (theory 5.21)."""
         if not self.plates:
             return forces
         gathered, slopes, begun = forces.copy(), self.slopes(positions)[0], 0

@@ -90,6 +90,8 @@ def is_longer(stored: Problem, given: Problem) -> bool:
     if given.total_steps <= stored.total_steps or len(given.stages) < count:
         return False
     last, longer = stored.stages[-1], given.stages[count - 1]
+    if last.steps != longer.steps and any(s.holds(count - 2) and not s.holds(count - 1) for s in given.supports if count > 1):
+        return False  # what a support bore goes to zero by the end of the stage
     share = last.steps / longer.steps
     supports = tuple(_first_stages(s, count, share) for s in given.supports)
     loads = tuple(replace(load, factors=_factors(load.factors, count, share)) for load in given.loads)
@@ -102,7 +104,8 @@ def _first_stages(support: Support, count: int, share: float) -> Support:
     *before, last = support.motions[:count]
     x, y, z = (share * way for way in last.translate)
     motions = (*before, Motion((x, y, z), share * last.rotate))
-    return replace(support, motions=motions, factors=_factors(support.factors, count, share))
+    held = support.stages and tuple(stage for stage in support.stages if stage < count)
+    return replace(support, motions=motions, factors=_factors(support.factors, count, share), stages=held)
 
 
 def _factors(factors: tuple[float, ...], count: int, share: float) -> tuple[float, ...]:

@@ -82,7 +82,11 @@ class Scene:
         """
         data = copy.deepcopy(self._data)
         for count in counts:
-            data["stages"].append(_further(self.tables.stages[-1], count, [stage["name"] for stage in data["stages"]]))
+            further = _further(self.tables.stages[-1], count, [stage["name"] for stage in data["stages"]])
+            for support in data.get("supports", {}).values():
+                if self.tables.stages[-1].name in support.get("stages", ()):
+                    support["stages"].append(further["name"])
+            data["stages"].append(further)
         return Scene(dump(data), self.name, self._folder) if counts else self
 
     def __repr__(self) -> str:

@@ -1,0 +1,240 @@
+"""Plates that turn by a moment and supports of some stages: what cannot be meant is refused; all linear systems take them; runs resume."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from isomortar import run
+from isomortar.cli.check import lines
+from isomortar.errors import InputError
+from isomortar.model.rank import rigid_rank
+from isomortar.program.getfem import GetFEM
+from isomortar.results.definition import is_longer
+from isomortar.results.reader import Results
+from isomortar.scene import Scene
+from isomortar.solve.condensed import CondensedSystem
+from isomortar.solve.equilibrium import Equilibrium
+from isomortar.solve.outlook import outlook
+from isomortar.solve.record import Observer, StepResult
+from isomortar.solve.simulation import Simulation
+from isomortar.solve.system import LinearSystem
+from isomortar.solve.timing import Ledger
+
+# A pad on a plane, pressed by a plate that tilts, after a stage in which its sides were held; each case below changes one place.
+GOOD = """
+format = 1
+[bodies.pad]
+geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 0.5] }
+mesh = { order = 2, elements = [2, 2, 1] }
+[contacts.floor]
+slave = "pad.w0"
+plane = {}
+friction = 0.3
+[supports.top]
+face = "pad.w1"
+force.z = -0.3
+moment = 0.02
+centre = [0.5, 0.5, 0.5]
+axis = [0, 1, 0]
+[supports.beside]
+face = "pad.w1"
+stages = ["before"]
+[[stages]]
+name = "before"
+steps = 2
+motions.beside.translate = [0, 0, -0.01]
+[[stages]]
+name = "press"
+steps = 3
+motions.top.translate = [0.01, 0, 0]
+"""
+GOOD = GOOD.replace("axis = [0, 1, 0]\n", 'axis = [0, 1, 0]\nstages = ["press"]\n')
+
+# What is replaced, by what, the field that the error names, and a part of its text.
+WRONG = {
+    "not a number": ("moment = 0.02", "moment = nan", "supports.top.moment", "allowed: a finite number"),
+    "by component": ("moment = 0.02", "moment.y = 0", "supports.top", "turns about one axis; allowed: moment, a number"),
+    "a vector": ("moment = 0.02", "moment = [0, 1, 0]", "supports.top", "turns about one axis; allowed: moment, a number"),
+    "turned too": (
+        "motions.top.translate = [0.01, 0, 0]", "motions.top.rotate = 5", "stages.press.motions.top.rotate", "turns support 'top', and so does",
+    ),
+    "free across": (
+        'moment = 0.02', 'moment = 0.02\ncomponents = ["y"]', "supports.top.moment", "turns the face, of which x go free",
+    ),
+    "turns beside": ('stages = ["before"]', 'components = ["x"]', "supports.top.moment", "that support 'beside' holds or moves along x"),
+    "no such stage": ('stages = ["before"]', 'stages = ["after"]', "supports.beside.stages", "there is no stage 'after'; allowed: before"),
+    "in no stage": ('stages = ["before"]', "stages = []", "supports.beside.stages", "has 0 entries"),
+    "moves where it does not hold": (
+        "motions.top.translate", "motions.beside.translate", "stages.press.motions.beside", "which does not hold in that stage",
+    ),
+    "factor where it does not hold": (
+        "motions.beside.translate = [0, 0, -0.01]", "loads.top = 1", "stages.before.loads.top", "does not hold in that stage",
+    ),
+}  # fmt: skip
+
+#: A body in two stages, in the second of which nothing holds it.
+LEFT = """
+format = 1
+bodies.block.geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }
+bodies.block.mesh.order = 1
+supports.base = { face = "block.w0", stages = ["one"] }
+stages = [{ name = "one", steps = 1 }, { name = "two", steps = 1 }]
+"""
+#: A pipe on a plane without friction, which rolls away where nothing holds it.
+ROLLS = """
+format = 1
+bodies.pipe.geometry = { kind = "ring", inner = 0.7, outer = 1, width = 0.25 }
+bodies.pipe.mesh = { order = [2, 2, 1], elements = [16, 1, 1] }
+contacts.floor = { slave = "pipe.v1", plane = { point = [0, 0, -1] }, friction = 0 }
+supports.side = { face = "pipe.w0", components = ["y"] }
+supports.hold = { face = "pipe.v0", stages = ["touch"] }
+loads.own = { body = "pipe", weight = [0, 0, -0.1] }
+solver.max_cuts = 2
+stages = [{ name = "touch", steps = 1, motions.hold.translate = [0, 0, -0.01] }, { name = "let-go", steps = 1 }]
+"""
+#: A bar that is bent by a moment about a horizontal axis, cut by a plane of symmetry.
+HALVED = """
+format = 1
+bodies.bar.geometry = { kind = "box", lower = [0, -1, 0], upper = [2, 1, 0.6] }
+bodies.bar.mesh = { family = "L", order = 2, elements = [2, 2, 1] }
+supports.wall.face = "bar.u0"
+supports.end = { face = "bar.u1", force.z = 0.1, moment = 0.2, axis = [0, 1, 0], centre = [2, 0, 0.3] }
+stages = [{ name = "bend", steps = 2 }]
+"""
+#: The same for other scenes: the text, the field that the error names, and a part of its text.
+ELSEWHERE = {
+    "axis through the face": (
+        LEFT.replace('stages = ["one"]', "moment = 0, axis = [0, 1, 0]").replace("upper = [1, 1, 1]", "upper = [1e-9, 1, 1]"),
+        "supports.base.axis", "goes through all control points of the face",
+    ),
+    "nothing holds it": (LEFT, "bodies.block", "'block' is free to move in stage 'two'"),
+    "rigid": (LEFT.replace("mesh.order = 1", "mesh.order = 1\nbodies.block.rigid = true"), "supports.base.stages", "'block' is rigid"),
+    "out of the plane": (
+        HALVED.replace("axis = [0, 1, 0]", "axis = [1, 0, 0]") + "symmetry = { y = 0.0 }\n", "supports.end.moment", "turns out of the plane",
+    ),
+}  # fmt: skip
+
+
+class Stopped(Observer):
+    """Ends a run after some load steps."""
+
+    def __init__(self, step: int) -> None:
+        self._step = step
+
+    def recorded(self, result: StepResult) -> None:
+        if result.step == self._step:
+            raise KeyboardInterrupt
+
+
+@pytest.mark.parametrize(("old", "new", "field", "text"), WRONG.values(), ids=list(WRONG))
+def test_what_cannot_be_meant_is_refused(old: str, new: str, field: str, text: str) -> None:
+    assert GOOD.count(old) == 1
+    with pytest.raises(InputError) as raised:
+        Scene.from_toml(GOOD.replace(old, new)).problem()
+    assert raised.value.field == field
+    assert text in str(raised.value)
+
+
+@pytest.mark.parametrize(("text", "field", "words"), ELSEWHERE.values(), ids=list(ELSEWHERE))
+def test_so_is_what_cannot_be_meant_elsewhere(text: str, field: str, words: str) -> None:
+    with pytest.raises(InputError) as raised:
+        Scene.from_toml(text).problem()
+    assert raised.value.field == field
+    assert words in str(raised.value)
+
+
+def test_other_programs_are_not_told_of_stages_and_moments() -> None:
+    with pytest.raises(InputError, match="is not told of forces of supports"):
+        GetFEM().run(Scene.from_toml(HALVED.replace("force.z = 0.1, ", "").replace("order = 2", "order = 1")).problem())
+    staged = HALVED.replace("force.z = 0.1, moment = 0.2", 'stages = ["bend"]').replace("order = 2", "order = 1")
+    with pytest.raises(InputError, match="is not told of supports of some stages"):
+        GetFEM().run(Scene.from_toml(staged).problem())
+
+
+def test_a_moment_is_that_of_the_whole() -> None:
+    whole, half = (list(Simulation(Scene.from_toml(HALVED + more).problem()).run())[-1] for more in ("", "symmetry = { y = 0.0 }\n"))
+    for one, other in zip(whole.reactions, half.reactions[:2], strict=True):
+        np.testing.assert_allclose(one.force, other.force, atol=1e-9)
+        np.testing.assert_allclose(one.moment, other.moment, atol=1e-9)
+        np.testing.assert_allclose(one.rotation, other.rotation, atol=1e-7)
+    np.testing.assert_allclose(whole.reactions[1].moment[1], 0.2, rtol=1e-8)
+    assert abs(whole.reactions[1].rotation) > 1.0
+
+
+def test_what_rolls_away_is_told_with_what_held_it() -> None:
+    results = []
+    with pytest.raises(Exception, match="body 'pipe' can move along .* freely since support 'hold' was released; hold it by a support"):
+        results += Simulation(Scene.from_toml(ROLLS).problem()).run()
+
+
+def test_plates_leave_a_body_what_they_go_along_with() -> None:
+    problem = Scene.from_toml(GOOD).problem()
+    assert [rigid_rank(problem, (problem.body("pad"),), stage) for stage in (0, 1)] == [6, 4]
+
+
+def test_all_linear_systems_see_plates_alike() -> None:
+    """By parts and as a whole: the same solution, with a plate whose control points are on the face in contact as well."""
+    given = Scene.from_toml(GOOD, overrides=["bodies.pad.mesh.elements=[8,8,4]"]).problem()
+    simulation = Simulation(replace(given, settings=replace(given.settings, method="uzawa")))
+    results = list(simulation.run())
+    equilibrium = simulation.equilibrium
+    system = equilibrium._system
+    assert isinstance(system, CondensedSystem)
+    assert system.ordering is None  # no general factors took its place
+    assert len(equilibrium.supports.copies) == 100
+    right = np.random.default_rng(0).standard_normal(len(equilibrium.supports.free))
+    general = system._make_general()
+    assert isinstance(general, LinearSystem)
+    pairs = zip(equilibrium.pairs, results[-1].state.contacts, strict=True)
+    laws = [pair.law(np.array([1e3, 1e2]), contact.pressure, contact.traction) for pair, contact in pairs]
+    balance = equilibrium.balance(results[-1].state.positions, results[-1].state, laws)
+    _, values = equilibrium.seen(*equilibrium.tangents(balance, laws), balance)
+    for each in (system, general):
+        each.factorise(values)
+    one, other = system.solve(right), general.solve(right)
+    np.testing.assert_allclose(one, other, atol=1e-9 * np.abs(other).max())
+
+
+def test_a_stage_without_changes_keeps_its_systems() -> None:
+    equilibrium = Equilibrium(Scene.from_toml(GOOD).problem(), Ledger())
+    supports = equilibrium.supports
+    assert equilibrium.standing(2) is supports
+    assert equilibrium.standing(3) is not supports
+
+
+@pytest.mark.parametrize("after", [2, 3, 4])
+def test_runs_go_on_to_the_last_bit(tmp_path: Path, after: int) -> None:
+    scene = Scene.from_toml(GOOD)
+    run(scene, tmp_path / "whole.h5")
+    with pytest.raises(KeyboardInterrupt):
+        run(scene, tmp_path / "parts.h5", observer=Stopped(after))
+    run(scene, tmp_path / "parts.h5", resume=True)
+    with Results(tmp_path / "whole.h5") as one, Results(tmp_path / "parts.h5") as other:
+        np.testing.assert_array_equal(one.step(5).state.positions, other.step(5).state.positions)
+        for quantity in ("force", "moment", "displacement", "rotation"):
+            for support in ("top", "beside"):
+                np.testing.assert_array_equal(one.curve(quantity, support=support), other.curve(quantity, support=support))
+        before = one.curve("force", support="beside", component="z")[1]  # goes on in the plate, and fades there
+        borne = one.curve("force", support="top", component="z")[2:]
+        np.testing.assert_allclose(borne, before * np.array([2.0, 1.0, 0.0]) / 3.0 - [0.1, 0.2, 0.3], atol=1e-8)
+        np.testing.assert_allclose(one.curve("moment", support="top", component="y")[-1], 0.02, atol=1e-9)
+        assert one.problem.supports[0].moment == 0.02
+        assert one.problem.supports[1].stages == (0,)
+
+
+def test_more_load_steps_go_on_as_the_last_stage() -> None:
+    stored, given = (Scene.from_toml(GOOD).with_more_steps(*counts).problem() for counts in ((), (2, 1)))
+    assert [support.stages for support in given.supports] == [(1, 2, 3), (0,)]
+    assert given.supports[0].factors == (0.0, 1.0, 1.0, 1.0)
+    assert is_longer(stored, given)
+    assert not is_longer(given, stored)
+
+
+def test_a_look_at_a_scene_tells_of_moments_and_stages() -> None:
+    said = list(lines(outlook(Scene.from_toml(GOOD).problem())))
+    assert "support top: prescribes x, y of pad.w1; goes 0.01 and presses z by -0.3 and turns by a moment of 0.02; in press alone" in said
+    assert "support beside: prescribes x, y, z of pad.w1; goes 0.01; in before alone" in said
