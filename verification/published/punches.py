@@ -222,8 +222,8 @@ BENCHMARKS = (
     Benchmark(
         "rounded_punch",
         "Flat punch with a rounded edge",
-        "A punch, flat to a radius of 10 with an edge of radius 100, and a cylinder, both of 100 GPa and Poisson's ratio 0.3, approach each "
-        "other by 0.32115, in small strain, without friction: contact to 10 / 0.7.",
+        "A punch, flat to a radius of 10 with an edge of radius 100, and a cylinder, both of 100 GPa and Poisson's ratio 0.3, approach "
+        "each other by 0.32115, in small strain, without friction: contact to 10 / 0.7.",
         "The force of 4657 N that goes round with this benchmark is not that of its own theory, which for this approach gives 446.6 kN.",
         ("N3 fine", "N2 fine"),
         (

@@ -116,8 +116,8 @@ def same_points(patch: Patch, closed: str | None) -> IntArray:
     Such a line is on the body's faces, as round the pole of a sphere: its points are one, or the body would open there.
     """
     first = np.arange(len(patch.weights), dtype=np.int32)
-    for axis in closed or "":
-        first[patch.face_points(axis + "1")] = first[patch.face_points(axis + "0")]
+    for letter in closed or "":
+        first[patch.face_points(letter + "1")] = first[patch.face_points(letter + "0")]
     size = np.linalg.norm(np.ptp(patch.control_points, axis=0))
     numbers = np.arange(len(first), dtype=np.int32).reshape(patch.shape[::-1])
     for axis in range(3):
