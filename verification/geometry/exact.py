@@ -72,7 +72,7 @@ def on_the_surface(body: str, kind: str) -> dict[str, float]:
     built, patch = BODIES[body], refined(body, kind)
     if kind[0] == "N":
         ends = [direction.boundaries[[0, -1]] for direction in patch.face_directions(built.curved)]
-        points = surface(patch, built.curved, np.column_stack([np.random.default_rng(3).uniform(*end, 60) for end in ends]))
+        points = surface(patch, built.curved, np.column_stack([np.random.default_rng(3).uniform(low, high, 60) for low, high in ends]))
     else:
         points = patch.control_points[patch.face_points(built.curved)]
     u, v, w = (volume_points(direction) for direction in patch.directions)

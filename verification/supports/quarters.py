@@ -69,10 +69,8 @@ def forces_of_the_whole(scene: str, method: str) -> dict[str, float]:
     """Largest errors over the largest force, of the top and of the slave, and load steps of the part in which something slips."""
     planes = SCENES[scene][2]
     parts, wholes = computed(scene, method, planes), computed(scene, method, "")
-    support, slave = (
-        [np.array([force(result) for result in results]) for results in (parts, wholes)]
-        for force in (lambda result: result.reactions[0].force, lambda result: result.contacts[0].force_slave)
-    )
+    support = [np.array([result.reactions[0].force for result in results]) for results in (parts, wholes)]
+    slave = [np.array([result.contacts[0].force_slave for result in results]) for results in (parts, wholes)]
     size = float(np.abs(support[1]).max())
     return {
         "support": float(np.abs(support[0] - support[1]).max()) / size,
