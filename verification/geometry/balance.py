@@ -22,7 +22,7 @@ def inside(body: str, kind: str) -> IntArray:
     """Control points, by the first of those that are the same, that are on no face with an area, seams left out."""
     patch, closed = refined(body, kind), BODIES[body].closed or ""
     areas = {face: float(cells(patch, face).areas.sum()) for face in FACES}
-    outer = [face for face in FACES if face[0] not in closed and areas[face] > NO_AREA * max(areas.values())]
+    outer = [face for face in FACES if face[0] not in closed and areas[face] > NO_AREA * np.max(list(areas.values()))]
     first = same_points(patch, BODIES[body].closed)
     return np.setdiff1d(first, np.concatenate([first[patch.face_points(face)] for face in outer]))
 

@@ -164,9 +164,3 @@ def refined(body: str, kind: str, grading: float = 1.0) -> Patch:
     family, order = kind[0], int(kind[1:])
     orders = [order if family == "L" else max(order, d.order) for d in patch.directions]
     return mesh(patch, (family,) * 3, orders, [2 * d.elements for d in patch.directions], (grading,) * 3)  # type: ignore[arg-type]
-
-
-def kinds(body: str) -> list[str]:
-    """Discretisations that a body can have: of NURBS those of its own order and more."""
-    lowest = max(d.order for d in BODIES[body].patch.directions)
-    return [*(f"N{p}" for p in range(lowest, 6)), *(f"L{p}" for p in range(1, 5))]

@@ -13,15 +13,15 @@ import numpy as np
 from isomortar.errors import InputError
 from isomortar.geometry.patch import Direction, FloatArray, Patch
 from isomortar.geometry.primitives.arcs import HALF, QUARTER, WHOLE, arc
+from isomortar.geometry.primitives.blocks import Vector
 
-Vector = tuple[float, float, float]
-Interval = tuple[float, float]
+Span = tuple[float, float]
 Coordinate = Literal["x", "y", "z"]
 
 _LINE = Direction("N", 1, np.array([0.0, 0.0, 1.0, 1.0]))
 
 
-def ring(centre: Vector, inner: float, outer: float, width: float, angles: Interval = (0.0, WHOLE), axis: Coordinate = "y") -> Patch:
+def ring(centre: Vector, inner: float, outer: float, width: float, angles: Span = (0.0, WHOLE), axis: Coordinate = "y") -> Patch:
     """Ring, pipe or cylinder: a rectangle turned about an axis (theory 2.14).
 
     Parameters
@@ -52,8 +52,8 @@ def sphere(
     centre: Vector,
     inner: float,
     outer: float,
-    latitudes: Interval = (-QUARTER, QUARTER),
-    angles: Interval = (0.0, WHOLE),
+    latitudes: Span = (-QUARTER, QUARTER),
+    angles: Span = (0.0, WHOLE),
     axis: Coordinate = "z",
 ) -> Patch:
     """Ball or spherical shell, or the part of one between latitudes and angles: hemisphere, octant (theory 2.14).
@@ -87,8 +87,8 @@ def torus(
     radius: float,
     inner: float,
     outer: float,
-    latitudes: Interval = (-HALF, HALF),
-    angles: Interval = (0.0, WHOLE),
+    latitudes: Span = (-HALF, HALF),
+    angles: Span = (0.0, WHOLE),
     axis: Coordinate = "z",
 ) -> Patch:
     """Torus, solid or a tube, or a part of one, such as a rounded edge (theory 2.14).
@@ -127,9 +127,7 @@ def _check_radii(inner: float, outer: float) -> None:
         raise InputError(f"is {outer:g}; must be larger than inner = {inner:g}", "outer")
 
 
-def _of_round_section(
-    centre: Vector, major: float, inner: float, outer: float, latitudes: Interval, angles: Interval, axis: Coordinate
-) -> Patch:
+def _of_round_section(centre: Vector, major: float, inner: float, outer: float, latitudes: Span, angles: Span, axis: Coordinate) -> Patch:
     """Body whose section is a part of a ring, its middle as far from the axis as `major` (theory 2.14)."""
     down = arc(QUARTER - latitudes[1], QUARTER - latitudes[0])  # from the top
     radii = np.array([inner, outer])
@@ -137,7 +135,7 @@ def _of_round_section(
 
 
 def _turned(
-    centre: Vector, along: Direction, radius: FloatArray, height: FloatArray, weights: FloatArray, angles: Interval, axis: Coordinate
+    centre: Vector, along: Direction, radius: FloatArray, height: FloatArray, weights: FloatArray, angles: Span, axis: Coordinate
 ) -> Patch:
     """A section turned about an axis (theory 2.14).
 
