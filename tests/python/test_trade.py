@@ -45,6 +45,7 @@ def numbers(force=((1.0, 0.0, 0.0),) * 4, cpu=1.0, **more):
         "time": [0.5, 1.0, 1.5, 2.0],
         "force": [[list(f) for f in force]],
         "moment": [[[0.0, 0.0, 0.0]] * 4],
+        "displacement": [[[0.0, 0.0, -0.1], [0.0, 0.0, -0.2], [0.0, 0.0, -0.4], [0.0, 0.0, -0.3]]],
         "area": [[0.1, 0.2, 0.2, 0.3]],
         "pressure": [1.0, 3.0],
         "traction": [0.0, 0.0],
@@ -72,6 +73,7 @@ def test_a_curve_begins_at_rest_and_is_linear_between_load_steps(scene):
     assert wanted("force.top.x@press:end", scene.problem()).values(run, run) == [2.0]
     assert wanted("force.top:peak", scene.problem()).values(run, run) == [5.0]  # the norm, where no component is named
     assert wanted("area.floor:end", scene.problem()).values(run, run) == [0.3]
+    assert wanted("displacement.top.z:peak", scene.problem()).values(run, run) == [0.4]
 
 
 def test_a_curve_is_as_far_from_the_truth_as_its_load_steps_are(scene):
@@ -120,6 +122,15 @@ def test_a_curve_wants_load_steps_that_show_it(scene):
 def test_what_a_scene_does_not_have_is_named(scene, text, said):
     with pytest.raises(InputError, match=said):
         wanted(text, scene.problem())
+
+
+def test_how_far_a_force_moves_a_support_is_a_wish():
+    text = TINY.replace('face = "block.w1" }', 'face = "block.w1", force.z = -0.1 }').replace(
+        "translate = [0, 0, -0.2]", "translate = [0, 0, 0]"
+    )
+    pressed = Scene.from_toml(text).problem()
+    assert "displacement.top" in wishes(pressed)
+    assert wanted("displacement.top", pressed).text == "displacement.top"
 
 
 def test_wishes_are_wants(scene):

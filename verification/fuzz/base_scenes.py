@@ -265,8 +265,8 @@ motions.hand = { translate = [0.1, 0.0, 0.0], rotate = 30.0 }
 max_cuts = 3
 """
 
-#: A bowl that its weight, a force and a pressure press on a block, which a traction pulls at; they grow, stay and fall. The bowl's top tilts,
-#: once it is let go, and the block is held at its side later on.
+#: A bowl that its weight, a force and a pressure press on a block, which a traction pulls at; they grow, stay and fall. The bowl's top
+#: tilts once it is let go, and the block is held at its side later on.
 LOADED = """
 format = 1
 name = "loaded"

@@ -27,6 +27,7 @@ from isomortar.solve.timing import PHASES
         "time": Shown("of the load steps; every stage has length one"),
         "force": Shown("of the supports, shape (supports, steps, 3)"),
         "moment": Shown("of the supports, shape (supports, steps, 3)"),
+        "displacement": Shown("of the supports, by motions and by forces, shape (supports, steps, 3)"),
         "area": Shown("where there is pressure, in the reference configuration, shape (contacts, steps)"),
         "pressure": Shown("at the end on the cells of all slave faces"),
         "traction": Shown("its magnitude, likewise"),
@@ -57,6 +58,7 @@ def traded(scene: str) -> dict[str, Any]:
         "time": stage_times(problem),
         "force": [[step.reactions[n].force for step in steps] for n in range(len(problem.supports))],
         "moment": [[step.reactions[n].moment for step in steps] for n in range(len(problem.supports))],
+        "displacement": [[step.reactions[n].displacement for step in steps] for n in range(len(problem.supports))],
         "area": problem.images
         * np.array([[float(g.weights @ (p > 0)) if g else np.nan for g, p in zip(grids, f[0], strict=True)] for f in fields]).T,
         "pressure": np.concatenate([np.zeros(0), *fields[-1][0]]),

@@ -22,7 +22,7 @@ PLACES = 200
 FEWEST = 5
 _PATTERN = re.compile(r"(?P<quantity>\w+)\.(?P<where>[\w-]+)(\.(?P<component>\w+))?(@(?P<stage>[\w-]+))?(:(?P<part>\w+))?")
 _FORM = "QUANTITY.NAME[.COMPONENT][@STAGE][:PART]"
-_SUPPORT, _CURVES = ("force", "moment"), ("force", "moment", "area")
+_SUPPORT, _CURVES = ("force", "moment"), ("force", "moment", "displacement", "area")
 _FIELDS = ("pressure", "traction", "edge", "gap")  # at the end
 _COMPONENTS, _PARTS = ("x", "y", "z", "norm"), ("curve", "end", "peak", "roughness")
 #: Load steps of a stage that have a second difference.
@@ -68,8 +68,9 @@ def wanted(text: str, problem: Problem) -> Want:
     Parameters
     ----------
     text : str
-        ``force.SUPPORT.x``, ``moment.SUPPORT.norm``, ``area.CONTACT``: a curve over the load history, of one stage with ``@STAGE``, its
-        last value with ``:end``, its largest size with ``:peak``, how rough it is with ``:roughness`` (not of an area).
+        ``force.SUPPORT.x``, ``moment.SUPPORT.norm``, ``displacement.SUPPORT.z``, ``area.CONTACT``: a curve over the load history, of one
+        stage with ``@STAGE``, its last value with ``:end``, its largest size with ``:peak``, how rough it is with ``:roughness`` (not of
+        an area).
         ``pressure.CONTACT``, ``traction.CONTACT``, ``edge.CONTACT``, ``gap.CONTACT``: fields, where contact ends, and what penetrates at
         the end.
     problem : Problem
@@ -110,10 +111,11 @@ def wanted(text: str, problem: Problem) -> Want:
 
 
 def wishes(problem: Problem) -> tuple[str, ...]:
-    """What users look at: force and moment of supports that move; area, pressure, traction, edge and gap of contacts."""
+    """What users look at: force and moment of supports that move, how far forces move them; area and fields of contacts."""
     moving = [s.name for s in problem.supports if s.moves]
     parts = ("", ":roughness") if all(stage.steps >= _BENDS for stage in problem.stages) else ("",)
     curves = [f"{quantity}.{name}{part}" for name in moving for quantity in _SUPPORT for part in parts]
+    curves += [f"displacement.{support.name}" for support in problem.supports if support.pressed]
     single = [c.name for c in problem.contacts if len(c.slave.faces) == 1]
     fields = [f"{quantity}.{name}" for name in single for quantity in ("area", *_FIELDS)]
     return (*curves, *fields)
