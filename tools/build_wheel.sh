@@ -23,7 +23,7 @@ cp "$folder"/whole/*.whl dist/
 
 say "Trying it in an empty environment"
 python -m venv "$folder/empty"
-"$folder/empty/bin/python" -m pip install --quiet "$folder"/whole/*.whl
+"$folder/empty/bin/python" -m pip install --quiet "$(echo "$folder"/whole/*.whl)${1:+[verify]}"
 (cd "$folder" && empty/bin/isomortar doctor)
 if [ "${1:-}" = --gate ]; then
   (cd "$folder/source" && "$folder/empty/bin/isomortar" verify)

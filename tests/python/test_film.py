@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import imageio_ffmpeg
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
@@ -35,6 +36,20 @@ def test_a_film_shows_one_load_step_in_so_many_and_the_last_one(results_path: Pa
         pictures.seek(1)
         assert np.abs(np.asarray(pictures.convert("RGB"), float) - first).max() > 50.0
     assert told == [(1, 2), (2, 2)]
+
+
+def test_a_film_for_players_of_films_has_the_pictures_too(results_path: Path, tmp_path: Path) -> None:
+    """Decoded again: as many, at that rate, and near to those of the film without losses."""
+    exact, path = isomortar.film(results_path, tmp_path / "run.webp"), isomortar.film(results_path, tmp_path / "run.mp4", rate=4.0)
+    frames = imageio_ffmpeg.read_frames(str(path))
+    facts = next(frames)
+    (width, height), shown = facts["size"], [np.frombuffer(frame, np.uint8) for frame in frames]
+    assert (len(shown), facts["fps"], facts["codec"]) == (4, 4.0, "h264")
+    with Image.open(exact) as pictures:
+        for number, frame in enumerate(shown):
+            pictures.seek(number)
+            right = np.asarray(pictures.convert("RGB"), float)[:height, :width]
+            assert np.abs(frame.reshape(height, width, 3) - right).mean() < 3.0
 
 
 def corners(figure: Figure, picture: int) -> np.ndarray:

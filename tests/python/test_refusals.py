@@ -204,7 +204,10 @@ def of_files(patch: pytest.MonkeyPatch) -> Told:
         within.setitem(sys.modules, "xarray", None)
         yield "no xarray", refusal(lambda: Results("run.h5").to_xarray())
     yield "filmed: one state", refusal(lambda: film("run.h5", "run.gif"))
-    yield "filmed: type", refusal(lambda: film("run.h5", "run.mp4"))
+    yield "filmed: type", refusal(lambda: film("run.h5", "run.avi"))
+    with patch.context() as within:
+        within.setitem(sys.modules, "imageio_ffmpeg", None)
+        yield "filmed: no encoder", refusal(lambda: film("run.h5", "run.mp4"))
     yield "filmed: nothing", refusal(lambda: film("run.h5", "run.gif", every=0))
     ResultsWriter("alone.h5", replace(problem(), contacts=()), "", "0")
     yield "filmed: no contact", refusal(lambda: film("alone.h5", "run.gif"))

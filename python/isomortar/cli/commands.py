@@ -185,7 +185,7 @@ def film(
     results: ResultsArgument,
     output: Annotated[
         Path | None,
-        typer.Option(dir_okay=False, help="A .gif file, or .webp, which has all colours.", show_default="RESULTS.gif, beside the file"),
+        typer.Option(dir_okay=False, help="A .gif, .webp or .mp4 file; .gif has 256 colours.", show_default="RESULTS.gif, beside the file"),
     ] = None,
     contact: Annotated[str | None, typer.Option(help="Whose pressure is in colour.", show_default="the first one's")] = None,
     every: Annotated[int, typer.Option(min=1, help="Show one load step in so many, and the last one.")] = 1,

@@ -6,18 +6,20 @@ import os
 from collections.abc import Callable, Iterator, Sequence
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 
 from PIL import Image
 
 from isomortar.errors import InputError, ResultsError
 from isomortar.results.bodies import common_scale, draw_bodies
 from isomortar.results.files import writing
+from isomortar.results.optional import optional
 from isomortar.results.reader import Results
 from isomortar.results.style import style
 from isomortar.solve.record import StepResult
 
-#: Types of films, and what Pillow calls them.
-FORMATS = {".gif": "GIF", ".webp": "WEBP"}
+#: Types of films, and what Pillow calls them; films of type .mp4 are made by ffmpeg.
+FORMATS = {".gif": "GIF", ".webp": "WEBP", ".mp4": "MP4"}
 #: Pixels per inch: 8.6 inches are as wide as most windows.
 DENSITY = 110
 
@@ -37,7 +39,7 @@ def film(
     ----------
     results_path : path-like
     output : path-like
-        A .gif or .webp file.
+        A .gif, .webp or .mp4 file; the last of these needs imageio-ffmpeg (`isomortar[mp4]`).
     contact : str, optional
         Whose pressure is in colour; default: the first one's.
     every : int
@@ -62,6 +64,7 @@ def film(
     path = Path(output)
     if path.suffix not in FORMATS:
         raise InputError(f"is {path.name!r}; allowed: a name that ends in {' or '.join(FORMATS)}", "output")
+    encoder = optional("imageio_ffmpeg", "output", "mp4") if path.suffix == ".mp4" else None
     if every < 1 or not 0.0 < rate <= 100.0:
         raise InputError(f"is {every} and {rate:g}; allowed: 1 and more, and up to 100 a second", "every, rate")
     with Results(results_path) as results, style():
@@ -76,8 +79,21 @@ def film(
             if tell:
                 tell(len(pictures), len(shown))
     with writing(path):
-        pictures[0].save(path, FORMATS[path.suffix], save_all=True, append_images=pictures[1:], duration=round(1000.0 / rate), loop=0)
+        if encoder:
+            _encode(encoder, pictures, path, rate)
+        else:
+            pictures[0].save(path, FORMATS[path.suffix], save_all=True, append_images=pictures[1:], duration=round(1000.0 / rate), loop=0)
     return path
+
+
+def _encode(encoder: Any, pictures: Sequence[Image.Image], path: Path, rate: float) -> None:
+    """As H.264, which wants even widths and heights: a line at the edge goes where they are odd."""
+    width, height = (2 * (side // 2) for side in pictures[0].size)
+    frames = encoder.write_frames(str(path), (width, height), fps=rate, macro_block_size=2, quality=8)
+    frames.send(None)
+    for picture in pictures:
+        frames.send(picture.crop((0, 0, width, height)).tobytes())
+    frames.close()
 
 
 def _number(results: Results, contact: str | None) -> int:

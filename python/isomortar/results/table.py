@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from isomortar.errors import InputError
 from isomortar.results import layout
+from isomortar.results.optional import optional
 
 if TYPE_CHECKING:
     import pandas
@@ -54,7 +53,7 @@ def data_frame(results: Results) -> pandas.DataFrame:
     InputError
         Pandas is not installed.
     """
-    pandas = _optional("pandas", "to_dataframe")
+    pandas = optional("pandas", "to_dataframe")
     return pandas.DataFrame(columns(results), index=pandas.Index(results.steps, name="step"))
 
 
@@ -66,7 +65,7 @@ def data_set(results: Results) -> xarray.Dataset:
     InputError
         Xarray is not installed.
     """
-    xarray = _optional("xarray", "to_xarray")
+    xarray = optional("xarray", "to_xarray")
     supports, contacts = ([entry.name for entry in entries] for entries in (results.problem.supports, results.problem.contacts))
     arrays = {name: _array(layout.STEP[name], ("step",), results.curve(name)) for name in _OF_STEPS}
     for name in layout.REACTION if supports else ():
@@ -91,11 +90,3 @@ def _array(quantity: layout.Quantity, dimensions: tuple[str, ...], values: NDArr
     if values.ndim > len(dimensions):
         dimensions += ("component" if values.shape[-1] == 3 else "end",)
     return dimensions, values, {"units": quantity.unit, "long_name": quantity.description}
-
-
-def _optional(package: str, asked: str) -> Any:
-    """A package that only those need who ask for something."""
-    try:
-        return import_module(package)
-    except ImportError as error:
-        raise InputError(f"needs {package}, which is not installed: pip install 'isomortar[{package}]'", asked) from error
