@@ -180,7 +180,7 @@ def test_plates_leave_a_body_what_they_go_along_with() -> None:
 
 
 def test_all_linear_systems_see_plates_alike() -> None:
-    """By parts and as a whole: the same solution, with a plate whose control points are on the face in contact as well."""
+    """By parts and as a whole: the same solution."""
     given = Scene.from_toml(GOOD, overrides=["bodies.pad.mesh.elements=[8,8,4]"]).problem()
     simulation = Simulation(replace(given, settings=replace(given.settings, method="uzawa")))
     results = list(simulation.run())

@@ -70,7 +70,6 @@ def test_arrays_say_what_they_are(results: Results) -> None:
     data = results.to_xarray()
     for name, quantity in (layout.REACTION | layout.CONTACT).items():
         assert data[name].attrs == {"units": quantity.unit, "long_name": quantity.description}
-    assert data.rotation.attrs == {"units": "degrees"}
     assert data.attrs == {"name": "rolling", "program_version": "0.1"}
 
 

@@ -9,6 +9,7 @@ from small_scenes import TIGHT
 
 from isomortar.harness import Bound, case
 from isomortar.model.entities import Motion, Problem, Stage, unit
+from isomortar.model.supports import factor_at
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
 from isomortar.solve.simulation import Simulation
@@ -67,12 +68,13 @@ supports.base.face = "bar.u0"
 supports.top = { face = "bar.u1", force.z = -0.1, moment = 0.3, centre = [2.2, 0.5, 0.3], axis = [1, 2, 3] }
 stages = [{ name = "bend", steps = 2 }, { name = "draw", steps = 2, loads.top = 2, motions.top.translate = [0.1, 0, 0] }]
 """,
-    # A pad that is pressed and dragged, and whose top tilts as it wants: all of its edge is on the face in contact as well.
+    # A pad that is pressed, dragged and tilted at its top, of which an edge is on a face under pressure as well.
     "onto a plane, tilting": """
 format = 1
 bodies.pad = { geometry = { kind = "box", lower = [-0.5, -0.5, 0], upper = [0.5, 0.5, 0.4] }, mesh = { order = 2, elements = [3, 3, 1] } }
 contacts.floor = { slave = "pad.w0", plane = {}, friction = 0.3 }
-supports.top = { face = "pad.w1", force.z = -0.4, moment = 0, centre = [0, 0, 0.4], axis = [0, 1, 0] }
+supports.top = { face = "pad.w1", force.z = -0.4, moment = 0.01, centre = [0, 0, 0.4], axis = [0, 1, 0] }
+loads.wind = { face = "pad.u0", pressure = 0.05 }
 stages = [{ name = "press", steps = 2 }, { name = "drag", steps = 2, motions.top.translate = [0.05, 0, 0] }]
 """,
     # A rigid box that a force presses onto a block beside its middle: a moment keeps it from tilting, in part.
@@ -107,8 +109,10 @@ def by_displacement(given: Problem, results: list[StepResult]) -> Problem:
         motions = tuple(Motion((float(x), float(y), float(z)), float(turn)) for (x, y, z), turn in zip(ways, turns, strict=True))
         components = tuple(sorted(support.carried))
         supports.append(replace(support, motions=motions, components=components, force=(None, None, None), factors=(), moment=None))
-    stages = tuple(Stage(f"step-{step}", 1) for step in range(1, given.total_steps + 1))
-    return replace(given, supports=tuple(supports), stages=stages)
+    steps = range(1, given.total_steps + 1)
+    loads = [replace(load, factors=tuple(factor_at(given.stages, load.factors, step) for step in steps)) for load in given.loads]
+    stages = tuple(Stage(f"step-{step}", 1) for step in steps)
+    return replace(given, supports=tuple(supports), stages=stages, loads=tuple(loads))
 
 
 @case(

@@ -251,4 +251,4 @@ def _check_stance(problem: Problem, contact: Contact, found: Stance) -> None:
 
 
 def _turns(problem: Problem) -> bool:
-    return any(support.turns for support in problem.supports)
+    return any(support.turns or support.moment is not None for support in problem.supports)

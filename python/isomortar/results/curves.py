@@ -34,7 +34,7 @@ class WantedCurve(Protocol):
 
 def moving_supports(results: Results) -> list[Support]:
     """The supports that move in some stage, or that a force moves; all of them if none does."""
-    moving = [s for s in results.problem.supports if s.moves or s.pressed]
+    moving = [s for s in results.problem.supports if s.moves or s.is_plate]
     return moving or list(results.problem.supports)
 
 

@@ -124,7 +124,7 @@ def _pushed_in(problem: Problem) -> Iterator[str]:
             sheet, normal = Sheet.of(problem, contact.slave), unit(contact.master.normal)
             points = np.unique(sheet.points(numbering)[sheet.patch.face_points(sheet.face)])
             points = points[np.all(supports.held[points] | (np.abs(normal) < constants.NO_PART), axis=1)]
-            ends = np.cumsum([stage.steps for stage in problem.stages])
+            ends = np.cumsum([stage.steps for stage in problem.stages])[: _unchanged(problem)]
             depths = [-((supports.place(float(end))[points] - contact.master.point) @ normal).min(initial=np.inf) for end in ends]
             if max(depths, default=0.0) > constants.NO_PART * sheet.size:
                 stage = problem.stages[int(np.argmax(depths))].name
@@ -133,6 +133,12 @@ def _pushed_in(problem: Problem) -> Iterator[str]:
                     f"{max(depths):.3g} at the end of stage {stage!r}, and those cannot give way. Hold fewer components, or end the motion "
                     "at the plane"
                 )
+
+
+def _unchanged(problem: Problem) -> int:
+    """Number of the first stages in which the same supports hold."""
+    holding = [[support.holds(k) for support in problem.supports] for k in range(len(problem.stages))]
+    return next((k for k, held in enumerate(holding) if held != holding[0]), len(holding))
 
 
 def _radians(problem: Problem, support: Support) -> Iterator[str]:

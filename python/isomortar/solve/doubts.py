@@ -218,7 +218,7 @@ def _of_contact(problem: Problem, contact: Contact) -> Iterator[str]:
 
 def _loaded(problem: Problem) -> bool:
     """Whether a load, or the force of a support, ever is other than zero."""
-    loads = [(load.factors, load.value) for load in problem.loads] + [(s.factors, s.force) for s in problem.supports]
+    loads = [(load.factors, load.value) for load in problem.loads] + [(s.factors, (*s.force, s.moment)) for s in problem.supports]
     return any((not factors or any(factors)) and any(value) for factors, value in loads)
 
 
@@ -238,5 +238,8 @@ def _holder(problem: Problem, place: Face | RigidPlane) -> str:
         return "a rigid plane"
     if problem.body(place.body).rigid:
         return f"of the rigid body {place.body!r}"
-    holders = [next((s.name for s in problem.supports if s.place == face and len(s.components) == 3), "") for face in place.faces]
+    holders = [
+        next((s.name for s in problem.supports if s.place == face and len(s.components) == 3 and s.stages is None), "")
+        for face in place.faces
+    ]
     return " and ".join(f"support {name!r}" for name in holders) if all(holders) else ""
