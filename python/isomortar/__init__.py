@@ -12,6 +12,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from isomortar.cli.progress import progress as progress
     from isomortar.driver import run as run
     from isomortar.errors import IsomortarError as IsomortarError
     from isomortar.results.film import film as film
@@ -34,11 +35,12 @@ _HOMES = {
     "export": "results.paraview",
     "film": "results.film",
     "plot": "results.pictures",
+    "progress": "cli.progress",
     "run": "driver",
     "view": "results.view",
 }
 
-__all__ = ["IsomortarError", "Observer", "Results", "Scene", "Simulation", "export", "film", "plot", "run", "view"]
+__all__ = ["IsomortarError", "Observer", "Results", "Scene", "Simulation", "export", "film", "plot", "progress", "run", "view"]
 
 
 def __getattr__(name: str) -> Any:

@@ -5,7 +5,7 @@ user has set stands, and what the program around us does with libraries of its o
 
 - Debian's OpenBLAS takes a processor that is younger than itself for a very old one: matrix products, and with them assembly and
   factorisation, are then two to ten times slower. The right choice follows from the processor's flags.
-- One thread for OpenBLAS, and threads of the assembly that sleep when they wait (`LIBRARIES`).
+- One thread for OpenBLAS, and threads of the assembly that sleep when they wait (`LIBRARIES`); one in a process that is forked off.
 - Memory that is freed stays with the process (`keep_memory`), that of the program around us too.
 
 Another kernel with the same interface takes its place where the environment names one (docs/programs.md).
@@ -13,6 +13,7 @@ Another kernel with the same interface takes its place where the environment nam
 
 from __future__ import annotations
 
+import ctypes
 import importlib.util
 import os
 from collections.abc import Iterator
@@ -83,10 +84,17 @@ def _settings() -> Iterator[None]:
             del os.environ[variable]
 
 
+def _alone() -> None:
+    """Take one thread for the assembly: in a process that is forked off those of its parent are missing, and would be waited for."""
+    ctypes.CDLL(_own).omp_set_num_threads(1)
+
+
 keep_memory()
 with _settings():
     from isomortar import _kernel as kernel
 
+    _own = kernel.__file__
+    os.register_at_fork(after_in_child=_alone)
     if KERNEL in os.environ:
         kernel = kernel_at(Path(os.environ[KERNEL]), kernel)
 

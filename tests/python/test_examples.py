@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import ast
+import re
 import runpy
 from dataclasses import replace
 from pathlib import Path
 
+import nbclient
+import nbformat
 import numpy as np
 
 from isomortar.solve.equilibrium import Equilibrium
@@ -26,3 +30,17 @@ def test_contact_from_scratch_finds_the_forces_of_the_program() -> None:
     expected = np.array([result.contacts[0].force_slave for result in Simulation(monolithic).run()])
     assert np.abs(forces - expected).max() <= 1e-4 * np.abs(expected).max()
     assert np.abs(forces[-1, 0]) > 0.1
+
+
+def test_the_notebook_runs(tmp_path: Path) -> None:
+    """From its first cell to the last; the bar is full at the end, and friction makes the block stiffer."""
+    notebook = nbformat.read(EXAMPLES / "friction.ipynb", as_version=4)
+    assert not any(cell.get("outputs") for cell in notebook.cells), "is kept without what it prints"
+    nbclient.NotebookClient(notebook, timeout=300, resources={"metadata": {"path": str(tmp_path)}}).execute()
+    shown = [output for cell in notebook.cells for output in cell.get("outputs", ())]
+    bars = [data["text/html"] for output in shown if "<progress" in (data := output.get("data", {})).get("text/html", "")]
+    assert len(bars) == 1
+    assert '<progress value="5" max="5">' in bars[0]
+    forces = ast.literal_eval(re.sub(r"np\.float64\(([^)]*)\)", r"\1", shown[-1]["data"]["text/plain"]))
+    assert list(forces) == [0.0, 0.3, 0.6]
+    assert 0.0 > forces[0.0] > forces[0.3] > forces[0.6]

@@ -78,8 +78,32 @@ def test_the_kernel_is_loaded_with_one_thread_for_its_linear_algebra_unless_the_
     assert said(LOADED, tmp_path, **environment) == f"True {threads}"
 
 
+#: Computes a scene, and the same in a process that is forked off: a child would wait for threads of the assembly that it does not have.
+FORKED = """
+import os
+import isomortar
+def force():
+    scene = isomortar.Scene.load("press", {"bodies.block.mesh.elements": [3, 3, 2]})
+    with isomortar.run(scene, f"{os.getpid()}.h5") as results:
+        return results.curve("force", support="top", component="z")[-1].hex()
+print(force(), flush=True)
+if os.fork() == 0:
+    print(force(), flush=True)
+    os._exit(0)
+os.wait()
+"""
+
+
+@pytest.mark.skipif(os.cpu_count() == 1, reason="the assembly has no second thread on one core")
+def test_a_process_that_is_forked_off_a_run_runs(tmp_path: Path) -> None:
+    one, other = said(FORKED, tmp_path).splitlines()
+    assert one == other
+
+
 def said(code: str, folder: Path, **environment: str) -> str:
     """What a program prints, in an environment that says nothing of threads but this."""
     clean = {name: value for name, value in os.environ.items() if not name.startswith(("OMP_", "OPENBLAS_"))}
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=clean | environment, check=True, cwd=folder)
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, env=clean | environment, check=True, cwd=folder, timeout=300
+    )
     return done.stdout.strip()

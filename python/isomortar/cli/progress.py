@@ -1,4 +1,4 @@
-"""What a person sees of a run: one line that lives on a terminal, plain lines elsewhere."""
+"""What a person sees of a run: a bar that lives on a terminal or below a notebook's cell, plain lines elsewhere."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
+from html import escape
 from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING
@@ -17,6 +18,9 @@ from isomortar.solve.record import IterationRecord, Observer, StepResult
 
 if TYPE_CHECKING:
     from rich.table import Table
+
+#: Seconds after which a bar in a notebook is drawn anew, at the earliest.
+REDRAWN = 0.2
 
 
 class Progress(Observer):
@@ -154,11 +158,59 @@ def _minutes(seconds: float) -> str:
     return f"{hours}:{minutes:02d}:{rest:02d}" if hours else f"{minutes}:{rest:02d}"
 
 
+class NotebookProgress(LiveProgress):
+    """Below the cell of a notebook: the same, a few times a second."""
+
+    def __init__(self, problem: Problem, tell: Callable[[str], None]) -> None:
+        super().__init__(problem, tell)
+        self._drawn = 0.0
+
+    def started(self, total_steps: int, first_step: int) -> None:
+        """Say how much there is to do, and put the bar there."""
+        from IPython.display import display
+
+        super().started(total_steps, first_step)
+        self._place = display(self, display_id=True)  # type: ignore[no-untyped-call]
+
+    def iteration(self, step: int, time: float, augmentation: int, record: IterationRecord) -> None:
+        """Keep the newest iteration, and draw it if the last one has been seen."""
+        super().iteration(step, time, augmentation, record)
+        if monotonic() - self._drawn > REDRAWN:
+            self._drawn = monotonic()
+            self._place.update(self)
+
+    def recorded(self, result: StepResult) -> None:
+        """Move the bar."""
+        super().recorded(result)
+        self._place.update(self)
+
+    def _repr_html_(self) -> str:
+        name, now = (escape(text) for text in (self._problem.name, "; ".join(self._now)))
+        bar = f'<progress value="{self._done}" max="{self._total}"></progress>'
+        return f"<p>{name} {bar} {self._done}/{self._total}, {self._clock()}<br>{now}</p>"
+
+
 @contextmanager
-def progress(problem: Problem, quiet: bool) -> Iterator[Progress]:
-    """The observer that suits where stderr goes."""
+def progress(problem: Problem, quiet: bool = False) -> Iterator[Progress]:
+    """The observer that suits where a run is watched: a bar on a terminal or in a notebook, lines elsewhere.
+
+    Parameters
+    ----------
+    problem : Problem
+        What is computed, `Scene.problem()`.
+    quiet : bool
+        Warnings only.
+
+    Examples
+    --------
+    >>> with isomortar.progress(scene.problem()) as watching:  # doctest: +SKIP
+    ...     results = isomortar.run(scene, observer=watching)
+    """
     if quiet:
         yield Progress(problem, partial(print, file=sys.stderr), quiet)
+        return
+    if "ipykernel" in sys.modules:
+        yield NotebookProgress(problem, print)
         return
     from rich.console import Console
 
