@@ -34,13 +34,19 @@ def inside(body: str, kind: str) -> IntArray:
     bounds={
         "residual": Bound(at_most=1e-12, reason="round-off: with 20 points per direction the quadrature of these bodies is exact to it"),
         "inside": Bound(at_least=1.0, reason="definition: there is something to be in balance"),
+        "apart": Bound(at_least=0.0, at_most=0.0, reason="definition: control points at one place are one, or the body would open there"),
     },
 )
 def homogeneous(body: str, kind: str) -> dict[str, float]:
-    """Largest force at a control point inside over the largest at any, and their number."""
+    """Largest force at a control point inside over the largest at any, their number, and how many more points there are than places."""
     patch, within = refined(body, kind), inside(body, kind)
     reference = patch.control_points
     forces = np.zeros_like(reference)
     arrays = patch_arrays(patch, same_points(patch, BODIES[body].closed))
     _bindings.add_body(arrays, (MANY,) * 3, MATERIAL.arrays, np.ascontiguousarray(reference @ GRADIENT.T + SHIFT), reference, forces)
-    return {"residual": float(np.abs(forces[within]).max() / np.abs(forces).max()), "inside": float(len(within))}
+    places = np.unique(np.round(reference / np.ptp(reference), 10), axis=0)
+    return {
+        "residual": float(np.abs(forces[within]).max() / np.abs(forces).max()),
+        "inside": float(len(within)),
+        "apart": float(len(np.unique(arrays.point)) - len(places)),
+    }
