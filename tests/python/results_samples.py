@@ -58,6 +58,11 @@ def problem() -> Problem:
     )
 
 
+def _reaction(random: np.random.Generator, rotation: float) -> Reaction:
+    force, moment, centre = (random.normal(size=3) for _ in range(3))
+    return Reaction(force, moment, centre, 2.0 * force, rotation)
+
+
 def step_result(number: int) -> StepResult:
     """Load step `number` of the problem: random numbers, the same ones every time."""
     random = np.random.default_rng(number)
@@ -67,10 +72,7 @@ def step_result(number: int) -> StepResult:
         stage="press" if number <= 3 else "roll",
         time=float(number),
         state=State(_positions(random), tuple(_contact_state(random) for _ in range(2))),
-        reactions=tuple(
-            Reaction(*vectors, 2.0 * vectors[0], float(vectors[1][0]))
-            for vectors in ([random.normal(size=3) for _ in range(3)] for _ in range(2))
-        ),
+        reactions=tuple(_reaction(random, turned) for turned in (0.5 * number, 0.0)),
         contacts=tuple(_contact_result(random) for _ in range(2)),
         augmentations=augmentations,
         newton_order=float("nan") if number == 2 else random.normal(),

@@ -171,7 +171,7 @@ class Supports:
 
     def release(self, left: FloatArray, time: float) -> None:
         """Let what is `unbalanced` at a load time go linearly to zero by the end of the stage (theory 5.23)."""
-        self._released = left / self._remaining(time)
+        self._released = self.balanced * left / self._remaining(time)
 
     def _remaining(self, time: float) -> float:
         """Share of the stage that is left."""
