@@ -37,7 +37,7 @@ wheel: $(READY) ## a wheel that needs nothing of the machine, in dist/, tried in
 	@bash tools/build_wheel.sh
 
 test: lint ## linters, then all tests
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n auto --dist loadfile
 
 lint: $(READY) ## formatters and linters, nothing is changed
 	@bash tools/lint.sh

@@ -32,9 +32,10 @@ def path(tmp_path: Path) -> Path:
     writer = ResultsWriter(tmp_path / "run.h5", problem(), "format = 1", "0")
     for number in range(1, 6):
         writer.recorded(step_result(number))
-    with h5py.File(writer.path, "a") as file:  # like one of format 3, whose displacements are those of motions
+    with h5py.File(writer.path, "a") as file:  # like one of format 3, whose displacements and angles are those of motions
         for support in ("rim", "bed"):
-            del file[f"curves/supports/{support}/displacement"]
+            for quantity in ("displacement", "rotation"):
+                del file[f"curves/supports/{support}/{quantity}"]
     writer.path.write_bytes(sealed(writer.path.read_bytes()))
     return writer.path
 

@@ -126,7 +126,7 @@ class Exact:
 
     def pressure(self, radius: float) -> float:
         """Pressure at a radius, over the mean one; the variable is the height over the radius, which has no singularity."""
-        low, high = (np.sqrt(x**2 - radius**2) for x in (max(radius, FLAT), self.radius))
+        low, high = (np.sqrt(x**2 - radius**2) for x in (np.maximum(radius, FLAT), self.radius))
 
         def share(height: float) -> float:
             x = np.hypot(height, radius)
@@ -137,7 +137,7 @@ class Exact:
     @staticmethod
     def _slope(x: float) -> float:
         """How the approach grows with the contact radius."""
-        return float((2.0 * np.sqrt(max(x**2 - FLAT**2, 0.0)) - FLAT * np.arccos(min(FLAT / x, 1.0))) / EDGE)
+        return float((2.0 * np.sqrt(np.maximum(x**2 - FLAT**2, 0.0)) - FLAT * np.arccos(np.minimum(FLAT / x, 1.0))) / EDGE)
 
 
 _EXACT = Exact(FLAT / RATIO)

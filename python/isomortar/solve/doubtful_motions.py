@@ -37,11 +37,11 @@ def of_motions(problem: Problem) -> Iterator[str]:
 def approach(problem: Problem, contact: Contact, towards: FloatArray) -> float | None:
     """By how much motions bring the sides of a contact nearer to each other at most, at an end of a stage, along a unit vector.
 
-    `towards`, shape (3,), is from slave to master. None: something turns, or a side is not held along it, so that nobody knows.
+    `towards`, shape (3,), is from slave to master. None: something turns, a side is not held along it, or there is no stage: nobody knows.
     """
     slave = _ways(problem, contact.slave, towards)
     master = [np.zeros(len(problem.stages))] if isinstance(contact.master, RigidPlane) else _ways(problem, contact.master, towards)
-    if not slave or not master:
+    if not (slave and master and problem.stages):
         return None
     return float(max(np.max(way - other) for way in slave for other in master))
 
