@@ -113,9 +113,9 @@ BENCHMARKS = (
         "Hemisphere pressed and twisted",
         "A hollow hemisphere of radius 1, five times stiffer than the block of width 2 and height 2 below it, is pressed in by 1 and "
         "turned by 180 degrees, friction 0.5. Forces are over Young's modulus of the block and the square of half its width.",
-        "Sources differ in the inner radius (1/2 or 2/3), the depth (1/2 or 1) and whether there is friction while it is pressed. Without "
-        "it, coarse, the force is 0.47 at depth 1/2 and 1.5 at depth 1 with a radius of 1/2; with 2/3 and the law neo-hookean-j it is "
-        "1.28 at depth 1, near what is published, so that these are taken. Friction acts from the start here.",
+        "Sources differ in the inner radius (1/2 or 2/3), the depth (1/2 or 1) and whether there is friction while it is pressed. With an "
+        "inner radius of 1/2 the force is far too small at depth 1/2 and far too large at depth 1; with 2/3, depth 1 and the law "
+        "neo-hookean-j it comes near without friction, so that these are taken. Friction acts from the start here.",
         ("N2 fine", "N3 coarse"),
         (
             Quantity("force at 0", "force after pressing", "", (Known(_SAUER, 1.2295),), "published without friction while it is pressed"),

@@ -124,7 +124,7 @@ BENCHMARKS = (
                 "horizontal over vertical force at t = 1.5",
                 "",
                 ratios(among(_CURVES["horizontal"], 1.5), among(_CURVES["vertical"], 1.5)),
-                "published values scatter by a factor of 1.8",
+                "published values scatter by a factor of nearly two",
             ),
             *(_at(direction, time) for time in (1.0, 1.5) for direction in _CURVES),
         ),

@@ -7,11 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from isomortar.geometry.patch import Direction, FloatArray, Patch
+from isomortar.geometry.primitives.arcs import QUARTER, arc
 from isomortar.geometry.splines import Spline
-
-#: A quarter of a circle, as the control points and weights of one element.
-_QUARTER = Direction("N", 2, np.array([0.0, 0.0, 0.0, 1.0, 1.0, 1.0]))
-_QUARTER_POINTS = np.array([[1.0, 0.0, 1.0], [np.sqrt(0.5), np.sqrt(0.5), np.sqrt(0.5)], [0.0, 1.0, 1.0]])
 
 
 def line(start: float, end: float) -> Direction:
@@ -31,22 +28,22 @@ def turned(along: Direction, up: Direction, profile: FloatArray, spans: Sequence
         Where elements end along and up, besides where they do already.
     """
     radius, height, weight = np.moveaxis(profile, 2, 0)
-    cosine, sine, arc = _QUARTER_POINTS.T
+    quarter = arc(0.0, QUARTER)
     points = np.stack(
         [
-            np.einsum("ac,b->cba", radius, cosine / arc),
-            np.einsum("ac,b->cba", radius, sine / arc),
+            np.einsum("ac,b->cba", radius, quarter.cosine),
+            np.einsum("ac,b->cba", radius, quarter.sine),
             np.einsum("ac,b->cba", height, np.ones(3)),
         ],
         axis=-1,
     )
-    weights = np.einsum("ac,b->cba", weight, arc)
-    spline = Spline((along, _QUARTER, up), points.reshape(-1, 3), weights.ravel())
+    weights = np.einsum("ac,b->cba", weight, quarter.weights)
+    spline = Spline((along, quarter.direction, up), points.reshape(-1, 3), weights.ravel())
     for axis, knots in zip((0, 2), spans, strict=True):
         if len(knots):
             spline.insert(axis, np.array(knots, dtype=np.float64))
     u, w = (Direction("N", d.order, knots) for d, knots in zip((along, up), spline.knots[::2], strict=True))
-    return Patch((u, _QUARTER, w), spline.control_points, spline.weights)
+    return Patch((u, quarter.direction, w), spline.control_points, spline.weights)
 
 
 def disc(radius: float, bottom: float, top: float, spans: Sequence[Sequence[float]]) -> Patch:
