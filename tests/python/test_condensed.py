@@ -274,9 +274,9 @@ def test_poor_solutions_are_refined(last, monkeypatch):
     assert len(calls) == 2
 
 
-def test_dense_parts_are_no_dearer_than_the_bodies(last):
+def test_dense_parts_take_at_most_six_times_the_operations_of_the_bodies(last):
     bodies = last["bodies"]
     faces = bodies.factors.faces
-    most = round((1.5 * (bodies.factors.flops - faces**3)) ** (1 / 3)) - faces
+    most = round((1.5 * (6 * bodies.factors.flops - faces**3)) ** (1 / 3)) - faces
     assert bodies.condense(most - 1)
     assert not bodies.condense(most + 2)

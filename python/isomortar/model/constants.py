@@ -98,6 +98,9 @@ LEFT_OPEN = 4.0
 #: Systems with fewer unknowns than the first are ordered by minimum degree, with more than the second by nested dissection. In between
 #: either can take up to twice as long as the other: there the first matrix is factorised both ways.
 UNDOUBTED = (1000, 5000)
+#: The bodies' Cholesky and what is dense on their faces, so many times the operations of the former, take about as long as general factors,
+#: whose operations are slower: boxes on planes and on boxes, 1 to 6 elements thick and wholly in contact, cross at 6 to 9 times.
+DENSE_SHARE = 6.0
 #: A solution that leaves more than this share of the right-hand side is refined: what is less is gone with Newton's next correction.
 REFINED_ABOVE = 1e-6
 #: A refined solution that leaves more than this share is none: it has not one digit.

@@ -98,8 +98,8 @@ class Bodies:
         return self._factors
 
     def condense(self, others: int) -> bool:
-        """Whether what is dense, with so many unknowns more than faces have, takes no more operations than the bodies (theory 5.13)."""
-        return self._faces**3 + 2.0 / 3.0 * (self._faces + others) ** 3 <= self._flops
+        """Whether what is dense, with so many unknowns more than faces have, is worth its operations (theory 5.13)."""
+        return self._faces**3 + 2.0 / 3.0 * (self._faces + others) ** 3 <= constants.DENSE_SHARE * self._flops
 
 
 def touched(sources: Sequence[Source], unknowns: int) -> BoolArray:

@@ -320,7 +320,7 @@ class Equilibrium:
         return self._system
 
     def new_system(self, sources: Sequence[Source], size: int) -> CheckedSystem:
-        """A linear system of some sources, the first of them the solid's: by parts, where that takes fewer operations (theory 5.13)."""
+        """A linear system of some sources, the first of them the solid's: by parts, where that is worth its operations (theory 5.13)."""
         free = len(self.supports.free)
         if self._solid_entries is None:
             self._solid_entries = entries(sources[:1], free)
