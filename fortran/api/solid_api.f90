@@ -87,7 +87,7 @@ subroutine material_stress(material, gradient, n, stress, status, place)
   real(c_double), intent(out) :: stress(3, 3, n)
   integer(c_int), intent(out) :: status, place
   class(material_t), pointer :: law
-  real(c_double) :: kirchhoff(3, 3)
+  real(c_double) :: kirchhoff(n, 3, 3)
   type(stretch_t) :: state
   integer :: q
 
@@ -96,14 +96,14 @@ subroutine material_stress(material, gradient, n, stress, status, place)
   place = 0
   call find(material, law, status)
   if (status /= status_ok) return
+  call stretch(reshape(gradient, [n, 3_c_int, 3_c_int], order=[2, 3, 1]), state)
+  place = findloc(state%jacobian > 0.0_c_double, .false., dim=1)
+  if (place > 0) then
+    status = status_folded
+    return
+  end if
+  call law%stress(state, kirchhoff)
   do q = 1, n
-    place = q
-    call stretch(gradient(:, :, q), state)
-    if (.not. state%jacobian > 0.0_c_double) then
-      status = status_folded
-      return
-    end if
-    call law%stress(state, kirchhoff)
-    stress(:, :, q) = matmul(kirchhoff, transpose(inverse(identity + gradient(:, :, q), state%jacobian)))
+    stress(:, :, q) = matmul(kirchhoff(q, :, :), transpose(inverse(identity + gradient(:, :, q), state%jacobian(q))))
   end do
 end subroutine material_stress

@@ -1,9 +1,10 @@
 !> Sums over the control points or the quadrature points of an element, one direction after the other (sum factorisation).
 !>
 !> A function of an element is B_a = u_a1 v_a2 w_a3. Kind D = 1 is its value, D = 2, 3, 4 its derivatives by the three
-!> parameters. Every contraction takes the first index of an array away and appends the new one as the last, so that after
-!> three of them the indices have gone round. In integrals, of the kinds that are left on the way the first is the value and the
-!> second the derivative along the direction that is next; in interpolation the kinds are those met so far.
+!> parameters. `interpolate` and `integrate`, its transpose, leave the indices where they are. The contractions of
+!> `integrate_pairs` take the first index of an array away and append the new one as the last, so that after three of them the
+!> indices have gone round; of the kinds that are left on the way the first is the value and the second the derivative along the
+!> direction that is next.
 !>
 !> - `u`, `v`, `w`: functions of the three directions in an element, or their pairs, at its points. `fields`: how many fields.
 module isomortar_nurbs_tensor_product
@@ -26,83 +27,93 @@ module isomortar_nurbs_tensor_product
 
 contains
 
-  !> Fields and their derivatives at all points: from `coefficients` (u, v, w, field) of the control points to `values` (field,
+  !> Fields and their derivatives at all points: from `coefficients` (field, u, v, w) of the control points to `values` (field,
   !> points, kind).
   pure subroutine interpolate(u, v, w, fields, coefficients, values)
     type(line_rule_t), intent(in) :: u, v, w
     integer, intent(in) :: fields
-    real(wp), intent(in) :: coefficients(size(u%values, 1) * size(v%values, 1) * size(w%values, 1) * fields)
+    real(wp), intent(in) :: coefficients(fields * size(u%values, 1) * size(v%values, 1) * size(w%values, 1))
     real(wp), intent(out) :: values(fields * size(u%weight) * size(v%weight) * size(w%weight), 4)
-    real(wp) :: one(size(v%values, 1) * size(w%values, 1) * fields * size(u%weight), 2)
-    real(wp) :: two(size(w%values, 1) * fields * size(u%weight) * size(v%weight), 3)
+    real(wp) :: one(fields * size(u%weight) * size(v%values, 1) * size(w%values, 1), 2)
+    real(wp) :: two(fields * size(u%weight) * size(v%weight) * size(w%values, 1), 3)
 
-    call spread_line(u, 1, size(one, 1) / size(u%weight), coefficients, one)
-    call spread_line(v, 2, size(two, 1) / size(v%weight), one, two)
-    call spread_line(w, 3, size(values, 1) / size(w%weight), two, values)
+    call spread_line(u, 1, fields, size(v%values, 1) * size(w%values, 1), coefficients, one)
+    call spread_line(v, 2, fields * size(u%weight), size(w%values, 1), one, two)
+    call spread_line(w, 3, fields * size(u%weight) * size(v%weight), 1, two, values)
   end subroutine interpolate
 
   !> One direction of `interpolate`: every kind with the line's values, the value also with its derivatives, which come last.
-  pure subroutine spread_line(line, kinds, rest, source, target)
+  !> `before`, `after`: numbers of what runs faster and slower.
+  pure subroutine spread_line(line, kinds, before, after, source, target)
     type(line_rule_t), intent(in) :: line
-    integer, intent(in) :: kinds, rest
-    real(wp), intent(in) :: source(size(line%values, 1), rest, kinds)
-    real(wp), intent(out) :: target(rest, size(line%weight), kinds + 1)
-    integer :: d
+    integer, intent(in) :: kinds, before, after
+    real(wp), intent(in) :: source(before, size(line%values, 1), after, kinds)
+    real(wp), intent(out) :: target(before, size(line%weight), after, kinds + 1)
+    integer :: d, n, q, r
 
-    do d = 1, kinds
-      call contract(transpose(source(:, :, d)), line%values(:, 0, :), target(:, :, d))
-    end do
-    call contract(transpose(source(:, :, 1)), line%values(:, 1, :), target(:, :, kinds + 1))
-  end subroutine spread_line
-
-  !> Product of a tall matrix with a small one: loops that run down the columns suit it better than those of matmul.
-  pure subroutine contract(tall, small, product)
-    real(wp), intent(in) :: tall(:, :), small(:, :)
-    real(wp), contiguous, intent(out) :: product(:, :)
-    integer :: a, q
-
-    do q = 1, size(small, 2)
-      product(:, q) = tall(:, 1) * small(1, q)
-      do a = 2, size(small, 1)
-        product(:, q) = product(:, q) + tall(:, a) * small(a, q)
+    n = size(line%values, 1)
+    target = 0.0_wp
+    do r = 1, after
+      do q = 1, size(line%weight)
+        do d = 1, kinds
+          call add_columns(before, n, source(:, :, r, d), line%values(:, 0, q), target(:, q, r, d))
+        end do
+        call add_columns(before, n, source(:, :, r, 1), line%values(:, 1, q), target(:, q, r, kinds + 1))
       end do
     end do
-  end subroutine contract
+  end subroutine spread_line
 
-  !> Sum over points and kinds of `densities` times functions: from (points, field, kind) to `sums` (field, u, v, w) of the
+  !> Add n columns of m numbers times their shares to `total` (m), three at a time: the total is read and written less often.
+  pure subroutine add_columns(m, n, columns, shares, total)
+    integer, intent(in) :: m, n
+    real(wp), intent(in) :: columns(m, n), shares(n)
+    real(wp), intent(inout) :: total(m)
+    integer :: a
+
+    do a = 1, n - 2, 3
+      total = total + (columns(:, a) * shares(a) + columns(:, a + 1) * shares(a + 1) + columns(:, a + 2) * shares(a + 2))
+    end do
+    do a = n - modulo(n, 3) + 1, n
+      total = total + columns(:, a) * shares(a)
+    end do
+  end subroutine add_columns
+
+  !> Sum over points and kinds of `densities` times functions: from (field, points, kind) to `sums` (field, u, v, w) of the
   !> control points.
   pure subroutine integrate(u, v, w, fields, densities, sums)
     type(line_rule_t), intent(in) :: u, v, w
     integer, intent(in) :: fields
-    real(wp), intent(in) :: densities(size(u%weight) * size(v%weight) * size(w%weight) * fields, 4)
+    real(wp), intent(in) :: densities(fields * size(u%weight) * size(v%weight) * size(w%weight), 4)
     real(wp), intent(out) :: sums(fields * size(u%values, 1) * size(v%values, 1) * size(w%values, 1))
-    real(wp) :: one(size(v%weight) * size(w%weight) * fields * size(u%values, 1), 3)
-    real(wp) :: two(size(w%weight) * fields * size(u%values, 1) * size(v%values, 1), 2)
+    real(wp) :: two(fields * size(u%weight) * size(v%weight) * size(w%values, 1), 3)
+    real(wp) :: one(fields * size(u%weight) * size(v%values, 1) * size(w%values, 1), 2)
 
-    call gather_line(u, 4, size(one, 1) / size(u%values, 1), densities, one)
-    call gather_line(v, 3, size(two, 1) / size(v%values, 1), one, two)
-    call gather_line(w, 2, size(sums) / size(w%values, 1), two, sums)
+    call gather_line(w, 3, fields * size(u%weight) * size(v%weight), 1, densities, two)
+    call gather_line(v, 2, fields * size(u%weight), size(w%values, 1), two, one)
+    call gather_line(u, 1, fields, size(v%values, 1) * size(w%values, 1), one, sums)
   end subroutine integrate
 
-  !> One direction of `integrate`.
-  pure subroutine gather_line(line, kinds, rest, source, target)
+  !> One direction of `integrate`, the transpose of `spread_line`.
+  pure subroutine gather_line(line, kinds, before, after, source, target)
     type(line_rule_t), intent(in) :: line
-    integer, intent(in) :: kinds, rest
-    real(wp), intent(in) :: source(size(line%weight), rest, kinds)
-    real(wp), intent(out) :: target(rest, size(line%values, 1), kinds - 1)
-    real(wp) :: both(rest, 2 * size(line%weight)), tables(2 * size(line%weight), size(line%values, 1))
-    integer :: d
+    integer, intent(in) :: kinds, before, after
+    real(wp), intent(in) :: source(before, size(line%weight), after, kinds + 1)
+    real(wp), intent(out) :: target(before, size(line%values, 1), after, kinds)
+    real(wp) :: values(size(line%weight), size(line%values, 1)), slopes(size(line%weight), size(line%values, 1))
+    integer :: a, d, m, r
 
-    associate (m => size(line%weight))
-      tables(:m, :) = transpose(line%values(:, 0, :))
-      tables(m + 1:, :) = transpose(line%values(:, 1, :))
-      both(:, :m) = transpose(source(:, :, 1))
-      both(:, m + 1:) = transpose(source(:, :, 2))
-      call contract(both, tables, target(:, :, 1))
-      do d = 2, kinds - 1
-        call contract(transpose(source(:, :, d + 1)), tables(:m, :), target(:, :, d))
+    m = size(line%weight)
+    values = transpose(line%values(:, 0, :))
+    slopes = transpose(line%values(:, 1, :))
+    target = 0.0_wp
+    do r = 1, after
+      do a = 1, size(line%values, 1)
+        do d = 1, kinds
+          call add_columns(before, m, source(:, :, r, d), values(:, a), target(:, a, r, d))
+        end do
+        call add_columns(before, m, source(:, :, r, kinds + 1), slopes(:, a), target(:, a, r, 1))
       end do
-    end associate
+    end do
   end subroutine gather_line
 
   !> The `tables` (elements) for `integrate_pairs` of the elements of a direction, whose functions are `lines` (elements).

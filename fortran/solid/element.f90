@@ -4,7 +4,6 @@
 !> - `weight` (control points): weights of its control points.
 !> - `samples`: everything at its Gauss points. `material`: its law.
 module isomortar_solid_element
-  use isomortar_base_algebra, only: determinant, inverse
   use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
   use isomortar_base_predicate, only: is_balanced, is_symmetric
@@ -12,10 +11,11 @@ module isomortar_solid_element
   use isomortar_nurbs_patch, only: line_rule_t
   use isomortar_nurbs_tensor_product, only: integrate, integrate_pairs, interpolate, line_pairs_t
   use isomortar_solid_material_law, only: component_pairs, material_t, stretch, stretch_t
+  use isomortar_solid_points, only: cofactors, quotients
   implicit none
   private
 
-  public :: element_residual, element_tangent, quotient, sample_element
+  public :: element_residual, element_tangent, sample_element
 
   !> Everything at the quadrature points of an element that residual and tangent are made of.
   type, public :: samples_t
@@ -24,7 +24,7 @@ module isomortar_solid_element
     real(wp), allocatable :: gradient(:, :, :)
     !> Quadrature weight times reference volume.
     real(wp), allocatable :: volume(:)
-    type(stretch_t), allocatable :: state(:)
+    type(stretch_t) :: state
     !> Smallest J of the current configuration over the points.
     real(wp) :: smallest_jacobian
   end type samples_t
@@ -40,62 +40,97 @@ contains
     real(wp), intent(in) :: weight(:), positions(:, :), references(:, :)
     type(samples_t), intent(inout) :: samples
     integer, intent(out) :: status
-    real(wp) :: coefficients(size(weight), 7), values(7, size(u%weight) * size(v%weight) * size(w%weight), 4)
-    real(wp) :: f(3, 3), grown(3, 3), map(3, 3), reference_map(3, 3), det
-    integer :: d, i, j, k, q
+    real(wp), dimension(size(u%weight) * size(v%weight) * size(w%weight), 3, 3) :: cofactor, grown, gradient, map
+    real(wp) :: denominator(size(map, 1), 4), reference(size(map, 1), 3, 4), displacement(size(map, 1), 3, 4)
+    real(wp) :: det(size(map, 1)), scale(size(map, 1))
+    integer :: i, j, k, m
 
-    status = status_ok
     if (contracts) call require(all(shape(references) == shape(positions)), "sample_element: references are those of the positions")
     if (contracts) call require(all(shape(positions) == [3, size(weight)]), "sample_element: positions are those of the element")
-    call reserve(samples, size(values, 2))
-    coefficients(:, 1) = weight
-    do d = 1, 3 ! from the first control point, so that a rigid translation costs no digits
-      coefficients(:, 1 + d) = weight * (references(d, :) - references(d, 1))
-      coefficients(:, 4 + d) = weight * ((positions(d, :) - references(d, :)) - (positions(d, 1) - references(d, 1)))
-    end do
-    call interpolate(u, v, w, 7, coefficients, values)
-    samples%smallest_jacobian = huge(1.0_wp)
-    q = 0
-    do k = 1, size(w%weight)
-      do j = 1, size(v%weight)
-        do i = 1, size(u%weight)
-          q = q + 1
-          reference_map = quotient(values(1, q, :), values(2:4, q, :))
-          det = determinant(reference_map)
-          if (.not. det > 0.0_wp) then
-            status = status_folded_initially
-            samples%smallest_jacobian = det
-            return
-          end if
-          grown = quotient(values(1, q, :), values(5:7, q, :))
-          call stretch(matmul(grown, inverse(reference_map, det)), samples%state(q))
-          samples%volume(q) = u%weight(i) * v%weight(j) * w%weight(k) * det
-          samples%smallest_jacobian = min(samples%smallest_jacobian, samples%state(q)%jacobian)
-          if (.not. samples%state(q)%jacobian > 0.0_wp) then
-            status = status_folded
-            return
-          end if
-          map = reference_map + grown
-          f = transpose(inverse(map, determinant(map))) / values(1, q, 1)
-          samples%gradient(q, :, 1) = -matmul(f, values(1, q, 2:4)) / values(1, q, 1)
-          samples%gradient(q, :, 2:4) = f
-        end do
+    m = size(map, 1)
+    call reserve(samples, m)
+    call fields_at_points(u, v, w, weight, positions, references, denominator, reference, displacement)
+    call quotients(m, denominator, reference, map)
+    call cofactors(m, map, cofactor, det)
+    samples%smallest_jacobian = least(det)
+    status = merge(status_ok, status_folded_initially, samples%smallest_jacobian > 0.0_wp)
+    if (status /= status_ok) return
+    samples%volume(:) = [(((u%weight(i) * v%weight(j) * w%weight(k), i=1, size(u%weight)), j=1, size(v%weight)), &
+      k=1, size(w%weight))] * det
+    call quotients(m, denominator, displacement, grown)
+    scale = 1.0_wp / det
+    do j = 1, 3
+      do i = 1, 3
+        gradient(:, i, j) = (grown(:, i, 1) * cofactor(:, j, 1) + grown(:, i, 2) * cofactor(:, j, 2) &
+          + grown(:, i, 3) * cofactor(:, j, 3)) * scale
       end do
     end do
+    call stretch(gradient, samples%state)
+    samples%smallest_jacobian = least(samples%state%jacobian)
+    status = merge(status_ok, status_folded, samples%smallest_jacobian > 0.0_wp)
+    if (status /= status_ok) return
+    map = map + grown
+    call cofactors(m, map, cofactor, det)
+    call spatial_gradients(m, cofactor, det, denominator, samples%gradient)
   end subroutine sample_element
 
-  !> Derivatives by the parameters of a rational field: (component, parameter) (theory 1.3). `denominator` (4), `numerator` (3, 4):
-  !> value and derivatives by the three parameters.
-  pure function quotient(denominator, numerator) result(slope)
-    real(wp), intent(in) :: denominator(4), numerator(3, 4)
-    real(wp) :: slope(3, 3), scale
-    integer :: d
+  !> `gradient` of samples_t, from `cofactor` and determinant, `det`, of the current map (theory 2.8).
+  pure subroutine spatial_gradients(m, cofactor, det, denominator, gradient)
+    integer, intent(in) :: m
+    real(wp), intent(in) :: cofactor(m, 3, 3), det(m), denominator(m, 4)
+    real(wp), intent(out) :: gradient(m, 3, 4)
+    real(wp) :: by_det(m), by_weight(m)
+    integer :: i
 
-    scale = 1.0_wp / denominator(1)
-    do d = 1, 3
-      slope(:, d) = (numerator(:, 1 + d) - numerator(:, 1) * (denominator(1 + d) * scale)) * scale
+    by_weight = 1.0_wp / denominator(:, 1)
+    by_det = by_weight / det
+    do i = 1, 3
+      gradient(:, i, 2) = cofactor(:, i, 1) * by_det
+      gradient(:, i, 3) = cofactor(:, i, 2) * by_det
+      gradient(:, i, 4) = cofactor(:, i, 3) * by_det
+      gradient(:, i, 1) = -by_weight * (gradient(:, i, 2) * denominator(:, 2) + gradient(:, i, 3) * denominator(:, 3) &
+        + gradient(:, i, 4) * denominator(:, 4))
     end do
-  end function quotient
+  end subroutine spatial_gradients
+
+  !> Weight, and weight times reference position and displacement, at the points, values and derivatives by the parameters:
+  !> `denominator` (point, 4), `reference` (point, 3, 4), `displacement` (point, 3, 4).
+  pure subroutine fields_at_points(u, v, w, weight, positions, references, denominator, reference, displacement)
+    type(line_rule_t), intent(in) :: u, v, w
+    real(wp), intent(in) :: weight(:), positions(:, :), references(:, :)
+    real(wp), intent(out) :: denominator(:, :), reference(:, :, :), displacement(:, :, :)
+    real(wp) :: coefficients(7, size(weight)), values(7, size(denominator, 1), 4)
+    integer :: a, i, kind
+
+    do a = 1, size(weight) ! from the first control point, so that a rigid translation costs no digits
+      coefficients(1, a) = weight(a)
+      coefficients(2:4, a) = weight(a) * (references(:, a) - references(:, 1))
+      coefficients(5:7, a) = weight(a) * ((positions(:, a) - references(:, a)) - (positions(:, 1) - references(:, 1)))
+    end do
+    call interpolate(u, v, w, 7, coefficients, values)
+    do kind = 1, 4
+      denominator(:, kind) = values(1, :, kind)
+      do i = 1, 3
+        reference(:, i, kind) = values(1 + i, :, kind)
+        displacement(:, i, kind) = values(4 + i, :, kind)
+      end do
+    end do
+  end subroutine fields_at_points
+
+  !> The first of some numbers that is not above zero, or else the smallest of them.
+  pure real(wp) function least(numbers)
+    real(wp), intent(in) :: numbers(:)
+    integer :: q
+
+    least = huge(1.0_wp)
+    do q = 1, size(numbers)
+      if (.not. numbers(q) > 0.0_wp) then
+        least = numbers(q)
+        return
+      end if
+      least = min(least, numbers(q))
+    end do
+  end function least
 
   !> Make room for m quadrature points.
   pure subroutine reserve(samples, m)
@@ -104,9 +139,9 @@ contains
 
     if (allocated(samples%volume)) then
       if (size(samples%volume) == m) return
-      deallocate (samples%gradient, samples%volume, samples%state)
+      deallocate (samples%gradient, samples%volume)
     end if
-    allocate (samples%gradient(m, 3, 4), samples%volume(m), samples%state(m))
+    allocate (samples%gradient(m, 3, 4), samples%volume(m))
   end subroutine reserve
 
   !> Internal forces `residual` (3, control points), F (theory 1.7).
@@ -116,13 +151,18 @@ contains
     type(samples_t), intent(in) :: samples
     class(material_t), intent(in) :: material
     real(wp), intent(out) :: residual(:, :)
-    real(wp) :: densities(size(samples%volume), 3, 4), stress(3, 3), sums(3, size(weight))
-    integer :: a, q
+    real(wp) :: densities(3, size(samples%volume), 4), stress(size(samples%volume), 3, 3), sums(3, size(weight))
+    integer :: a, d, i
 
-    do q = 1, size(samples%volume)
-      call material%stress(samples%state(q), stress)
-      densities(q, :, :) = matmul(samples%volume(q) * stress, samples%gradient(q, :, :))
-    end do
+    call material%stress(samples%state, stress)
+    associate (g => samples%gradient)
+      do i = 1, 3
+        do d = 1, 4
+          densities(i, :, d) = samples%volume * (stress(:, i, 1) * g(:, 1, d) + stress(:, i, 2) * g(:, 2, d) &
+            + stress(:, i, 3) * g(:, 3, d))
+        end do
+      end do
+    end associate
     call integrate(u, v, w, 3, densities, sums)
     do a = 1, size(weight)
       residual(:, a) = weight(a) * sums(:, a)
@@ -138,24 +178,20 @@ contains
     class(material_t), intent(in) :: material
     real(wp), intent(out) :: tangent(:)
     real(wp), allocatable :: along(:, :), densities(:, :, :, :), moduli(:, :, :, :)
-    real(wp) :: point(3, 3, 6)
-    integer :: d, e, j, m, pair, q
+    integer :: d, e, j, m, pair
 
     m = size(samples%volume)
     allocate (along(m, 3), densities(m, 6, 4, 4), moduli(m, 3, 3, 6))
-    do q = 1, m
-      call material%tangent(samples%state(q), point)
-      if (contracts) call require(is_symmetric(point(:, :, 1)), "element_tangent: a_1j1l is symmetric, the law has an energy")
-      if (contracts) call require(is_symmetric(point(:, :, 2)), "element_tangent: so is a_2j2l")
-      if (contracts) call require(is_symmetric(point(:, :, 3)), "element_tangent: so is a_3j3l")
-      moduli(q, :, :, :) = samples%volume(q) * point
-    end do
+    call material%tangent(samples%state, moduli)
+    if (contracts) call require(is_symmetric(moduli(1, :, :, 1)), "element_tangent: a_1j1l is symmetric, the law has an energy")
+    if (contracts) call require(is_symmetric(moduli(1, :, :, 2)), "element_tangent: so is a_2j2l")
+    if (contracts) call require(is_symmetric(moduli(1, :, :, 3)), "element_tangent: so is a_3j3l")
     associate (g => samples%gradient)
       do e = 1, 4
         do pair = 1, 6
           do j = 1, 3
-            along(:, j) = moduli(:, j, 1, pair) * g(:, 1, e) + moduli(:, j, 2, pair) * g(:, 2, e) &
-              + moduli(:, j, 3, pair) * g(:, 3, e)
+            along(:, j) = samples%volume * (moduli(:, j, 1, pair) * g(:, 1, e) + moduli(:, j, 2, pair) * g(:, 2, e) &
+              + moduli(:, j, 3, pair) * g(:, 3, e))
           end do
           do d = 1, merge(e, 4, pair <= 3) ! K_ii is symmetric
             densities(:, pair, d, e) = g(:, 1, d) * along(:, 1) + g(:, 2, d) * along(:, 2) + g(:, 3, d) * along(:, 3)

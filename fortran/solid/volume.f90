@@ -1,13 +1,12 @@
 !> What each control point has of a body's volume: the integrals of its functions over the reference configuration.
 module isomortar_solid_volume
-  use isomortar_base_algebra, only: determinant
   use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
   use isomortar_base_predicate, only: is_index, sums_to
   use isomortar_base_status, only: status_folded_initially, status_ok
   use isomortar_nurbs_patch, only: element_count, element_nodes, element_of, line_rule, line_rule_t, patch_t
   use isomortar_nurbs_tensor_product, only: integrate, interpolate
-  use isomortar_solid_element, only: quotient
+  use isomortar_solid_points, only: determinants, quotients
   implicit none
   private
 
@@ -60,29 +59,27 @@ contains
     real(wp), intent(in) :: weight(:), references(:, :)
     real(wp), intent(out) :: shares(:)
     integer, intent(out) :: status
-    real(wp) :: coefficients(size(weight), 4), values(4, size(u%weight) * size(v%weight) * size(w%weight), 4)
-    real(wp) :: densities(size(values, 2), 4), volume(size(values, 2)), det
-    integer :: d, i, j, k, q
+    real(wp) :: coefficients(4, size(weight)), values(4, size(u%weight) * size(v%weight) * size(w%weight), 4)
+    real(wp), dimension(size(values, 2)) :: det, volume
+    real(wp) :: denominator(size(det), 4), densities(size(det), 4), map(size(det), 3, 3), reference(size(det), 3, 4)
+    integer :: a, i, j, k, kind
 
-    coefficients(:, 1) = weight
-    do d = 1, 3 ! from the first control point, so that a rigid translation costs no digits
-      coefficients(:, 1 + d) = weight * (references(d, :) - references(d, 1))
+    do a = 1, size(weight) ! from the first control point, so that a rigid translation costs no digits
+      coefficients(1, a) = weight(a)
+      coefficients(2:4, a) = weight(a) * (references(:, a) - references(:, 1))
     end do
     call interpolate(u, v, w, 4, coefficients, values)
-    densities = 0.0_wp
-    q = 0
-    do k = 1, size(w%weight)
-      do j = 1, size(v%weight)
-        do i = 1, size(u%weight)
-          q = q + 1
-          det = determinant(quotient(values(1, q, :), values(2:4, q, :)))
-          status = merge(status_ok, status_folded_initially, det > 0.0_wp)
-          if (status /= status_ok) return
-          volume(q) = u%weight(i) * v%weight(j) * w%weight(k) * det
-          densities(q, 1) = volume(q) / values(1, q, 1)
-        end do
-      end do
+    do kind = 1, 4
+      denominator(:, kind) = values(1, :, kind)
+      reference(:, :, kind) = transpose(values(2:4, :, kind))
     end do
+    call quotients(size(det), denominator, reference, map)
+    call determinants(size(det), map, det)
+    status = merge(status_ok, status_folded_initially, all(det > 0.0_wp))
+    if (status /= status_ok) return
+    volume = [(((u%weight(i) * v%weight(j) * w%weight(k), i=1, size(u%weight)), j=1, size(v%weight)), k=1, size(w%weight))] * det
+    densities = 0.0_wp
+    densities(:, 1) = volume / denominator(:, 1)
     call integrate(u, v, w, 1, densities, shares)
     shares = weight * shares
     if (contracts) call require(sums_to(shares, sum(volume)), "element_volumes: they sum to the element's volume")

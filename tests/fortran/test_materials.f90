@@ -49,12 +49,12 @@ contains
     character(*), intent(in) :: name
     class(material_t), intent(in) :: law
     real(wp), intent(in) :: gradient(3, 3)
-    real(wp) :: change(3, 3), deformation(3, 3), error, moduli(3, 3, 6), shift(3, 3)
+    real(wp) :: change(3, 3), deformation(3, 3), error, moduli(1, 3, 3, 6), shift(3, 3)
     type(stretch_t) :: state
     integer :: i, k, l, pair
 
     deformation = identity + gradient
-    call stretch(gradient, state)
+    call stretch(spread(gradient, 1, 1), state)
     call law%tangent(state, moduli)
     error = 0.0_wp
     do pair = 1, 6
@@ -64,7 +64,7 @@ contains
         shift = 0.0_wp
         shift(k, :) = step * deformation(l, :)
         change = (first_piola(law, gradient + shift) - first_piola(law, gradient - shift)) / (2.0_wp * step)
-        error = max(error, maxval(abs(matmul(deformation, change(i, :)) - moduli(:, l, pair))))
+        error = max(error, maxval(abs(matmul(deformation, change(i, :)) - moduli(1, :, l, pair))))
       end do
     end do
     call expect(name // ": tangent", error, by_difference)
@@ -88,12 +88,12 @@ contains
   function first_piola(law, gradient) result(piola)
     class(material_t), intent(in) :: law
     real(wp), intent(in) :: gradient(3, 3)
-    real(wp) :: kirchhoff(3, 3), piola(3, 3)
+    real(wp) :: kirchhoff(1, 3, 3), piola(3, 3)
     type(stretch_t) :: state
 
-    call stretch(gradient, state)
+    call stretch(spread(gradient, 1, 1), state)
     call law%stress(state, kirchhoff)
-    piola = matmul(kirchhoff, transpose(inverse(identity + gradient, state%jacobian)))
+    piola = matmul(kirchhoff(1, :, :), transpose(inverse(identity + gradient, state%jacobian(1))))
   end function first_piola
 
 end module test_materials

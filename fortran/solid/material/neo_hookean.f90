@@ -20,7 +20,7 @@ contains
   pure subroutine stress(self, state, kirchhoff)
     class(neo_hookean_t), intent(in) :: self
     type(stretch_t), intent(in) :: state
-    real(wp), intent(out) :: kirchhoff(3, 3)
+    real(wp), intent(out) :: kirchhoff(size(state%jacobian), 3, 3)
 
     call split_stress(state, self%bulk * state%log_jacobian, self%shear, kirchhoff)
   end subroutine stress
@@ -29,9 +29,9 @@ contains
   pure subroutine tangent(self, state, moduli)
     class(neo_hookean_t), intent(in) :: self
     type(stretch_t), intent(in) :: state
-    real(wp), intent(out) :: moduli(3, 3, 6)
+    real(wp), intent(out) :: moduli(size(state%jacobian), 3, 3, 6)
 
-    call split_tangent(state, self%bulk * state%log_jacobian, self%bulk, self%shear, moduli)
+    call split_tangent(state, self%bulk * state%log_jacobian, spread(self%bulk, 1, size(state%jacobian)), self%shear, moduli)
   end subroutine tangent
 
 end module isomortar_solid_material_neo_hookean

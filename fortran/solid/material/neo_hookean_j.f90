@@ -20,7 +20,7 @@ contains
   pure subroutine stress(self, state, kirchhoff)
     class(neo_hookean_j_t), intent(in) :: self
     type(stretch_t), intent(in) :: state
-    real(wp), intent(out) :: kirchhoff(3, 3)
+    real(wp), intent(out) :: kirchhoff(size(state%jacobian), 3, 3)
 
     call split_stress(state, self%bulk * state%jacobian * state%growth, self%shear, kirchhoff)
   end subroutine stress
@@ -29,8 +29,8 @@ contains
   pure subroutine tangent(self, state, moduli)
     class(neo_hookean_j_t), intent(in) :: self
     type(stretch_t), intent(in) :: state
-    real(wp), intent(out) :: moduli(3, 3, 6)
-    real(wp) :: slope
+    real(wp), intent(out) :: moduli(size(state%jacobian), 3, 3, 6)
+    real(wp) :: slope(size(state%jacobian))
 
     slope = self%bulk * state%jacobian * (state%jacobian + state%growth)
     call split_tangent(state, self%bulk * state%jacobian * state%growth, slope, self%shear, moduli)

@@ -1,0 +1,60 @@
+!> Vectors and 3x3 matrices at all quadrature points of an element: (point, component), (point, row, column).
+!>
+!> - `m`: points. `a`: the matrices.
+module isomortar_solid_points
+  use isomortar_base_kinds, only: wp
+  implicit none
+  private
+
+  public :: cofactors, determinants, quotients
+
+contains
+
+  !> Determinants, `det`.
+  pure subroutine determinants(m, a, det)
+    integer, intent(in) :: m
+    real(wp), intent(in) :: a(m, 3, 3)
+    real(wp), intent(out) :: det(m)
+
+    det = a(:, 1, 1) * (a(:, 2, 2) * a(:, 3, 3) - a(:, 3, 2) * a(:, 2, 3)) &
+      + a(:, 2, 1) * (a(:, 3, 2) * a(:, 1, 3) - a(:, 1, 2) * a(:, 3, 3)) &
+      + a(:, 3, 1) * (a(:, 1, 2) * a(:, 2, 3) - a(:, 2, 2) * a(:, 1, 3))
+  end subroutine determinants
+
+  !> Determinants, `det`, and cofactors `b`: det times the transposed inverse.
+  pure subroutine cofactors(m, a, b, det)
+    integer, intent(in) :: m
+    real(wp), intent(in) :: a(m, 3, 3)
+    real(wp), intent(out) :: b(m, 3, 3), det(m)
+    integer :: i, j, k
+
+    do i = 1, 3
+      j = modulo(i, 3) + 1
+      k = modulo(j, 3) + 1
+      b(:, 1, i) = a(:, 2, j) * a(:, 3, k) - a(:, 3, j) * a(:, 2, k)
+      b(:, 2, i) = a(:, 3, j) * a(:, 1, k) - a(:, 1, j) * a(:, 3, k)
+      b(:, 3, i) = a(:, 1, j) * a(:, 2, k) - a(:, 2, j) * a(:, 1, k)
+    end do
+    det = a(:, 1, 1) * b(:, 1, 1) + a(:, 2, 1) * b(:, 2, 1) + a(:, 3, 1) * b(:, 3, 1)
+  end subroutine cofactors
+
+  !> Derivatives by the parameters of a rational field: `slope` (point, component, parameter) (theory 1.3).
+  !>
+  !> - `denominator` (point, 4), `numerator` (point, 3, 4): value and derivatives by the three parameters.
+  pure subroutine quotients(m, denominator, numerator, slope)
+    integer, intent(in) :: m
+    real(wp), intent(in) :: denominator(m, 4), numerator(m, 3, 4)
+    real(wp), intent(out) :: slope(m, 3, 3)
+    real(wp) :: scale(m), share(m)
+    integer :: d, i
+
+    scale = 1.0_wp / denominator(:, 1)
+    do d = 1, 3
+      share = denominator(:, 1 + d) * scale
+      do i = 1, 3
+        slope(:, i, d) = (numerator(:, i, 1 + d) - numerator(:, i, 1) * share) * scale
+      end do
+    end do
+  end subroutine quotients
+
+end module isomortar_solid_points
