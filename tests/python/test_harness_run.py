@@ -176,3 +176,25 @@ def test_pytest_collects_cells(pytester):
     result = pytester.runpytest_subprocess("cases_of_ours", "-m", "gate", "--strict-markers")
     result.assert_outcomes(passed=5, failed=1, deselected=1)
     result.stdout.fnmatch_lines(["*error: failed: 2, limit*"])
+
+
+COUNTED = """
+from pathlib import Path
+from isomortar.harness import Bound, case
+
+@case(claim="Counts.", bounds={{"error": Bound(at_most=1.0, reason="theory: so")}}, grid={{"order": [1, 2, 3]}})
+def {name}(order: int):
+    with open(Path(__file__).parents[2] / "measured", "a") as log:
+        log.write("{name}\\n")
+    return {{"error": 0.5}}
+"""
+
+
+def test_workers_of_xdist_measure_each_cell_once(pytester):
+    family = pytester.mkdir("cases_of_ours").joinpath("family_of_ours")
+    family.mkdir()
+    for name in ("first", "second", "third"):
+        family.joinpath(f"{name}.py").write_text(COUNTED.format(name=name))
+    result = pytester.runpytest_subprocess("cases_of_ours", "-n", "2", "--dist", "loadfile")
+    result.assert_outcomes(passed=9)
+    assert sorted(pytester.path.joinpath("measured").read_text().split()) == [*["first"] * 3, *["second"] * 3, *["third"] * 3]

@@ -1,12 +1,14 @@
 """pytest plugin: cells of verification cases as test items, each marked with its tier: ``pytest verification -m gate``.
 
 Loaded by pytest wherever isomortar is installed; it collects the files of a folder that hold cases, so that a project which
-verifies a kernel of its own needs no more than cases. All cells that were selected are measured in processes of their own, as many
+verifies a kernel of its own needs no more than cases. The selected cells of a file are measured in processes of their own, as many
 at a time as ``--verification-jobs`` says, and kept in ``results/verification`` below pytest's root, as by ``isomortar verify``.
+With pytest-xdist, ``pytest -n 2 --dist loadfile``, each of its workers measures the files that it is given.
 """
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
@@ -16,14 +18,20 @@ import pytest
 
 if TYPE_CHECKING:
     from isomortar.harness.cases import Cell
-    from isomortar.harness.runner import Measuring, Result
+    from isomortar.harness.runner import Measuring, Result, Submit
     from isomortar.harness.store import Store
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """The plugin's options."""
     group = parser.getgroup("verification cases")
-    group.addoption("--verification-jobs", type=int, default=2, help="verification cells measured at the same time (default: 2)")
+    beside_others = "PYTEST_XDIST_WORKER" in os.environ
+    group.addoption(
+        "--verification-jobs",
+        type=int,
+        default=1 if beside_others else 2,
+        help="verification cells measured at the same time (default: 2; 1 by each worker of pytest-xdist)",
+    )
     group.addoption("--verification-references", default="reference_data", help="folder of references, below the root directory")
 
 
@@ -66,7 +74,7 @@ class CellItem(pytest.Item):
         """Wait for the cell's measurement, and judge it."""
         from isomortar.harness.report import sentence
 
-        result = self.session.stash[_SESSION].result(self.cell)
+        result = self.session.stash[_SESSION].result(self)
         if result.state != "passed":
             checks = [sentence(check) for check in result.checks if check.state != "passed"]
             pytest.fail("\n".join([result.cell.case.claim, *checks, result.measurement.message]).rstrip(), pytrace=False)
@@ -77,30 +85,33 @@ class CellItem(pytest.Item):
 
 
 class _Session:
-    """Measurements of all selected cells, begun when the first is asked for."""
+    """Measurements of the selected cells: those of a file begin when the first of them is asked for."""
 
     def __init__(self, session: pytest.Session) -> None:
         self._session = session
         self._stack = ExitStack()
+        self._submit: Submit | None = None
         self._started: dict[str, Measuring] = {}
 
-    def result(self, cell: Cell) -> Result:
-        """The result of a cell; waits for it."""
+    def result(self, item: CellItem) -> Result:
+        """The result of an item's cell; waits for it."""
         from isomortar.harness.references import finder
         from isomortar.harness.store import Store
 
         config = self._session.config
         store = Store(config.rootpath / "results/verification/cells")
-        if not self._started:
-            self._start(store)
-        return self._started[cell.name].result(finder(config.rootpath / config.getoption("--verification-references")), store)
+        if item.cell.name not in self._started:
+            self._start(item.path, store)
+        references = finder(config.rootpath / config.getoption("--verification-references"))
+        return self._started[item.cell.name].result(references, store)
 
-    def _start(self, store: Store) -> None:
+    def _start(self, path: Path, store: Store) -> None:
         from isomortar.harness.runner import local_processes, start
 
-        submit = self._stack.enter_context(local_processes(self._session.config.getoption("--verification-jobs")))
-        cells = [item.cell for item in self._session.items if isinstance(item, CellItem)]
-        self._started = {measuring.cell.name: measuring for measuring in start(cells, store, submit)}
+        if self._submit is None:
+            self._submit = self._stack.enter_context(local_processes(self._session.config.getoption("--verification-jobs")))
+        cells = [item.cell for item in self._session.items if isinstance(item, CellItem) and item.path == path]
+        self._started |= {measuring.cell.name: measuring for measuring in start(cells, store, self._submit)}
 
     def close(self) -> None:
         """Drop what nobody waits for, and what is being measured."""
