@@ -236,6 +236,20 @@ def test_what_is_doubtful_is_told_once(case: str) -> None:
     assert words in said[0]
 
 
+def test_the_material_of_a_rigid_body_says_nothing_of_what_presses_it() -> None:
+    text = """
+format = 1
+materials.steel = { young = 2e5 }
+bodies.block = { geometry = { kind = "box", lower = [-1, -1, -1], upper = [1, 1, 0] }, mesh.elements = [2, 2, 1] }
+bodies.box = { rigid = true, geometry = { kind = "box", lower = [-2, -2, 0], upper = [2, 2, 1] }, mesh.order = 1 }
+contacts.pair = { slave = "block.w1", master = "box.w0" }
+supports.base.face = "block.w0"
+supports.top = { face = "box.w1", force.z = -300 }
+stages = [{ name = "press", steps = 1 }]
+"""
+    assert warnings(text) == []
+
+
 @pytest.mark.parametrize("depth", [0.1, 0.28, 0.29, 0.4, 0.5])
 @pytest.mark.parametrize("text", [PAIR, AVERAGED], ids=["closest", "averaged"])
 def test_what_is_told_to_be_pushed_apart_has_feet(text: str, depth: float) -> None:

@@ -110,7 +110,10 @@ stages = [{ name = "bend", steps = 2 }]
 ELSEWHERE = {
     "axis through the face": (
         LEFT.replace('stages = ["one"]', "moment = 0, axis = [0, 1, 0]").replace("upper = [1, 1, 1]", "upper = [1e-9, 1, 1]"),
-        "supports.base.axis", "goes through all control points of the face",
+        "supports.base.axis", "is along the line, or through the point,",
+    ),
+    "axis along the edge": (
+        HALVED.replace('face = "bar.u1"', 'edge = "bar.u1.w1"'), "supports.end.axis", "how far they turn is not told",
     ),
     "nothing holds it": (LEFT, "bodies.block", "'block' is free to move in stage 'two'"),
     "rigid": (LEFT.replace("mesh.order = 1", "mesh.order = 1\nbodies.block.rigid = true"), "supports.base.stages", "'block' is rigid"),

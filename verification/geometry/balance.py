@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 from geometry.bodies import BODIES, refined
 from patch_tests.bulk import GRADIENT, MATERIAL, SHIFT
+from transforms import orientations, permuted, reversed_along
 
 from isomortar import _bindings
 from isomortar.geometry.faces import cells
-from isomortar.geometry.patch import FACES, IntArray
+from isomortar.geometry.patch import FACES, IntArray, Patch
+from isomortar.geometry.primitives import box
 from isomortar.harness import LAGRANGE, NURBS, Bound, case
 from isomortar.model.numbering import patch_arrays, same_points
 
@@ -50,3 +52,36 @@ def homogeneous(body: str, kind: str) -> dict[str, float]:
         "inside": float(len(within)),
         "apart": float(len(np.unique(arrays.point)) - len(places)),
     }
+
+
+#: Corners of a cube, counted along x first, that are taken to another one: bodies of one element with fewer corners.
+COLLAPSED = {
+    "wedge": {1: 0, 5: 4},
+    "wedge, across": {1: 4, 0: 4},
+    "pyramid": {5: 4, 6: 4, 7: 4},
+    "tetrahedron": {5: 4, 6: 4, 7: 4, 3: 2},
+}
+
+
+def collapsed(body: str) -> Patch:
+    """A cube of one element of which some corners are others."""
+    cube = box((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
+    points = cube.control_points.copy()
+    for corner, other in COLLAPSED[body].items():
+        points[corner] = points[other]
+    return Patch(cube.directions, points, cube.weights)
+
+
+@case(
+    claim="Control points at one place are one, whichever edges meet there and however the directions of a body are named.",
+    tier="gate",
+    grid={"body": list(COLLAPSED)},
+    bounds={"apart": Bound(at_least=0.0, at_most=0.0, reason="definition: the body would open there")},
+)
+def one_place(body: str) -> dict[str, object]:
+    """How many more control points there are than places, by the ways to name and run the directions."""
+    patch, apart = collapsed(body), []
+    for order, axes in orientations():
+        named = reversed_along(permuted(patch, order), axes)
+        apart.append(float(len(np.unique(same_points(named, None))) - len(np.unique(named.control_points, axis=0))))
+    return {"apart": np.array(apart)}

@@ -227,8 +227,8 @@ def _check_forces(problem: Problem) -> None:
 
 
 def _check_moment(problem: Problem, support: Support) -> None:
-    """A plate that turns needs its components across the axis, and control points off it."""
-    axis, patch = unit(support.axis), problem.body(support.place.body).patch
+    """A plate that turns needs its components across the axis, and control points beside each other across it."""
+    axis, body = unit(support.axis), problem.body(support.place.body)
     left = [k for k in range(3) if abs(axis[k]) < 1.0 and k not in support.carried]
     if left:
         raise InputError(
@@ -236,9 +236,13 @@ def _check_moment(problem: Problem, support: Support) -> None:
             "prescribed, or moved by a force",
             f"supports.{support.name}.moment",
         )
-    arms = patch.control_points[patch.common_points(support.place.meeting)] - np.asarray(support.centre)
-    if not np.linalg.norm(np.cross(axis, arms), axis=1).max() > constants.NO_PART * problem.body(support.place.body).size:
-        raise InputError("goes through all control points of the face; allowed: an axis beside some", f"supports.{support.name}.axis")
+    points = body.patch.control_points[... if body.rigid else body.patch.common_points(support.place.meeting)]
+    if not np.linalg.norm(np.cross(axis, points - points.mean(axis=0)), axis=1).max() > constants.NO_PART * body.size:
+        raise InputError(
+            "is along the line, or through the point, that all control points of the support are on: how far they turn is not told; "
+            "allowed: an axis across them",
+            f"supports.{support.name}.axis",
+        )
 
 
 def _check_held(problem: Problem) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from isomortar._arrays import FRICTION_LAWS, LAWS, FrictionArrays, MaterialArrays, MaterialLaw
-from isomortar.geometry.patch import Closed, FloatArray, Patch
+from isomortar.geometry.patch import FACES, Closed, FloatArray, Patch
 from isomortar.model.values import TABLE, Count, Point, Positive, Real
 
 #: How a slave point finds its point on a face of its master: the closest one, or along the averaged normal.
@@ -84,6 +84,11 @@ class Body:
         """Orders by direction; below a raised face."""
         u, v, w = self.patch.directions
         return self.raised.orders if self.raised else (u.order, v.order, w.order)
+
+    @property
+    def outer(self) -> tuple[str, ...]:
+        """Its faces, without those at which it meets itself."""
+        return tuple(face for face in FACES if face[0] not in (self.closed or ""))
 
     @property
     def modulus(self) -> float:

@@ -115,16 +115,24 @@ def same_points(patch: Patch, closed: str | None) -> IntArray:
 
     Such a line is on the body's faces, as round the pole of a sphere: its points are one, or the body would open there.
     """
-    first = np.arange(len(patch.weights), dtype=np.int32)
-    for letter in closed or "":
-        first[patch.face_points(letter + "1")] = first[patch.face_points(letter + "0")]
+    links = [np.stack([patch.face_points(letter + end) for end in "01"]) for letter in closed or ""]
     size = np.linalg.norm(np.ptp(patch.control_points, axis=0))
-    numbers = np.arange(len(first), dtype=np.int32).reshape(patch.shape[::-1])
+    numbers = np.arange(len(patch.weights), dtype=np.int32).reshape(patch.shape[::-1])
     for axis in range(3):
         lines = np.moveaxis(numbers, axis, 0).reshape(numbers.shape[axis], -1)
         of_no_length = np.linalg.norm(np.ptp(patch.control_points[lines], axis=0), axis=1) <= constants.SAME_POINT * size
-        first[lines[:, of_no_length]] = first[lines[0, of_no_length]]
-    return first[first]
+        links += [np.stack([lines[0, of_no_length], line[of_no_length]]) for line in lines[1:]]
+    return _linked(numbers.size, links)
+
+
+def _linked(count: int, links: list[IntArray]) -> IntArray:
+    """For each of some points the first one that links, pairs of shape (2, n), lead to from it."""
+    first = np.arange(count, dtype=np.int32)
+    one, other = np.concatenate(links, axis=1)
+    while np.any(first[one] != first[other]):  # what is linked to the same has the same first one: as often as links follow each other
+        np.minimum.at(first, one, first[other])
+        np.minimum.at(first, other, first[one])
+    return first
 
 
 def ends_apart(patch: Patch, axis: str) -> float:
@@ -144,7 +152,7 @@ def check_closed(body: Body) -> None:
     for axis in body.closed or "":
         apart = ends_apart(body.patch, axis)
         first, last = (body.patch.weights[body.patch.face_points(axis + end)] for end in "01")
-        if apart > constants.SAME_POINT * body.size or not np.allclose(first, last, rtol=constants.SAME_POINT):
+        if apart > constants.SAME_POINT * body.size or not np.allclose(first, last, rtol=constants.SAME_POINT, atol=0.0):
             raise InputError(
                 f"is {body.closed!r}, but the first and last control points along {axis} differ (by {apart:g}, or in their weights)",
                 f"bodies.{body.name}.closed",
@@ -175,12 +183,8 @@ def _same_points(problem: Problem, bodies: list[Body], counts: list[int], offset
         check_raised(body)
     of_bodies = [np.arange(n) if body.raised else same_points(body.patch, body.closed) for body, n in zip(bodies, counts, strict=True)]
     first = np.concatenate([points + offsets[body.name] for body, points in zip(bodies, of_bodies, strict=True)])
-    links = [np.stack([np.arange(len(first)), first])]
+    links = [np.stack([np.arange(len(first), dtype=np.int32), first.astype(np.int32)])]
     for number, joint in enumerate(problem.glue):
         shared = zip(shared_points(problem, number), joint, strict=True)
         links.append(np.stack([points + offsets[face.body] for points, face in shared]))
-    one, other = np.concatenate(links, axis=1)
-    while np.any(first[one] != first[other]):  # what is linked to the same has the same first one: as often as links follow each other
-        np.minimum.at(first, one, first[other])
-        np.minimum.at(first, other, first[one])
-    return first
+    return _linked(len(first), links)

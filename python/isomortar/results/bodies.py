@@ -10,7 +10,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize, to_rgb
 from matplotlib.figure import Figure
 
-from isomortar.geometry.patch import FACES, Direction, FloatArray
+from isomortar.geometry.patch import Direction, FloatArray
 from isomortar.model.entities import Body, Face, Problem, RigidPlane, unit
 from isomortar.results import style
 from isomortar.results.bezier import rational, sampling_matrix
@@ -204,9 +204,9 @@ def add_body(
     inside : collection of str
         Faces that are not drawn: what is glued to them hides them.
     """
-    for name in FACES:
-        if name[0] in (body.closed or "") or name in inside:
-            continue  # the two ends of a ring are inside it
+    for name in body.outer:
+        if name in inside:
+            continue
         numbers = body.patch.face_points(name)
         directions = body.patch.face_directions(name)
         parts = face_parts(directions, _FINENESS_OF_CONTACT if name in fine else FINENESS)

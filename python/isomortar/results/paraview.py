@@ -93,12 +93,13 @@ def _grids(
     problem: Problem, positions: FloatArray, surfaces: list[ContactSurface], vectors: list[ContactVectors]
 ) -> dict[str, list[BezierGrid]]:
     points = body_points(problem, positions)
-    bodies = [_body(number, body, points[body.name]) for number, body in enumerate(problem.bodies)]
+    bodies = [body_grid(number, body, points[body.name]) for number, body in enumerate(problem.bodies)]
     contacts = [_contact(i, *of_contact) for i, of_contact in enumerate(zip(surfaces, vectors, strict=True))]
     return {"bodies": bodies} | ({"contacts": contacts} if contacts else {})
 
 
-def _body(number: int, body: Body, points: FloatArray) -> BezierGrid:
+def body_grid(number: int, body: Body, points: FloatArray) -> BezierGrid:
+    """A body with its control points at given places, shape (n, 3), and what it is under there."""
     directions, weights = body.patch.directions, body.patch.weights
     deformation = deformation_gradient(body, points, [inner_places(direction) for direction in directions])
     stress = np.zeros_like(deformation) if body.rigid else cauchy_stress(body.material, deformation)

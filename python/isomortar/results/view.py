@@ -18,7 +18,7 @@ from matplotlib.colors import Colormap, to_rgb
 from numpy.typing import NDArray
 
 from isomortar.errors import ResultsError
-from isomortar.geometry.patch import FACES, FloatArray
+from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Face, Problem, RigidPlane, unit
 from isomortar.results import style
 from isomortar.results.bezier import bernstein, functions_at, rational
@@ -102,7 +102,7 @@ def _page(results: Results) -> str:
     surfaces: list[Surface] = []
     for _, number, grids in states(results):
         last = results.step(max(number, int(results.kept_states[0])))
-        found = [*_of_bodies(problem, grids["bodies"]), *_of_contacts(problem, grids.get("contacts", []), last, number == 0)]
+        found = [*of_bodies(problem, grids["bodies"]), *_of_contacts(problem, grids.get("contacts", []), last, number == 0)]
         surfaces = surfaces or found
         for surface, now in zip(surfaces, found, strict=True) if surfaces is not found else ():
             surface.rows += now.rows
@@ -136,7 +136,7 @@ def _page(results: Results) -> str:
     )
 
 
-def _of_bodies(problem: Problem, grids: Sequence[BezierGrid]) -> Iterator[Surface]:
+def of_bodies(problem: Problem, grids: Sequence[BezierGrid]) -> Iterator[Surface]:
     """The outer faces of all bodies in one state: sides of their Bezier nets."""
     glued = {face for joint in problem.glue for face in joint}
     slaves = {face for contact in problem.contacts for face in contact.slave.faces}
@@ -145,8 +145,8 @@ def _of_bodies(problem: Problem, grids: Sequence[BezierGrid]) -> Iterator[Surfac
         u, v, w = (d.order * d.elements + 1 for d in body.patch.directions)
         numbers = np.arange(u * v * w).reshape(u, v, w, order="F")
         columns = np.concatenate([grid.points.T, *(grid.fields[name].T for name in names)])
-        for name in FACES:
-            if name[0] == body.closed or Face(body.name, name) in glued:
+        for name in body.outer:
+            if Face(body.name, name) in glued:
                 continue
             layer = np.take(numbers, 0 if name[1] == "0" else -1, axis="uvw".index(name[0]))
             of_face = (layer.T if name[0] == "v" else layer).ravel(order="F")  # coordinates of a face are in cyclic order

@@ -170,7 +170,7 @@ def _face(text: str, bodies: dict[str, Body], field: str) -> Face:
     body, _, face = text.rpartition(".")
     if body not in bodies:
         raise InputError(f"is {text!r}, but there is no body {body!r}; allowed: BODY.FACE with BODY one of {listed(body, bodies)}", field)
-    faces = [f for f in FACES if f[0] not in (bodies[body].closed or "")]
+    faces = bodies[body].outer
     if face not in faces:
         closed = f" ({body} is closed in {bodies[body].closed})" if face in FACES else ""
         raise InputError(f"is {text!r}, but {body} has no face {face!r}{closed}; allowed: {', '.join(faces)}", field)

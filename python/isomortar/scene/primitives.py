@@ -8,7 +8,7 @@ from pydantic import Field
 
 from isomortar.geometry.patch import Closed, Patch
 from isomortar.geometry.primitives import bowl, box, cap, ring, sphere, torus, wedge
-from isomortar.geometry.primitives.arcs import HALF, QUARTER, WHOLE
+from isomortar.geometry.primitives.arcs import HALF, QUARTER, WHOLE, degrees
 from isomortar.model.values import Point, Positive, Real
 from isomortar.scene.types import Interval, PlanePoint, Table
 
@@ -175,7 +175,7 @@ class TorusTable(Table):
 
 def _whole(angles: tuple[float, float]) -> bool:
     """Whether an arc goes all round."""
-    return angles[1] - angles[0] == WHOLE
+    return degrees(*angles) == WHOLE
 
 
 Primitive = BoxTable | BowlTable | CapTable | WedgeTable | RingTable | SphereTable | TorusTable

@@ -70,7 +70,7 @@ class MeshTable(Table):
     elements: PerDirection[Count] | None = None
     """Elements; a multiple of the geometry's knot spans; default: these."""
     grading: PerDirection[Grading] = (1.0, 1.0, 1.0)
-    """Length of the last element over that of the first, from each to the next by the same factor: below 1 finer towards the end."""
+    """Length of the last element over that of the first, below 1: finer to the end; knot spans of the geometry keep theirs."""
     quadrature: PerDirection[GaussPoints] | None = None
     """Gauss points per volume element; default by family and order (Table 1 of the paper; above 5: order + 2), above contact_order."""
 

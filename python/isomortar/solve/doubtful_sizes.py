@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from isomortar.geometry.patch import FloatArray
+from isomortar.model.contact_checks import LEAST
 from isomortar.model.entities import Contact, Load, Problem, Support
 from isomortar.model.loads import control_areas
 from isomortar.model.sheet import Sheet
@@ -84,8 +85,12 @@ def _large_load(problem: Problem, load: Load) -> Iterator[str]:
 
 def _large_force(problem: Problem, support: Support) -> Iterator[str]:
     body = problem.body(support.place.body)
+    if body.rigid:
+        return
     force = np.array([support.force[k] for k in support.pressed])
     area = float(control_areas(body.patch, support.place.face).sum()) if support.pressed else 1.0
+    if not area > LEAST * body.size**2:  # a line or a point
+        return
     size = float(np.linalg.norm(force)) * _largest(support.factors) / area / problem.images
     if size > body.material.young:
         yield (

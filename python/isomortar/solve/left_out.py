@@ -8,7 +8,7 @@ from itertools import combinations
 import numpy as np
 
 from isomortar.geometry.faces import cells
-from isomortar.geometry.patch import FACES, FloatArray, Patch
+from isomortar.geometry.patch import FloatArray, Patch
 from isomortar.model.constants import NO_PART, SAME_POINT
 from isomortar.model.entities import Body, Face, Problem
 from isomortar.model.glue import pieces
@@ -86,14 +86,9 @@ def _meet(one: Body, other: Body, way: FloatArray) -> bool:
 
 def _outside(body: Body) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Centres, normals and areas of the cells of all faces of a body."""
-    sides = [cells(body.patch, face) for face in _faces(body)]
+    sides = [cells(body.patch, face) for face in body.outer]
     centres, normals, areas = (np.concatenate([getattr(side, name) for side in sides]) for name in ("centres", "normals", "areas"))
     return centres, normals, areas
-
-
-def _faces(body: Body) -> list[str]:
-    """Faces of a body, without those at which it meets itself."""
-    return [face for face in FACES if face[0] != body.closed]
 
 
 def _idle_bodies(problem: Problem, told: set[str]) -> Iterator[str]:
@@ -129,7 +124,7 @@ def _cuts(problem: Problem, axis: int, end: int) -> list[Face]:
         return []
     ends = [float((np.max if end else np.min)(body.patch.control_points[:, axis])) for body in problem.bodies]
     near = SAME_POINT * max(body.size for body in problem.bodies)
-    faces = [[Face(body.name, face) for face in _faces(body) if _is_cut(body.patch, face, axis, ends[0], near)] for body in bodies]
+    faces = [[Face(body.name, face) for face in body.outer if _is_cut(body.patch, face, axis, ends[0], near)] for body in bodies]
     sides = [face for c in problem.contacts for side in (c.slave.faces, getattr(c.master, "faces", ())) for face in side]
     ends += [float((np.max if end else np.min)(_points(problem, side)[:, axis])) for side in sides]
     return [face for found in faces for face in found] if np.ptp(ends) <= near and all(faces) else []

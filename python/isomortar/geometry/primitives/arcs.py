@@ -31,6 +31,13 @@ class Arc:
     weights: FloatArray
 
 
+def degrees(start: float, end: float) -> float:
+    """From one angle to another one, in degrees: quarters of a circle exactly where only the last bits of the angles are in the way."""
+    apart = end - start
+    quarters = QUARTER * float(np.round(apart / QUARTER))
+    return quarters if abs(apart - quarters) <= 2.0 * np.spacing(max(abs(start), abs(end))) else apart
+
+
 def arc(start: float, end: float) -> Arc:
     """The arc between two angles in degrees, counted from the first coordinate towards the second (theory 2.13).
 
@@ -41,11 +48,11 @@ def arc(start: float, end: float) -> Arc:
     InputError
         The end is not beyond the start, or by more than once round (`field`: ``angles``).
     """
-    if not 0.0 < end - start <= WHOLE:
+    if not 0.0 < (angle := degrees(start, end)) <= WHOLE:
         raise InputError(f"are {[start, end]}; allowed: the second beyond the first, by up to 360 degrees", "angles")
-    parts = int(np.ceil((end - start) / QUARTER))
-    joints = np.array([_on_circle(start + (end - start) * k / parts) for k in range(parts + 1)])
-    flat, _ = _on_circle((end - start) / parts)
+    parts = int(np.ceil(angle / QUARTER))
+    joints = np.array([_on_circle(start + angle * k / parts) for k in range(parts + 1)])
+    flat, _ = _on_circle(angle / parts)
     middles = (joints[:-1] + joints[1:]) / (1.0 + flat)  # where tangents meet
     weight = np.sqrt(0.5 * (1.0 + flat))
     if parts == 2:
