@@ -8,8 +8,8 @@ from itertools import combinations
 
 import numpy as np
 
-from isomortar.geometry.patch import FACES, Direction, FloatArray, Patch
-from isomortar.model.entities import Contact, Face, Faces, Motion, Problem, RigidPlane, Support
+from isomortar.geometry.patch import FACES, Direction, FloatArray, Patch, opposite
+from isomortar.model.entities import Contact, Edge, Face, Faces, Load, Motion, Problem, RigidPlane, Support
 
 Vector = tuple[float, float, float]
 
@@ -26,11 +26,15 @@ def with_patches(problem: Problem, change: Callable[[Patch], Patch]) -> Problem:
 
 
 def turned(problem: Problem, turn: FloatArray) -> Problem:
-    """Geometry, rigid planes and motions turned by a rotation matrix, shape (3, 3). Supports must hold all components."""
+    """Geometry, rigid planes, motions and loads turned by a rotation matrix, shape (3, 3).
+
+    Supports must hold all components by motions, or the axes be turned into axes.
+    """
     return replace(
         with_patches(problem, lambda patch: replace(patch, control_points=patch.control_points @ turn.T)),
         contacts=tuple(_turned_contact(contact, turn) for contact in problem.contacts),
         supports=tuple(_turned_support(support, turn, 1.0) for support in problem.supports),
+        loads=tuple(_turned_load(load, turn) for load in problem.loads),
     )
 
 
@@ -54,10 +58,15 @@ def mirrored(problem: Problem) -> Problem:
     """The mirror image in the plane x = 0, direction u reversed to keep the volume positive."""
     mirror = np.diag([-1.0, 1.0, 1.0])
     image = with_patches(problem, lambda patch: reversed_along(replace(patch, control_points=patch.control_points @ mirror), (0,)))
-    return replace(
-        image,
-        contacts=tuple(_turned_contact(contact, mirror) for contact in problem.contacts),
-        supports=tuple(_turned_support(support, mirror, -1.0) for support in problem.supports),
+    names = {face: face if face[0] != "u" else opposite(face) for face in FACES}
+    return _renamed(
+        replace(
+            image,
+            contacts=tuple(_turned_contact(contact, mirror) for contact in problem.contacts),
+            supports=tuple(_turned_support(support, mirror, -1.0) for support in problem.supports),
+            loads=tuple(_turned_load(load, mirror) for load in problem.loads),
+        ),
+        {body.name: names for body in problem.bodies},
     )
 
 
@@ -69,7 +78,8 @@ def scaled(problem: Problem, length: float, stress: float) -> Problem:
         sized,
         bodies=bodies,
         contacts=tuple(_scaled_contact(contact, length, stress) for contact in problem.contacts),
-        supports=tuple(_scaled_support(support, length) for support in problem.supports),
+        supports=tuple(_scaled_support(support, length, stress) for support in problem.supports),
+        loads=tuple(_scaled_load(load, length, stress) for load in problem.loads),
     )
 
 
@@ -95,19 +105,7 @@ def relabelled(problem: Problem) -> Problem:
         for body in reversed(problem.bodies)
     )
     faces = {face: "wuv"["uvw".index(face[0])] + (face[1] if face[0] == "w" else "10"[int(face[1])]) for face in FACES}
-    return replace(
-        problem,
-        bodies=bodies,
-        contacts=tuple(
-            replace(
-                contact,
-                slave=_named(contact.slave, faces),
-                master=_named(contact.master, faces) if isinstance(contact.master, Face) else contact.master,
-            )
-            for contact in problem.contacts
-        ),
-        supports=tuple(replace(support, place=_named(support.place, faces)) for support in problem.supports),
-    )
+    return _renamed(replace(problem, bodies=bodies), {body.name: faces for body in bodies})
 
 
 def reversed_along(patch: Patch, axes: tuple[int, ...]) -> Patch:
@@ -139,30 +137,33 @@ def oriented(problem: Problem, name: str, order: tuple[int, int, int], axes: tup
         axis = order.index("uvw".index(face[0]))
         names[face] = "uvw"[axis] + (face[1] if axis not in axes else "10"[int(face[1])])
 
-    def renamed(place: Face) -> Face:
-        return _named(place, names) if place.body == name else place
-
     body = problem.body(name)
     first, second, third = (body.quadrature[axis] for axis in order)
     new = replace(body, patch=reversed_along(permuted(body.patch, order), axes), quadrature=(first, second, third))
+    return _renamed(replace(problem, bodies=tuple(new if old is body else old for old in problem.bodies)), {name: names})
+
+
+def _renamed(problem: Problem, names: dict[str, dict[str, str]]) -> Problem:
+    """The problem with faces of some bodies called otherwise wherever they are named."""
+
+    def named(place: Face) -> Face:
+        of_body = names.get(place.body, {})
+        if isinstance(place, Edge):
+            place = replace(place, others=tuple(of_body.get(face, face) for face in place.others))
+        return replace(place, face=of_body.get(place.face, place.face))
+
+    def side(place: Face) -> Face:
+        return _side([named(face) for face in place.faces])
+
     return replace(
         problem,
-        bodies=tuple(new if old is body else old for old in problem.bodies),
         contacts=tuple(
-            replace(
-                contact,
-                slave=_side([renamed(face) for face in contact.slave.faces]),
-                master=_side([renamed(face) for face in contact.master.faces]) if isinstance(contact.master, Face) else contact.master,
-            )
-            for contact in problem.contacts
+            replace(c, slave=side(c.slave), master=side(c.master) if isinstance(c.master, Face) else c.master) for c in problem.contacts
         ),
-        supports=tuple(replace(support, place=renamed(support.place)) for support in problem.supports),
-        glue=tuple((renamed(one), renamed(other)) for one, other in problem.glue),
+        supports=tuple(replace(support, place=named(support.place)) for support in problem.supports),
+        loads=tuple(load if load.face is None else replace(load, face=named(load.place).face) for load in problem.loads),
+        glue=tuple((named(one), named(other)) for one, other in problem.glue),
     )
-
-
-def _named(face: Face, names: dict[str, str]) -> Face:
-    return replace(face, face=names[face.face])
 
 
 def _side(faces: list[Face]) -> Face:
@@ -189,7 +190,23 @@ def _turned_contact(contact: Contact, turn: FloatArray) -> Contact:
 def _turned_support(support: Support, turn: FloatArray, sense: float) -> Support:
     motions = tuple(Motion(vector(turn @ np.array(m.translate)), sense * m.rotate) for m in support.motions)
     centre, axis = (vector(turn @ np.array(v)) for v in (support.centre, support.axis))
-    return replace(support, motions=motions, centre=centre, axis=axis)
+    new = replace(support, motions=motions, centre=centre, axis=axis, moment=None if support.moment is None else sense * support.moment)
+    if len(support.components) == 3:
+        return new
+    to = [int(np.argmax(np.abs(column))) for column in turn.T]
+    assert np.abs(turn[to, range(3)]).min() == 1.0, "an axis is turned into an axis"
+    force: list[float | None] = [None] * 3
+    for k, size in enumerate(support.force):
+        force[to[k]] = None if size is None else float(turn[to[k], k]) * size
+    return replace(new, components=tuple(sorted(to[k] for k in support.components)), force=(force[0], force[1], force[2]))
+
+
+def _turned_load(load: Load, turn: FloatArray) -> Load:
+    return load if load.kind == "pressure" else replace(load, value=vector(turn @ np.array(load.value)))
+
+
+def _scaled_load(load: Load, length: float, stress: float) -> Load:
+    return replace(load, value=tuple(stress / (length if load.kind == "weight" else 1.0) * value for value in load.value))
 
 
 def _scaled_contact(contact: Contact, length: float, stress: float) -> Contact:
@@ -209,6 +226,8 @@ def _scaled_contact(contact: Contact, length: float, stress: float) -> Contact:
     return replace(scaled, master=replace(contact.master, point=vector(length * np.array(contact.master.point))))
 
 
-def _scaled_support(support: Support, length: float) -> Support:
+def _scaled_support(support: Support, length: float, stress: float) -> Support:
     motions = tuple(replace(m, translate=vector(length * np.array(m.translate))) for m in support.motions)
-    return replace(support, motions=motions, centre=vector(length * np.array(support.centre)))
+    x, y, z = (None if size is None else stress * length**2 * size for size in support.force)
+    moment = None if support.moment is None else stress * length**3 * support.moment
+    return replace(support, motions=motions, centre=vector(length * np.array(support.centre)), force=(x, y, z), moment=moment)
