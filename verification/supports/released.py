@@ -108,3 +108,64 @@ def handed_over(rest: str, method: str) -> dict[str, float]:
         "force": float(np.linalg.norm(last.force - pushed.force) / size),
         "moment": float(np.linalg.norm(moment - pushed.moment) / size),
     }
+
+
+#: A heavy bar of which a face and its edges are held, released one after the other; then a force and a moment take the face as it is.
+_SHARED = """
+format = 1
+bodies.bar = { geometry = { kind = "box", lower = [0, 0, 0], upper = [2, 1, 1] }, mesh = { order = 2, elements = [3, 2, 2] } }
+loads.own = { body = "bar", weight = [0.05, 0.1, -0.2] }
+supports.base.face = "bar.u0"
+supports.end = { face = "bar.u1", stages = ["held"] }
+supports.lower = { edge = "bar.u1.w0", stages = ["held"] }
+supports.upper = { edge = "bar.u1.w1", stages = ["held", "by-the-edge"] }
+supports.plate = { face = "bar.u1", force.z = 0.1, moment = 0.1, axis = [0, 1, 0], centre = [2, 0, 0.5], stages = ["plate"] }
+stages = [
+    { name = "held", steps = 1 },
+    { name = "by-the-edge", steps = 2 },
+    { name = "free", steps = 2 },
+    { name = "plate", steps = 2, loads.own = 0.5 },
+]
+"""
+
+
+@case(
+    claim="Supports that share control points, held or released, bear each force once; one that takes over has the shape that is there.",
+    tier="gate",
+    grid={"method": _METHODS},
+    bounds={
+        "force": Bound(at_most=1e-9, reason=_TIGHT),
+        "moment": Bound(at_most=1e-9, reason=_TIGHT),
+        "gone": Bound(at_most=0.0, reason="definition: what was released a stage ago bears nothing"),
+        "prescribed": Bound(at_most=1e-9, reason=_TIGHT),
+        "shape": Bound(at_most=1e-12, reason="round-off: all control points of the face turn as one"),
+        "bent": Bound(at_least=1e-3, reason="definition: the face that is taken is not as it was at first"),
+    },
+)
+def shared(method: str) -> dict[str, float]:
+    """Sums of forces, and of moments about the origin, of supports and the weight, over the largest force of one; forces of what is gone.
+
+    What the plate exerts off what it is to; distances between its control points off those when it took them, and these off the first ones.
+    """
+    simulation = Simulation(problem(_SHARED, method))
+    first = simulation.state.positions
+    results = list(simulation.run())
+    forces, moments = [], []
+    for result in results:
+        acting = [(r.force, r.moment + np.cross(r.centre, r.force)) for r in result.reactions]
+        acting += [(load.force, load.moment) for load in result.loads]
+        size = np.abs([force for force, _ in acting]).max()
+        force, moment = np.sum(acting, axis=0)
+        forces.append(np.linalg.norm(force) / size)
+        moments.append(np.linalg.norm(moment) / size)
+    plate, face = results[-1].reactions[4], simulation.equilibrium.supports.points[1]
+    rest, taken, end = (positions[face] for positions in (first, results[4].state.positions, results[-1].state.positions))
+    apart = [np.linalg.norm(points[:, None] - points, axis=2) for points in (rest, taken, end)]
+    return {
+        "force": float(np.max(forces)),
+        "moment": float(np.max(moments)),
+        "gone": float(np.abs([result.reactions[1].force for result in results[3:]]).max()),
+        "prescribed": float(np.abs([plate.force[2] - 0.1, plate.moment[1] - 0.1]).max()),
+        "shape": float(np.abs(apart[2] - apart[1]).max()),
+        "bent": float(np.abs(apart[1] - apart[0]).max()),
+    }
