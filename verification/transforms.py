@@ -39,12 +39,13 @@ def turned(problem: Problem, turn: FloatArray) -> Problem:
 
 
 def moved(problem: Problem, by: FloatArray) -> Problem:
-    """The problem somewhere else: geometry, rigid planes and centres of supports moved by a vector, shape (3,)."""
+    """The problem somewhere else: geometry, planes and centres of supports moved by a vector, shape (3,)."""
     away = with_patches(problem, lambda patch: replace(patch, control_points=patch.control_points + by))
     return replace(
         away,
         contacts=tuple(_moved_contact(contact, by) for contact in problem.contacts),
         supports=tuple(replace(support, centre=vector(np.asarray(support.centre) + by)) for support in problem.supports),
+        symmetry=tuple(replace(plane, place=plane.place + float(by[plane.axis])) for plane in problem.symmetry),
     )
 
 

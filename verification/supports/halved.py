@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 from small_scenes import TIGHT
+from transforms import moved
 
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, case
@@ -62,9 +63,9 @@ stages = [
 }
 
 
-def results(text: str) -> dict[str, FloatArray]:
+def results(text: str, distance: float) -> dict[str, FloatArray]:
     """Forces, moments, places and turns of the scene's supports, of its loads and contact, and works, by load step."""
-    found = Scene.from_toml(text).problem()
+    found = moved(Scene.from_toml(text).problem(), distance * np.array([1.0, -0.7, 0.3]))
     problem = replace(found, settings=replace(found.settings, **TIGHT))  # type: ignore[arg-type]
     count, steps = len(problem.given_supports), list(Simulation(problem).run())
     reactions = [step.reactions[:count] for step in steps]
@@ -86,12 +87,12 @@ _TIGHT = "theory: the same equations by symmetry; Newton's method stops at 1e-12
 @case(
     claim="Forces, moments, places, turns and works that a half tells are those of the whole, wherever its plane is.",
     tier="gate",
-    grid={"scene": list(SCENES)},
+    grid={"scene": list(SCENES), "distance": (0.0, 1000.0)},
     bounds={name: Bound(at_most=1e-9, reason=_TIGHT) for name in ("supports", "loads", "contacts", "ways", "turns", "works")},
 )
-def told_of_the_whole(scene: str) -> dict[str, float]:
+def told_of_the_whole(scene: str, distance: float) -> dict[str, float]:
     """Largest differences: of forces and moments over the largest of the contact, of places in lengths, of turns in degrees, of works."""
     plane, text = SCENES[scene]
-    whole, half = results(text), results(text.replace("format = 1\n", f"format = 1\nsymmetry = {{ {plane} }}\n"))
+    whole, half = (results(given, distance) for given in (text, text.replace("format = 1\n", f"format = 1\nsymmetry = {{ {plane} }}\n")))
     size = float(np.abs(whole["contacts"]).max())
     return {name: float(np.abs(whole[name] - half[name]).max(initial=0.0)) / (1.0 if name in ("ways", "turns") else size) for name in whole}
