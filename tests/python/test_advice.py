@@ -505,7 +505,7 @@ def test_a_contact_that_never_closes_is_told_at_the_end(scene: str, never: bool)
 
 def test_the_same_line_is_printed_once_and_warnings_are_counted() -> None:
     text = io.StringIO()
-    progress = Progress(Scene.load("press").problem(), partial(print, file=text), quiet=False)
+    progress = Progress(Scene.load("press").problem(), partial(print, file=text))
     for message in ("one", "two", "one"):
         progress.warned(message)
     for cuts in range(1, 10):

@@ -212,6 +212,56 @@ def test_live_progress_shows_where_the_run_is() -> None:
     assert "active 9  stick 4  slip 5" in shown
 
 
+STAMP = re.compile(r"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d\.\d{3} ")
+
+
+def test_every_iteration_is_told_and_kept_on_demand(invoke: Invoke) -> None:
+    """What --verbose tells is what --log keeps, and what the results file holds."""
+    _, _, told = invoke("run", "press", *settings(SMALL), "--verbose", "--log", "logs/press.log")
+    kept = Path("logs/press.log").read_text().splitlines()
+    assert all(STAMP.match(line) for line in kept)
+    first, *lines = (STAMP.sub("", line, count=1) for line in kept)
+    assert first.startswith(f"isomortar {isomortar.__version__}: ")
+    assert "--log logs/press.log" in first
+    assert lines == told.splitlines()
+    with isomortar.Results("results/press.h5") as results:
+        for step in map(results.step, results.steps):
+            log = step.augmentations[0].iterations
+            expected = [f"iteration {i.iteration}, residual {i.residual:.1e}; active {i.active} (stick {i.stick}, slip" for i in log]
+            found = [line for line in lines if f"  step {step.step}, load time {step.step}: iteration" in line]
+            assert len(found) == len(expected)
+            assert all(words in line for words, line in zip(expected, found, strict=True))
+    effort = [line for line in lines if "increments 1, cuts 0, next increment 1 step" in line]
+    assert len(effort) == 3
+    assert all(word in effort[-1] for word in ("ordered by", "solid ", "total "))
+
+
+def test_a_log_goes_on_and_has_what_ended_a_run(invoke: Invoke) -> None:
+    uzawa = settings([*SMALL, "solver.method=uzawa", "solver.max_augmentations=1", "solver.max_cuts=1"])
+    code, _, told = invoke("run", "press", *uzawa, "--quiet", "--log", "press.log")
+    assert code == 1
+    assert "iteration" not in told
+    assert "isomortar: load step 1" in told
+    assert "stopped with 0 of 3 load steps done\n" in told
+    kept = Path("press.log").read_text()
+    assert "augmentation 1 changed pressures by" in kept
+    assert "load increment to 1 failed, cut to 1/2 step" in kept
+    assert "ConvergenceError: load step 1" in kept
+    assert invoke("run", "press", *settings(SMALL), "--quiet", "--log", "press.log")[:2] == (0, "results/press.h5\n")
+    assert Path("press.log").read_text().startswith(kept)
+    assert "3 load steps done, 1 warning" in Path("press.log").read_text().splitlines()[-1]
+
+
+def test_loud_and_quiet_at_once_is_refused(invoke: Invoke) -> None:
+    code, _, err = invoke("run", "press", "--quiet", "--verbose")
+    assert (code, "--log" in err) == (2, True)
+
+
+def test_a_dry_run_says_what_check_says_and_leaves_nothing(invoke: Invoke) -> None:
+    assert invoke("run", "twist", "--dry-run") == invoke("check", "twist")
+    assert not list(Path().iterdir())
+
+
 def test_step_that_cannot_be_cut_ends_with_what_was_done(invoke: Invoke) -> None:
     # Three small steps converge; the last one crushes the block.
     crush = "[[stages]]\nname = 'crush'\nsteps = 1\nmotions.top.translate = [0, 0, -9]\n"

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from isomortar.cli import completion
 from isomortar.cli.verification import CASES, FAILED
 
 if TYPE_CHECKING:
@@ -17,7 +18,10 @@ if TYPE_CHECKING:
 
 
 def bench(
-    names: Annotated[list[str] | None, typer.Argument(metavar="NAME", help="Benchmarks to run.", show_default="all")] = None,
+    names: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="NAME", help="Benchmarks to run.", show_default="all", autocompletion=completion.benchmarks),
+    ] = None,
     quick: Annotated[bool, typer.Option("--quick", help="Only try them, on the smallest input: says nothing about speed.")] = False,
     out: Annotated[Path, typer.Option(file_okay=False, help="Folder of page, numbers and history.")] = Path("results/bench"),
     cases: Annotated[Path, typer.Option("--cases", file_okay=False, help="Folder above that of the benchmarks, performance/.")] = CASES,

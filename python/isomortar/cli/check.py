@@ -13,6 +13,7 @@ import isomortar
 from isomortar.cli.options import Overrides, SceneArgument
 
 if TYPE_CHECKING:
+    from isomortar.model.entities import Problem
     from isomortar.solve.outlook import BodyOutlook, ContactOutlook, LoadOutlook, Outlook, SupportOutlook
 
 
@@ -31,9 +32,14 @@ def check(
     - `isomortar check my_scene.toml --set bodies.wheel.mesh.elements=[24,4,4]`
     - `isomortar check press --json`
     """
+    show(isomortar.Scene.load(scene, overrides or ()).problem(), as_json)
+
+
+def show(problem: Problem, as_json: bool = False) -> None:
+    """Print what a problem looks like before it is computed."""
     from isomortar.solve.outlook import outlook
 
-    found = outlook(isomortar.Scene.load(scene, overrides or ()).problem())
+    found = outlook(problem)
     if as_json:
         print(json.dumps(asdict(found), indent=2))
         return

@@ -11,7 +11,7 @@ import typer
 import isomortar
 from isomortar._process import loading
 from isomortar.cli.bench import bench
-from isomortar.cli.check import check
+from isomortar.cli.check import check, show
 from isomortar.cli.doctor import doctor
 from isomortar.cli.endings import FAILED
 from isomortar.cli.info import info
@@ -24,7 +24,6 @@ from isomortar.cli.verification import bless, verify
 from isomortar.errors import InputError
 
 app = typer.Typer(
-    add_completion=False,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     rich_markup_mode="markdown",
@@ -69,7 +68,16 @@ def run(
     ] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Go on after the last load step that the results file holds.")] = False,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Begin anew where the results file exists.")] = False,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Compute nothing: say what `isomortar check` says.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress; warnings and errors still show.")] = False,
+    verbose: Annotated[
+        bool,
+        typer.Option("--verbose", "-v", help="Tell every iteration: residual, active constraints, what acted; and what each step took."),
+    ] = False,
+    log: Annotated[
+        Path | None,
+        typer.Option(dir_okay=False, help="A file to whose end all that --verbose tells is written, with the time of each line."),
+    ] = None,
     cost: Annotated[bool, typer.Option("--cost", help="Say at the end what it cost: CPU seconds by phase, and what was done.")] = False,
 ) -> None:
     """Compute a scene.
@@ -89,11 +97,14 @@ def run(
     - `isomortar run twist --set "bodies.master.mesh.order=[3,3,2]" --set contacts.interface.friction=0.5`
     - `isomortar run press --set stages.press.steps=10 --output fine.h5`
     - `isomortar run twist --cost`
+    - `isomortar run iron --quiet --log iron.log` keeps every iteration in a file
 
     Progress and costs go to stderr, the name of the results file to stdout.
     """
     if resume and overwrite:
         raise InputError("--resume and --overwrite exclude each other: go on with the results file, or begin anew")
+    if quiet and verbose:
+        raise InputError("--quiet and --verbose exclude each other; with --quiet, --log FILE keeps what --verbose tells")
     with loading():
         from isomortar._distributed import dismiss, refuse_idle
         from isomortar.cli.progress import progress
@@ -101,13 +112,16 @@ def run(
 
         chosen = isomortar.Scene.load(scene, overrides or ()).with_more_steps(*(steps or ()))
         problem = chosen.problem()
+    if dry_run:
+        show(problem)
+        return
     refuse_idle(problem.settings.engine)
     path = output or results_path(chosen)
-    with progress(problem, quiet) as observer:
+    with progress(problem, quiet, verbose, log) as observer:
         try:
             results = compute(chosen, problem, path, observer, resume, overwrite)
         except BaseException as error:  # Ctrl-C and want of memory too
-            observer.stopped(path, interrupted=isinstance(error, KeyboardInterrupt))
+            observer.stopped(path, error)
             raise
         observer.finished()
     dismiss()

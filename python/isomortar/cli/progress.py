@@ -1,12 +1,17 @@
-"""What a person sees of a run: a bar that lives on a terminal or below a notebook's cell, plain lines elsewhere."""
+"""What a person sees of a run: a bar that lives on a terminal or below a notebook's cell, plain lines elsewhere and in a log file."""
 
 from __future__ import annotations
 
+import os
+import shlex
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from datetime import datetime
+from enum import IntEnum
 from functools import partial
 from html import escape
+from importlib.metadata import version
 from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING
@@ -14,7 +19,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from isomortar.model.entities import Problem
-from isomortar.solve.record import IterationRecord, Observer, StepResult
+from isomortar.results.files import make_folder
+from isomortar.solve.record import AugmentationRecord, IterationRecord, Observer, StepResult
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -23,20 +29,30 @@ if TYPE_CHECKING:
 REDRAWN = 0.2
 
 
+class Detail(IntEnum):
+    """What is told of a run; each tells what those before it tell as well, the last one in the log alone."""
+
+    WARNINGS, EVENTS, STEPS, ITERATIONS, LOG = range(5)
+
+
 class Progress(Observer):
-    """Plain lines: one a recorded step, and what happens out of the ordinary.
+    """Lines about a run, as many as are wanted.
 
     Parameters
     ----------
     problem : Problem
     tell : callable
         Prints a line.
-    quiet : bool
-        Warnings only.
+    detail : Detail
+        What is told.
+    log : callable, optional
+        Gets every line, told or not.
     """
 
-    def __init__(self, problem: Problem, tell: Callable[[str], None], quiet: bool) -> None:
-        self._problem, self._tell, self._quiet = problem, tell, quiet
+    def __init__(
+        self, problem: Problem, tell: Callable[[str], None], detail: Detail = Detail.STEPS, log: Callable[[str], None] | None = None
+    ) -> None:
+        self._problem, self._tell, self._detail, self._log = problem, tell, detail, log
         self._stages = [stage.name for stage in problem.stages for _ in range(stage.steps)]
         self._total, self._first, self._done = problem.total_steps, 1, 0
         self._begin: float | None = None
@@ -54,10 +70,28 @@ class Progress(Observer):
         else:
             self._say(f"{self._problem.name}: {total_steps} load steps")
 
+    def iteration(self, step: int, time: float, augmentation: int, record: IterationRecord) -> None:
+        """One line an iteration."""
+        within = f"augmentation {augmentation}, " if self._problem.settings.method == "uzawa" else ""
+        self._say(
+            f"  step {step}, load time {time:.6g}: {within}iteration {record.iteration}, residual {record.residual:.1e}; "
+            f"{'; '.join((_active(record), *record.notes))}",
+            Detail.ITERATIONS,
+        )
+
+    def augmented(self, step: int, time: float, record: AugmentationRecord) -> None:
+        """One line an augmentation."""
+        self._say(
+            f"  step {step}, load time {time:.6g}: augmentation {record.augmentation} changed pressures by "
+            f"{record.change_pressure:.1e}, tractions by {record.change_traction:.1e}",
+            Detail.ITERATIONS,
+        )
+
     def recorded(self, result: StepResult) -> None:
-        """One line a load step."""
+        """One line a load step, and one of what it took."""
         self._count(result)
-        self._say(self._step_line(result))
+        self._say(self._step_line(result), Detail.STEPS)
+        self._say(_effort(result), Detail.ITERATIONS)
 
     def cut(self, step: int, time: float, increment: float, reason: str) -> None:
         """Say what failed and what is tried next."""
@@ -69,7 +103,7 @@ class Progress(Observer):
         """Pass it on, once, also when quiet."""
         if message not in self._warnings:
             self._warnings.add(message)
-            self._tell(f"warning: {message}")
+            self._say(f"warning: {message}", Detail.WARNINGS)
 
     def _count(self, result: StepResult) -> None:
         self._done = result.step
@@ -83,20 +117,25 @@ class Progress(Observer):
         count = len(self._warnings)
         line = f"{self._total} load steps done, {count} warning{'' if count == 1 else 's'}"
         if count:
-            self._tell(f"{line}: read {'it' if count == 1 else 'them'}")
+            self._say(f"{line}: read {'it' if count == 1 else 'them'}", Detail.WARNINGS)
         else:
             self._say(line)
 
-    def stopped(self, path: Path, interrupted: bool) -> None:
-        """Say what is left of a run that came to no end."""
+    def stopped(self, path: Path, error: BaseException) -> None:
+        """Say what is left of a run that came to no end; what ended it the command line says itself."""
+        self._say(f"{type(error).__name__}: {error}", Detail.LOG)
+        interrupted = isinstance(error, KeyboardInterrupt)
         if self._begin is not None:
+            where = f"; they are in {path}" if self._done else ""
             advice = "; to go on, repeat the command with --resume" if interrupted else ""
-            self._tell(f"stopped with {self._done} of {self._total} load steps done; they are in {path}{advice}")
+            self._say(f"stopped with {self._done} of {self._total} load steps done{where}{advice}", Detail.WARNINGS)
         elif interrupted:
-            self._tell("stopped before the first load step")
+            self._say("stopped before the first load step", Detail.WARNINGS)
 
-    def _say(self, line: str) -> None:
-        if not self._quiet:
+    def _say(self, line: str, detail: Detail = Detail.EVENTS) -> None:
+        if self._log is not None:
+            self._log(line)
+        if detail <= self._detail:
             self._tell(line)
 
     def _step_line(self, result: StepResult) -> str:
@@ -106,8 +145,7 @@ class Progress(Observer):
         cuts = f", {result.substeps} increments" if result.substeps > 1 else ""
         return (
             f"step {result.step:>{len(str(self._total))}}/{self._total}  {result.stage}: "
-            f"{len(iterations)} iterations{many}{cuts}, residual {last.residual:.1e}; "
-            f"active {last.active} (stick {last.stick}, slip {last.slip}); {self._clock()}"
+            f"{len(iterations)} iterations{many}{cuts}, residual {last.residual:.1e}; {_active(last)}; {self._clock()}"
         )
 
     def _clock(self) -> str:
@@ -119,23 +157,18 @@ class Progress(Observer):
 
 
 class LiveProgress(Progress):
-    """On a terminal: a bar and the newest iteration, redrawn in place."""
+    """On a terminal: a bar and the newest iteration, redrawn in place, below the lines that are told."""
 
-    def __init__(self, problem: Problem, tell: Callable[[str], None]) -> None:
-        super().__init__(problem, tell, quiet=False)
-        self._now = ("", "")
+    _now = ("", "")
 
     def iteration(self, step: int, time: float, augmentation: int, record: IterationRecord) -> None:
         """Keep the newest iteration for the next redraw."""
+        super().iteration(step, time, augmentation, record)
         self._now = (
             f"{self._stages[step - 1]}: step {step}/{self._total}  load time {time:.6g}  augmentation {augmentation}  "
             f"iteration {record.iteration}",
             f"residual {record.residual:.1e}  active {record.active}  stick {record.stick}  slip {record.slip}",
         )
-
-    def recorded(self, result: StepResult) -> None:
-        """Move the bar."""
-        self._count(result)
 
     def __rich__(self) -> Table:
         from rich.progress_bar import ProgressBar
@@ -151,6 +184,21 @@ class LiveProgress(Progress):
         return table
 
 
+def _active(record: IterationRecord) -> str:
+    return f"active {record.active} (stick {record.stick}, slip {record.slip})"
+
+
+def _effort(result: StepResult) -> str:
+    """What a load step took."""
+    order = f"; Newton's order {result.newton_order:.1f}" if result.newton_order == result.newton_order else ""
+    ordered = f"; ordered by {', '.join(result.orderings.values())}" if result.orderings else ""
+    seconds = ", ".join(f"{phase} {spent:.3g}" for phase, spent in result.timings.items())
+    return (
+        f"  step {result.step}: increments {result.substeps}, cuts {result.cuts}, next increment {result.next_increment:.6g} step"
+        f"{order}{ordered}; CPU seconds: {seconds}"
+    )
+
+
 def _minutes(seconds: float) -> str:
     """As 0:07, 12:34 or 1:02:03."""
     minutes, rest = divmod(round(seconds), 60)
@@ -161,9 +209,7 @@ def _minutes(seconds: float) -> str:
 class NotebookProgress(LiveProgress):
     """Below the cell of a notebook: the same, a few times a second."""
 
-    def __init__(self, problem: Problem, tell: Callable[[str], None]) -> None:
-        super().__init__(problem, tell)
-        self._drawn = 0.0
+    _drawn = 0.0
 
     def started(self, total_steps: int, first_step: int) -> None:
         """Say how much there is to do, and put the bar there."""
@@ -191,7 +237,7 @@ class NotebookProgress(LiveProgress):
 
 
 @contextmanager
-def progress(problem: Problem, quiet: bool = False) -> Iterator[Progress]:
+def progress(problem: Problem, quiet: bool = False, verbose: bool = False, log: str | os.PathLike[str] | None = None) -> Iterator[Progress]:
     """The observer that suits where a run is watched: a bar on a terminal or in a notebook, lines elsewhere.
 
     Parameters
@@ -200,27 +246,49 @@ def progress(problem: Problem, quiet: bool = False) -> Iterator[Progress]:
         What is computed, `Scene.problem()`.
     quiet : bool
         Warnings only.
+    verbose : bool
+        Every iteration and augmentation, and what each load step took.
+    log : path-like, optional
+        A file to whose end all of that is written, with the time of each line.
 
     Examples
     --------
     >>> with isomortar.progress(scene.problem()) as watching:  # doctest: +SKIP
     ...     results = isomortar.run(scene, observer=watching)
     """
-    if quiet:
-        yield Progress(problem, partial(print, file=sys.stderr), quiet)
-        return
-    if "ipykernel" in sys.modules:
-        yield NotebookProgress(problem, print)
-        return
-    from rich.console import Console
+    with _kept(log) as keep:
+        if quiet:
+            yield Progress(problem, partial(print, file=sys.stderr), Detail.WARNINGS, keep)
+            return
+        drawn, plain = (Detail.ITERATIONS,) * 2 if verbose else (Detail.EVENTS, Detail.STEPS)
+        if "ipykernel" in sys.modules:
+            yield NotebookProgress(problem, print, drawn, keep)
+            return
+        from rich.console import Console
 
-    console = Console(stderr=True)
-    tell = partial(console.print, markup=False, highlight=False, soft_wrap=True)
-    if not console.is_terminal:
-        yield Progress(problem, tell, quiet)
-        return
-    from rich.live import Live
+        console = Console(stderr=True)
+        tell = partial(console.print, markup=False, highlight=False, soft_wrap=True)
+        if not console.is_terminal:
+            yield Progress(problem, tell, plain, keep)
+            return
+        from rich.live import Live
 
-    observer = LiveProgress(problem, tell)
-    with Live(observer, console=console, refresh_per_second=5):
-        yield observer
+        observer = LiveProgress(problem, tell, drawn, keep)
+        with Live(observer, console=console, refresh_per_second=5):
+            yield observer
+
+
+@contextmanager
+def _kept(log: str | os.PathLike[str] | None) -> Iterator[Callable[[str], None] | None]:
+    """Writes lines at the end of a file, each at once and with its time, after one that says which command they are of."""
+    if log is None:
+        yield None
+        return
+    make_folder(Path(log).parent)
+    with Path(log).open("a", encoding="utf-8", buffering=1) as file:
+
+        def keep(line: str) -> None:
+            print(datetime.now().isoformat(" ", "milliseconds"), line, file=file)
+
+        keep(f"isomortar {version('isomortar')}: {shlex.join(sys.argv)}")
+        yield keep

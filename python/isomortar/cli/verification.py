@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from isomortar.cli import completion
+
 if TYPE_CHECKING:
     from rich.table import Table
 
@@ -41,7 +43,7 @@ CASES, REFERENCES, RESULTS = Path("verification"), Path("reference_data"), Path(
 
 def verify(
     tier: TierOption = "gate",
-    family: Annotated[str | None, typer.Option(help="Only this family.")] = None,
+    family: Annotated[str | None, typer.Option(help="Only this family.", autocompletion=completion.families)] = None,
     case: Annotated[str | None, typer.Option(help="Only this case, FAMILY/NAME, or one cell of it, FAMILY/NAME[SETTINGS].")] = None,
     jobs: JobsOption = CORES,
     fresh: Annotated[bool, typer.Option("--fresh", help="Measure again what did not change since it was measured.")] = False,
