@@ -1,9 +1,10 @@
-"""Kill a parallel sweep of verification cells with SIGKILL at random moments, resume it each time, and compare the end.
+"""Kill a parallel sweep of verification cells with SIGKILL again and again on its way, resume it each time, and compare the end.
 
     python verification/kill_sweep.py [--family basis] [--kills 20] [--seed 1] [--dask]
 
+Kills come when even shares of the cells are kept, at a random moment of a cell's time after that: of one kill, when half of them are.
 Every kill takes the whole process group: the run and its measuring processes. The report of the resumed run must be that of an
-undisturbed run but for times. With --dask the cells are measured a third time, on two workers of a local Dask cluster: the same
+undisturbed run but for times. With --dask the same is done on two workers of a local Dask cluster, which outlives its clients: the same
 numbers, bit for bit.
 """
 
@@ -33,23 +34,22 @@ CLUSTER: dict[str, Any] = {"n_workers": 2, "threads_per_worker": 1, "processes":
 
 def start(family: str, results: Path, *options: str) -> subprocess.Popen[bytes]:
     """Start or resume a sweep in a process group of its own."""
-    command = [sys.executable, "-m", "isomortar", "verify", "--family", family, "--results", str(results), *(options or ("-j", "2"))]
+    command = [sys.executable, "-m", "isomortar", "verify", "--family", family, "--results", str(results), *options]
     return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
 
 
-def measured(results: Path) -> int:
-    """Number of cells that are kept; each must be readable: a file is there whole or not at all."""
-    kept = list(results.glob("cells/*/*.json"))
-    for path in kept:
-        json.loads(path.read_text())
-    return len(kept)
+def kept(results: Path) -> list[Path]:
+    """The files of the cells that are measured."""
+    return list(results.glob("cells/*/*.json"))
 
 
-def interrupted(family: str, results: Path, seconds: float) -> bool:
-    """Run for some seconds and kill the process group; false where the run had ended."""
-    process = start(family, results)
+def killed(family: str, results: Path, many: int, later: float, *options: str) -> bool:
+    """Run until so many cells are kept and some seconds more, and kill the process group; false where the run had ended."""
+    process = start(family, results, *options)
+    while process.poll() is None and len(kept(results)) < many:
+        time.sleep(0.01)
     try:
-        process.wait(seconds)
+        process.wait(later)
     except subprocess.TimeoutExpired:
         os.killpg(process.pid, signal.SIGKILL)
         process.wait()
@@ -89,13 +89,18 @@ def finish(family: str, results: Path, *options: str) -> tuple[Any, float]:
     return report(results), time.monotonic() - began
 
 
-def on_dask(family: str, results: Path) -> Any:
-    """The report of a sweep on a local Dask cluster of two processes."""
-    from distributed import LocalCluster
-
-    with ExitStack() as stack:
-        cluster = stack.enter_context(LocalCluster(**CLUSTER))  # type: ignore[no-untyped-call]
-        return finish(family, results, "--dask", cluster.scheduler_address)[0]
+def disturbed(family: str, results: Path, kills: int, cells: int, moments: Iterator[float], *options: str) -> Any:
+    """The report of a sweep that is killed on its way and resumed each time."""
+    for number in range(1, kills + 1):
+        many = round(cells * number / (kills + 1))
+        if killed(family, results, many, next(moments), *options):
+            found = kept(results)
+            for path in found:  # a file is there whole or not at all
+                json.loads(path.read_text())
+            print(f"kill {number:2d}: {len(found)} of {cells} cells are kept", flush=True)
+        else:
+            print(f"kill {number:2d} came too late", flush=True)
+    return finish(family, results, *options)[0]
 
 
 def main() -> None:
@@ -104,35 +109,32 @@ def main() -> None:
     parser.add_argument("--family", default="basis")
     parser.add_argument("--kills", type=int, default=20)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--dask", action="store_true", help="measure on a local Dask cluster too")
-    options = parser.parse_args()
-    chance, family = random.Random(options.seed), options.family
+    parser.add_argument("--jobs", default="2")
+    parser.add_argument("--dask", action="store_true", help="on a local Dask cluster too")
+    asked = parser.parse_args()
+    chance, local = random.Random(asked.seed), ("-j", asked.jobs)
 
-    with TemporaryDirectory() as folder:
-        whole, seconds = finish(family, Path(folder) / "whole")
-        print(f"undisturbed: {len(whole['cells'])} cells in {seconds:.1f} s, {whole['states']}", flush=True)
+    with TemporaryDirectory() as folder, ExitStack() as stack:
+        whole, seconds = finish(asked.family, Path(folder) / "whole", *local)
+        cells = len(whole["cells"])
+        print(f"undisturbed: {cells} cells in {seconds:.1f} s, {whole['states']}", flush=True)
         if set(whole["states"]) != {"passed"}:
             sys.exit("only numbers can be compared: the family must pass")
-        killed, number, rounds = Path(folder) / "killed-0", 0, 0
-        found: list[list[str]] = []
-        while number < options.kills:
-            moment = chance.uniform(0.0, seconds)
-            if interrupted(family, killed, moment):
-                number += 1
-                print(f"kill {number:2d} after {moment:5.2f} s: {measured(killed)} of {len(whole['cells'])} cells are kept", flush=True)
-            else:
-                found.append(list(differences(whole, report(killed))))
-                rounds += 1
-                killed = Path(folder) / f"killed-{rounds}"
-                print("the run has come to its end before the next kill; another one begins", flush=True)
-        found.append(list(differences(whole, finish(family, killed)[0])))
-        print(f"resumed to their end: {len(found)} runs, {sum(map(bool, found))} reports differ in more than times", flush=True)
-        if options.dask:
-            found.append(list(differences(whole, on_dask(family, Path(folder) / "dask"))))
-            print(f"Dask, two processes: the report {'differs' if found[-1] else 'is the same'}")
-    for lines in filter(None, found):
-        print("\n".join(lines[:10]))
-    sys.exit(1 if any(found) else 0)
+        places = {"processes of this machine": local}
+        if asked.dask:
+            from distributed import LocalCluster
+
+            cluster = stack.enter_context(LocalCluster(**CLUSTER))  # type: ignore[no-untyped-call]
+            places["a Dask cluster"] = ("--dask", cluster.scheduler_address)
+        moments = iter(lambda: chance.uniform(0.0, seconds / cells), None)
+        same = True
+        for place, options in places.items():
+            found = list(differences(whole, disturbed(asked.family, Path(folder) / options[0], asked.kills, cells, moments, *options)))
+            print(f"{place}: resumed to its end, the report {'differs in more than times' if found else 'is the same but for times'}")
+            for difference in found[:10]:
+                print(difference)
+            same = same and not found
+    sys.exit(0 if same else 1)
 
 
 if __name__ == "__main__":
