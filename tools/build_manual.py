@@ -3,7 +3,7 @@
 The folder, results/manual by default, gets the HTML pages in `html`; `source/docs` is docs/ with what the blocks made. A fenced block of
 `sh` or `python` is run, one of `toml` that begins with a comment `# NAME.toml` is written, all in the order of the page and in a folder of
 the page's name beside it, where its pictures are; what a block prints follows it on the page. Blocks of `text` are read by people alone. A
-block that fails ends the build, and so does any warning of Sphinx.
+block that fails ends the build, and so does any warning of Sphinx. How long a page takes, and how long to its first picture, is printed.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ import subprocess
 import sys
 from dataclasses import dataclass
 from pathlib import Path
+from time import monotonic
 
 ROOT = Path(__file__).parent.parent
 _FENCE = re.compile(r"^```(sh|python|toml)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
@@ -60,8 +61,8 @@ class Block:
         return ended.stdout
 
 
-def run_page(path: Path) -> int:
-    """Run the blocks of a page, and put what each printed behind it; returns how many there are.
+def run_page(path: Path) -> tuple[int, float | None]:
+    """Run the blocks of a page, and put what each printed behind it; returns how many there are, and seconds to the first picture.
 
     Raises
     ------
@@ -71,17 +72,19 @@ def run_page(path: Path) -> int:
     folder = path.with_suffix("")
     folder.mkdir(exist_ok=True)
     page, pieces, end = path.read_text(encoding="utf-8"), [], 0
-    fences = list(_FENCE.finditer(page))
+    fences, begun, pictured = list(_FENCE.finditer(page)), monotonic(), None
     for fence in fences:
         try:
             printed = Block(fence[1], fence[2]).run(folder)
         except BlockError as error:
             line = page.count("\n", 0, fence.start(2)) + 1
             raise BlockError(f"{path.name}, line {line}: the block {error}") from None
+        if pictured is None and any(folder.rglob("*.png")):
+            pictured = monotonic() - begun
         pieces += [page[end : fence.end()], f"\n\n```text\n{printed.rstrip()}\n```" if printed.strip() else ""]
         end = fence.end()
     path.write_text("".join([*pieces, page[end:]]), encoding="utf-8")
-    return len(fences)
+    return len(fences), pictured
 
 
 def kernel() -> str:
@@ -118,8 +121,12 @@ def build(folder: Path) -> int:
     (source / "kernel").with_suffix(".md").write_text(kernel(), encoding="utf-8")
     count = 0
     for page in sorted(path for pattern in PAGES for path in source.glob(pattern)):
-        print(f"running {page.relative_to(source)}", flush=True)
-        count += run_page(page)
+        print(f"running {page.relative_to(source)}", end=": ", flush=True)
+        begun = monotonic()
+        blocks, pictured = run_page(page)
+        shown = "no picture" if pictured is None else f"the first picture after {pictured:.1f} s"
+        print(f"{blocks} blocks in {monotonic() - begun:.1f} s, {shown}", flush=True)
+        count += blocks
     subprocess.run([sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html", source, folder / "html"], check=True)
     return count
 
