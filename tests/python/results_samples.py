@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from isomortar.geometry.patch import Direction, FloatArray, Patch
@@ -120,3 +122,8 @@ def _augmentation(random: np.random.Generator, number: int) -> AugmentationRecor
     notes = ((), ("status changed at 3 control points",), ("line search 0.5", "status cycling at control point 7"))
     iterations = tuple(IterationRecord(i, random.random(), 3, 2, 1, notes[i % 3]) for i in range(number % 3))
     return AugmentationRecord(number, 100.0, 10.0, random.random(), random.random(), iterations)
+
+
+def without_contact(made: Problem, result: StepResult) -> tuple[Problem, StepResult]:
+    """The same bodies and load step, with nothing that touches."""
+    return replace(made, contacts=()), replace(result, contacts=(), state=replace(result.state, contacts=()))

@@ -518,7 +518,7 @@ def test_the_same_line_is_printed_once_and_warnings_are_counted() -> None:
     assert "5 load steps done, 2 warnings: read them" in shown
 
 
-@pytest.mark.parametrize(("scene", "line"), [(PRESS, "1 load steps done, 0 warnings"), (_SHORT, "1 warning: read it")], ids=["none", "one"])
+@pytest.mark.parametrize(("scene", "line"), [(PRESS, "1 load step done, 0 warnings"), (_SHORT, "1 warning: read it")], ids=["none", "one"])
 def test_a_run_ends_with_the_number_of_warnings(
     scene: str, line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -386,6 +386,7 @@ def test_a_results_file_tells_what_it_holds(invoke: Invoke) -> None:
     found = json.loads(out)
     end = last("half.h5")
     assert (code, found["name"], found["recorded"], found["stages"]) == (0, "press", 2, {"press": [2, 2]})
+    assert found["unknowns"] == json.loads(invoke("check", "press", *short, "--json")[1])["unknowns"]
     assert found["supports"] == [
         {
             "name": name,

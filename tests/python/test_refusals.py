@@ -40,7 +40,7 @@ from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.simulation import Simulation
 from isomortar.solve.singular import PairConditions, explain
 from isomortar.solve.timing import Ledger
-from results_samples import problem, step_result
+from results_samples import problem, step_result, without_contact
 from test_advice import warnings
 from test_causes import said
 from test_causes import scene as causes
@@ -186,6 +186,8 @@ def of_files(patch: pytest.MonkeyPatch) -> Told:
     for name, content in {"UTF-16": "# a".encode("utf-16"), "Latin-1": "# ä".encode("latin-1")}.items():
         Path("scene.toml").write_bytes(content)
         yield name, refusal(lambda: Scene.load("scene.toml"))
+    ResultsWriter("results.toml", problem(), "", "0")
+    yield "results", refusal(lambda: Scene.load("results.toml"))
     Path("scene.toml").write_text("format = = 1")
     yield "no TOML", _but_the_end(refusal(lambda: Scene.load("scene.toml")))
     yield "value", _but_the_end(refusal(lambda: apply_overrides({"solver": {}}, ["solver.max_cuts=[1"])))
@@ -209,8 +211,10 @@ def of_files(patch: pytest.MonkeyPatch) -> Told:
         within.setitem(sys.modules, "imageio_ffmpeg", None)
         yield "filmed: no encoder", refusal(lambda: film("run.h5", "run.mp4"))
     yield "filmed: nothing", refusal(lambda: film("run.h5", "run.gif", every=0))
-    ResultsWriter("alone.h5", replace(problem(), contacts=()), "", "0")
+    alone, step = without_contact(problem(), step_result(1))
+    ResultsWriter("alone.h5", alone, "", "0").recorded(step)
     yield "filmed: no contact", refusal(lambda: film("alone.h5", "run.gif"))
+    yield "plotted: no contact", refusal(lambda: plot("alone.h5", "figures", only=["pressure"]))
     versions = ("of an earlier version", "format_version", 1), ("of a later version", "format_version", 9)
     for name, key, value in (("another format", "format", "waves"), *versions):
         Path("other.h5").write_bytes(Path("run.h5").read_bytes())
@@ -321,6 +325,9 @@ def on_figures(patch: pytest.MonkeyPatch) -> Told:
     writer.recorded(step_result(1))
     patch.setattr(Figure, "savefig", read)
     plot("drawn.h5", "figures")
+    alone, step = without_contact(problem(), step_result(1))
+    ResultsWriter("alone.h5", alone, "", "0").recorded(step)
+    plot("alone.h5", "figures", only=["bodies"])
     for name, texts in found.items():
         yield name, " | ".join(sorted(text for text in texts if re.search("[a-z]", text)))
 

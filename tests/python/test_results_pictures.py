@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -12,18 +13,22 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
+from isomortar.driver import run
 from isomortar.errors import InputError, ResultsError
-from isomortar.geometry.patch import Direction
+from isomortar.geometry.patch import FACES, Direction
 from isomortar.model.numbering import Numbering
 from isomortar.results import Results, ResultsWriter, bodies, maps, style
+from isomortar.results.alone import _painted
 from isomortar.results.bodies import draw_bodies
 from isomortar.results.curves import draw_curve, draw_reactions
-from isomortar.results.fields import contact_surfaces
+from isomortar.results.fields import body_points, contact_surfaces
 from isomortar.results.maps import draw_map
 from isomortar.results.pictures import plot
 from isomortar.results.rendering import Camera, Canvas
+from isomortar.results.stress import cauchy_stress, deformation_gradient, von_mises
+from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
-from results_samples import problem, step_result
+from results_samples import problem, step_result, without_contact
 
 
 @dataclass(frozen=True)
@@ -70,6 +75,50 @@ def test_what_is_drawn_may_be_chosen(results_path: Path, tmp_path: Path) -> None
         plot(results_path, tmp_path, formats=["png", "jpg"])
     with pytest.raises(ResultsError, match="load step 9 is not in"):
         plot(results_path, tmp_path, step=9)
+
+
+def test_without_contact_bodies_are_drawn(tmp_path: Path) -> None:
+    alone, step = without_contact(problem(), quiet(1))
+    ResultsWriter(tmp_path / "alone.h5", alone, "", "0").recorded(step)
+    assert "bodies.png" in {path.name for path in plot(tmp_path / "alone.h5", tmp_path)}
+
+
+def test_a_ball_whose_middle_is_one_point_is_drawn(tmp_path: Path) -> None:
+    text = """format = 1
+    bodies.ball.geometry = { kind = "sphere", outer = 1, latitudes = [0, 90], angles = [0, 90] }
+    supports.wall.face = "ball.u0"
+    loads.own = { body = "ball", weight = [0, 0, -0.1] }
+    stages = [{ name = "hang", steps = 1 }]"""
+    with run(Scene.from_toml(text), tmp_path / "ball.h5") as results:
+        assert results.last_step() is not None
+    (path,) = plot(tmp_path / "ball.h5", tmp_path, only=["bodies"])
+    assert path.stat().st_size > 5000
+
+
+@pytest.mark.parametrize("face", FACES)
+def test_their_colours_are_those_of_the_stress_there(face: str) -> None:
+    """Of each small quadrilateral that in its middle, in the order of the face's own directions."""
+    made, step = problem(), quiet(1)
+    body = made.body("road")
+    points, told = body_points(made, step.state.positions)["road"], []
+
+    class Seen:
+        def to_rgba(self, stress: np.ndarray) -> np.ndarray:
+            told.append(stress)
+            return np.zeros((*stress.shape, 4))
+
+    parts = (2, 3)
+    cells, _ = _painted(body, points, Seen(), face, parts)
+    first, second = body.patch.face_directions(face)
+    assert cells.shape == (parts[1] * second.elements, parts[0] * first.elements, 3)
+    for row, column in ((0, 0), (1, -1), (-1, 1)):
+        places = {"uvw".index(face[0]): body.patch.directions["uvw".index(face[0])].boundaries[-int(face[1])]}
+        for direction, count, number in ((first, parts[0], column), (second, parts[1], row)):
+            edges = np.concatenate([np.linspace(*ends, count, endpoint=False) for ends in pairwise(direction.boundaries)])
+            half = np.diff(direction.boundaries).repeat(count) / count / 2
+            places[next(i for i, d in enumerate(body.patch.directions) if d is direction)] = (edges + half)[number]
+        deformation = deformation_gradient(body, points, [np.array([places[i]]) for i in range(3)])
+        assert told[0][row, column] == pytest.approx(von_mises(cauchy_stress(body.material, deformation))[0], rel=1e-4)
 
 
 def test_where_nothing_presses_the_material_is_bare() -> None:

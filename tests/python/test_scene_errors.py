@@ -316,7 +316,7 @@ def test_supports_that_agree_may_share_control_points() -> None:
 @pytest.mark.parametrize(
     ("override", "field", "said"),
     [
-        ("bodies.slave.mesh", None, "is not of the form path=value"),
+        ("bodies.slave.mesh", None, "is not of the form KEY=VALUE"),
         ("bodies.slav.mesh.order=3", "bodies.slav", "bodies there: slave, master"),
         ("stages.darg.steps=3", "stages.darg", "allowed: 0 to 1, drag, press"),
         ("stages.2.steps=3", "stages.2", "allowed: 0 to 1, press, drag"),

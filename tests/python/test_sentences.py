@@ -252,6 +252,8 @@ def of_results(_: pytest.MonkeyPatch) -> Told:
     short = replace(other, supports=tuple(shorter))
     yield "shorter scene", refusal(lambda: ResultsWriter("longer.h5", short, "", "0", resume=True))
     yield "none there", refusal(lambda: Results("none.h5"))
+    Path("runs").mkdir()
+    yield "a folder", refusal(lambda: Results("runs"))
     with Results("run.h5") as results:
         yield "no step", refusal(lambda: results.step(3))
         yield "no curve", refusal(lambda: results.curve("weight"))

@@ -30,7 +30,7 @@ from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 #: Largest share of a field's largest value that VTK and the program may be apart by.
 APART = 1e-10
 #: Gauss points a direction for the volume of a rational cell.
-POINTS = 12
+POINTS = 14
 #: Places of a cell, in its own coordinates, where fields are compared.
 PLACES = np.random.default_rng(4).uniform(0.0, 1.0, (5, 3))
 

@@ -11,6 +11,7 @@ import typer
 
 import isomortar
 from isomortar.cli.options import Overrides, SceneArgument
+from isomortar.cli.words import many
 
 if TYPE_CHECKING:
     from isomortar.model.entities import Problem
@@ -50,7 +51,7 @@ def show(problem: Problem, as_json: bool = False) -> None:
 def lines(found: Outlook) -> Iterator[str]:
     """The words for it."""
     yield (
-        f"{found.name}: {_many(found.unknowns, 'unknown')}, {_many(found.load_steps, 'load step')}, "
+        f"{found.name}: {many(found.unknowns, 'unknown')}, {many(found.load_steps, 'load step')}, "
         f"about {found.memory / 1e9:.2g} GB of memory (within a factor of two)"
     )
     yield from map(_body, found.bodies)
@@ -58,16 +59,16 @@ def lines(found: Outlook) -> Iterator[str]:
     yield from map(_support, found.supports)
     yield from map(_load, found.loads)
     yield from (f"warning: {warning}" for warning in found.warnings)
-    yield f"{_many(len(found.warnings), 'warning')}, nothing computed"
+    yield f"{many(len(found.warnings), 'warning')}, nothing computed"
 
 
 def _body(body: BodyOutlook) -> str:
     kinds = " x ".join(f"{family}{order}" for family, order in zip(body.family, body.order, strict=True))
     weights = "" if body.weights[0] == body.weights[1] else f", weights {body.weights[0]:.3g} to {body.weights[1]:.3g}"
-    free = f"; supports leave {_many(body.left_free, 'rigid motion')} to contacts" if body.left_free else ""
+    free = f"; supports leave {many(body.left_free, 'rigid motion')} to contacts" if body.left_free else ""
     return (
         f"body {body.name}: {body.law}, {_by(body.size)} in size; {_by(body.elements)} elements of {kinds}, {body.shortest:.3g} to "
-        f"{body.longest:.3g} long, {_many(body.control_points, 'control point')}{weights}{free}"
+        f"{body.longest:.3g} long, {many(body.control_points, 'control point')}{weights}{free}"
     )
 
 
@@ -77,7 +78,7 @@ def _contact(contact: ContactOutlook) -> str:
     beside = f", {contact.excluded} of them beside the master" if contact.excluded else ""
     return (
         f"contact {contact.name}: slave {contact.slave}, master {contact.master}; {contact.projection}, {contact.enforcement}, "
-        f"{_many(contact.quadrature_points, 'quadrature point')}{beside}; at the start they {stands}"
+        f"{many(contact.quadrature_points, 'quadrature point')}{beside}; at the start they {stands}"
     )
 
 
@@ -96,7 +97,3 @@ def _load(load: LoadOutlook) -> str:
 
 def _by(numbers: tuple[float, ...]) -> str:
     return " x ".join(f"{number:.4g}" for number in numbers)
-
-
-def _many(count: int, what: str) -> str:
-    return f"{count} {what}{'' if count == 1 else 's'}"

@@ -30,6 +30,9 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
+#: Headings of the list of commands.
+SCENES, ACCURACY, CHECKOUT = "Compute and look", "Is it right, and what does accuracy cost?", "In a checkout: is the program right?"
+
 ResultsArgument = Annotated[Path, typer.Argument(metavar="RESULTS", help="Results file of `isomortar run`.")]
 
 
@@ -55,7 +58,7 @@ def isomortar_command(
     """
 
 
-@app.command()
+@app.command(rich_help_panel=SCENES)
 def run(
     scene: SceneArgument,
     overrides: Overrides = None,
@@ -64,7 +67,9 @@ def run(
     ] = None,
     steps: Annotated[
         list[int] | None,
-        typer.Option(min=1, help="Load steps more, in a stage of their own at the rate of the scene's last one; may be repeated."),
+        typer.Option(
+            metavar="NUMBER", min=1, help="Load steps more, in a stage of their own at the rate of the scene's last one; may be repeated."
+        ),
     ] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Go on after the last load step that the results file holds.")] = False,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Begin anew where the results file exists.")] = False,
@@ -135,11 +140,11 @@ def run(
     print(path)
 
 
-app.command()(check)
-app.command()(info)
+app.command(rich_help_panel=SCENES)(check)
+app.command(rich_help_panel=SCENES)(info)
 
 
-@app.command()
+@app.command(rich_help_panel=SCENES)
 def plot(
     results: ResultsArgument,
     output: Annotated[
@@ -180,7 +185,7 @@ def plot(
         print(path)
 
 
-@app.command()
+@app.command(rich_help_panel=SCENES)
 def export(
     results: ResultsArgument,
     output: Annotated[
@@ -194,7 +199,7 @@ def export(
     print(isomortar.export(results, output or _beside(results, "paraview")))
 
 
-@app.command()
+@app.command(rich_help_panel=SCENES)
 def film(
     results: ResultsArgument,
     output: Annotated[
@@ -203,7 +208,7 @@ def film(
     ] = None,
     contact: Annotated[str | None, typer.Option(help="Whose pressure is in colour.", show_default="the first one's")] = None,
     every: Annotated[int, typer.Option(min=1, help="Show one load step in so many, and the last one.")] = 1,
-    rate: Annotated[float, typer.Option(metavar="PER SECOND", help="Pictures.")] = 8.0,
+    rate: Annotated[float, typer.Option(metavar="NUMBER", help="Pictures a second.")] = 8.0,
 ) -> None:
     """Film the bodies and the contact pressure, load step after load step on one scale, and print where the film lies.
 
@@ -212,7 +217,8 @@ def film(
     from rich.console import Console
     from rich.progress import Progress
 
-    with Progress(console=Console(stderr=True), transient=True) as progress:
+    console = Console(stderr=True)
+    with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
         bar = progress.add_task("pictures")
         path = isomortar.film(
             results,
@@ -225,7 +231,7 @@ def film(
     print(path)
 
 
-@app.command()
+@app.command(rich_help_panel=SCENES)
 def view(
     results: ResultsArgument,
     output: Annotated[Path | None, typer.Option(dir_okay=False, help="The page.", show_default="RESULTS.html, beside the file")] = None,
@@ -240,7 +246,7 @@ def view(
     print(isomortar.view(results, output or results.with_suffix(".html")))
 
 
-@app.command()
+@app.command(rich_help_panel=ACCURACY)
 def check_tangent(
     scene: SceneArgument,
     overrides: Overrides = None,
@@ -261,7 +267,7 @@ def check_tangent(
     raise typer.Exit(0 if report.passes else FAILED)
 
 
-@app.command()
+@app.command(rich_help_panel=SCENES)
 def scenes() -> None:
     """List the bundled scenes."""
     from isomortar.scene import bundled_scenes
@@ -271,7 +277,7 @@ def scenes() -> None:
         print(f"{name:<{max(map(len, names))}}  {isomortar.Scene.load(name).title}")
 
 
-@app.command()
+@app.command(rich_help_panel=SCENES)
 def schema() -> None:
     """Print the JSON schema of scene files, for editors that complete and check TOML.
 
@@ -282,15 +288,15 @@ def schema() -> None:
     print(json.dumps(json_schema(), indent=2))
 
 
-app.command()(verify)
-app.command()(bless)
-app.add_typer(report, name="report")
-app.command()(trade)
-app.command()(advise)
-app.command()(paper)
-app.command()(bench)
-app.command()(mutants)
-app.command()(doctor)
+app.command(rich_help_panel=CHECKOUT)(verify)
+app.command(rich_help_panel=CHECKOUT)(bless)
+app.add_typer(report, name="report", rich_help_panel=CHECKOUT)
+app.command(rich_help_panel=ACCURACY)(trade)
+app.command(rich_help_panel=ACCURACY)(advise)
+app.command(rich_help_panel=CHECKOUT)(paper)
+app.command(rich_help_panel=CHECKOUT)(bench)
+app.command(rich_help_panel=CHECKOUT)(mutants)
+app.command(rich_help_panel=SCENES)(doctor)
 
 
 def _beside(results: Path, kind: str) -> Path:

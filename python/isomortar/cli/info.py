@@ -111,12 +111,13 @@ def information(results: isomortar.Results) -> Information:
     import numpy as np
 
     from isomortar.model.numbering import Numbering
+    from isomortar.model.supports import Supports
 
     problem, stages, last = results.problem, results.stages, results.last_step()
     return Information(
         name=isomortar.Scene.from_toml(results.scene_text).name,
         version=results.version,
-        unknowns=Numbering(problem).reference.size,
+        unknowns=len(Supports(problem, Numbering(problem)).free),
         load_steps=problem.total_steps,
         recorded=len(results.steps),
         kept_states=len(results.kept_states),

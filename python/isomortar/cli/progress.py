@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from isomortar.cli.words import many
 from isomortar.model.entities import Problem
 from isomortar.results.files import make_folder
 from isomortar.solve.record import AugmentationRecord, IterationRecord, Observer, StepResult
@@ -64,11 +65,11 @@ class Progress(Observer):
         """Say how much there is to do."""
         self._first, self._done, self._begin = first_step, first_step - 1, monotonic()
         if first_step > total_steps:
-            self._say(f"{self._problem.name}: all {total_steps} load steps are there already")
+            self._say(f"{self._problem.name}: all {many(total_steps, 'load step')} are there already")
         elif first_step > 1:
-            self._say(f"{self._problem.name}: {first_step - 1} of {total_steps} load steps are there, going on")
+            self._say(f"{self._problem.name}: {first_step - 1} of {many(total_steps, 'load step')} are there, going on")
         else:
-            self._say(f"{self._problem.name}: {total_steps} load steps")
+            self._say(f"{self._problem.name}: {many(total_steps, 'load step')}")
 
     def iteration(self, step: int, time: float, augmentation: int, record: IterationRecord) -> None:
         """One line an iteration."""
@@ -115,7 +116,7 @@ class Progress(Observer):
             if contact.averaged and friction > 0.0:
                 self._say(f"contact {contact.name!r}: spurious work is {spurious / friction:.2%} of the friction work")
         count = len(self._warnings)
-        line = f"{self._total} load steps done, {count} warning{'' if count == 1 else 's'}"
+        line = f"{many(self._total, 'load step')} done, {many(count, 'warning')}"
         if count:
             self._say(f"{line}: read {'it' if count == 1 else 'them'}", Detail.WARNINGS)
         else:
@@ -128,7 +129,7 @@ class Progress(Observer):
         if self._begin is not None:
             where = f"; they are in {path}" if self._done else ""
             advice = "; to go on, repeat the command with --resume" if interrupted else ""
-            self._say(f"stopped with {self._done} of {self._total} load steps done{where}{advice}", Detail.WARNINGS)
+            self._say(f"stopped with {self._done} of {many(self._total, 'load step')} done{where}{advice}", Detail.WARNINGS)
         elif interrupted:
             self._say("stopped before the first load step", Detail.WARNINGS)
 
@@ -140,12 +141,12 @@ class Progress(Observer):
 
     def _step_line(self, result: StepResult) -> str:
         iterations = [iteration for record in result.augmentations for iteration in record.iterations]
-        last = iterations[-1]
-        many = f", {len(result.augmentations)} augmentations" if len(result.augmentations) > result.substeps else ""
-        cuts = f", {result.substeps} increments" if result.substeps > 1 else ""
+        augmented = f", {many(len(result.augmentations), 'augmentation')}" if len(result.augmentations) > result.substeps else ""
+        cuts = f", {many(result.substeps, 'increment')}" if result.substeps > 1 else ""
+        contact = f"; {_active(iterations[-1])}" if self._problem.contacts else ""
         return (
-            f"step {result.step:>{len(str(self._total))}}/{self._total}  {result.stage}: "
-            f"{len(iterations)} iterations{many}{cuts}, residual {last.residual:.1e}; {_active(last)}; {self._clock()}"
+            f"step {result.step:>{len(str(self._total))}}/{self._total}  {result.stage}: {many(len(iterations), 'iteration')}"
+            f"{augmented}{cuts}, residual {iterations[-1].residual:.1e}{contact}; {self._clock()}"
         )
 
     def _clock(self) -> str:

@@ -32,7 +32,7 @@ def collect(root: Path) -> list[Case]:
         No such folder, no cases, or two of one name.
     """
     if not root.is_dir():
-        raise InputError(f"there is no folder {root}", "cases")
+        raise InputError(f"there is no folder {root}: verify in a checkout, from its folder; or give the folder with --cases", "cases")
     cases = [found for path in sorted(root.glob("*/*.py")) if holds_cases(path) for found in cases_of(path) if found.cells]
     if not cases:
         raise InputError(f"no cases below {root}: they stand in {root}/<family>/*.py", "cases")

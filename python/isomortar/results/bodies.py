@@ -24,7 +24,7 @@ Paint = Callable[[str, tuple[int, int]], tuple[FloatArray, float]]
 #: Small quadrilaterals along a face, and at least along one of its elements.
 FINENESS = (72, 4)
 _FINENESS_OF_CONTACT = (144, 8)
-_VIEW = Camera(azimuth=-62.0, elevation=24.0)
+VIEW = Camera(azimuth=-62.0, elevation=24.0)
 #: Light falls weakly on the contact face, so that its colours are those of the colour bar.
 _SHADING_OF_PRESSURE = 0.25
 
@@ -77,7 +77,7 @@ def common_scale(problem: Problem, steps: Iterable[StepResult], number: int) -> 
     floor = [_floor(surface.contact.master, near)] if isinstance(surface.contact.master, RigidPlane) else []
     towards = _camera_towards(face.normal)
     sizes = np.ptp([towards.corners(points) for points in slaves], axis=1)
-    return Scale(face, near, _VIEW.corners(np.concatenate([*bodies, *floor])), sizes.max(axis=0))
+    return Scale(face, near, VIEW.corners(np.concatenate([*bodies, *floor])), sizes.max(axis=0))
 
 
 def draw_bodies(problem: Problem, step: StepResult, number: int, scale: Scale | None = None) -> Figure:
@@ -99,7 +99,7 @@ def draw_bodies(problem: Problem, step: StepResult, number: int, scale: Scale | 
     colours = ScalarMappable(Normalize(0.0, face.peak), style.pressure_colours())
     figure = Figure(figsize=(8.6, 4.2), layout="constrained")
     whole, contact = figure.subplots(1, 2, width_ratios=(1.35, 1.0))
-    canvas = Canvas(_VIEW)
+    canvas = Canvas(VIEW)
     glued = [face for joint in problem.glue for face in joint]
     for body in problem.bodies:
         colour = style.SLAVE if body.name in slaves else style.MASTER
@@ -152,7 +152,7 @@ def _camera_towards(normal: FloatArray) -> Camera:
     """A camera that looks onto a face of that outward normal, a little from the side."""
     level = float(np.hypot(normal[0], normal[1]))
     elevation = float(np.degrees(np.arctan2(normal[2], level)))
-    azimuth = float(np.degrees(np.arctan2(normal[1], normal[0]))) - 25.0 if level > 0.5 else _VIEW.azimuth
+    azimuth = float(np.degrees(np.arctan2(normal[1], normal[0]))) - 25.0 if level > 0.5 else VIEW.azimuth
     return Camera(azimuth, 15.0 + 0.6 * elevation)
 
 

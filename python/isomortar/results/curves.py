@@ -48,7 +48,7 @@ def draw_reactions(results: Results, support: str, over: Abscissa | None = None)
     for axes, quantity, label, size in ((force, "force", "force", scale), (moment, "moment", "moment about the centre", scale * length)):
         values = _from_rest(results.curve(quantity, support=support))
         for number, (name, (colour, line)) in enumerate(_COMPONENTS.items()):
-            axes.plot(over.values, values[:, number], line, color=colour, label=name, marker=_marker(over), markersize=3)
+            axes.plot(over.values, values[:, number], line, color=colour, label=name, marker=_marker(over), markersize=3, clip_on=False)
         axes.set_ylabel(label)
         if np.abs(values).max() < 1e-9 * size:  # round-off: show it as nothing
             axes.set_ylim(-0.01 * size, 0.01 * size)
@@ -65,7 +65,7 @@ def draw_curve(results: Results, curve: WantedCurve, over: Abscissa | None = Non
     axes = figure.subplots()
     values = _from_rest(results.curve(curve.quantity, support=curve.support))
     chosen = np.linalg.norm(values, axis=1) if curve.component == "norm" else values[:, "xyz".index(curve.component)]
-    axes.plot(over.values, chosen, color=style.BLUE, marker=_marker(over), markersize=3)
+    axes.plot(over.values, chosen, color=style.BLUE, marker=_marker(over), markersize=3, clip_on=False)
     of = f"|{curve.quantity}|" if curve.component == "norm" else f"{curve.quantity} {curve.component}"
     axes.set_ylabel(of)
     axes.set_title(f"{results.problem.name}: {curve.name} (support {curve.support})", loc="left", pad=18)

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from isomortar.errors import InputError, ResultsError
 from isomortar.results.abscissa import Abscissa, abscissa
+from isomortar.results.alone import draw_alone
 from isomortar.results.bodies import draw_bodies
 from isomortar.results.curves import WantedCurve, draw_curve, draw_reactions, moving_supports
 from isomortar.results.files import make_folder, writing
@@ -33,7 +34,7 @@ def plot(
     formats: Sequence[str] = (),
     x: str = "time",
 ) -> list[Path]:
-    """Draw curves over all load steps, and bodies and contact pressure of one of them.
+    """Draw curves over all load steps, and bodies and contact pressure of one of them; without contact the bodies by their stress.
 
     Parameters
     ----------
@@ -71,10 +72,13 @@ def plot(
         if shown is None:
             raise ResultsError(f"{results.path} holds no load step yet: nothing to draw")
         over = abscissa(results, x)
+        figures = dict(_figures(results, shown, curves, only or DRAWABLE, over))
+        if not figures:
+            raise ResultsError(f"{results.path} has no contact, or no support, of which {' or '.join(only)} could be drawn")
         make_folder(folder)
         paths = []
-        for stem, draw in _figures(results, shown, curves, only or DRAWABLE, over):
-            paths += _save(draw(), folder / stem, ("png",) if stem.startswith("bodies-") else formats or ("png", "pdf"))
+        for stem, draw in figures.items():
+            paths += _save(draw(), folder / stem, ("png",) if stem.startswith("bodies") else formats or ("png", "pdf"))
     return paths
 
 
@@ -92,6 +96,8 @@ def _figures(
     if "curves" in kinds:
         yield from ((f"reactions-{s.name}", partial(draw_reactions, results, s.name, over)) for s in moving_supports(results))
         yield from ((f"curve-{curve.name}", partial(draw_curve, results, curve, over)) for curve in curves)
+    if "bodies" in kinds and not results.problem.contacts:
+        yield "bodies", partial(draw_alone, results.problem, step)
     for number, contact in enumerate(results.problem.contacts):
         if "bodies" in kinds:
             yield f"bodies-{contact.name}", partial(draw_bodies, results.problem, step, number)

@@ -83,6 +83,8 @@ class Results:
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self.path = Path(path)
+        if self.path.is_dir():
+            raise ResultsError(f"{self.path} is a folder: name the results file in it")
         if not self.path.is_file():
             raise ResultsError(f"{self.path} does not exist: run the scene first, or check the path")
         try:

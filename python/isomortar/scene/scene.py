@@ -32,7 +32,7 @@ class Scene:
     folder : Path
         Where its geometry files lie.
     overrides : iterable of str, or mapping of str to value
-        ``path=value`` each, or values by path, see `isomortar.scene.source.apply_overrides`.
+        ``KEY=VALUE`` each, or values by path, see `isomortar.scene.source.apply_overrides`.
 
     Attributes
     ----------

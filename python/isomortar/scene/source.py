@@ -15,7 +15,7 @@ from isomortar.scene.types import listed
 
 _BUNDLED = resources.files("isomortar.scene") / "bundled"
 
-#: SceneChanges of single values: ``path=value`` each, or values by path.
+#: SceneChanges of single values: ``KEY=VALUE`` each, or values by path.
 SceneChanges = Iterable[str] | Mapping[str, Any]
 
 _PATH = re.compile(r"[\w-]+(\.[\w-]+)*")
@@ -69,7 +69,7 @@ def apply_overrides(data: dict[str, Any], overrides: SceneChanges) -> None:
     data : dict
         A scene file's content.
     overrides : iterable of str, or mapping of str to value
-        ``path=value`` each: a dotted path (stages by name or number) and a TOML value; a bare word is taken as text. A mapping has
+        ``KEY=VALUE`` each: a dotted path (stages by name or number) and a TOML value; a bare word is taken as text. A mapping has
         values of Python by path.
 
     Raises
@@ -86,7 +86,7 @@ def apply_overrides(data: dict[str, Any], overrides: SceneChanges) -> None:
     for override in overrides:
         path, equals, value = (part.strip() for part in override.partition("="))
         if not equals or not _PATH.fullmatch(path):
-            raise InputError(f"override {override!r} is not of the form path=value, e.g. solver.max_cuts=4")
+            raise InputError(f"override {override!r} is not of the form KEY=VALUE, e.g. solver.max_cuts=4")
         _set(data, path, _value(value, override))
 
 

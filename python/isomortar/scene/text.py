@@ -7,6 +7,8 @@ from pathlib import Path
 
 from isomortar.errors import InputError
 
+#: How results files begin.
+_RESULTS = b"isomortar results file;"
 #: Marks at the beginning of a file, the longer one of two that begin alike first.
 _MARKS = {
     codecs.BOM_UTF32_LE: "UTF-32",
@@ -26,9 +28,11 @@ def read_text(path: Path) -> str:
     Raises
     ------
     InputError
-        It is in another encoding, which is named.
+        It is in another encoding, which is named, or a results file.
     """
     content = path.read_bytes().removeprefix(codecs.BOM_UTF8)
+    if content.startswith(_RESULTS):
+        raise InputError(f"{path} is a results file, and no text: isomortar info {path} says what it holds")
     marked = next((name for mark, name in _MARKS.items() if content.startswith(mark)), None)
     if marked or b"\0" in content:  # ASCII in UTF-16 without a mark is valid UTF-8, with zeros in between
         raise InputError(f"{path} is {marked or 'UTF-16'} text (or none at all): save it as UTF-8")

@@ -23,7 +23,8 @@ def collect(root: Path) -> list[Benchmark]:
     """
     found = [one for path in sorted((root / FOLDER).glob("*.py")) for one in benchmarks_of(path)]
     if not found:
-        raise InputError(f"no benchmarks: they stand in {root / FOLDER}/*.py; give the folder above with --cases", "bench")
+        where = f"they are run in a checkout, from its folder; or give that above {FOLDER}/ with --cases"
+        raise InputError(f"there are no benchmarks in {root / FOLDER}: {where}", "bench")
     names = [one.name for one in found]
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
