@@ -252,6 +252,14 @@ def test_a_log_goes_on_and_has_what_ended_a_run(invoke: Invoke) -> None:
     assert "3 load steps done, 1 warning" in Path("press.log").read_text().splitlines()[-1]
 
 
+def test_a_log_does_not_go_into_results(invoke: Invoke) -> None:
+    assert invoke("run", "press", *settings(SMALL), "--quiet")[0] == 0
+    before = Path("results/press.h5").read_bytes()
+    code, _, err = invoke("run", "press", *settings(SMALL), "--log", "results/press.h5", "--output", "other.h5")
+    assert (code, "log: results/press.h5 is a results file: name another one" in err) == (2, True)
+    assert Path("results/press.h5").read_bytes() == before
+
+
 def test_loud_and_quiet_at_once_is_refused(invoke: Invoke) -> None:
     code, _, err = invoke("run", "press", "--quiet", "--verbose")
     assert (code, "--log" in err) == (2, True)

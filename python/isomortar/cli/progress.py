@@ -19,8 +19,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from isomortar.cli.words import many
+from isomortar.errors import InputError
 from isomortar.model.entities import Problem
-from isomortar.results.files import make_folder
+from isomortar.results.files import is_marked, make_folder
 from isomortar.solve.record import AugmentationRecord, IterationRecord, Observer, StepResult
 
 if TYPE_CHECKING:
@@ -252,6 +253,11 @@ def progress(problem: Problem, quiet: bool = False, verbose: bool = False, log: 
     log : path-like, optional
         A file to whose end all of that is written, with the time of each line.
 
+    Raises
+    ------
+    InputError
+        The log is a results file.
+
     Examples
     --------
     >>> with isomortar.progress(scene.problem()) as watching:  # doctest: +SKIP
@@ -285,6 +291,8 @@ def _kept(log: str | os.PathLike[str] | None) -> Iterator[Callable[[str], None] 
     if log is None:
         yield None
         return
+    if Path(log).is_file() and is_marked(Path(log)):
+        raise InputError(f"{log} is a results file: name another one", "log")
     make_folder(Path(log).parent)
     with Path(log).open("a", encoding="utf-8", buffering=1) as file:
 
