@@ -29,8 +29,8 @@ from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 #: Largest share of a field's largest value that VTK and the program may be apart by.
 APART = 1e-10
-#: Gauss points a direction for the volume of a rational cell.
-POINTS = 14
+#: Gauss points a direction for the volume of cells of rational functions, and of polynomials of orders up to 4.
+POINTS = {"N": 14, "L": 7}
 #: Places of a cell, in its own coordinates, where fields are compared.
 PLACES = np.random.default_rng(4).uniform(0.0, 1.0, (5, 3))
 
@@ -158,13 +158,13 @@ class Grid:
         values = {name: np.array(rows) @ field[ids].reshape(len(ids), -1) for name, field in self._fields.items() if name != "weights"}
         return {"place": np.array(found), **values}
 
-    def size(self, cell: int) -> float:
+    def size(self, cell: int, count: int) -> float:
         """Volume of a cell or area: VTK's map at Gauss points, differentiated as the polynomial that goes through them there."""
         dimension = self._grid.GetCell(cell).GetCellDimension()
-        points, weights = gauss()
-        at = np.zeros((POINTS**dimension, 3))
+        points, weights = gauss(count)
+        at = np.zeros((count**dimension, 3))
         at[:, :dimension] = np.stack(np.meshgrid(*[points] * dimension, indexing="ij"), axis=-1).reshape(-1, dimension)
-        mapped = self.at(cell, at)["place"].reshape(*[POINTS] * dimension, 3)
+        mapped = self.at(cell, at)["place"].reshape(*[count] * dimension, 3)
         slope = differentiation(points)
         columns = [np.moveaxis(np.tensordot(slope, mapped, axes=(1, axis)), 0, axis) for axis in range(dimension)]
         sizes = np.linalg.det(np.stack(columns, axis=-1)) if dimension == 3 else np.linalg.norm(np.cross(*columns), axis=-1)
@@ -173,9 +173,9 @@ class Grid:
         return float(sizes)
 
 
-def gauss() -> tuple[FloatArray, FloatArray]:
+def gauss(count: int) -> tuple[FloatArray, FloatArray]:
     """Points and weights on [0, 1]."""
-    points, weights = np.polynomial.legendre.leggauss(POINTS)
+    points, weights = np.polynomial.legendre.leggauss(count)
     return 0.5 + 0.5 * points, 0.5 * weights
 
 
@@ -194,10 +194,10 @@ def elements(directions: tuple[Direction, ...]) -> Iterator[list[tuple[float, fl
         yield [(d.boundaries[e], d.boundaries[e + 1]) for d, e in zip(directions, reverse[::-1], strict=True)]
 
 
-def size(net: Net, ends: list[tuple[float, float]]) -> float:
+def size(net: Net, ends: list[tuple[float, float]], count: int) -> float:
     """Volume of an element, or area, as the program's functions have it."""
     directions, weights, control = net
-    points, quadrature = gauss()
+    points, quadrature = gauss(count)
     functions = [functions_at(d, a + points * (b - a)) for d, (a, b) in zip(directions, ends, strict=True)]
     _, slopes = rational_gradient(functions, weights, control)
     scaled = slopes * np.array([b - a for a, b in ends])
@@ -285,7 +285,8 @@ def figures(name: str, family: str, order: int, folder: Path, single: bool = Fal
         bezier = {field: fitted(*net[:2], values) for field, values in exact.items()}
         for number, ends in enumerate(elements(net[0])):
             cell = first + number
-            apart.add("volume", grid.size(cell), size(net, ends))
+            count = POINTS[net[0][0].family]
+            apart.add("volume", grid.size(cell, count), size(net, ends, count))
             seen = grid.at(cell, PLACES)
             for k, local in enumerate(PLACES):
                 apart.add("place", seen["place"][k], value(net, ends, local))
@@ -303,7 +304,8 @@ def figures(name: str, family: str, order: int, folder: Path, single: bool = Fal
     grid, cell = Grid(folder / "run" / "contacts-0002.vtu"), 0
     for surface, vectors in zip(contact_surfaces(problem, last), contact_vectors(problem, last, before), strict=True):
         for ends in elements(surface.directions):
-            apart.add("area", grid.size(cell), size((surface.directions, surface.weights, surface.points), ends))
+            face, count = (surface.directions, surface.weights, surface.points), POINTS[surface.directions[0].family]
+            apart.add("area", grid.size(cell, count), size(face, ends, count))
             seen = grid.at(cell, PLACES)
             for field, values in surface_fields(surface, vectors).items():
                 for k, local in enumerate(PLACES):
