@@ -23,8 +23,7 @@ def collect(root: Path) -> list[Benchmark]:
     """
     found = [one for path in sorted((root / FOLDER).glob("*.py")) for one in benchmarks_of(path)]
     if not found:
-        where = f"they are run in a checkout, from its folder; or give that above {FOLDER}/ with --cases"
-        raise InputError(f"there are no benchmarks in {root / FOLDER}: {where}", "bench")
+        raise InputError(f"no benchmarks in {root / FOLDER}: run it from a checkout's folder, or give that above with --cases", "bench")
     names = [one.name for one in found]
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
