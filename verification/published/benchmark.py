@@ -43,13 +43,14 @@ class Quantity:
 
 @dataclass(frozen=True)
 class Drawing:
-    """Numbers of a case that are drawn: `y` over `x`, and published points of the same, by source, shape (n, 2)."""
+    """Numbers of a case that are drawn: `y` over `x`, and published points of the same, by source, shape (n, 2); `log`: both decades."""
 
     x: str
     y: str
     x_label: str
     y_label: str
     points: dict[str, FloatArray]
+    log: bool = False
 
 
 @dataclass(frozen=True)

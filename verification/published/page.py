@@ -45,7 +45,7 @@ def _section(benchmark: Benchmark, results: Sequence[Result]) -> dict[str, Any]:
 
 def _row(quantity: Quantity, benchmark: Benchmark, found: Found) -> dict[str, Any]:
     """A quantity: our value by the finest discretisation, how far the next one is off it, all others, and what is known."""
-    values = {mesh: float(numbers[quantity.name]) for mesh, numbers in found.items()}
+    values = {mesh: float(numbers[quantity.name]) for mesh, numbers in found.items() if quantity.name in numbers}
     first, second = (values.get(mesh, np.nan) for mesh in benchmark.finest)
     known = [(known.source, known.value, known.value / first - 1.0) for known in quantity.known]
     return {"quantity": quantity, "value": first, "uncertainty": abs(second - first), "known": known, "values": values}
@@ -63,6 +63,6 @@ def _drawn(drawing: Drawing, benchmark: Benchmark, found: Found) -> str:
             axes.plot(numbers[drawing.x], numbers[drawing.y], label=mesh, **looks)
         for mark, (source, rows) in zip(_MARKS, drawing.points.items(), strict=False):
             axes.plot(*rows.T, mark, label=source, markersize=4.0, color=style.GREY, markerfacecolor="white", zorder=5)
-        axes.set(xlabel=drawing.x_label, ylabel=drawing.y_label)
+        axes.set(xlabel=drawing.x_label, ylabel=drawing.y_label, **({"xscale": "log", "yscale": "log"} if drawing.log else {}))
         figure.legend(loc="outside right upper")
         return svg_text(figure, f"{benchmark.case}-{drawing.y}")

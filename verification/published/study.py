@@ -7,14 +7,20 @@ from datetime import datetime
 from functools import partial
 from pathlib import Path
 
-from published import hemisphere, ironing, page, punches
+from published import cylinders, hemisphere, ironing, page, punches, roller
 from published.benchmark import Benchmark
 
 from isomortar.harness.collection import collect
 from isomortar.harness.runner import Result, select
 from isomortar.harness.study import Conclusion, Study
 
-BENCHMARKS: tuple[Benchmark, ...] = (*punches.BENCHMARKS, *ironing.BENCHMARKS, *hemisphere.BENCHMARKS)
+BENCHMARKS: tuple[Benchmark, ...] = (
+    *cylinders.BENCHMARKS,
+    *roller.BENCHMARKS,
+    *punches.BENCHMARKS,
+    *ironing.BENCHMARKS,
+    *hemisphere.BENCHMARKS,
+)
 
 
 def study(folder: Path) -> Study:
