@@ -96,10 +96,11 @@ class Found:
 
 def measure(problem: Problem) -> list[Found]:
     """Run, and take the pressures along the first radius after every load step; all others are the same by symmetry."""
-    return [_found(contact_surfaces(problem, result)[0], result.contacts[0]) for result in Simulation(problem).run()]
+    return [profile(contact_surfaces(problem, result)[0], result.contacts[0]) for result in Simulation(problem).run()]
 
 
-def _found(surface: ContactSurface, result: ContactResult) -> Found:
+def profile(surface: ContactSurface, result: ContactResult) -> Found:
+    """Pressures along the first radius of a quarter, whose first surface coordinate is along it."""
     along, around = (sampling_matrix(line, SAMPLES) for line in surface.directions)
     radius = along, around[:1]
     points, pressure, _ = surface.fields(radius)

@@ -7,7 +7,7 @@ from datetime import datetime
 from functools import partial
 from pathlib import Path
 
-from published import cylinders, hemisphere, ironing, page, punches, roller
+from published import cylinders, hemisphere, ironing, page, punches, roller, spheres
 from published.benchmark import Benchmark
 
 from isomortar.harness.collection import collect
@@ -17,6 +17,7 @@ from isomortar.harness.study import Conclusion, Study
 BENCHMARKS: tuple[Benchmark, ...] = (
     *cylinders.BENCHMARKS,
     *roller.BENCHMARKS,
+    *spheres.BENCHMARKS,
     *punches.BENCHMARKS,
     *ironing.BENCHMARKS,
     *hemisphere.BENCHMARKS,
