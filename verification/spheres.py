@@ -56,11 +56,12 @@ class Cap:
         grid[..., 2], grid[..., 3] = np.multiply.outer(-z if below else z, arc), np.multiply.outer(weight, arc)
         return fitted((radial, _QUARTER, upward), np.moveaxis(grid, 2, 1), (0, 2))
 
-    def block(self, kind: str, below: bool = False) -> Patch:
-        """The body over the square -width <= x, y <= width; u, v, w run along x, y, z. Nowhere singular."""
+    def block(self, kind: str, below: bool = False, half: bool = False) -> Patch:
+        """The body over the square -width <= x, y <= width, or its half above y = 0; u, v, w run along x, y, z. Nowhere singular."""
         across, upward = self._across(kind), self._upward(kind, below)
-        x, y, z, weight = self._column(*np.meshgrid(across.greville, across.greville, self._share(upward, below), indexing="ij"))
-        return fitted((across, across, upward), np.stack([x, y, -z if below else z, weight], axis=-1), (0, 1, 2))
+        beside = self._radial(kind) if half else across
+        x, y, z, weight = self._column(*np.meshgrid(across.greville, beside.greville, self._share(upward, below), indexing="ij"))
+        return fitted((across, beside, upward), np.stack([x, y, -z if below else z, weight], axis=-1), (0, 1, 2))
 
     def cylinder(self, kind: str, length: float, below: bool = False) -> Patch:
         """The body over -width <= x <= width with a cylinder about the y-axis in place of the sphere, one element long."""

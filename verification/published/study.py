@@ -7,7 +7,7 @@ from datetime import datetime
 from functools import partial
 from pathlib import Path
 
-from published import cylinders, hemisphere, ironing, page, punches, roller, spheres
+from published import cylinders, hemisphere, ironing, page, punches, roller, sheared, spheres
 from published.benchmark import Benchmark
 
 from isomortar.harness.collection import collect
@@ -18,6 +18,7 @@ BENCHMARKS: tuple[Benchmark, ...] = (
     *cylinders.BENCHMARKS,
     *roller.BENCHMARKS,
     *spheres.BENCHMARKS,
+    *sheared.BENCHMARKS,
     *punches.BENCHMARKS,
     *ironing.BENCHMARKS,
     *hemisphere.BENCHMARKS,
