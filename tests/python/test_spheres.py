@@ -16,6 +16,7 @@ CAP = spheres["Cap"](radius=2.0, width=1.5, height=1.2, fine=0.4, elements=4, gr
 SHAPES = {
     "revolved": lambda kind, below: CAP.revolved(kind, below),
     "block": lambda kind, below: CAP.block(kind, below),
+    "half block": lambda kind, below: CAP.block(kind, below, half=True),
     "cylinder": lambda kind, below: CAP.cylinder(kind, 0.7, below),
 }
 
