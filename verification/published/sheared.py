@@ -120,6 +120,7 @@ _THEORY: Theory = theory("sphere", FORCE, DRAWN * FRICTION * FORCE)
 _SOURCE = "Cattaneo, Mindlin"
 _ALONG, _GROWING = np.linspace(-1.2, 1.2, 121), np.linspace(0.0, 1.0, 101)
 _TRACTIONS = np.column_stack([_ALONG, _THEORY.traction(_ALONG * CONTACT) / _THEORY.peak])
+_WITHIN = "within a quarter of an element, which is a sixth of the contact radius"
 BENCHMARKS = (
     Benchmark(
         "sheared_by_force",
@@ -129,7 +130,10 @@ BENCHMARKS = (
         "Stick radii are told by the tractions in the middle, which are 1 - c / a of what friction bears: by elements that slip they would "
         "be known to an element only.",
         ("N2 fine", "N3 coarse"),
-        tuple(Quantity(f"stick at {share:g}", f"c / a at Q = {share:g} mu P", "", (Known(_SOURCE, _exact(share)),)) for share in SHARES),
+        tuple(
+            Quantity(f"stick at {share:g}", f"c / a at Q = {share:g} mu P", "", (Known(_SOURCE, _exact(share)),), _WITHIN)
+            for share in SHARES
+        ),
         (
             Drawing("shares", "sticks", "Q / mu P", "c / a", {_SOURCE: np.column_stack([_GROWING, np.cbrt(1.0 - _GROWING)])}),
             Drawing("places", "tractions", "x / a", f"traction over mu p0, Q = {DRAWN:g} mu P", {_SOURCE: _TRACTIONS}),
