@@ -13,10 +13,11 @@ from isomortar.solve.timing import COUNTERS
 
 PAGE = Path(__file__).parent.parent / "docs" / "results.md"
 _BEGIN, _END = "<!-- tables: python tools/document_results.py -->\n", "<!-- end of the tables -->\n"
-#: Friction, so that all there is of contact is written; two steps, so that there are rates; few elements, so that systems are general.
+#: Friction, so that all there is of contact is written; two steps, so that there are rates; one element of order 1, so that systems are general.
 _SCENE = """
 format = 1
 bodies.block.geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }
+bodies.block.mesh = { order = [1, 1, 1] }
 contacts.floor = { slave = "block.w0", plane = { point = [0, 0, 0], normal = [0, 0, 1] }, friction = 0.5 }
 supports.top.face = "block.w1"
 loads.own = { body = "block", weight = [0, 0, -0.1] }

@@ -39,3 +39,10 @@ def test_twin_watches_bounds() -> None:
     ended = subprocess.run([sys.executable, "-c", _OUT_OF_BOUNDS], capture_output=True, text=True)
     assert ended.returncode == 2
     assert "bound mismatch" in ended.stderr
+
+
+def test_the_kernel_calls_no_vector_functions() -> None:
+    """The compiler puts them into plain loops; they have fewer digits than the others, and none where numbers are not rounded to nearest."""
+    needed = subprocess.run(["ldd", _kernel.__file__], capture_output=True, text=True, check=True).stdout
+    assert "libm.so" in needed
+    assert "libmvec" not in needed

@@ -63,7 +63,7 @@ def test_blocks_of_a_page_share_a_folder_and_what_they_print_follows_them(manual
     page.write_text(
         "```toml\n# here.toml\na = 1\n```\n\n```python\nprint(open('here.toml').read())\n```\n\n```text\nfalse\n```\n", encoding="utf-8"
     )
-    assert manual.run_page(page) == 2
+    assert manual.run_page(page) == (2, None)
     assert "```text\n# here.toml\na = 1\n```\n\n```text\nfalse\n```\n" in page.read_text(encoding="utf-8")
 
 

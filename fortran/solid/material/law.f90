@@ -22,6 +22,8 @@ module isomortar_solid_material_law
     real(wp), allocatable :: gradient(:, :, :)
     !> J = det F, J - 1 and ln J (0 where J is not above 0).
     real(wp), allocatable :: jacobian(:), growth(:), log_jacobian(:)
+    !> J^(-2/3) (1 where J is not above 0).
+    real(wp), allocatable :: isochoric(:)
     !> b = F Fᵀ, and its deviator from b - 1: no cancellation near the reference state.
     real(wp), allocatable :: left_cauchy_green(:, :, :), deviator(:, :, :)
     !> tr b.
@@ -72,9 +74,13 @@ contains
       self%growth(:) = self%growth + (h(:, 1, 1) + h(:, 2, 2) + h(:, 3, 3)) + (h(:, 1, 1) * h(:, 2, 2) - h(:, 1, 2) * h(:, 2, 1) &
         + h(:, 2, 2) * h(:, 3, 3) - h(:, 2, 3) * h(:, 3, 2) + h(:, 1, 1) * h(:, 3, 3) - h(:, 1, 3) * h(:, 3, 1))
       self%jacobian(:) = 1.0_wp + self%growth
-      do q = 1, size(h, 1)
+      do q = 1, size(h, 1) ! one by one: vector functions of libraries have fewer digits, and none unless numbers are rounded to nearest
         self%log_jacobian(q) = 0.0_wp
-        if (self%jacobian(q) > 0.0_wp) self%log_jacobian(q) = log1p(self%growth(q))
+        self%isochoric(q) = 1.0_wp
+        if (self%jacobian(q) > 0.0_wp) then
+          self%log_jacobian(q) = log1p(self%growth(q))
+          self%isochoric(q) = exp(-2.0_wp / 3.0_wp * self%log_jacobian(q))
+        end if
       end do
       do k = 1, 3
         do i = 1, k
@@ -99,9 +105,10 @@ contains
 
     if (allocated(self%jacobian)) then
       if (size(self%jacobian) == m) return
-      deallocate (self%gradient, self%jacobian, self%growth, self%log_jacobian, self%left_cauchy_green, self%deviator, self%trace)
+      deallocate (self%gradient, self%jacobian, self%growth, self%log_jacobian, self%isochoric)
+      deallocate (self%left_cauchy_green, self%deviator, self%trace)
     end if
-    allocate (self%gradient(m, 3, 3), self%jacobian(m), self%growth(m), self%log_jacobian(m))
+    allocate (self%gradient(m, 3, 3), self%jacobian(m), self%growth(m), self%log_jacobian(m), self%isochoric(m))
     allocate (self%left_cauchy_green(m, 3, 3), self%deviator(m, 3, 3), self%trace(m))
   end subroutine reserve
 

@@ -19,7 +19,7 @@ contains
     real(wp) :: scale(size(state%jacobian))
     integer :: i, k
 
-    scale = isochoric(state, shear)
+    scale = shear * state%isochoric
     do k = 1, 3
       do i = 1, 3
         stress(:, i, k) = scale * state%deviator(:, i, k)
@@ -37,7 +37,7 @@ contains
     real(wp) :: c(size(state%jacobian), 4)
     integer :: i, j, k, l, pair
 
-    c(:, 3) = isochoric(state, shear)
+    c(:, 3) = shear * state%isochoric
     c(:, 1) = slope + 2.0_wp / 9.0_wp * c(:, 3) * state%trace
     c(:, 2) = c(:, 3) * state%trace / 3.0_wp - spherical
     c(:, 4) = 2.0_wp / 3.0_wp * c(:, 3)
@@ -58,14 +58,5 @@ contains
       end do
     end associate
   end subroutine split_tangent
-
-  !> A2 J^(-2/3) at all points.
-  pure function isochoric(state, shear)
-    type(stretch_t), intent(in) :: state
-    real(wp), intent(in) :: shear
-    real(wp) :: isochoric(size(state%jacobian))
-
-    isochoric = shear * exp(-2.0_wp / 3.0_wp * state%log_jacobian)
-  end function isochoric
 
 end module isomortar_solid_material_split
