@@ -13,7 +13,7 @@ from isomortar.solve.timing import COUNTERS
 
 PAGE = Path(__file__).parent.parent / "docs" / "results.md"
 _BEGIN, _END = "<!-- tables: python tools/document_results.py -->\n", "<!-- end of the tables -->\n"
-#: Friction, so that all there is of contact is written; two steps, so that there are rates; one element of order 1, so that systems are general.
+#: Friction, so that all there is of contact is written; two steps, for rates; one element of order 1, so that systems are general.
 _SCENE = """
 format = 1
 bodies.block.geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }

@@ -42,7 +42,7 @@ def test_twin_watches_bounds() -> None:
 
 
 def test_the_kernel_calls_no_vector_functions() -> None:
-    """The compiler puts them into plain loops; they have fewer digits than the others, and none where numbers are not rounded to nearest."""
+    """The compiler puts them into plain loops; they have fewer digits than the others, and none unless numbers are rounded to nearest."""
     needed = subprocess.run(["ldd", _kernel.__file__], capture_output=True, text=True, check=True).stdout
     assert "libm.so" in needed
     assert "libmvec" not in needed

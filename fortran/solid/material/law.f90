@@ -74,7 +74,7 @@ contains
       self%growth(:) = self%growth + (h(:, 1, 1) + h(:, 2, 2) + h(:, 3, 3)) + (h(:, 1, 1) * h(:, 2, 2) - h(:, 1, 2) * h(:, 2, 1) &
         + h(:, 2, 2) * h(:, 3, 3) - h(:, 2, 3) * h(:, 3, 2) + h(:, 1, 1) * h(:, 3, 3) - h(:, 1, 3) * h(:, 3, 1))
       self%jacobian(:) = 1.0_wp + self%growth
-      do q = 1, size(h, 1) ! one by one: vector functions of libraries have fewer digits, and none unless numbers are rounded to nearest
+      do q = 1, size(h, 1) ! one by one: vector functions have fewer digits, and none where numbers are not rounded to nearest
         self%log_jacobian(q) = 0.0_wp
         self%isochoric(q) = 1.0_wp
         if (self%jacobian(q) > 0.0_wp) then
