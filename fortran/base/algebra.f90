@@ -4,7 +4,7 @@ module isomortar_base_algebra
   implicit none
   private
 
-  public :: add_product, cross, determinant, determinant2, first_not_finite, inverse, inverse2, identity, trace, log1p
+  public :: add_product, cross, determinant, determinant2, first_not_finite, inverse, inverse2, identity, log1p
 
   !> 3x3 unit matrix.
   real(wp), parameter :: identity(3, 3) = reshape([1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [3, 3])
@@ -60,14 +60,6 @@ contains
     b(2, 1) = -a(2, 1)
     b = b / determinant2(a)
   end function inverse2
-
-  !> Trace of a 3x3 matrix `a`.
-  pure function trace(a) result(t)
-    real(wp), intent(in) :: a(3, 3)
-    real(wp) :: t
-
-    t = a(1, 1) + a(2, 2) + a(3, 3)
-  end function trace
 
   !> ln(1 + `y`) without losing the digits of a small `y` (theory 1.5, Kahan's correction of the sum), in every mode of rounding.
   elemental function log1p(y) result(r)
