@@ -117,22 +117,24 @@ def _idle_motions(problem: Problem, support: Support) -> Iterator[str]:
 
 def _pushed_in(problem: Problem) -> Iterator[str]:
     """Slave control points that supports put behind a rigid plane: they cannot give way."""
+    onto = [(contact, contact.master) for contact in problem.contacts if isinstance(contact.master, RigidPlane)]
+    if not onto:
+        return
     numbering = Numbering(problem)
     supports = Supports(problem, numbering)
-    for contact in problem.contacts:
-        if isinstance(contact.master, RigidPlane):
-            sheet, normal = Sheet.of(problem, contact.slave), unit(contact.master.normal)
-            points = np.unique(sheet.points(numbering)[sheet.patch.face_points(sheet.face)])
-            points = points[np.all(supports.held[points] | (np.abs(normal) < constants.NO_PART), axis=1)]
-            ends = np.cumsum([stage.steps for stage in problem.stages])[: _unchanged(problem)]
-            depths = [-((supports.place(float(end))[points] - contact.master.point) @ normal).min(initial=np.inf) for end in ends]
-            if max(depths, default=0.0) > constants.NO_PART * sheet.size:
-                stage = problem.stages[int(np.argmax(depths))].name
-                yield (
-                    f"contact {contact.name!r}: supports put {len(points)} of its slave control points behind the plane, by "
-                    f"{max(depths):.3g} at the end of stage {stage!r}, and those cannot give way. Hold fewer components, or end the motion "
-                    "at the plane"
-                )
+    for contact, plane in onto:
+        sheet, normal = Sheet.of(problem, contact.slave), unit(plane.normal)
+        points = np.unique(sheet.points(numbering)[sheet.patch.face_points(sheet.face)])
+        points = points[np.all(supports.held[points] | (np.abs(normal) < constants.NO_PART), axis=1)]
+        ends = np.cumsum([stage.steps for stage in problem.stages])[: _unchanged(problem)]
+        depths = [-((supports.place(float(end))[points] - plane.point) @ normal).min(initial=np.inf) for end in ends]
+        if max(depths, default=0.0) > constants.NO_PART * sheet.size:
+            stage = problem.stages[int(np.argmax(depths))].name
+            yield (
+                f"contact {contact.name!r}: supports put {len(points)} of its slave control points behind the plane, by "
+                f"{max(depths):.3g} at the end of stage {stage!r}, and those cannot give way. Hold fewer components, or end the motion "
+                "at the plane"
+            )
 
 
 def _unchanged(problem: Problem) -> int:
