@@ -14,7 +14,12 @@ SOURCES = Path(isomortar.__file__).parent
 def test_a_start_compiles_nothing():
     if not hasattr(isomortar.__spec__.loader, "set_data") or "editable" not in type(isomortar.__spec__.loader).__module__:
         pytest.skip("an installed package is compiled by its installer")
-    said = subprocess.run([sys.executable, "-v", "-c", "import isomortar.cli.commands, isomortar.solve.simulation"], capture_output=True, text=True, check=True).stderr
+    said = subprocess.run(
+        [sys.executable, "-v", "-c", "import isomortar.cli.commands, isomortar.solve.simulation"],
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stderr
     taken = [line for line in said.splitlines() if line.startswith("# code object from") and str(SOURCES) in line]
     compiled = [line for line in taken if "__pycache__" not in line]
     assert len(taken) > 20

@@ -23,8 +23,6 @@ def _along(patch: Patch, points: FloatArray, axis: int) -> FloatArray:
     if direction.family == "L":
         return steps.reshape(direction.elements, direction.order).sum(axis=1)
     spans = np.diff(direction.knots[1:-1])
-    length = np.zeros(len(spans))
-    for k, step in enumerate(steps):  # goes over `order` spans, as far over each as that is long
-        over = slice(k, k + direction.order)
-        length[over] += step * spans[over] / spans[over].sum()
-    return length[spans > 0.0]
+    over = np.arange(len(steps))[:, None] + np.arange(direction.order)  # each goes over `order` spans, as far over each as that is long
+    shares = steps[:, None] * spans[over] / spans[over].sum(axis=1, keepdims=True)
+    return np.bincount(over.ravel(), shares.ravel(), len(spans))[spans > 0.0]

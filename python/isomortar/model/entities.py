@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Annotated, Literal, get_args
 
 import numpy as np
@@ -95,7 +96,7 @@ class Body:
         """Stiffness without lateral strain, theory 5.7; that of a rigid body is infinite."""
         return np.inf if self.rigid else self.material.modulus
 
-    @property
+    @cached_property
     def size(self) -> float:
         """Largest extent of its control points along a coordinate."""
         return float(np.ptp(self.patch.control_points, axis=0).max())

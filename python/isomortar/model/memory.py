@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import resource
 from contextlib import suppress
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -53,7 +53,12 @@ def _neighbours(direction: Direction) -> np.ndarray:
 
 def factor_entries(patch: Patch) -> float:
     """Entries of both factors, were the unknowns eliminated by nested dissection of the grid of control points (theory 9.3)."""
-    widths = tuple(1 if d.family == "L" else d.order for d in patch.directions)
+    return _factor_entries(patch.shape, tuple(1 if d.family == "L" else d.order for d in patch.directions))
+
+
+@lru_cache(maxsize=64)
+def _factor_entries(shape: tuple[int, ...], widths: tuple[int, ...]) -> float:
+    """The same, by numbers of control points and by how many of them keep the two sides of a separator apart."""
 
     @cache
     def entries(size: tuple[int, ...], cut: tuple[int, ...]) -> float:
@@ -70,7 +75,7 @@ def factor_entries(patch: Patch) -> float:
         separator = np.prod(size) / size[axis] * widths[axis]
         return halves + _front(separator, sides)
 
-    return entries(patch.shape, (0, 0, 0))
+    return entries(shape, (0, 0, 0))
 
 
 def _front(points: float, border: float) -> float:

@@ -27,7 +27,7 @@ def rigid_rank(problem: Problem, piece: tuple[Body, ...], stage: int = 0) -> int
 def _prevented(support: Support, arms: FloatArray, centre: FloatArray) -> FloatArray:
     """What rigid motions do to a support's face beyond what it goes along with as a plate, shape (rows, 6)."""
     carried = list(support.carried)
-    motions = np.stack([*np.broadcast_to(np.eye(3)[:, None], (3, *arms.shape)), *(np.cross(axis, arms) for axis in np.eye(3))])
+    motions = np.stack([*np.broadcast_to(np.eye(3)[:, None], (3, *arms.shape)), *np.cross(np.eye(3)[:, None], arms)])
     rows = motions[:, :, carried].reshape(6, -1).T
     free = [motions[k] for k in support.pressed]
     free += [np.cross(unit(support.axis), arms - centre)] if support.moment is not None else []

@@ -16,6 +16,9 @@ from isomortar.model.numbering import Numbering
 from isomortar.model.solid import Solid
 from isomortar.model.supports import Supports
 
+#: Numbers between these have squares to the last bit, and sums of squares; as shares of each other, too.
+_USUAL = (1e-40, 1e40)
+
 
 @dataclass(frozen=True)
 class Scales:
@@ -45,7 +48,7 @@ class PieceMeasures:
     def norms(self, forces: FloatArray) -> FloatArray:
         """Norm of the forces, shape (control points, 3), on each piece, shape (pieces,)."""
         size = _power_of_two(forces)
-        scaled = forces / size
+        scaled = forces if size == 1.0 else forces / size
         return np.sqrt(np.add.reduceat(np.einsum("ij,ij->i", scaled, scaled), self._starts)) * size
 
     def free_norms(self, forces: FloatArray) -> FloatArray:
@@ -76,5 +79,6 @@ class PieceMeasures:
 
 
 def _power_of_two(values: FloatArray) -> float:
-    """The power of two next to the largest value: divided by it, squares neither vanish nor overflow, and no bit changes."""
-    return float(np.ldexp(1.0, np.frexp(np.max(np.abs(values), initial=0.0))[1]))
+    """One, or where squares might vanish or overflow the power of two next to the largest value: divided by it no bit changes."""
+    largest = np.abs(values).max(initial=0.0)
+    return 1.0 if _USUAL[0] < largest < _USUAL[1] else float(np.ldexp(1.0, np.frexp(largest)[1]))
