@@ -57,7 +57,7 @@ contains
     type(work_t), intent(inout) :: work
     type(sample_t) :: sample
     real(wp) :: field(3), force(3), row(all_components)
-    integer :: a, e, n, q
+    integer :: a, e, k, n, q
 
     n = size(forces, 2)
     do e = 1, size(slave%test%nodes, 2)
@@ -66,13 +66,15 @@ contains
         if (.not. projections%found(q)) cycle
         call take_sample(slave, map, positions, projections, e, q, merge(for_forces, for_gap, with_friction), sample, work)
         field = fields_at(slave, multipliers, e, q)
-        associate (components => 3 * size(sample%coefficients, 2))
+        associate (components => 3 * size(sample%coefficients, 2), slip => sample%variations%slip)
           row(:components) = slave%area(q) * (field(1) * sample%variations%pressure_work(:components) &
-            + matmul(sample%variations%slip(:components, :), field(2:3)))
+            + field(2) * slip(:components, 1) + field(3) * slip(:components, 2))
         end associate
         do a = 1, size(sample%points)
-          force = matmul(reshape(row(1:3 * size(sample%coefficients, 2)), [3, size(sample%coefficients, 2)]), &
-            sample%coefficients(a, :))
+          force = 0.0_wp
+          do k = 1, size(sample%coefficients, 2)
+            force = force + sample%coefficients(a, k) * row(3 * k - 2:3 * k)
+          end do
           if (sample%points(a) <= n) then
             forces(:, sample%points(a)) = forces(:, sample%points(a)) + force
           else

@@ -327,17 +327,20 @@ contains
     type(reached_t), intent(in) :: reached
     real(wp), intent(in) :: forms(:, :, :, :)
     real(wp) :: carried(size(reached%point), 3, size(forms, 3), size(forms, 4))
-    integer :: a, k, kind, row
+    integer :: a, i, k, kind, row
 
     carried = 0.0_wp
     do kind = 1, size(forms, 4)
       do row = 1, size(forms, 3)
         do a = 1, size(forms, 1)
-          do k = reached%start(a - 1) + 1, reached%start(a)
-            associate (target => carried(reached%at(k), :, row, kind))
-              target = target + matmul(forms(a, :, row, kind), reached%slope(:, :, k))
-            end associate
-          end do
+          associate (form => forms(a, :, row, kind))
+            do k = reached%start(a - 1) + 1, reached%start(a)
+              do i = 1, 3 ! not by matmul, whose result would be put on the heap each time
+                carried(reached%at(k), i, row, kind) = carried(reached%at(k), i, row, kind) + form(1) * reached%slope(1, i, k) &
+                  + form(2) * reached%slope(2, i, k) + form(3) * reached%slope(3, i, k)
+              end do
+            end do
+          end associate
         end do
       end do
     end do
@@ -349,7 +352,7 @@ contains
     type(reached_t), intent(in) :: reached
     real(wp), intent(in) :: form(:, :, :, :)
     real(wp) :: carried(size(reached%point), 3, 3, size(reached%point)), left(size(form, 1), 3, 3, size(reached%point))
-    integer :: a, i, j, k
+    integer :: a, b, i, j, k
 
     left = 0.0_wp
     carried = 0.0_wp
@@ -366,12 +369,15 @@ contains
     end do
     do a = 1, size(left, 4)
       do i = 1, 3
-        do j = 1, size(form, 1)
-          do k = reached%start(j - 1) + 1, reached%start(j)
-            associate (target => carried(reached%at(k), i, :, a))
-              target = target + matmul(left(j, i, :, a), reached%slope(:, :, k))
-            end associate
-          end do
+        do b = 1, size(form, 1)
+          associate (row => left(b, i, :, a))
+            do k = reached%start(b - 1) + 1, reached%start(b)
+              do j = 1, 3
+                carried(reached%at(k), i, j, a) = carried(reached%at(k), i, j, a) + row(1) * reached%slope(1, j, k) &
+                  + row(2) * reached%slope(2, j, k) + row(3) * reached%slope(3, j, k)
+              end do
+            end do
+          end associate
         end do
       end do
     end do
