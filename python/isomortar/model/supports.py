@@ -309,12 +309,12 @@ class Supports:
         ndarray, shape (control points, 3)
             Rows of control points without support hold their reference positions; those of plates are as if no force had moved them.
         """
-        found = self._numbering.reference.copy()
+        found, shares = self._numbering.reference.copy(), progress(self._problem.stages, time)
         for k in self.present:
             support, points = self._problem.supports[k], self.points[k]
-            shift, _ = moved_by(support, progress(self._problem.stages, time))
+            shift, angle = moved_by(support, shares)
             arms = self._shapes[k] - np.asarray(support.centre)
-            turned = rotation(unit(support.axis), np.radians(self.angle(support, time, positions)))
+            turned = rotation(unit(support.axis), np.radians(angle if positions is None else self.angle(support, time, positions)))
             target = np.asarray(support.centre, dtype=np.float64) + shift + arms @ turned.T
             for component in support.carried:
                 found[points, component] = target[:, component]
