@@ -25,4 +25,6 @@ def _along(patch: Patch, points: FloatArray, axis: int) -> FloatArray:
     spans = np.diff(direction.knots[1:-1])
     over = np.arange(len(steps))[:, None] + np.arange(direction.order)  # each goes over `order` spans, as far over each as that is long
     shares = steps[:, None] * spans[over] / spans[over].sum(axis=1, keepdims=True)
-    return np.bincount(over.ravel(), weights=shares.ravel(), minlength=len(spans))[spans > 0.0]
+    length = np.zeros(len(spans))
+    np.add.at(length, over, shares)
+    return length[spans > 0.0]
