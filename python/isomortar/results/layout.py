@@ -192,7 +192,8 @@ _ITERATIONS = Quantity(
         ]
     ),
     "1",
-    "Newton iterations with the relative residual before the solve, constraints by state, number of notes",
+    "Newton iterations with what was left before the solve (the relative residual, or what the monolithic method is off the contact "
+    "conditions where that is more), constraints by state, number of notes",
 )
 
 _NOTES = Quantity(TEXT, "text", "what acted in a Newton iteration, in the order of the iterations")

@@ -69,7 +69,7 @@ class State:
 
 @dataclass(frozen=True)
 class IterationRecord:
-    """One Newton iteration: number, relative residual before the solve, counts of constraints by state, what acted."""
+    """One Newton iteration: number, what was left before the solve (`Iterate.merit`), counts of constraints by state, what acted."""
 
     iteration: int
     residual: float
