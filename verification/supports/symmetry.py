@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -169,8 +170,28 @@ def part_of_pair() -> dict[str, float]:
 )
 def half_of_curved_pair(projection: str, order: int) -> dict[str, float]:
     """Relative error of the forces of all load steps, and load steps with slip."""
-    text = CURVED.format(projection=projection, order=[order] * 3)
-    halves, wholes = (list(Simulation(Scene.from_toml(text, overrides=cut).problem()).run()) for cut in (["symmetry={y=0.0}"], []))
+    return half_of_whole(CURVED.format(projection=projection, order=[order] * 3))
+
+
+@case(
+    claim="Half of two symmetric bodies is that of the whole ones also where the master has no kink but in the plane, and nobody names a projection.",
+    tier=lambda family: "gate" if family == "N" else "nightly",
+    grid={"family": ("N", "L")},
+    bounds={
+        "forces": Bound(at_most=1e-9, reason="theory: the same equations by symmetry; Newton's method stops at 1e-12"),
+        "sliding": Bound(at_least=1.0, reason="definition: points slip in some load step"),
+    },
+)
+def half_of_only_kink(family: str) -> dict[str, float]:
+    """The same of a master with two elements across the plane, linear splines or quadratic Lagrange ones."""
+    text = CURVED.replace('projection = "{projection}"\n', "").format(order=[1 if family == "N" else 2] * 3)
+    return half_of_whole(text, [f"bodies.base.mesh.family={[family] * 3}", "bodies.base.mesh.elements=[1, 2, 1]"])
+
+
+def half_of_whole(text: str, overrides: Sequence[str] = ()) -> dict[str, float]:
+    """Half of a scene against the whole: relative error of the forces of all load steps, and load steps with slip."""
+    problems = [Scene.from_toml(text, overrides=[*overrides, *cut]).problem() for cut in (["symmetry={y=0.0}"], [])]
+    halves, wholes = (list(Simulation(problem).run()) for problem in problems)
     half, whole = (np.array([result.reactions[0].force for result in results]) for results in (halves, wholes))
     sliding = [result.contacts[0].slip > 0 for result in halves]
     return {"forces": float(np.abs(half - whole).max() / np.abs(whole).max()), "sliding": float(sum(sliding))}

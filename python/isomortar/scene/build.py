@@ -65,7 +65,8 @@ def build(scene: SceneTable, name: str, folder: Path) -> Problem:
     _check_size(meshes)
     _check_curves(scene)
     planes = tuple(SymmetryPlane("xyz".index(axis), place) for axis, place in sorted(scene.symmetry.items()))
-    bodies, cuts = upper_part(tuple(_body(body, table, coarse[body], meshes[body], scene) for body, table in scene.bodies.items()), planes)
+    whole = tuple(_body(body, table, coarse[body], meshes[body], scene) for body, table in scene.bodies.items())
+    bodies, cuts = upper_part(whole, planes)
     by_name = {body.name: body for body in bodies}
     problem = Problem(
         name=scene.name or name,
@@ -81,7 +82,7 @@ def build(scene: SceneTable, name: str, folder: Path) -> Problem:
         symmetry=planes,
         loads=tuple(_load(load, table, by_name, _factors(scene, load)) for load, table in scene.loads.items()),
     )
-    contacts = tuple(_contact(contact, table, problem) for contact, table in scene.contacts.items())
+    contacts = tuple(_contact(contact, table, problem, replace(problem, bodies=whole)) for contact, table in scene.contacts.items())
     return held_on_planes(replace(problem, contacts=contacts), cuts)
 
 
@@ -195,15 +196,15 @@ def _joint(faces: tuple[str, str], bodies: dict[str, Body], field: str) -> tuple
     return one, other
 
 
-def _contact(name: str, table: ContactTable, problem: Problem) -> Contact:
-    """A contact of a problem that has its bodies."""
+def _contact(name: str, table: ContactTable, problem: Problem, whole: Problem) -> Contact:
+    """A contact of a problem that has its bodies; what planes of symmetry cut has its kinks there in the whole."""
     path = f"contacts.{name}"
     slave, slave_sheet = _side(table.slave, problem, f"{path}.slave")
     master: Face | RigidPlane
     if table.plane:
         master, by_default = _plane(table.plane, f"{path}.plane"), False
     else:
-        master, sheet = _side(table.master or (), problem, f"{path}.master")
+        master, sheet = _side(table.master or (), whole, f"{path}.master")
         # The paper's slip sum needs closest points; at a pole there are no averaged normals.
         wanted = table.projection is None and problem.settings.slip_sum != "paper"
         by_default = wanted and has_kinks(sheet) and not has_pole(sheet)
