@@ -154,10 +154,12 @@ def of_problems(patch: pytest.MonkeyPatch) -> Told:
     upper = pair.body("upper").patch
     points = upper.control_points.copy()
     points[4] += [0.5, 0.5, 0.5]
-    torn = replace(
-        pair, bodies=tuple(replace(b, patch=replace(upper, control_points=points)) if b.name == "upper" else b for b in pair.bodies)
+    torn, mirrored = (
+        replace(pair, bodies=tuple(replace(b, patch=replace(upper, control_points=moved)) if b.name == "upper" else b for b in pair.bodies))
+        for moved in (points, upper.control_points * [-1, 1, 1])
     )
     yield "folded", refusal(lambda: Simulation(torn))
+    yield "left-handed", refusal(lambda: Simulation(mirrored))
     for name, (text, planes, *_) in REFUSED.items():
         yield f"symmetry: {name}", _of(text, f"symmetry={{ {planes} }}")
     raised = "bodies.block.mesh={ order = 2, contact_order = 3, elements = [4, 4, 2] }"

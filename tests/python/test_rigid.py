@@ -124,11 +124,11 @@ def solved(problem: Problem) -> np.ndarray:
     return np.array([reaction.force for reaction in list(Simulation(problem).run())[-1].reactions])
 
 
-def test_folded_bodies_are_refused() -> None:
+def test_left_handed_bodies_are_refused() -> None:
     """Their surface would be seen from inside."""
     problem = Scene.from_toml(GOOD).problem()
     bodies = [replace(b, patch=replace(b.patch, control_points=b.patch.control_points * [1, 1, -1])) for b in problem.bodies if b.rigid]
-    with pytest.raises(InputError, match=r"body 'left': .*folded"):
+    with pytest.raises(InputError, match=r"body 'left' is left-handed"):
         Simulation(replace(problem, bodies=(problem.bodies[0], *bodies), contacts=()))
 
 

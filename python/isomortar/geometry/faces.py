@@ -33,15 +33,14 @@ class Cells:
 
 
 def cells(patch: Patch, face: str) -> Cells:
-    """The cells of a face, whichever handedness its patch has."""
+    """The cells of a face. Its coordinates say which way is out, not where the opposite face is: bodies may be bent round."""
     grid, other = _grid(patch, face), _grid(patch, opposite(face))
     across = np.cross(grid[1:, 1:] - grid[:-1, :-1], grid[1:, :-1] - grid[:-1, 1:]).reshape(-1, 3)
-    inward = _centres(other) - _centres(grid)
-    if np.einsum("ij,ij->", across, inward) > 0.0:
+    if face[1] == "1":
         across = -across
     length = np.linalg.norm(across, axis=1)
     normals = across / np.where(length > 0.0, length, 1.0)[:, None]
-    return Cells(_centres(grid), normals, 0.5 * length, np.linalg.norm(inward, axis=1))
+    return Cells(_centres(grid), normals, 0.5 * length, np.linalg.norm(_centres(other) - _centres(grid), axis=1))
 
 
 def _centres(grid: FloatArray) -> FloatArray:

@@ -42,7 +42,7 @@ def check(problem: Problem) -> None:
     Raises
     ------
     InputError
-        Settings of the solver that are not allowed; units that no number holds; more memory than there is; glue of faces that do not
+        Settings of the solver that are not allowed; units that no number holds; left-handed bodies; more memory than there is; glue of faces that do not
         conform; a support that turns too often in a load step, goes or turns too far from the origin, goes by motion and by force at once,
         moves where it does not hold, or has a moment and no face to turn; a rigid body that supports contradict each other on, leave
         components to, or release; a body that nothing holds; supports that contradict each other; contacts and loads that cannot be meant;
@@ -51,6 +51,7 @@ def check(problem: Problem) -> None:
     _check_settings(problem.settings)
     for body in problem.bodies:
         _check_units(body)
+        _check_handedness(body)
         check_closed(body)
     for body in problem.deformable:
         _check_weights(body)
@@ -114,6 +115,19 @@ def _check_units(body: Body) -> None:
         raise InputError(
             f"body {body.name!r} stands {farthest:.3g} from the origin and is {size:.3g} long: its coordinates have no digits left for "
             "that; move the whole scene nearer to the origin",
+            f"bodies.{body.name}",
+        )
+
+
+def _check_handedness(body: Body) -> None:
+    """Refuse bodies that are left-handed as a whole, by the cells of their control points: their faces would look inwards."""
+    grid = body.patch.control_points.reshape((*body.patch.shape, 3), order="F")
+    corner = grid[:-1, :-1, :-1]
+    u, v, w = grid[1:, :-1, :-1] - corner, grid[:-1, 1:, :-1] - corner, grid[:-1, :-1, 1:] - corner
+    if np.einsum("ijkc,ijkc->", np.cross(u, v), w) < 0.0:
+        raise InputError(
+            f"body {body.name!r} is left-handed, u, v, w like the first fingers of a left hand: its volume would be negative; let its "
+            "control points run the other way along one of them",
             f"bodies.{body.name}",
         )
 
