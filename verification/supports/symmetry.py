@@ -174,7 +174,7 @@ def half_of_curved_pair(projection: str, order: int) -> dict[str, float]:
 
 
 @case(
-    claim="Half of two symmetric bodies is that of the whole ones by the default projection too, where the master's only kink is in the plane.",
+    claim="Half of two symmetric bodies is that of the whole by the default projection too, where the master's only kink is in the plane.",
     tier=lambda family: "gate" if family == "N" else "nightly",
     grid={"family": ("N", "L")},
     bounds={
