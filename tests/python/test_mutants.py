@@ -2,10 +2,12 @@
 
 import json
 import math
+import re
 import tomllib
 from pathlib import Path
 
 import pytest
+from sanitizers import tools
 from typer.testing import CliRunner
 
 from isomortar.cli.commands import app
@@ -13,7 +15,7 @@ from isomortar.errors import InputError, IsomortarError
 from isomortar.harness.collection import collect
 from isomortar.harness.journal import Journal
 from isomortar.harness.measurement import Measurement
-from isomortar.harness.mutants import report
+from isomortar.harness.mutants import build, report
 from isomortar.harness.mutants.bench import Bench, freeze
 from isomortar.harness.mutants.campaign import Attacked, Campaign, Tally
 from isomortar.harness.mutants.faults import fault_at, read_planted
@@ -110,6 +112,14 @@ def test_files_without_faults_exist_and_no_folder_of_the_kernel_is_forgotten(lay
     assert all((folder / file).is_file() for file in layer.left_out)
     if layer.name == "kernel":
         assert set(layer.parts) == {path.name for path in folder.iterdir() if path.is_dir()}
+
+
+def test_what_the_build_reads_is_copied_with_the_sources_of_the_kernel():
+    builds = (ROOT / file for file in ("meson.build", "fortran/meson.build"))
+    named = {Path(name).name for file in builds for name in re.findall(r"files\('(\S*tools/\S+)'\)", file.read_text())}
+    assert named
+    for copied in (build._PARTS, tools._PARTS):
+        assert named <= {Path(part).name for part in copied}
 
 
 @pytest.mark.parametrize(
