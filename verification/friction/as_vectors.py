@@ -1,0 +1,123 @@
+"""Slip and friction as vectors in space, of results: on flat masters against motions and forces that are known without them."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.interpolate import BSpline
+
+from isomortar.geometry.patch import Direction, FloatArray, Patch
+from isomortar.harness import Bound, case
+from isomortar.results.vectors import contact_vectors
+from isomortar.scene import Scene
+from isomortar.solve.simulation import Simulation
+
+#: A block is pressed, turned a little and dragged; what it slides on goes another way, and its coordinates are oblique.
+_BLOCK = """
+format = 1
+bodies.block.geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 0.8, 0.5] }
+bodies.block.mesh = { order = [2, 2, 1], elements = [3, 2, 1] }
+supports.top.face = "block.w1"
+"""
+_DRAG = "motions.top = { translate = [0.15, 0.1, 0], rotate = 4 }"
+_PLANE = f"""
+contacts.pair = {{ slave = "block.w0", plane = {{ tangent = [0.8, 0.6, 0] }}, friction = 0.3 }}
+stages = [
+  {{ name = "press", steps = 1, motions.top.translate = [0.06, -0.04, -0.03] }},
+  {{ name = "drag", steps = 1, {_DRAG} }},
+]
+"""
+_BASE = """
+bodies.base.geometry = { kind = "box", lower = [-0.5, -0.6, -0.4], upper = [1.6, 1.7, 0] }
+bodies.base.mesh = { order = [1, 1, 1], elements = [1, 1, 1] }
+supports.ground.face = "base.w0"
+contacts.pair = { slave = "block.w0", master = "base.w1", friction = 0.3, projection = "PROJECTION" }
+"""
+_BASE_GOES = f"""
+bodies.base.rigid = true
+stages = [
+  {{ name = "press", steps = 1, motions.top.translate = [0.06, -0.04, -0.03] }},
+  {{ name = "drag", steps = 1, {_DRAG}, motions.ground.translate = [-0.1, 0.05, 0] }},
+]
+"""
+#: Averaged normals and the slave's tangents are those of a plane where the slave is stiff.
+_STIFF = f"""
+materials.stiff.young = 1e7
+materials.soft.young = 10
+bodies.block.material = "stiff"
+bodies.base.material = "soft"
+stages = [
+  {{ name = "press", steps = 1, motions.top.translate = [0.06, -0.04, -0.01] }},
+  {{ name = "drag", steps = 1, {_DRAG} }},
+]
+"""
+SCENES = {
+    "plane": _BLOCK + _PLANE,
+    "closest": _BLOCK + _BASE.replace("PROJECTION", "closest") + _BASE_GOES,
+    "averaged": _BLOCK + _BASE.replace("PROJECTION", "averaged") + _STIFF,
+}
+#: How far a master goes in each load step.
+_GOES = {"plane": np.zeros((2, 2)), "closest": np.array([[0.0, 0.0], [-0.1, 0.05]])}
+_ROUND_OFF = "round-off: on a flat master integrals are those of polynomials"
+
+
+def products(direction: Direction) -> FloatArray:
+    """Integrals of the products of two functions of a direction by its parameter, as SciPy has its B-splines."""
+    line, weight = np.polynomial.legendre.leggauss(direction.order + 1)
+    half = 0.5 * np.diff(direction.boundaries)[:, None]
+    places = direction.boundaries[:-1, None] + half * (1.0 + line)
+    values = BSpline.design_matrix(places.ravel(), direction.knots, direction.order).toarray()
+    return values.T @ ((half * weight).ravel()[:, None] * values)
+
+
+def shares(patch: Patch) -> FloatArray:
+    """The same over the area of the face w0 of a block, shape (n, n)."""
+    u, v = (products(direction) / direction.knots[-1] for direction in patch.face_directions("w0"))
+    return np.kron(v, u) * np.prod(np.ptp(patch.control_points, axis=0)[:2])
+
+
+@case(
+    claim="Slip and traction vectors are the way of the slave on its master, and friction: it opposes the way, and adds up to the force.",
+    tier="gate",
+    grid={"master": list(SCENES)},
+    bounds=lambda master: {
+        **({} if master == "averaged" else {"slip": Bound(at_most=1e-12, reason="theory: displacements, averaged; " + _ROUND_OFF)}),
+        "force": Bound(
+            at_most=1e-4 if master == "averaged" else 1e-11,
+            reason="theory: the slave, a million times as stiff as the master, stays flat" if master == "averaged" else _ROUND_OFF,
+        ),
+        "opposed": Bound(at_most=1e-12, reason="theory: Coulomb's friction opposes the way; round-off"),
+        "slipping": Bound(at_least=6.0, reason="definition: vectors are told only where something slides"),
+        "unknown": Bound(at_least=1.0, reason="definition: not a number where the load step before is not kept, and something acts"),
+    },
+)
+def vectors(master: str) -> dict[str, float]:
+    """Largest errors over two load steps, the first of which begins at rest; points that slip; whether slips are known without the first.
+
+    Of slips over the longest one, of friction in sum over itself; what its work lacks to the most there can be.
+    """
+    problem = Scene.from_toml(SCENES[master]).problem()
+    simulation = Simulation(problem)
+    results = list(simulation.run())
+    patch, numbering = problem.body("block").patch, simulation.equilibrium.numbering
+    face, matrix = numbering.points["block"][patch.face_points("w0")], shares(patch)
+    areas, begun = matrix.sum(axis=1), numbering.reference
+    errors: dict[str, list[float]] = {name: [] for name in ("force", "opposed", *(("slip",) if master in _GOES else ()))}
+    for number, result in enumerate(results):
+        (found,) = contact_vectors(problem, result, results[number - 1] if number else None)
+        contact, now = result.contacts[0], result.state.positions
+        force, sliding, acts = contact.force_slave[:2], contact.status == 2, contact.status > 0
+        errors["force"].append(float(np.linalg.norm(areas @ found.traction[:, :2] - force) / np.linalg.norm(force)))
+        slip, traction = found.slip[sliding], found.traction[sliding]
+        most = np.linalg.norm(slip, axis=1) @ np.linalg.norm(traction, axis=1)
+        errors["opposed"].append(float(abs(1.0 + np.sum(slip * traction) / most)))
+        if master in _GOES:
+            way = np.zeros_like(found.slip)
+            way[acts, :2] = (matrix @ (now - begun)[face, :2] / areas[:, None] - _GOES[master][number])[acts]
+            errors["slip"].append(float(np.abs(found.slip - way).max() / np.abs(way).max()))
+        begun = now
+    (alone,) = contact_vectors(problem, results[-1], None)
+    return {
+        **{name: max(numbers) for name, numbers in errors.items()},
+        "slipping": float(min(result.contacts[0].slip for result in results)),
+        "unknown": float(np.isnan(alone.slip[results[-1].contacts[0].status > 0]).all()),
+    }
