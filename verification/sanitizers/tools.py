@@ -15,7 +15,7 @@ from isomortar.program.process import output_of, run, tools_first
 
 PROJECT = Path(__file__).resolve().parents[2]
 #: What of a checkout makes the kernel.
-_PARTS = ("meson.build", "meson.options", "fortran", "tools/f2py_wrap.py", "tools/compile_bytecode.py")
+_PARTS = ("meson.build", "meson.options", "fortran", "tools/f2py_wrap.py", "tools/compile_bytecode.py", "tools/version.py")
 _KERNEL = f"_kernel{EXTENSION_SUFFIXES[0]}"
 #: Seconds after which a build or a watched process has failed.
 _BUILD, _WORK = 600, 1500

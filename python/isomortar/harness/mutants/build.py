@@ -21,7 +21,7 @@ from isomortar.harness.store import kernel_hash, package_hash
 from isomortar.program.process import output_of, tools_first
 
 #: What of a checkout makes the kernel.
-_PARTS = ("meson.build", "meson.options", "fortran", "tools/f2py_wrap.py", "tools/compile_bytecode.py")
+_PARTS = ("meson.build", "meson.options", "fortran", "tools/f2py_wrap.py", "tools/compile_bytecode.py", "tools/version.py")
 #: Seconds after which a compiler that found no end has rejected a fault.
 _SECONDS = 300
 
