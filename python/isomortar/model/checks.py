@@ -43,10 +43,10 @@ def check(problem: Problem) -> None:
     ------
     InputError
         Settings of the solver that are not allowed; units that no number holds; left-handed bodies; more memory than there is; glue of
-        faces that do not conform; a support that turns too often in a load step, goes or turns too far from the origin, goes by motion and by force at once,
-        moves where it does not hold, or has a moment and no face to turn; a rigid body that supports contradict each other on, leave
-        components to, or release; a body that nothing holds; supports that contradict each other; contacts and loads that cannot be meant;
-        too few Gauss points for a body's weights.
+        faces that do not conform; a support that turns too often in a load step, goes or turns too far from the origin, goes by motion
+        and by force at once, moves where it does not hold, or has a moment and no face to turn; a rigid body that supports contradict
+        each other on, leave components to, or release; a body that nothing holds; supports that contradict each other; contacts and loads
+        that cannot be meant; too few Gauss points for a body's weights.
     """
     _check_settings(problem.settings)
     for body in problem.bodies:
