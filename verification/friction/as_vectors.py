@@ -117,7 +117,7 @@ def vectors(master: str) -> dict[str, float]:
         begun = now
     (alone,) = contact_vectors(problem, results[-1], None)
     return {
-        **{name: max(numbers) for name, numbers in errors.items()},
+        **{name: float(np.max(numbers)) for name, numbers in errors.items()},
         "slipping": float(min(result.contacts[0].slip for result in results)),
         "unknown": float(np.isnan(alone.slip[results[-1].contacts[0].status > 0]).all()),
     }

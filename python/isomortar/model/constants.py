@@ -55,6 +55,10 @@ HARD_TANGENTS = 25
 #: Load steps before the end of one that an increment still ends there: times are sums of increments, to round-off.
 SAME_TIME = 1e-12
 
+#: Forces the largest of which is between these are squared as they are: what is twenty digits smaller than that has a square, too, and
+#: sums do not overflow. Others are brought to size before.
+SQUARED = (1e-40, 1e40)
+
 # ---- Newton's method (theory 6.5, 6.6, 7.5)
 
 #: Factors are kept as long as a solve with them leaves at most this share of the residual: it saves the tangents and their factors, most

@@ -16,9 +16,6 @@ from isomortar.model.numbering import Numbering
 from isomortar.model.solid import Solid
 from isomortar.model.supports import Supports
 
-#: Numbers between these have squares to the last bit, and sums of squares; as shares of each other, too.
-_USUAL = (1e-40, 1e40)
-
 
 @dataclass(frozen=True)
 class Scales:
@@ -47,7 +44,8 @@ class PieceMeasures:
 
     def norms(self, forces: FloatArray) -> FloatArray:
         """Norm of the forces, shape (control points, 3), on each piece, shape (pieces,)."""
-        size = _power_of_two(forces)
+        least, most = constants.SQUARED
+        size = 1.0 if least < np.abs(forces).max(initial=0.0) < most else _power_of_two(forces)
         scaled = forces if size == 1.0 else forces / size
         return np.sqrt(np.add.reduceat(np.einsum("ij,ij->i", scaled, scaled), self._starts)) * size
 
@@ -79,6 +77,5 @@ class PieceMeasures:
 
 
 def _power_of_two(values: FloatArray) -> float:
-    """One, or where squares might vanish or overflow the power of two next to the largest value: divided by it no bit changes."""
-    largest = np.abs(values).max(initial=0.0)
-    return 1.0 if _USUAL[0] < largest < _USUAL[1] else float(np.ldexp(1.0, np.frexp(largest)[1]))
+    """The power of two next to the largest value: divided by it, squares neither vanish nor overflow, and no bit changes."""
+    return float(np.ldexp(1.0, np.frexp(np.max(np.abs(values), initial=0.0))[1]))
