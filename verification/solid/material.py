@@ -125,10 +125,14 @@ def folded(law: str, volume_ratio: float) -> dict[str, float]:
 
 def curved_element(kind: str) -> Patch:
     """One element with control points moved, and weights of NURBS spread, at random."""
-    family, order = kind[0], int(kind[1:])
-    patch = mesh(CUBE, (family,) * 3, (order,) * 3, (1, 1, 1))  # type: ignore[arg-type]
+    return curved(kind[0], (int(kind[1:]),) * 3, (1, 1, 1))
+
+
+def curved(family: str, orders: tuple[int, int, int], elements: tuple[int, int, int]) -> Patch:
+    """The same of several elements, of orders by direction."""
+    patch, order = mesh(CUBE, (family,) * 3, orders, elements), max(orders)  # type: ignore[arg-type]
     random = np.random.default_rng(order)
-    points = patch.control_points + 0.1 / order * random.uniform(-1, 1, patch.control_points.shape)
+    points = patch.control_points + 0.1 / (order * max(elements)) * random.uniform(-1, 1, patch.control_points.shape)
     return Patch(patch.directions, points, random.uniform(0.5, 2.0, len(points)) if family == "N" else patch.weights)
 
 
@@ -143,15 +147,35 @@ def curved_element(kind: str) -> Patch:
 )
 def tangent(kind: str, law: str, volume_ratio: float) -> dict[str, float]:
     """Largest error of tangent times direction against differences in quadruple precision; asymmetry; both as shares of the largest."""
-    patch, material = curved_element(kind), LAWED[law]
-    gauss = (int(kind[1:]) + 1,) * 3
+    return tangent_errors(curved_element(kind), LAWED[law], volume_ratio)
+
+
+@case(
+    claim="So it is where orders and numbers of elements differ by direction, whichever direction has which.",
+    tier="gate",
+    grid={"family": ["N", "L"], "orders": ["123", "132", "213", "231", "312", "321"]},
+    bounds={
+        "error": Bound(at_most=1e-12, reason="round-off: sums over quadrature points in double precision; the differences are quadruple"),
+        "asymmetry": Bound(at_most=1e-13, reason="theory: a stored energy has symmetric second derivatives; round-off of their sums"),
+    },
+)
+def tangent_by_direction(family: str, orders: str) -> dict[str, float]:
+    """The same numbers of a curved block of two elements along the direction of the highest order."""
+    u, v, w = map(int, orders)
+    return tangent_errors(curved(family, (u, v, w), (1 + u // 3, 1 + v // 3, 1 + w // 3)), MATERIAL, 1.0)
+
+
+def tangent_errors(patch: Patch, material: Material, volume_ratio: float) -> dict[str, float]:
+    """Largest error of tangent times direction against differences in quadruple precision; asymmetry; both as shares of the largest."""
+    gauss = (patch.directions[0].order + 1, patch.directions[1].order + 1, patch.directions[2].order + 1)
+    order = max(direction.order for direction in patch.directions)
     problem = Problem("tangent", (Body("body", patch, material, gauss),), (), (), ())
     numbering = Numbering(problem)
     solid, worst, asymmetry = Solid(problem, numbering), 0.0, 0.0
     n = numbering.count
     for seed, f in enumerate(random_gradients(volume_ratio)[:3]):
         random = np.random.default_rng(seed)
-        bend = 0.02 * np.cbrt(volume_ratio) / int(kind[1:]) * random.uniform(-1, 1, (n, 3))
+        bend = 0.02 * np.cbrt(volume_ratio) / order * random.uniform(-1, 1, (n, 3))
         positions = np.ascontiguousarray(numbering.reference @ f.T + bend)
         _, blocks = solid.forces_and_tangent(positions)
         rows = np.repeat(np.arange(n), np.diff(solid.pattern.start))
