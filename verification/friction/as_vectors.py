@@ -118,6 +118,6 @@ def vectors(master: str) -> dict[str, float]:
     (alone,) = contact_vectors(problem, results[-1], None)
     return {
         **{name: float(np.max(numbers)) for name, numbers in errors.items()},
-        "slipping": float(min(result.contacts[0].slip for result in results)),
+        "slipping": float(np.min([result.contacts[0].slip for result in results])),
         "unknown": float(np.isnan(alone.slip[results[-1].contacts[0].status > 0]).all()),
     }
