@@ -98,8 +98,8 @@ static void split(const cholesky *self, const int *is_last, const int64_t *given
     if (is_last[row]) order[next++] = row;
 }
 
-/* Put the matrix into the order of the factor, once: CHOLMOD, which would do so each time, takes a tenth of the time for it. Of the given
-   entries one half counts, those at or beyond the diagonal in their row. `row` is room for a number a row. */
+/* Put the matrix into the order of the factor, once: CHOLMOD, which would do so each time, takes up to a quarter of the time for it. Of the
+   given entries one half counts, those at or beyond the diagonal in their row. `row` is room for a number a row. */
 static void arrange(cholesky *self, int64_t *row) {
   cholmod_sparse *was = self->matrix;
   const int64_t *start = was->p, *column = was->i, rows = self->inner + self->last;
