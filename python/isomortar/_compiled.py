@@ -14,6 +14,7 @@ Another kernel with the same interface takes its place where the environment nam
 from __future__ import annotations
 
 import ctypes
+import importlib
 import importlib.util
 import os
 from collections.abc import Iterator
@@ -38,6 +39,7 @@ def processor_kind(flags: frozenset[str]) -> str | None:
     return None
 
 
+@cache
 def _processor_flags() -> frozenset[str]:
     """Flags of the first processor, from the system; empty where the system does not tell."""
     try:
@@ -89,10 +91,16 @@ def _alone() -> None:
     ctypes.CDLL(_own).omp_set_num_threads(1)
 
 
+def suited_kernel() -> ModuleType:
+    """The package's kernel: as it was compiled for AVX2, where the processor has that and the build made one; both give the same bits."""
+    wide = "isomortar._kernel_avx2"
+    has_wide = "avx2" in _processor_flags() and importlib.util.find_spec(wide)
+    return importlib.import_module(wide if has_wide else "isomortar._kernel")
+
+
 keep_memory()
 with _settings():
-    from isomortar import _kernel as kernel
-
+    kernel = suited_kernel()
     _own = kernel.__file__
     os.register_at_fork(after_in_child=_alone)
     if KERNEL in os.environ:

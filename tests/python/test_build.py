@@ -1,12 +1,13 @@
-"""The two compiled kernels: there, and each in its precision."""
+"""The compiled kernels: there, each in its precision, and the one that suits the processor to the same bits as the one for all."""
 
+import os
 import subprocess
 import sys
 
 import numpy as np
 import pytest
 
-from isomortar import _extended, _kernel
+from isomortar import _compiled, _extended, _kernel
 
 
 @pytest.mark.parametrize(("kernel", "digits", "spacing"), [(_kernel, 15, 2.0**-52), (_extended, 33, 2.0**-112)])
@@ -46,3 +47,42 @@ def test_the_kernel_calls_no_vector_functions() -> None:
     needed = subprocess.run(["ldd", _kernel.__file__], capture_output=True, text=True, check=True).stdout
     assert "libm.so" in needed
     assert "libmvec" not in needed
+
+
+#: Prints all bits of the state after each of some load steps.
+_STATES = """
+import sys
+from itertools import islice
+import isomortar
+from isomortar.solve.simulation import Simulation
+
+scene, steps, *settings = sys.argv[1:]
+for record in islice(Simulation(isomortar.Scene.load(scene, settings).problem()).run(), int(steps)):
+    print([numbers.tobytes().hex() for numbers in vars(record).values() if hasattr(numbers, "tobytes")])
+"""
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("press", "1", "bodies.block.mesh.elements=[4, 4, 2]"),
+        ("press", "1", "bodies.block.mesh.elements=[3, 2, 2]", "bodies.block.mesh.order=[3, 4, 2]"),
+        ("twist", "6", "bodies.master.mesh.order=[3, 3, 2]"),
+        ("tire", "2", 'solver.method="uzawa"'),
+    ],
+)
+def test_the_kernel_taken_gives_the_bits_of_the_one_for_all_processors(words: tuple[str, ...]) -> None:
+    said = []
+    for settings in ({}, {_compiled.KERNEL: str(_kernel.__file__)}):
+        ended = subprocess.run([sys.executable, "-c", _STATES, *words], capture_output=True, text=True, env=os.environ | settings)
+        assert not ended.returncode, ended.stderr
+        said.append(ended.stdout)
+    assert said[0].count("\n") == int(words[1])
+    assert said[0] == said[1]
+
+
+@pytest.mark.parametrize(("flags", "name"), [({"sse2"}, "isomortar._kernel"), ({"sse2", "avx2"}, "isomortar._kernel_avx2")])
+def test_a_processor_is_given_no_instructions_that_it_lacks(flags: set[str], name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(_compiled, "_processor_flags", lambda: frozenset(flags))
+    monkeypatch.setattr(_compiled.importlib, "import_module", lambda name: name)
+    assert _compiled.suited_kernel() == name

@@ -43,7 +43,7 @@ def memory(tool: str) -> dict[str, float]:
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
         package, counts, chosen = folder / "package", folder / "counts.json", tools.TOOLS[tool]
-        shutil.copytree(Path(isomortar.__file__).parent, package / "isomortar", ignore=shutil.ignore_patterns("__pycache__"))
+        shutil.copytree(Path(isomortar.__file__).parent, package / "isomortar", ignore=shutil.ignore_patterns("__pycache__", "*.so"))
         twin = importlib.util.find_spec("isomortar._extended")
         assert twin is not None, "the tests compare with the twin"
         shutil.copy2(str(twin.origin), package / "isomortar")

@@ -80,7 +80,7 @@ def sources(folder: Path) -> Path:
 def build(tool: Tool, folder: Path) -> Path:
     """The kernel for a tool, from the sources in a folder; built again where they changed."""
     if not (folder / "build").exists():
-        output_of(["meson", "setup", "build", "-Db_lto=false", *tool.build], _BUILD, folder, tools_first())
+        output_of(["meson", "setup", "build", "-Db_lto=false", "-Davx2=false", *tool.build], _BUILD, folder, tools_first())
     output_of(["ninja", "-C", "build", f"fortran/{_KERNEL}"], _BUILD, folder, tools_first())
     return folder / "build/fortran" / _KERNEL
 

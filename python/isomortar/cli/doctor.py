@@ -55,12 +55,13 @@ def doctor() -> None:
 
 def installed(identity: dict[str, object]) -> Iterator[str]:
     """What it consists of, a line each."""
+    from isomortar._compiled import kernel
     from isomortar.model.memory import memory_of_machine
 
     libraries = identity["libraries"]
     assert isinstance(libraries, dict)
     yield f"isomortar {isomortar.__version__} in {Path(isomortar.__file__).parent}"
-    yield f"kernel {str(identity['kernel'])[:12]}, made by {identity['compiler']}"
+    yield f"kernel {str(identity['kernel'])[:12]}, made by {identity['compiler']}, taken as {kernel.__name__}"
     yield "with " + ", ".join(f"{name} {version}" for name, version in libraries.items())
     yield f"on {len(os.sched_getaffinity(0))} cores, {memory_of_machine() / 1e9:.3g} GB of memory to take"
 

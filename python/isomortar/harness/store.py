@@ -127,10 +127,10 @@ def _compiler() -> str:
 
 
 def _kernel_files() -> Iterator[Path]:
-    """The compiled kernel, its extended-precision twin, and the kernel that takes its place, if one does."""
+    """The compiled kernels, the extended-precision twin, and the kernel that takes their place, if one does."""
     if KERNEL in os.environ:
         yield Path(os.environ[KERNEL])
-    for module in ("isomortar._kernel", "isomortar._extended"):
+    for module in ("isomortar._kernel", "isomortar._kernel_avx2", "isomortar._extended"):
         found = importlib.util.find_spec(module)
         if found and found.origin:
             yield Path(found.origin)

@@ -28,7 +28,8 @@ sys.argv[1:] = [{package!r} + "/isomortar"]
 runpy.run_module({module!r}, run_name="__main__")
 """
 _PACKAGE = Path(isomortar.__file__).parent.resolve()
-_HIDDEN = shutil.ignore_patterns("__pycache__")
+#: Compiled kernels too: `_kernel_avx2`, where it stands beside the sources, would be taken for a `_kernel` with a fault.
+_HIDDEN = shutil.ignore_patterns("__pycache__", "*.so")
 
 
 def freeze(cases: Path, folder: Path) -> tuple[Path, Path]:

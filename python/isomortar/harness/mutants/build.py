@@ -173,8 +173,8 @@ def content(workshop: Workshop, fault: Fault) -> str:
 
 
 def _set_up(sources: Path, *options: str) -> None:
-    """Set up the build of a copy of the sources; linked in a second, without optimisation across files."""
-    _run(["meson", "setup", "build", "--buildtype=release", "-Db_lto=false", *options], sources)
+    """Set up the build of a copy of the sources: the kernel for all processors, linked in a second, not optimised across files."""
+    _run(["meson", "setup", "build", "--buildtype=release", "-Db_lto=false", "-Davx2=false", *options], sources)
 
 
 def _that_counts(sound: Path, sources: Path) -> Path:
