@@ -10,9 +10,10 @@ import pytest
 from isomortar.geometry.patch import Direction, Family, Patch
 from isomortar.geometry.primitives import ring
 from isomortar.geometry.refinement import mesh
-from isomortar.model.entities import Body, Material
+from isomortar.model.entities import Body, Face, Material
 from isomortar.model.kinks import has_kinks
 from isomortar.model.sheet import Sheet
+from isomortar.scene import Scene
 
 LINE = Direction("N", 1, np.array([0.0, 0.0, 1.0, 1.0]))
 FACES_OF_RIDGE = ("w0", "w1", "v0", "v1", "u0", "u1")
@@ -62,6 +63,32 @@ def test_a_line_of_a_flat_face_is_none(slope: float, order: int) -> None:
 def test_elements_of_order_one_and_lagranges_have_kinks_once_they_deform(family: Family, order: int) -> None:
     flat = body(roof(0.0, order, family))
     assert [has_kinks(Sheet.of_face(flat, face)) for face in FACES_OF_RIDGE] == [True] * 4 + [order == 1] * 2
+
+
+@pytest.mark.parametrize(("below", "kinks"), [(1, True), (2, False)])
+def test_a_row_of_a_higher_order_has_the_kinks_of_those_below(below: int, kinks: bool) -> None:
+    text = f"""
+        format = 1
+        [bodies.upper]
+        geometry = {{ kind = "bowl", centre = [0.5, 0.5], half_width = 0.3, bottom = 0.0, rise = 0.1, top = 0.5 }}
+        mesh = {{ order = [2, 2, 1], elements = [2, 2, 1] }}
+        [bodies.lower]
+        geometry = {{ kind = "box", lower = [0, 0, -0.5], upper = [1, 1, 0] }}
+        mesh = {{ order = [{below}, {below}, 1], elements = [3, 3, 1], contact_order = {below + 1} }}
+        [contacts.between]
+        slave = "upper.w0"
+        master = "lower.w1"
+        [supports]
+        top.face = "upper.w1"
+        floor.face = "lower.w0"
+        [[stages]]
+        name = "press"
+        steps = 1
+        motions.top.translate = [0, 0, -0.01]
+    """
+    problem = Scene.from_toml(text).problem()
+    assert has_kinks(Sheet.of(problem, Face("lower", "w1"))) == kinks
+    assert problem.contacts[0].projection == ("averaged" if kinks else "closest")
 
 
 @pytest.mark.parametrize("order", [2, 3, 4])

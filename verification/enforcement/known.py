@@ -20,6 +20,7 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.geometry.quadrature import contact_points, volume_points
 from isomortar.harness.cases import Bound, Cell, Shown, Words, measured
 from isomortar.model.enforcement import slave_side
+from isomortar.model.enforcement.side import PointSide
 from isomortar.model.entities import Contact, Problem, Stage
 from isomortar.model.numbering import Numbering
 from isomortar.solve.record import StepResult
@@ -114,11 +115,12 @@ def line(given: Problem, values: FloatArray) -> Line:
     contact, numbering = given.contacts[0], Numbering(given)
     averages = contact.of_averages
     side = slave_side(replace(contact, enforcement="greville", subcells=0) if averages else contact, given, numbering)
+    assert isinstance(side, PointSide)
     found = side.carriers @ values if averages else values
     places = side.carriers @ numbering.reference[side.arrays.point]
     end = np.flatnonzero(np.isclose(places[:, 1], places[:, 1].min(), atol=1e-6 * CONTACT))
     end = end[np.argsort(places[end, 0])]
-    return Line(places[end, 0], found[end], side.arrays.area[end])
+    return Line(places[end, 0], found[end], side.area[end])
 
 
 def compared(found: Line, exact: FloatArray, scale: FloatArray, smooth: NDArray[np.bool_]) -> dict[str, Any]:

@@ -80,7 +80,7 @@ def first_moments(method: Enforcement, kind: str) -> dict[str, float]:
     points[:, 1] *= 1.0 + 0.5 * points[:, 0] / SIZE[0]
     side = side_of(replace(body, patch=replace(body.patch, control_points=points)), "w0", method, order + 1)
     assert isinstance(side, PointSide)
-    area, found = side.arrays.area, side.arrays.area @ side.places
+    area, found = side.area, side.area @ side.places
     expected = SIZE[0] * SIZE[1] * np.array([1.0 / 2.0 + 0.5 / 3.0, 1.25 / 2.0])  # the width is 1 + u / 2
     whole = 1.25 * SIZE[0] * SIZE[1]
     return {"area": abs(float(area.sum()) / whole - 1.0), "moment": float(np.abs(found / expected - 1.0).max())}

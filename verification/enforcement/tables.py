@@ -16,6 +16,7 @@ from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
 from isomortar.model.enforcement import SlaveSide, slave_side
 from isomortar.model.enforcement.demko import abscissae
+from isomortar.model.enforcement.side import PointSide
 from isomortar.model.entities import Body, Contact, Enforcement, Face, Material, Problem, RigidPlane, Stage
 from isomortar.model.numbering import Numbering
 
@@ -108,8 +109,9 @@ def missed(method: Enforcement, kind: str) -> dict[str, float]:
     side = side_of(plate(family, order), "w0", method, order + 1)
     first, second = (integrals(family, order, n) * size for n, size in zip(ELEMENTS, SIZE, strict=True))
     exact = np.outer(second, first).ravel()
-    forces = side.carriers.T @ side.arrays.area
-    found = {"area": float(abs(side.arrays.area.sum() - SIZE[0] * SIZE[1]))}
+    assert isinstance(side, PointSide)
+    forces = side.carriers.T @ side.area
+    found = {"area": float(abs(side.area.sum() - SIZE[0] * SIZE[1]))}
     return found if method == "knots" else found | {"forces": float(np.abs(forces - exact).max() / exact.max())}
 
 
@@ -158,7 +160,8 @@ def _kept(face: np.ndarray, side: SlaveSide) -> np.ndarray:
 def drawn(method: Enforcement, kind: str) -> dict[str, float]:
     """Errors of a constant, and of the resultant of random pressures by forces of the drawn field at the constraints."""
     side = side_of(plate("N", int(kind[1:])), "w0", method, int(kind[1:]) + 1)
-    area, values = side.arrays.area, np.random.default_rng(1).random(side.carriers.shape[0])
+    assert isinstance(side, PointSide)
+    area, values = side.area, np.random.default_rng(1).random(side.carriers.shape[0])
     shown = side.carriers @ side.on_control_points(values)
     return {
         "constant": float(np.abs(side.on_control_points(np.ones(len(area))) - 1.0).max()),

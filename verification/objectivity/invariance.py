@@ -14,7 +14,7 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.geometry.primitives import box
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
-from isomortar.model.entities import Problem, RigidPlane
+from isomortar.model.entities import Enforcement, Problem, RigidPlane
 from isomortar.solve.record import StepResult
 from isomortar.solve.simulation import Simulation
 
@@ -64,12 +64,23 @@ def capped() -> Problem:
     return replace(problem, contacts=(replace(problem.contacts[0], cohesion=0.05, traction_max=0.3),))
 
 
-#: Scenes by name: the bowl on its masters, and two others.
+def pointwise(enforcement: Enforcement) -> Problem:
+    """A block of Lagrange elements with constraints at points, many of them between elements, along averaged normals."""
+    problem = kinked()
+    slave, master = problem.bodies
+    patch = mesh(box((-0.31, -0.27, 0.02), (0.33, 0.29, 0.4)), ("L", "L", "N"), (2, 1, 1), (3, 2, 1))
+    contact = replace(problem.contacts[0], enforcement=enforcement)
+    return replace(problem, bodies=(replace(slave, patch=patch), master), contacts=(contact,))
+
+
+#: Scenes by name: the bowl on its masters, and others.
 SCENES: dict[str, Callable[[], Problem]] = {
     "block": lambda: at_few_points(bowl("block")),
     "plane": lambda: at_few_points(bowl("plane")),
     "kinked": kinked,
     "capped": capped,
+    "greville": lambda: pointwise("greville"),
+    "knots": lambda: pointwise("knots"),
 }
 
 
@@ -178,7 +189,12 @@ def units(length: float, stress: float) -> dict[str, float]:
     )
 
 
-@case(claim="The mirror image of a scene has the mirror image of its results.", tier="gate", grid={"master": MASTERS}, bounds=BOUNDS)
+@case(
+    claim="The mirror image of a scene has the mirror image of its results.",
+    tier="gate",
+    grid={"master": (*MASTERS, "greville", "knots")},
+    bounds=BOUNDS,
+)
 def mirror_image(master: str) -> dict[str, float]:
     """Reflected in the plane x = 0; moments are axial vectors."""
     return change(master, mirrored, lambda found: found | {"forces": found["forces"] @ MIRROR, "moments": -found["moments"] @ MIRROR})

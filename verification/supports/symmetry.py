@@ -174,6 +174,21 @@ def half_of_curved_pair(projection: str, order: int) -> dict[str, float]:
 
 
 @case(
+    claim="With constraints at points too, those between elements and in the plane of symmetry among them.",
+    tier="nightly",
+    grid={"enforcement": ("greville", "knots"), "order": (1, 2)},
+    bounds={
+        "forces": Bound(at_most=1e-9, reason="theory: the same equations by symmetry; Newton's method stops at 1e-12"),
+        "sliding": Bound(at_least=1.0, reason="definition: points slip in some load step"),
+    },
+)
+def half_of_pair_at_points(enforcement: str, order: int) -> dict[str, float]:
+    """The same along averaged normals: at closest points of kinked masters such constraints come and go, and few runs end."""
+    text = CURVED.format(projection="averaged", order=[order, order, 2])
+    return half_of_whole(text, [f"contacts.between.enforcement={enforcement}"])
+
+
+@case(
     claim="Half of two symmetric bodies is that of the whole by the default projection too, where the master's only kink is in the plane.",
     tier=lambda family: "gate" if family == "N" else "nightly",
     grid={"family": ("N", "L")},

@@ -110,12 +110,14 @@ class Direction:
         return len(self.boundaries) - 1
 
     @property
+    def c0_lines(self) -> FloatArray:
+        """Boundaries between elements where functions are only continuous (theory 2.9), shape (lines,)."""
+        return self.boundaries[1:-1][np.diff(self.first_points) >= self.order]
+
+    @property
     def kinks(self) -> bool:
-        """Whether functions are only continuous somewhere between the elements (theory 2.9)."""
-        if self.family == "L" or self.elements == 1:
-            return self.elements > 1
-        _, counts = np.unique(self.knots, return_counts=True)
-        return bool(counts[1:-1].max() >= self.order)
+        """Whether there are C0 lines."""
+        return len(self.c0_lines) > 0
 
     @property
     def first_points(self) -> NDArray[np.intp]:

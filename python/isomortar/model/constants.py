@@ -21,6 +21,8 @@ LARGEST_TURN = 36.0
 KINK_ANGLE = 1e-3
 #: Share of an element beside a line where its sides are asked for their normals: these turn by about as much on the way.
 BESIDE_A_LINE = 1e-6
+#: Share of an element within which a constraint's point is on a line between elements: places are means of knots, to round-off.
+ON_A_LINE = 1e-9
 #: Largest distance of the extrema of Chebyshev splines from one (theory 10.6): far more digits than a place of a constraint needs.
 CHEBYSHEV_LEVEL = 1e-12
 #: Steps to get there: the exchange converges quadratically from Greville's abscissae, and has taken 5 to 8 on graded and repeated knots.

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
-
 import numpy as np
 
 from isomortar import _bindings
@@ -16,11 +14,12 @@ from isomortar.model.sheet import Sheet
 def has_kinks(sheet: Sheet) -> bool:
     """Whether the face of a sheet has kinks between its edges, or where it meets itself.
 
-    Elements of Lagrange's or of order 1 are the mesh of something else, and every line between them becomes a kink as they deform. A
-    C0 line of a higher order, or of a rigid body, is one where the tangent planes of its sides differ as they are given: arcs that meet
-    smoothly have none.
+    Elements of Lagrange's or of order 1, whatever the order of the row at the face, are the mesh of something else, and every line between
+    them becomes a kink as they deform. A C0 line of a higher order, or of a rigid body, is one where the tangent planes of its sides differ
+    as they are given: arcs that meet smoothly have none.
     """
-    if not sheet.rigid and any(d.kinks and (d.family == "L" or d.order == 1) for d in sheet.directions):
+    below = [sheet.bodies[0].orders["uvw".index(letter)] for letter in sheet.letters]
+    if not sheet.rigid and any(d.kinks and (d.family == "L" or order == 1) for d, order in zip(sheet.directions, below, strict=True)):
         return True
     return any(_turn(sheet.patch, sheet.face, axis, closed) > constants.KINK_ANGLE for axis, closed in enumerate(sheet.closed))
 
@@ -36,13 +35,10 @@ def _turn(patch: Patch, face: str, axis: int, closed: bool) -> float:
 
 def _sides(direction: Direction, closed: bool) -> list[tuple[float, float]]:
     """Places on either side of each C0 line across a direction, the seam of a closed one among them (theory 2.9)."""
-    lines, first = direction.boundaries, direction.first_points
+    lines = direction.boundaries
     beside = constants.BESIDE_A_LINE * np.diff(lines)
-    sides = [
-        (float(lines[e + 1] - beside[e]), float(lines[e + 1] + beside[e + 1]))
-        for e, (one, next_one) in enumerate(pairwise(first))
-        if next_one - one >= direction.order
-    ]
+    inside = np.searchsorted(lines, direction.c0_lines)
+    sides = [(float(lines[line] - beside[line - 1]), float(lines[line] + beside[line])) for line in inside]
     return [*sides, (float(lines[-1] - beside[-1]), float(lines[0] + beside[0]))] if closed else sides
 
 

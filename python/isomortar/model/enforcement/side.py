@@ -11,7 +11,7 @@ from scipy import sparse
 
 from isomortar._bindings import FunctionArrays, SlaveArrays
 from isomortar.errors import InputError
-from isomortar.geometry.patch import FloatArray, IntArray
+from isomortar.geometry.patch import Direction, FloatArray, IntArray
 from isomortar.model import constants
 from isomortar.model.enforcement.face import SlaveFace
 
@@ -46,12 +46,15 @@ class PointSide(SlaveSide):
 
     Attributes
     ----------
+    area : ndarray, shape (constraints,)
+        Reference area that each point stands for.
     places : ndarray, shape (constraints, 2)
         Where on the face, by its coordinates, each point is.
     control_places : ndarray, shape (slave control points, 2)
         Where control points belong.
     """
 
+    area: FloatArray
     places: FloatArray
     control_places: FloatArray
 
@@ -60,7 +63,7 @@ class PointSide(SlaveSide):
 
         A constant stays what it is, and so does the resultant. A function that is zero at all constraints takes the nearest one's value.
         """
-        shares = sparse.csr_array(self.carriers.T.multiply(self.arrays.area))
+        shares = sparse.csr_array(self.carriers.T.multiply(self.area))
         total = shares.sum(axis=1)
         known = total > constants.NO_SHARE * total.max()
         means = (shares @ values.reshape(len(values), -1)) / np.where(known, total, 1.0)[:, None]
@@ -76,7 +79,9 @@ class PointSide(SlaveSide):
 
 
 def pointwise(face: SlaveFace, coordinates: FloatArray, area: FloatArray) -> PointSide:
-    """Constraints at points of a face, each with an area (theory 10.2): a quadrature point, an element and a test function of its own.
+    """Constraints at points of a face, each with an area (theory 10.2): a test function of its own, and a quadrature point as an element.
+
+    On a C0 line there is such a point in each of the elements that meet there, and they share the area.
 
     Raises
     ------
@@ -91,12 +96,42 @@ def pointwise(face: SlaveFace, coordinates: FloatArray, area: FloatArray) -> Poi
             f'{area[worst]:.3g}: pressure there would pull; take "mortar", or a mesh that is less graded',
             f"contacts.{contact.name}.enforcement",
         )
-    nodes, values, slopes = face.at(coordinates)
-    count = len(area)
+    seen, constraint = _from_all_sides(face, coordinates)
+    nodes, values, slopes = face.at(seen)
     shape = FunctionArrays(nodes, values, len(face.point))
-    test = FunctionArrays(np.arange(count, dtype=np.int32)[:, None].copy(), np.ones((count, 1)), count)
-    arrays = SlaveArrays(shape, test, np.ascontiguousarray(area), face.point, slopes, face.outward)
-    return PointSide(arrays, functions_at(face, coordinates), coordinates, face.control_places)
+    test = FunctionArrays(constraint[:, None], np.ones((len(constraint), 1)), len(area))
+    shared = (area / np.bincount(constraint))[constraint]
+    arrays = SlaveArrays(shape, test, shared, face.point, slopes, face.outward)
+    return PointSide(arrays, functions_at(face, coordinates), area, coordinates, face.control_places)
+
+
+def _from_all_sides(face: SlaveFace, coordinates: FloatArray) -> tuple[FloatArray, IntArray]:
+    """Points once for each element that meets there with tangents of its own, and whose points they are."""
+    seen, point = coordinates, np.arange(len(coordinates), dtype=np.int32)
+    for axis, (direction, closed) in enumerate(zip(face.directions, face.closed, strict=True)):
+        place, other = _both_sides(direction, closed, seen[:, axis])
+        twice = np.flatnonzero(np.isfinite(other))
+        seen = np.concatenate([seen, seen[twice]])
+        seen[:, axis] = np.concatenate([place, other[twice]])
+        point = np.concatenate([point, point[twice]])
+    order = np.argsort(point, kind="stable")
+    return seen[order], point[order]
+
+
+def _both_sides(direction: Direction, closed: bool, at: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Coordinates as they are seen from the element after a C0 line and from that before it; NaN where they are on none.
+
+    Where a face meets itself, its start is on one, and the element before is the last.
+    """
+    start, *_, end = direction.boundaries
+    near = constants.ON_A_LINE * np.diff(direction.boundaries).min()
+    place, other = at.copy(), np.full(len(at), np.nan)
+    for line in direction.c0_lines:
+        on = np.abs(at - line) <= near
+        place[on], other[on] = line, np.nextafter(line, start)
+    if closed:
+        other[at <= start + near] = end
+    return place, other
 
 
 def functions_at(face: SlaveFace, coordinates: FloatArray) -> sparse.csr_array:
