@@ -6,11 +6,13 @@ import re
 import shutil
 import sys
 import tempfile
+from importlib.util import find_spec
 from itertools import islice
 from pathlib import Path
 
 import numpy as np
 
+from isomortar._compiled import KERNEL
 from isomortar.harness import Bound, Matches, case, skip
 from isomortar.program.process import output_of
 from isomortar.scene import Scene
@@ -42,6 +44,8 @@ OTHERS = (
 )
 #: valgrind knows no AVX-512; and the routines that OpenBLAS takes must not depend on the machine.
 CORE = {"OPENBLAS_CORETYPE": "Haswell", "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "PYTHONHASHSEED": "0"}
+#: The kernel for all processors: of instructions that process more at once there are fewer, where there are any.
+PLAIN = {KERNEL: str(find_spec("isomortar._kernel").origin)}  # type: ignore[union-attr]
 #: Share by which a count may differ.
 SHARE = 0.02
 
@@ -61,7 +65,7 @@ def count() -> dict[str, float]:
         options = ["--tool=callgrind", f"--callgrind-out-file={output}", *(f"--toggle-collect={name}" for name in routines)]
         # This file's folder is put on the path of the process.
         command = ["valgrind", *options, sys.executable, "-c", "import instructions; instructions.run()"]
-        output_of(command, folder=Path(__file__).parent, environment=CORE)
+        output_of(command, folder=Path(__file__).parent, environment=CORE | PLAIN)
         said = output_of(["callgrind_annotate", "--inclusive=yes", "--threshold=100", str(output)], folder=Path(folder))
     found = {name: float(number.replace(",", "")) for number, name in re.findall(r"^ *([\d,]+)[^:\n]*:(\w+_) ", said, re.MULTILINE)}
     total = re.search(r"^ *([\d,]+).* PROGRAM TOTALS", said, re.MULTILINE)
