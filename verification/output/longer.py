@@ -1,0 +1,118 @@
+"""What a file takes for its own scene, gone on with: what its first load steps would have been is what they were."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from output.records import SCENE
+
+from isomortar.harness import Bound, case
+from isomortar.model.entities import Material, Motion, Problem, Stage
+from isomortar.model.supports import factor_at, moved_by, progress
+from isomortar.results.definition import is_longer
+from isomortar.scene import Scene
+
+#: Factors of what drives beside motions, at the ends of the stages.
+FACTORS = (0.4, 1.3)
+
+
+def base() -> Problem:
+    """A scene whose supports move, and whose loads grow, in both stages."""
+    problem = Scene.from_toml(SCENE).problem()
+    return replace(problem, loads=tuple(replace(load, factors=FACTORS) for load in problem.loads))
+
+
+def stretched(problem: Problem, steps: int, motion: float, factor: float) -> Problem:
+    """Its last stage of other load steps: motions of so many times the size, factors whose rise is so many times as large."""
+    *before, last = problem.stages
+    supports = [
+        replace(s, motions=(*s.motions[:-1], Motion(tuple(motion * way for way in s.motions[-1].translate), motion * s.motions[-1].rotate)))  # type: ignore[arg-type]
+        for s in problem.supports
+    ]
+    loads = [replace(load, factors=(FACTORS[0], FACTORS[0] + factor * (FACTORS[1] - FACTORS[0]))) for load in problem.loads]
+    return replace(problem, stages=(*before, replace(last, steps=steps)), supports=tuple(supports), loads=tuple(loads))
+
+
+def extended(problem: Problem, steps: int) -> Problem:
+    """The same with a stage more."""
+    supports = tuple(replace(s, motions=(*s.motions, Motion((0.1, 0.0, 0.0), 3.0))) for s in problem.supports)
+    loads = tuple(replace(load, factors=(*load.factors, 2.0)) for load in problem.loads)
+    return replace(problem, stages=(*problem.stages, Stage("more", steps)), supports=supports, loads=loads)
+
+
+def _other_material(problem: Problem) -> Problem:
+    first, *rest = problem.bodies
+    return replace(problem, bodies=(replace(first, material=Material(young=2.0)), *rest))
+
+
+#: What is done to a scene of two stages, of 2 and 3 load steps.
+CHANGES: dict[str, Callable[[Problem], Problem]] = {
+    "longer": lambda p: stretched(p, 6, 2.0, 2.0),
+    "longer by a third": lambda p: stretched(p, 4, 4 / 3, 4 / 3),
+    "longer, and a stage more": lambda p: extended(stretched(p, 6, 2.0, 2.0), 2),
+    "a stage more": lambda p: extended(p, 2),
+    "slower": lambda p: stretched(p, 6, 1.0, 2.0),
+    "loads slower": lambda p: stretched(p, 6, 2.0, 1.0),
+    "shorter": lambda p: stretched(p, 2, 2 / 3, 2 / 3),
+    "the same": lambda p: p,
+    "faster": lambda p: stretched(p, 3, 2.0, 1.0),
+    "another material": lambda p: extended(_other_material(p), 2),
+    "another first stage": lambda p: extended(replace(p, stages=(replace(p.stages[0], steps=3), p.stages[1])), 2),
+}
+
+
+def apart(one: Problem, other: Problem, ends: int) -> float:
+    """Most that motions and factors of two problems differ over the first so many load steps; infinite where other things do."""
+    times = np.linspace(0.0, ends, 4 * ends + 1)
+    differences = [0.0 if one.bodies[0].material == other.bodies[0].material else np.inf]
+    for a, b in zip(one.supports, other.supports, strict=True):
+        for time in times:
+            (way, angle), (way_b, angle_b) = moved_by(a, progress(one.stages, time)), moved_by(b, progress(other.stages, time))
+            differences.append(float(np.abs(way - way_b).max() + abs(angle - angle_b)))
+    for load, load_b in zip(one.loads, other.loads, strict=True):
+        differences += [abs(factor_at(one.stages, load.factors, time) - factor_at(other.stages, load_b.factors, time)) for time in times]
+    return float(np.max(differences))
+
+
+@case(
+    claim="A file is gone on with where a scene does what it did in all its load steps, and more after them; else it is not.",
+    tier="gate",
+    grid={"change": list(CHANGES)},
+    bounds={"wrong": Bound(at_most=0.0, reason="definition: what is said of the scene is what its motions and loads are")},
+)
+def goes_on(change: str) -> dict[str, float]:
+    """Whether it is said to go on although it does other things, or no more, in the load steps that there are; or the other way."""
+    stored = base()
+    given = CHANGES[change](stored)
+    same = given.total_steps > stored.total_steps and apart(stored, given, stored.total_steps) < 1e-12
+    return {"wrong": float(is_longer(stored, given) != same)}
+
+
+@case(
+    claim="A scene with more load steps goes on at the rate of its last stage, from what it was.",
+    tier="gate",
+    grid={"counts": ("1", "7", "2, 5")},
+    bounds={
+        "before": Bound(at_most=1e-14, reason="definition: motions of supports in the load steps that there were; round-off"),
+        "after": Bound(at_most=1e-12, reason="definition: motions beyond them, which are straight lines in load time; round-off"),
+        "said": Bound(1.0, 1.0, "definition: it is taken for the same scene, gone on with"),
+    },
+)
+def more_steps(counts: str) -> dict[str, float]:
+    """Largest differences of motions, before and beyond the last load step of a scene, in lengths and degrees."""
+    numbers = [int(count) for count in counts.split(",")]
+    scene = Scene.from_toml(SCENE)
+    problem, longer = scene.problem(), scene.with_more_steps(*numbers).problem()
+    end, last = problem.total_steps, problem.stages[-1].steps
+    beyond = 0.0
+    for support, given in zip(problem.supports, longer.supports, strict=True):
+        motion = support.motions[-1]
+        way, angle = moved_by(support, progress(problem.stages, end))
+        for time in np.linspace(end, end + sum(numbers), 9):
+            share = (time - end) / last
+            found, turned = moved_by(given, progress(longer.stages, time))
+            off = np.abs(found - way - share * np.asarray(motion.translate)).max() + abs(turned - angle - share * motion.rotate)
+            beyond = float(np.maximum(beyond, off))
+    return {"before": apart(problem, longer, end), "after": beyond, "said": float(is_longer(problem, longer))}
