@@ -139,6 +139,33 @@ def nearness_to_singular(unit: float) -> dict[str, float]:
 
 
 @case(
+    claim="How near bodies are to having no stiffness is told by their pivots, as shares of their diagonals, where faces are farther.",
+    tier="gate",
+    bounds={
+        "alone": Bound(at_most=1e-12, reason="round-off: of a difference from one, over the least pivot"),
+        "with faces": Bound(at_most=1e-12, reason="round-off: as above; the smaller of the two"),
+    },
+)
+def nearness_within() -> dict[str, float]:
+    """Largest relative errors of the estimate, of pairs of springs with pivots of shares from a half to a thousandth."""
+    random, errors = np.random.default_rng(15), {"alone": 0.0, "with faces": 0.0}
+    for within in (1, 3, 6, 10):
+        share = np.sqrt(1.0 - 2.0**-within)
+        scales = random.uniform(1.0, 3.0, 4)
+        pairs = sparse.kron(sparse.diags_array(scales), np.array([[1.0, share], [share, 1.0]]))
+        for faces, least in ((0, within), (4, 2), (4, 8)):
+            matrix = sparse.csr_array(sparse.block_diag([pairs, sparse.eye_array(faces)]) if faces else pairs)
+            matrix.sort_indices()
+            found = factors(matrix, np.arange(matrix.shape[0]) >= 8)
+            pivots = np.array([1.0, 2.0**-least, 1.0, 1.0])[:faces]
+            found.factorise(matrix.data, np.asfortranarray(np.diag(pivots - 1.0)))
+            exact = 2.0 ** -np.max([within, least])
+            name = "with faces" if faces else "alone"
+            errors[name] = float(np.maximum(errors[name], abs(found.rcond / exact - 1.0)))
+    return errors
+
+
+@case(
     claim="Bodies that were released, or never made, solve nothing.",
     tier="gate",
     bounds={

@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 from output import exported, records
-from output.exported import shares
+from rational_functions import nodes_of, shares
 
 from isomortar.geometry.patch import Direction, FloatArray, Patch
 from isomortar.harness import Bound, case
@@ -107,10 +107,10 @@ def _apart(drawn: list[FloatArray], expected: list[FloatArray]) -> float:
 
 def centres(direction: Direction) -> FloatArray:
     """Where functions of a direction belong: means of their inner knots; nodes of Lagrange elements."""
-    p, ends = direction.order, direction.boundaries
+    p = direction.order
     if direction.family == "N":
         return np.array([direction.knots[i + 1 : i + 1 + p].mean() for i in range(direction.count)])
-    return np.append((ends[:-1, None] + np.diff(ends)[:, None] * np.arange(p) / p).ravel(), ends[-1])
+    return nodes_of(direction)
 
 
 @case(

@@ -13,7 +13,8 @@ from xml.etree import ElementTree
 
 import numpy as np
 from output.records import load_steps, recorded
-from scipy.interpolate import BPoly, BSpline
+from rational_functions import shares
+from scipy.interpolate import BPoly
 
 from isomortar import _bindings
 from isomortar.geometry.patch import Direction, FloatArray
@@ -140,29 +141,6 @@ def read(path: Path) -> Cells:
     count = len(found["points"])
     named = {name: values for name, values in found.items() if len(values) == count and values.dtype == np.float64}
     return Cells(nets, found["number"][:, 0], named)
-
-
-def functions(direction: Direction, parameters: FloatArray) -> FloatArray:
-    """Functions of a direction as SciPy has them, shape (parameters, count); of Lagrange elements by their nodes."""
-    if direction.family == "N":
-        return BSpline.design_matrix(parameters, direction.knots, direction.order).toarray()
-    p, ends = direction.order, direction.boundaries
-    nodes = np.append((ends[:-1, None] + np.diff(ends)[:, None] * np.arange(p) / p).ravel(), ends[-1])
-    found = np.zeros((len(parameters), len(nodes)))
-    for e in range(direction.elements):
-        mine, own = (parameters >= ends[e]) & (parameters <= ends[e + 1]), nodes[p * e : p * e + p + 1]
-        for a in range(p + 1):
-            others = np.delete(own, a)
-            found[mine, p * e + a] = np.prod((parameters[mine, None] - others) / (own[a] - others), axis=1)
-    return found
-
-
-def shares(directions: Sequence[Direction], weights: FloatArray, places: FloatArray) -> FloatArray:
-    """Rational functions of a patch or face at parameters, shape (places, control points); the first direction runs fastest."""
-    tables = [functions(d, places[:, k]) for k, d in enumerate(directions)]
-    found = functools.reduce(lambda a, b: np.einsum("qi,qj->qij", b, a).reshape(len(places), -1), tables)
-    found = found * weights
-    return found / found.sum(axis=1, keepdims=True)
 
 
 def elements(directions: Sequence[Direction]) -> Iterator[tuple[FloatArray, FloatArray]]:

@@ -11,7 +11,10 @@ from projection.nearest import MASTERS
 from scipy.interpolate import BPoly
 
 from isomortar import _twin
-from isomortar.geometry.patch import FloatArray
+from isomortar._codes import WORK
+from isomortar.geometry.patch import FloatArray, Patch
+from isomortar.geometry.primitives import box
+from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
 
 #: Points of an element along each direction.
@@ -123,3 +126,34 @@ def hulls(master: str) -> dict[str, float]:
         }
         worst = {name: np.maximum(worst[name], value) for name, value in measured.items()}
     return {"corner": float(np.abs(found.corner - flat).max() / size), **{name: float(value) for name, value in worst.items()}}
+
+
+@case(
+    claim="A point over a sample of an element is looked for there first, and found by a look at that element, with orders that differ.",
+    tier="gate",
+    grid={"orders": ("2, 3", "3, 2", "4, 2", "3, 5")},
+    bounds={
+        "foot": Bound(at_most=1e-13, reason="round-off: targets are on normals of samples"),
+        "elements": Bound(1.0, 1.0, "definition: all others are ruled out by the distance to the sample"),
+        "evaluations": Bound(1.0, 1.0, "definition: the search stands where the distance is least, and sees that once"),
+    },
+)
+def from_samples(orders: str) -> dict[str, float]:
+    """Largest error of feet, and elements and places that are looked at for each target."""
+    first, second = map(int, orders.split(","))
+    plate = mesh(box((0.0, 0.0, -0.5), (1.0, 1.0, 0.0)), ("N",) * 3, (first, second, 1), (3, 2, 1))
+    points = plate.control_points.copy()
+    points[:, 2] += 0.05 * np.sin(4.0 * points[:, 0]) * np.cos(3.0 * points[:, 1])
+    face = Surface(Patch(plate.directions, points, plate.weights), "w1")
+    inner = [np.setdiff1d(np.arange(p * n), p * np.arange(n)) / (p * n) for p, n in ((first, 3), (second, 2))]
+    places = np.stack(np.meshgrid(*inner), axis=-1).reshape(-1, 2)
+    normals = np.cross(face.tangents(places, 0), face.tangents(places, 1))
+    counts = np.zeros(len(WORK), dtype=np.int64)
+    targets = face.points(places) + 0.01 * normals / np.linalg.norm(normals, axis=1)[:, None]
+    found = face.project(targets, None, counts)
+    looks = dict(zip(WORK, counts / len(targets), strict=True))
+    return {
+        "foot": float(np.abs(found.xi - places).max()),
+        "elements": float(looks["elements searched"]),
+        "evaluations": float(looks["evaluations to order 2"]),
+    }

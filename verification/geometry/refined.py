@@ -1,0 +1,119 @@
+"""Patches of a higher order and with more elements, and halves of patches: the same bodies, whatever their knots and weights."""
+
+from __future__ import annotations
+
+import numpy as np
+from rational_functions import shares
+
+from isomortar.geometry.halves import upper_half
+from isomortar.geometry.patch import Direction, FloatArray, Patch
+from isomortar.geometry.refinement import mesh
+from isomortar.harness import Bound, case
+
+#: Places in each patch, and patches.
+PLACES, PATCHES = 30, 24
+_ROUND_OFF = "round-off: of blossoms and knots that are inserted, by the size of the body"
+
+
+def line(random: np.random.Generator, span: float, symmetric: bool = False) -> Direction:
+    """A direction of any order up to 3 with some inner knots of any multiplicity; symmetric: an even number of elements."""
+    order, count = int(random.integers(1, 4)), int(random.integers(1, 4))
+    inner = np.sort(random.choice(np.arange(1, 16), count, replace=False)) / (32 if symmetric else 16)
+    repeated = np.repeat(inner, random.integers(1, order + 1, count))
+    if symmetric:
+        repeated = np.concatenate([repeated, np.full(random.integers(1, order + 1), 0.5), 1.0 - repeated[::-1]])
+    return Direction("N", order, span * np.concatenate([np.zeros(order + 1), repeated, np.ones(order + 1)]))
+
+
+def body(random: np.random.Generator, directions: tuple[Direction, Direction, Direction]) -> tuple[FloatArray, FloatArray]:
+    """Control points near those of a box, shape (n, 3), and weights."""
+    grid = np.stack(np.meshgrid(*(d.greville / d.knots[-1] for d in directions), indexing="ij"), axis=-1)
+    return (grid + random.uniform(-0.1, 0.1, grid.shape)).reshape(-1, 3, order="F"), random.uniform(0.5, 2.0, grid.shape[:3]).ravel(
+        order="F"
+    )
+
+
+def places(random: np.random.Generator, directions: tuple[Direction, ...]) -> FloatArray:
+    """Parameters within a patch."""
+    low, high = np.array([d.boundaries[[0, -1]] for d in directions]).T
+    return np.asarray(low + random.random((PLACES, 3)) * (high - low))
+
+
+@case(
+    claim="A mesh of higher orders and more elements is the same body, as smooth as before at its own knots, at any scale of parameters.",
+    tier="gate",
+    grid={"span": (1e-3, 1.0, 40.0)},
+    bounds={
+        "shape": Bound(at_most=1e-12, reason=_ROUND_OFF),
+        "knots": Bound(at_most=0.0, reason="definition: each knot once more for each order, none elsewhere but where elements are cut"),
+    },
+)
+def raised(span: float) -> dict[str, float]:
+    """Largest distance of places, and knots that differ, over random patches with an order, and more elements, of each direction's own."""
+    random, worst, wrong = np.random.default_rng(41), 0.0, 0
+    for _ in range(PATCHES):
+        directions = (line(random, span), line(random, span), line(random, span))
+        patch = Patch(directions, *body(random, directions))
+        more, parts = random.permutation([0, 1, 2]), random.permutation([1, 1, 2])
+        orders = tuple(int(d.order + k) for d, k in zip(directions, more, strict=True))
+        finer = mesh(patch, ("N",) * 3, orders, tuple(int(d.elements * n) for d, n in zip(directions, parts, strict=True)))
+        at = places(random, directions)
+        ends = [shares(p.directions, p.weights, at) @ p.control_points for p in (patch, finer)]
+        worst = float(np.maximum(worst, np.abs(ends[0] - ends[1]).max()))
+        for d, found, k, n in zip(directions, finer.directions, more, parts, strict=True):
+            distinct, counts = np.unique(d.knots, return_counts=True)
+            cuts = np.setdiff1d(np.interp(np.arange(n * d.elements + 1) / n, np.arange(d.elements + 1), distinct), distinct)
+            expected = np.sort(np.concatenate([np.repeat(distinct, counts + k), cuts]))
+            wrong += len(expected) != len(found.knots) or bool(np.any(np.abs(expected - found.knots) > 1e-15 * span))
+    return {"shape": worst, "knots": float(wrong)}
+
+
+@case(
+    claim="The upper half of a symmetric body is that of the whole, whichever direction is halved, and whichever way it runs.",
+    tier="gate",
+    grid={"family": ("N", "L"), "axis": (0, 1, 2)},
+    bounds={
+        "shape": Bound(at_most=1e-13, reason=_ROUND_OFF),
+        "plane": Bound(at_most=0.0, reason="definition: the cut face is on the plane, all else above it"),
+        "faces": Bound(at_most=0.0, reason="definition: faces that are not the one at the plane"),
+    },
+)
+def halved(family: str, axis: int) -> dict[str, float]:
+    """Largest errors over random bodies that are halved in each direction, along which a coordinate rises or falls."""
+    random, worst, below, wrong = np.random.default_rng(43), 0.0, 0.0, 0
+    for number in range(PATCHES):
+        cut, falls, place = number % 3, number // 3 % 2 == 1, random.uniform(-2.0, 2.0)
+        directions = [line(random, 2.0) for _ in range(3)]
+        directions[cut] = line(random, 2.0, symmetric=True)
+        if family == "L":
+            directions = [Direction("L", d.order, d.boundaries) for d in directions]
+        u, v, w = directions
+        points, weights = body(random, (u, v, w))
+        patch = _mirrored((u, v, w), points, weights, cut, axis, place, falls)
+        half, face = upper_half(patch, axis, place)
+        at = places(random, half.directions)
+        ends = [shares(p.directions, p.weights, at) @ p.control_points for p in (patch, half)]
+        worst = float(np.maximum(worst, np.abs(ends[0] - ends[1]).max()))
+        on_plane = half.control_points[half.face_points(face), axis]
+        below = float(np.max([below, np.abs(on_plane - place).max(), (place - half.control_points[:, axis]).max()]))
+        wrong += face != f"{'uvw'[cut]}{int(falls)}"
+    return {"shape": worst, "plane": below, "faces": float(wrong)}
+
+
+def _mirrored(
+    directions: tuple[Direction, Direction, Direction],
+    points: FloatArray,
+    weights: FloatArray,
+    cut: int,
+    axis: int,
+    place: float,
+    falls: bool,
+) -> Patch:
+    """A body that is its own mirror image in a plane across an axis, run through from one side to the other in direction `cut`."""
+    shape = tuple(d.count for d in directions)
+    grid, table = points.reshape(*shape, 3, order="F"), weights.reshape(shape, order="F")
+    grid[..., [axis, cut]] = grid[..., [cut, axis]]
+    whole, along = 0.5 * (grid + np.flip(grid, cut)), directions[cut].greville
+    rising = np.expand_dims(along - along[::-1], [k for k in range(3) if k != cut]) * table.mean(axis=cut, keepdims=True)
+    whole[..., axis] = place + (-rising if falls else rising)
+    return Patch(directions, whole.reshape(-1, 3, order="F"), (0.5 * (table + np.flip(table, cut))).ravel(order="F"))
