@@ -143,6 +143,19 @@ def test_a_plate_is_one_unknown() -> None:
     assert rigid_rank(problem, (problem.body("pad"),)) == 5  # it may go along z, and not tilt
 
 
+@pytest.mark.parametrize("method", ["monolithic", "uzawa"])
+@pytest.mark.parametrize("wall", [1.01, 3.0], ids=["nearer", "farther"])
+def test_a_wall_that_a_pad_slides_past_is_not_what_its_weight_closes(method: str, wall: float) -> None:
+    """The pad falls by 0.03 onto the die: that a wall at its side is nearer, or a second contact far away, changes no bit."""
+    side = f'[contacts.side]\nslave = "pad.u1"\nplane = {{ point = [{wall}, 0, 0], normal = [-1, 0, 0] }}\n[supports.top]'
+    found = []
+    for text in (GOOD, GOOD.replace("[supports.top]", side)):
+        problem = Scene.from_toml(text.replace("steps = 2", "steps = 1"), overrides=[f'solver.method="{method}"']).problem()
+        found.append(next(iter(Simulation(problem).run())))
+    assert np.any(found[0].state.contacts[0].pressure > 0.0)
+    np.testing.assert_allclose(found[1].state.positions, found[0].state.positions, rtol=0.0, atol=1e-12)
+
+
 def test_results_hold_forces_and_ways_to_the_last_bit(tmp_path: Path) -> None:
     scene = Scene.from_toml(GOOD)
     run(scene, tmp_path / "whole.h5")

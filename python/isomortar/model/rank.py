@@ -10,18 +10,38 @@ from isomortar.model.entities import Body, Problem, Support, unit
 
 def rigid_rank(problem: Problem, piece: tuple[Body, ...], stage: int = 0) -> int:
     """How many of the six rigid motions of a body, with what is glued to it, its supports prevent in a stage."""
+    return 6 - len(motions_left(problem, piece, stage))
+
+
+def motions_left(problem: Problem, piece: tuple[Body, ...], stage: int = 0) -> FloatArray:
+    """Rigid motions that the supports leave a body, with what is glued to it, in a stage: those `moved` takes, shape (motions, 6)."""
     names = {body.name for body in piece}
     holding = [support for support in problem.supports if support.place.body in names and support.holds(stage)]
+    centre, size = _extent(piece)
+    centres = [(np.asarray(support.centre) - centre) / size for support in holding]
     if piece[0].rigid:
-        return 6 - sum(len(support.pressed) + (support.moment is not None) for support in holding)
-    together = np.concatenate([body.patch.control_points for body in piece])
-    centre, size = together.mean(axis=0), np.ptp(together, axis=0).max()
-    rows = []
-    for support in holding:
+        pressed = [np.eye(6)[k] for support in holding for k in support.pressed]
+        turned = [(unit(s.axis), c) for s, c in zip(holding, centres, strict=True) if s.moment is not None]
+        return np.array([*pressed, *(np.concatenate([np.cross(c, axis), axis]) for axis, c in turned)]).reshape(-1, 6)
+    rows = [np.zeros((1, 6))]
+    for support, c in zip(holding, centres, strict=True):
         patch = problem.body(support.place.body).patch
         arms = patch.control_points[patch.common_points(support.place.meeting)] - centre
-        rows.append(_prevented(support, arms / size, (np.asarray(support.centre) - centre) / size))
-    return int(np.linalg.matrix_rank(np.vstack(rows), tol=1e-9)) if rows else 0
+        rows.append(_prevented(support, arms / size, c))
+    *_, values, motions = np.linalg.svd(np.vstack(rows))
+    return np.asarray(motions[np.count_nonzero(values > 1e-9) :])
+
+
+def moved(piece: tuple[Body, ...], motion: FloatArray, points: FloatArray) -> FloatArray:
+    """Displacements of points, shape (n, 3), by a rigid motion of a body: along the axes, and about them through its middle by its size."""
+    centre, size = _extent(piece)
+    return motion[:3] + np.cross(motion[3:], (points - centre) / size)
+
+
+def _extent(piece: tuple[Body, ...]) -> tuple[FloatArray, float]:
+    """The middle of a body's control points, and how far they reach along an axis."""
+    together = np.concatenate([body.patch.control_points for body in piece])
+    return together.mean(axis=0), float(np.ptp(together, axis=0).max())
 
 
 def _prevented(support: Support, arms: FloatArray, centre: FloatArray) -> FloatArray:

@@ -19,7 +19,7 @@ from isomortar.model.loads import Loads
 from isomortar.model.numbering import Numbering
 from isomortar.model.origin import about, by_near_points, origin_of
 from isomortar.model.pairs import Pair
-from isomortar.model.rank import rigid_rank
+from isomortar.model.rank import motions_left, moved
 from isomortar.model.solid import Solid
 from isomortar.model.supports import Supports
 from isomortar.solve.condensed import Bodies, CondensedSystem, engine_of, touched
@@ -103,13 +103,19 @@ class Equilibrium:
         self._solid_entries: sparse.csr_array | None = None
         loaded = bool(self.problem.loads or self.supports.plates)
         for pair in self.pairs:
-            pair.drifts = loaded and self._is_loose(pair.pair.contact)
+            pair.drifts = self._motions_left(pair.pair.contact) if loaded else ()
 
-    def _is_loose(self, contact: Contact) -> bool:
-        """Whether supports leave a rigid motion to a body in a contact, with all that is glued to it."""
+    def _motions_left(self, contact: Contact) -> tuple[FloatArray, ...]:
+        """Rigid motions that supports leave a body in a contact, with all that is glued to it: displacements of all control points."""
         names = {face.body for side in (contact.slave, contact.master) if isinstance(side, Face) for face in side.faces}
-        pieces = [piece for piece in self.numbering.pieces if any(body.name in names for body in piece)]
-        return any(rigid_rank(self.problem, piece, self.supports.stage) < 6 for piece in pieces)
+        motions = []
+        for piece in self.numbering.pieces:
+            if any(body.name in names for body in piece):
+                own = np.concatenate([self.numbering.points[body.name] for body in piece])
+                for motion in motions_left(self.problem, piece, self.supports.stage):
+                    motions.append(np.zeros_like(self.numbering.reference))
+                    motions[-1][own] = moved(piece, motion, self.numbering.reference[own])
+        return tuple(motions)
 
     def standing(self, step: int) -> Supports:
         """The supports of the stage of a load step."""
