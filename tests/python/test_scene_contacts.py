@@ -79,6 +79,8 @@ slave = "tyre.v1"
 plane = { normal = [0, 0, 1] }
 [supports.rim]
 face = "tyre.v0"
+centre = [0, 0, 1]
+axis = [0, 1, 0]
 [[stages]]
 name = "roll"
 steps = 1

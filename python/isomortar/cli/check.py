@@ -66,8 +66,9 @@ def _body(body: BodyOutlook) -> str:
     kinds = " x ".join(f"{family}{order}" for family, order in zip(body.family, body.order, strict=True))
     weights = "" if body.weights[0] == body.weights[1] else f", weights {body.weights[0]:.3g} to {body.weights[1]:.3g}"
     free = f"; supports leave {many(body.left_free, 'rigid motion')} to contacts" if body.left_free else ""
+    moduli = "" if body.young is None else f" of Young's modulus {body.young:.6g} and Poisson's ratio {body.poisson:.6g}"
     return (
-        f"body {body.name}: {body.law}, {_by(body.size)} in size; {_by(body.elements)} elements of {kinds}, {body.shortest:.3g} to "
+        f"body {body.name}: {body.law}{moduli}, {_by(body.size)} in size; {_by(body.elements)} elements of {kinds}, {body.shortest:.3g} to "
         f"{body.longest:.3g} long, {many(body.control_points, 'control point')}{weights}{free}"
     )
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from isomortar.geometry.faces import cells
 from isomortar.geometry.patch import FloatArray
-from isomortar.model import constants
+from isomortar.model.constants import NO_PART
 from isomortar.model.entities import Body, Contact, Face, Problem, RigidPlane, Support, unit
 from isomortar.model.glue import pieces
 from isomortar.model.numbering import Numbering
@@ -28,9 +28,11 @@ def of_motions(problem: Problem) -> Iterator[str]:
     for support in problem.supports:
         yield from _far_steps(problem, support)
         yield from _idle_motions(problem, support)
+        yield from _idle_turns(problem, support)
         yield from _radians(problem, support)
         yield from _axis_beside(problem, support)
         yield from _as_absolute(problem, support)
+    yield from _idle_stages(problem)
     yield from _pushed_in(problem)
 
 
@@ -115,6 +117,47 @@ def _idle_motions(problem: Problem, support: Support) -> Iterator[str]:
             )
 
 
+def _idle_turns(problem: Problem, support: Support) -> Iterator[str]:
+    """Turns across which a support leaves a component free."""
+    free = [axis for k, axis in enumerate("xyz") if abs(unit(support.axis)[k]) < 1.0 - NO_PART and k not in support.carried]
+    for stage, motion in zip(problem.stages, support.motions, strict=True):
+        if motion.rotate and free:
+            yield (
+                f"support {support.name!r} is to turn by {motion.rotate:g} degrees in stage {stage.name!r}, but leaves {', '.join(free)} "
+                f"free, across its axis: its points do not go round. Prescribe these as well, or look at supports.{support.name}.axis"
+            )
+
+
+def spinning(problem: Problem, contact: Contact, towards: FloatArray) -> Iterator[str]:
+    """Round bodies that go along their contact and turn about its normal at once, as where the axis of what rolls was left out."""
+    sides = [_piece(problem, place) for place in (contact.slave, contact.master) if isinstance(place, Face)]
+    names = {body.name for piece in sides if any(body.closed for body in piece) for body in piece}
+    for support in problem.supports:
+        upright = abs(unit(support.axis) @ towards) > FLAT and support.place.body in names
+        for stage, motion in zip(problem.stages, support.motions, strict=True):
+            along = np.linalg.norm(np.cross(motion.translate, towards))
+            if upright and motion.rotate and along > FLAT * np.linalg.norm(motion.translate) > 0.0:
+                axis = ", ".join(f"{a:g}" for a in support.axis)
+                yield (
+                    f"support {support.name!r} goes along contact {contact.name!r} in stage {stage.name!r} and turns about its normal: it "
+                    f"spins. If it is to roll, give supports.{support.name}.axis another direction than [{axis}]"
+                )
+
+
+def _idle_stages(problem: Problem) -> Iterator[str]:
+    """Stages in which no support moves, begins or ends to hold, and no load changes: nothing depends on time."""
+    factors = [acting.factors for acting in (*problem.loads, *problem.supports) if acting.factors]
+    for number, stage in enumerate(problem.stages[1:], start=1):
+        moved = any(support.motions[number].moves for support in problem.supports)
+        loaded = any(of_stage[number] != of_stage[number - 1] for of_stage in factors)
+        held = any(len({support.holds(k) for k in (number - 1, number)}) > 1 for support in problem.supports)
+        if not (moved or loaded or held):
+            yield (
+                f"nothing moves and no load changes in stage {stage.name!r}: its {stage.steps} load steps compute the same state again. "
+                "Give it a motion or a load, or take it out"
+            )
+
+
 def _pushed_in(problem: Problem) -> Iterator[str]:
     """Slave control points that supports put behind a rigid plane: they cannot give way."""
     onto = [(contact, contact.master) for contact in problem.contacts if isinstance(contact.master, RigidPlane)]
@@ -125,10 +168,10 @@ def _pushed_in(problem: Problem) -> Iterator[str]:
     for contact, plane in onto:
         sheet, normal = Sheet.of(problem, contact.slave), unit(plane.normal)
         points = np.unique(sheet.points(numbering)[sheet.patch.face_points(sheet.face)])
-        points = points[np.all(supports.held[points] | (np.abs(normal) < constants.NO_PART), axis=1)]
+        points = points[np.all(supports.held[points] | (np.abs(normal) < NO_PART), axis=1)]
         ends = np.cumsum([stage.steps for stage in problem.stages])[: _unchanged(problem)]
         depths = [-((supports.place(float(end))[points] - plane.point) @ normal).min(initial=np.inf) for end in ends]
-        if max(depths, default=0.0) > constants.NO_PART * sheet.size:
+        if max(depths, default=0.0) > NO_PART * sheet.size:
             stage = problem.stages[int(np.argmax(depths))].name
             yield (
                 f"contact {contact.name!r}: supports put {len(points)} of its slave control points behind the plane, by "

@@ -8,7 +8,7 @@ import numpy as np
 
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.contact_checks import LEAST
-from isomortar.model.entities import Contact, Load, Problem, Support
+from isomortar.model.entities import Body, Contact, Load, Problem, Support
 from isomortar.model.loads import control_areas
 from isomortar.model.sheet import Sheet
 
@@ -16,16 +16,24 @@ from isomortar.model.sheet import Sheet
 STIFFER = 3e5
 #: Elastic slip above this share of a body leaves friction no say before the body has gone that far.
 ELASTIC = 0.1
+#: Friction that bears a smaller share of Young's modulus is as good as none.
+FAINT = 1e-7
+#: The acceleration of gravity in m/s² and in mm/s², and how near to one a weight has to be: 9.8 is meant as well.
+GRAVITY, NEARLY = (9.81, 9810.0), 2e-3
 
 
 def of_sizes(problem: Problem) -> Iterator[str]:
     """Sentences on moduli, loads and friction of a problem."""
     yield from _moduli(problem)
+    for body in problem.deformable:
+        yield from _auxetic(body)
     for contact in problem.contacts:
         yield from _cohesion(problem, contact)
+        yield from _faint(problem, contact)
         yield from _elastic_slip(problem, contact)
     for load in problem.loads:
         yield from _no_load(load)
+        yield from _acceleration(load)
         yield from _large_load(problem, load)
     for support in problem.supports:
         yield from _large_force(problem, support)
@@ -38,6 +46,14 @@ def _moduli(problem: Problem) -> Iterator[str]:
         yield (
             f"body {bodies[-1].name!r} is {ratio:.3g} times as stiff as body {bodies[0].name!r}. Are their Young's moduli given in the "
             f"same unit? If it is to be rigid beside that one, bodies.{bodies[-1].name}.rigid = true"
+        )
+
+
+def _auxetic(body: Body) -> Iterator[str]:
+    if body.material.poisson < 0.0:
+        yield (
+            f"body {body.name!r}: with Poisson's ratio {body.material.poisson:g} it grows thicker as it is pulled, which few materials do. "
+            "Is the sign meant?"
         )
 
 
@@ -57,6 +73,17 @@ def _cohesion(problem: Problem, contact: Contact) -> Iterator[str]:
         )
 
 
+def _faint(problem: Problem, contact: Contact) -> Iterator[str]:
+    """Tractions that are given and make no difference."""
+    young = _young(problem, contact)
+    for name, most in (("cohesion", contact.cohesion), ("traction_max", contact.traction_max or 0.0)):
+        if 0.0 < most < FAINT * young:
+            yield (
+                f"contact {contact.name!r}: {name} = {most:g} is as good as no traction, where Young's modulus is {young:g}. Is it given "
+                "in the same unit?"
+            )
+
+
 def _elastic_slip(problem: Problem, contact: Contact) -> Iterator[str]:
     size = Sheet.of(problem, contact.slave).size
     if contact.elastic_slip > ELASTIC * size:
@@ -69,6 +96,16 @@ def _elastic_slip(problem: Problem, contact: Contact) -> Iterator[str]:
 def _no_load(load: Load) -> Iterator[str]:
     if not any(load.value) or (load.factors and not any(load.factors)):
         yield f"load {load.name!r} is zero in all stages: it does nothing. Give it a size, or a factor in a stage's loads"
+
+
+def _acceleration(load: Load) -> Iterator[str]:
+    """An acceleration in the place of a weight."""
+    size = _norm(load.value)
+    if load.kind == "weight" and any(abs(size / gravity - 1.0) < NEARLY for gravity in GRAVITY):
+        yield (
+            f"load {load.name!r} is {size:g} large, as the acceleration of gravity is. A weight is force per volume: give density times "
+            "that"
+        )
 
 
 def _large_load(problem: Problem, load: Load) -> Iterator[str]:

@@ -14,14 +14,15 @@ from isomortar.geometry.patch import MAX_ORDER, FloatArray, IntArray
 from isomortar.model import constants
 from isomortar.model.contact_checks import SAME_WAY
 from isomortar.model.contrasts import element_lengths
-from isomortar.model.entities import Body, Contact, Face, Problem, RigidPlane
+from isomortar.model.entities import Body, Contact, Face, Problem
 from isomortar.model.memory import memory_needed, memory_of_machine
 from isomortar.model.numbering import Numbering, ends_apart
 from isomortar.model.pairs import Pair
 from isomortar.model.rational import QUADRATURE_TOLD, quadrature_error, too_few_points
 from isomortar.model.stance import FACING, Stance, stance
+from isomortar.solve.doubtful_faces import of_faces
 from isomortar.solve.doubtful_meshes import of_meshes
-from isomortar.solve.doubtful_motions import FLAT, approach, between, in_far_steps, nearest_approach, of_motions
+from isomortar.solve.doubtful_motions import FLAT, approach, between, in_far_steps, nearest_approach, of_motions, spinning
 from isomortar.solve.doubtful_sizes import of_sizes
 from isomortar.solve.feet import gaps
 from isomortar.solve.left_out import of_what_is_left_out
@@ -64,6 +65,7 @@ def doubts(problem: Problem, state: State) -> Iterator[str]:
     yield from of_motions(problem)
     yield from of_meshes(problem)
     yield from of_sizes(problem)
+    yield from of_faces(problem)
     yield from of_what_is_left_out(problem)
     stances = [stance(problem, contact) for contact in problem.contacts]
     travel = _travel(problem)
@@ -74,7 +76,8 @@ def doubts(problem: Problem, state: State) -> Iterator[str]:
         too_deep = _too_deep(problem, contact, state.positions, feet) if found.depth > 0.0 else 0
         yield from _of_stance(contact, found, travel, too_deep, beside=not np.any(feet))
         yield from _of_ways(problem, contact, found, beside=not np.any(feet))
-        yield from _of_contact(problem, contact)
+        yield from _of_contact(contact)
+        yield from spinning(problem, contact, found.towards)
         yield from doubts_at_poles(problem, contact, travel)
     for one, other in combinations(problem.contacts, 2):
         if (one.slave, one.master) == (other.master, other.slave):
@@ -204,16 +207,13 @@ def _of_ways(problem: Problem, contact: Contact, found: Stance, beside: bool) ->
         )
 
 
-def _of_contact(problem: Problem, contact: Contact) -> Iterator[str]:
+def _of_contact(contact: Contact) -> Iterator[str]:
     """What is given for a contact, wherever its faces are."""
     if contact.friction > HIGH_FRICTION and contact.traction_max is None:
         yield (
             f"contact {contact.name!r}: a coefficient of friction of {contact.friction:g} makes all stick. Was it meant in per cent, "
             f"{contact.friction / 100.0:g}?"
         )
-    holders = [_holder(problem, place) for place in (contact.slave, contact.master)]
-    if all(holders):
-        yield f"contact {contact.name!r} can move nothing: its slave face is held by {holders[0]}, and its master is {holders[1]}"
 
 
 def _loaded(problem: Problem) -> bool:
@@ -230,16 +230,3 @@ def _travel(problem: Problem) -> float:
         reach = float(np.linalg.norm(arms, axis=1).max())
         travel += sum(float(np.linalg.norm(m.translate)) + abs(np.radians(m.rotate)) * reach for m in support.motions)
     return travel
-
-
-def _holder(problem: Problem, place: Face | RigidPlane) -> str:
-    """What prescribes all components of just that face, as words; empty: nothing."""
-    if isinstance(place, RigidPlane):
-        return "a rigid plane"
-    if problem.body(place.body).rigid:
-        return f"of the rigid body {place.body!r}"
-    holders = [
-        next((s.name for s in problem.supports if s.place == face and len(s.components) == 3 and s.stages is None), "")
-        for face in place.faces
-    ]
-    return " and ".join(f"support {name!r}" for name in holders) if all(holders) else ""

@@ -109,11 +109,13 @@ def _missing_symmetry(problem: Problem) -> Iterator[str]:
     for axis in range(3) if problem.contacts else ():
         low, high = (_cuts(problem, axis, end) for end in (0, 1))
         for cut, opposite in ((low, high), (high, low)):
-            if cut and not opposite and not any(_taken(problem, face) for face in cut):
+            bare = [face for face in cut if not _held(problem, face, axis)]
+            if bare and not opposite and not any(_taken(problem, face) for face in cut):
                 yield (
-                    f"all bodies end at one plane across {'xyz'[axis]}, as halves of a whole do, and nothing holds them there: they bulge "
+                    f"all bodies end at one plane across {'xyz'[axis]}, as halves of a whole do, and nothing holds "
+                    f"{'them' if bare == cut else bare[0].words if len(bare) == 1 else 'all of them'} there: they bulge "
                     f'through it. If they are halves, give supports with components = ["{"xyz"[axis]}"] to '
-                    f"{', '.join(face.words for face in cut)}"
+                    f"{', '.join(face.words for face in bare)}"
                 )
 
 
@@ -144,10 +146,14 @@ def _is_cut(patch: Patch, face: str, axis: int, place: float, near: float) -> bo
     return bool(np.abs(edge[..., axis] - place).max() <= near and np.abs(aside).max() <= near)
 
 
+def _held(problem: Problem, face: Face, axis: int) -> bool:
+    """Whether a support keeps a face on its plane across an axis, or moves it from there."""
+    return any(support.place == face and axis in support.carried for support in problem.supports)
+
+
 def _taken(problem: Problem, face: Face) -> bool:
-    """Whether a face is held, loaded, glued, or in contact."""
-    held = any(support.place == face for support in problem.supports)
+    """Whether a face is loaded, glued, or in contact."""
     loaded = any(load.face is not None and load.place == face for load in problem.loads)
     glued = any(face in joint for joint in problem.glue)
     touched = any(face in side for c in problem.contacts for side in (c.slave.faces, getattr(c.master, "faces", ())))
-    return held or loaded or glued or touched
+    return loaded or glued or touched

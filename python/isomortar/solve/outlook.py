@@ -18,13 +18,15 @@ from isomortar.solve.simulation import Simulation
 
 @dataclass(frozen=True)
 class BodyOutlook:
-    """A body: size along x, y, z, elements along u, v, w with their orders and how long they are, and the smallest and largest weight.
+    """A body: moduli, none of a rigid one, size along x, y, z, elements along u, v, w with their orders and how long they are, and the smallest and largest weight.
 
     `left_free`: how many of the six rigid motions supports leave to it, with what is glued to it.
     """
 
     name: str
     law: str
+    young: float | None
+    poisson: float | None
     size: tuple[float, float, float]
     family: tuple[str, ...]
     order: tuple[int, ...]
@@ -125,6 +127,8 @@ def _body(problem: Problem, body: Body) -> BodyOutlook:
     return BodyOutlook(
         body.name,
         "rigid" if body.rigid else body.material.law,
+        None if body.rigid else body.material.young,
+        None if body.rigid else body.material.poisson,
         (float(x), float(y), float(z)),
         tuple(direction.family for direction in directions),
         tuple(direction.order for direction in directions),
