@@ -146,10 +146,10 @@ def spinning(problem: Problem, contact: Contact, towards: FloatArray) -> Iterato
 
 def _idle_stages(problem: Problem) -> Iterator[str]:
     """Stages in which no support moves, begins or ends to hold, and no load changes: nothing depends on time."""
-    factors = [acting.factors for acting in (*problem.loads, *problem.supports) if acting.factors]
+    factors = [load.factors for load in problem.loads] + [support.factors for support in problem.supports]
     for number, stage in enumerate(problem.stages[1:], start=1):
         moved = any(support.motions[number].moves for support in problem.supports)
-        loaded = any(of_stage[number] != of_stage[number - 1] for of_stage in factors)
+        loaded = any(of_stage[number] != of_stage[number - 1] for of_stage in factors if of_stage)
         held = any(len({support.holds(k) for k in (number - 1, number)}) > 1 for support in problem.supports)
         if not (moved or loaded or held):
             yield (
