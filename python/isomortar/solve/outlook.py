@@ -18,9 +18,9 @@ from isomortar.solve.simulation import Simulation
 
 @dataclass(frozen=True)
 class BodyOutlook:
-    """A body: moduli, none of a rigid one, size along x, y, z, elements along u, v, w with their orders and how long they are, and the smallest and largest weight.
+    """A body: moduli, none of a rigid one, size along x, y, z, elements along u, v, w with their orders and how long they are, and weights.
 
-    `left_free`: how many of the six rigid motions supports leave to it, with what is glued to it.
+    `weights`: the smallest and the largest. `left_free`: how many of the six rigid motions supports leave to it and what is glued to it.
     """
 
     name: str
