@@ -86,8 +86,8 @@ def points(benchmark: str, name: str) -> dict[str, FloatArray]:
 
 
 def among(curve: dict[str, FloatArray], x: float) -> tuple[Known, ...]:
-    """Values of published curves at one of their points."""
-    return tuple(Known(source, float(np.interp(x, *rows.T))) for source, rows in curve.items())
+    """Values at one of their points of the published curves that come so far."""
+    return tuple(Known(source, float(np.interp(x, *rows.T))) for source, rows in curve.items() if x <= rows[-1, 0])
 
 
 def ratios(above: Sequence[Known], below: Sequence[Known]) -> tuple[Known, ...]:

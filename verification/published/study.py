@@ -7,7 +7,7 @@ from datetime import datetime
 from functools import partial
 from pathlib import Path
 
-from published import cylinders, hemisphere, ironing, page, punches, roller, sheared, spheres
+from published import cylinders, hemisphere, ironing, nested, page, punches, roller, sheared, spheres
 from published.benchmark import Benchmark
 
 from isomortar.harness.collection import collect
@@ -22,6 +22,7 @@ BENCHMARKS: tuple[Benchmark, ...] = (
     *punches.BENCHMARKS,
     *ironing.BENCHMARKS,
     *hemisphere.BENCHMARKS,
+    *nested.BENCHMARKS,
 )
 
 

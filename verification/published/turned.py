@@ -46,10 +46,10 @@ def turned(along: Direction, up: Direction, profile: FloatArray, spans: Sequence
     return Patch((u, quarter.direction, w), spline.control_points, spline.weights)
 
 
-def disc(radius: float, bottom: float, top: float, spans: Sequence[Sequence[float]]) -> Patch:
-    """A quarter of a cylinder; parameters along and up are lengths."""
-    r, z = np.meshgrid([0.0, radius], [bottom, top], indexing="ij")
-    return turned(line(0.0, radius), line(bottom, top), np.stack([r, z, np.ones((2, 2))], axis=-1), spans)
+def disc(inner: float, radius: float, bottom: float, top: float, spans: Sequence[Sequence[float]]) -> Patch:
+    """A quarter of a cylinder, hollow up to an inner radius; parameters along and up are lengths."""
+    r, z = np.meshgrid([inner, radius], [bottom, top], indexing="ij")
+    return turned(line(inner, radius), line(bottom, top), np.stack([r, z, np.ones((2, 2))], axis=-1), spans)
 
 
 def punch(flat: float, fillet: float, radius: float, height: float, spans: Sequence[Sequence[float]]) -> Patch:
