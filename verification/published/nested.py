@@ -42,8 +42,9 @@ outer-side = { face = "outer.u1", components = ["x"] }
 inner-axis = { face = "inner.w0", components = ["x", "y"] }
 outer-axis = { face = "outer.w0", components = ["x", "y"] }
 """
-#: Orders, and elements through the thickness and along the meridians of the inner and the outer hemisphere.
-MESHES = {"N2 coarse": (2, 2, 30, 24), "N2 fine": (2, 3, 40, 32), "N3 coarse": (3, 2, 30, 24)}
+#: Orders, and elements through the thickness and along the meridians of the inner and the outer hemisphere; with 20 or 30 along them
+#: points of the contact open and close without end where a hemisphere buckles.
+MESHES = {"N2 fine": (2, 3, 40, 32), "N3 fine": (3, 2, 40, 32)}
 
 
 @dataclass(frozen=True)
@@ -57,7 +58,7 @@ class Part:
 
 
 #: Where a hemisphere buckles its pole is led, then let go: by the plate alone it would jump.
-SMOOTH = (Part(5.0, 50), Part(0.1, 8, "inner", 1.6), Part(0.0, 2), Part(1.5, 15), Part(0.4, 16, "outer", 3.2), Part(0.0, 2), Part(3.0, 30))
+SMOOTH = (Part(5.0, 50), Part(0.1, 8, "inner", 1.6), Part(0.0, 2), Part(1.3, 13), Part(0.7, 20, "outer", 3.4), Part(0.0, 2), Part(2.9, 29))
 #: What is told: forces on the quarter at so many mm, as published.
 AT = (2.0, 4.0, 5.0, 6.0, 7.5, 9.0, 10.0)
 
@@ -88,9 +89,9 @@ def pressed(mesh: str, friction: float, parts: Sequence[Part]) -> dict[str, Any]
     starts = np.repeat(np.cumsum([0.0, *(part.way for part in parts[:-1])]), [part.steps for part in parts])
     free = np.repeat([part.way > 0.0 and not part.led for part in parts], [part.steps for part in parts])
     way, force = (starts + ways)[free], _of(steps, given, "plate")[free, 2]
-    unbalanced = np.abs(sum(_of(steps, given, support.name) for support in given.supports)[:, 2] + _floor(steps)).max()
+    supported = np.sum([_of(steps, given, support.name)[:, 2] for support in given.supports], axis=0)
     return {
-        "unbalanced": float(unbalanced / np.abs(force).max()),
+        "unbalanced": float(np.abs(supported + _floor(steps)).max() / np.abs(force).max()),
         "cuts": sum(step.cuts for step in steps),
         **{f"force at {at:g}": float(np.interp(at, way, -force)) for at in AT},
         "way": way,
@@ -153,7 +154,7 @@ def _benchmark(name: str, title: str, friction: str, curve: dict[str, FloatArray
         title,
         f"{_ABOUT} {friction}",
         _OPEN,
-        ("N2 fine", "N3 coarse"),
+        ("N3 fine", "N2 fine"),
         tuple(Quantity(f"force at {at:g}", f"force at {at:g} mm", "N", among(curve, at)) for at in AT),
         (Drawing("way", "force", "way of the plate, mm", "force, N", curve),),
     )
