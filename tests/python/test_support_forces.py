@@ -156,6 +156,22 @@ def test_a_wall_that_a_pad_slides_past_is_not_what_its_weight_closes(method: str
     np.testing.assert_allclose(found[1].state.positions, found[0].state.positions, rtol=0.0, atol=1e-12)
 
 
+@pytest.mark.parametrize("method", ["monolithic", "uzawa"])
+@pytest.mark.parametrize("wall", [1.01, 3.0], ids=["near", "far"])
+def test_a_pad_that_rests_by_its_weight_alone_is_not_drawn_to_a_wall(method: str, wall: float) -> None:
+    """Nothing but friction holds it across its weight, so that it could go anywhere; its weight takes it down."""
+    free = GOOD.replace('[supports.top]\nface = "pad.w1"\nforce.z = -0.3', '[loads.heavy]\nbody = "pad"\nweight = [0, 0, -0.3]')
+    for what, by in (("motions.top.translate = [0.05, 0, 0]\nloads.top = 1.5", ""), ("steps = 2", "steps = 1"), ("0.03]", "0]")):
+        free = free.replace(what, by)
+    side = f'[contacts.side]\nslave = "pad.u1"\nplane = {{ point = [{wall}, 0, 0], normal = [-1, 0, 0] }}\n[loads.heavy]'
+    found = []
+    for text in (free, free.replace("[loads.heavy]", side)):
+        problem = Scene.from_toml(text, overrides=[f'solver.method="{method}"']).problem()
+        found.append(next(iter(Simulation(problem).run())))
+    assert np.any(found[0].state.contacts[0].pressure > 0.0)
+    np.testing.assert_allclose(found[1].state.positions, found[0].state.positions, rtol=0.0, atol=1e-12)
+
+
 def test_results_hold_forces_and_ways_to_the_last_bit(tmp_path: Path) -> None:
     scene = Scene.from_toml(GOOD)
     run(scene, tmp_path / "whole.h5")

@@ -117,13 +117,13 @@ class PairMechanics:
     ----------
     shared : ndarray of bool, shape (test functions,)
         Those that constrain control points of the slave of another pair as well.
-    drifts : tuple of ndarray, each of shape (control points, 3)
-        Where loads act, the rigid motions that supports leave its bodies: displacements.
+    drifts : sequence of ndarray, each of shape (control points, 3)
+        Where loads act, ways that its bodies may go rigidly, as supports leave them: displacements.
     """
 
     def __init__(self, pair: Pair, settings: SolverSettings, ledger: Ledger, origin: FloatArray, others: Sequence[Pair]) -> None:
         self.pair = pair
-        self.drifts: tuple[FloatArray, ...] = ()
+        self.drifts: Sequence[FloatArray] = ()
         self._feet = Feet(pair, origin)
         self._separation = Separation(pair)
         self.friction = pair.contact.friction_law
@@ -237,7 +237,7 @@ class PairMechanics:
         height, least = _heights(control), constants.NO_PART * float(np.sqrt(self.pair.area))
         near = np.isfinite(height) & (height >= height.max() - least)
         passed = [_heights(self.kinematics(positions + least * motion, start).control)[near] for motion in self.drifts]
-        if not np.any(np.abs(np.array(passed) - height[near]) > constants.IN_THE_WAY * least):
+        if not np.any(np.array(passed) - height[near] > constants.IN_THE_WAY * least):
             return None
         size = float(self.parameters(control, penalty)[0]) if isinstance(penalty, Scales) else penalty
         return np.where(near, size * np.maximum(least, least - height), 0.0)
