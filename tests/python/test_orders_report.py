@@ -97,14 +97,14 @@ def test_every_kind_gets_four_meshes_that_an_order_can_be_told_from():
     for name in bundled_scenes():
         for quick in (False, True):
             plan = Plan.of(Scene.load(name), quick=quick)
-            for kind in plan.kinds:
-                sizes = np.array([plan.size(each) for each in plan.meshes(kind)])
-                assert len(sizes) >= 4
-                assert (sizes[:-1] >= 1.2 * sizes[1:]).all()
+            sizes = {kind: np.array([plan.size(each) for each in plan.meshes(kind)]) for kind in plan.kinds}
+            for of_kind in sizes.values():
+                assert len(of_kind) >= 4
+                assert (of_kind[:-1] >= 1.2 * of_kind[1:]).all()
             coarse, medium, fine = map(plan.size, plan.reference)
             assert coarse == pytest.approx(2 * medium)
             assert medium == pytest.approx(2 * fine)
-            assert all(fine < 0.501 * plan.size(mesh) for kind in plan.kinds if kind[0] == "N" for mesh in plan.meshes(kind))
+            assert all((fine < 0.501 * of_kind).all() for kind, of_kind in sizes.items() if kind[0] == "N")
 
 
 @pytest.mark.parametrize("kinds", [["N0"], ["N11"], ["L5"], ["Q2"], ["N"]])
