@@ -1,8 +1,12 @@
 """The compiled kernels: there, each in its precision, and the one that suits the processor to the same bits as the one for all."""
 
+import json
 import os
+import shlex
 import subprocess
 import sys
+import sysconfig
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -86,3 +90,13 @@ def test_a_processor_is_given_no_instructions_that_it_lacks(flags: set[str], nam
     monkeypatch.setattr(_compiled, "_processor_flags", lambda: frozenset(flags))
     monkeypatch.setattr(_compiled.importlib, "import_module", lambda name: name)
     assert _compiled.suited_kernel() == name
+
+
+def test_headers_of_numpy_are_those_of_the_environment() -> None:
+    """Debian's python3-numpy has older ones beside Python.h: compiled with these, the kernel lacks symbols of the NumPy that loads it."""
+    commands = json.loads((Path(_kernel.__file__).parents[1] / "compile_commands.json").read_text(encoding="utf-8"))
+    wrapped = [shlex.split(entry["command"]) for entry in commands if entry["file"].endswith(("fortranobject.c", "module.c"))]
+    assert wrapped
+    for command in wrapped:
+        searched = [option[2:] for option in command if option.startswith("-I")]
+        assert searched.index(np.get_include()) < searched.index(sysconfig.get_path("include"))
