@@ -12,7 +12,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from isomortar.geometry.patch import FloatArray, Patch
-from isomortar.harness import Bound, Shown, case
+from isomortar.harness import Bound, Matches, Order, Shown, case
 from isomortar.model.entities import Problem
 from isomortar.model.numbering import Numbering
 from isomortar.results.bezier import sampling_matrix
@@ -270,7 +270,7 @@ def rounded_punch(mesh: str) -> dict[str, Any]:
     }
 
 
-_TOLD = {
+_TOLD: dict[str, Bound | Order | Matches | Shown] = {
     "pressure in the middle": Shown("MPa; the mean one is 100 over the radius of the punch"),
     "peak": Bound(
         at_least=0.9 * _HALF_SPACES.peak,
