@@ -42,7 +42,7 @@ outer-side = { face = "outer.u1", components = ["x"] }
 inner-axis = { face = "inner.w0", components = ["x", "y"] }
 outer-axis = { face = "outer.w0", components = ["x", "y"] }
 """
-#: Orders, and elements through the thickness and along the meridians of the inner and the outer hemisphere; with 20 or 30 along them
+#: Orders, and elements through the thickness and along the meridians of the inner and the outer hemisphere; with 20 along them
 #: points of the contact open and close without end where a hemisphere buckles.
 MESHES = {"N2 fine": (2, 3, 40, 32), "N3 fine": (3, 2, 40, 32)}
 
