@@ -22,9 +22,6 @@ module isomortar_solid_assembly
   integer, parameter :: batch_room = 2**17
   !> Elements of the smallest batch; it has one for every thread at least.
   integer, parameter :: smallest_batch = 8
-  !> Rows that stand together in a share.
-  integer, parameter :: row_group = 8
-
   !> One element of a batch.
   type :: element_t
     integer, allocatable :: local(:), nodes(:)
@@ -172,7 +169,7 @@ contains
             do a2 = 1, count(2)
               do a1 = 1, count(1)
                 a = a + 1
-                if (modulo(element%nodes(a) / row_group, shares) /= share) cycle
+                if (modulo(element%nodes(a), shares) /= share) cycle
                 call mark_row(pattern, element%nodes(a), columns)
                 if (lacks(pattern, element%nodes(a), columns, element%nodes)) then
                   lacking = max(lacking, element%nodes(a))

@@ -32,6 +32,7 @@ from isomortar.model.entities import Body
 from isomortar.model.numbering import Numbering
 from isomortar.model.raised import lowered
 from isomortar.results import files, layout
+from isomortar.results.pictures import FIELDS
 from isomortar.results.writer import ResultsWriter
 from isomortar.scene.source import apply_overrides
 from isomortar.solve import doubts, feet, singular, system
@@ -216,7 +217,7 @@ def of_files(patch: pytest.MonkeyPatch) -> Told:
     alone, step = without_contact(problem(), step_result(1))
     ResultsWriter("alone.h5", alone, "", "0").recorded(step)
     yield "filmed: no contact", refusal(lambda: film("alone.h5", "run.gif"))
-    yield "plotted: no contact", refusal(lambda: plot("alone.h5", "figures", only=["pressure"]))
+    yield "plotted: no contact", refusal(lambda: plot("alone.h5", "figures", only=["maps"]))
     versions = ("of an earlier version", "format_version", 1), ("of a later version", "format_version", 9)
     for name, key, value in (("another format", "format", "waves"), *versions):
         Path("other.h5").write_bytes(Path("run.h5").read_bytes())
@@ -326,7 +327,7 @@ def on_figures(patch: pytest.MonkeyPatch) -> Told:
     writer = ResultsWriter("drawn.h5", problem(), "", "0")
     writer.recorded(step_result(1))
     patch.setattr(Figure, "savefig", read)
-    plot("drawn.h5", "figures")
+    plot("drawn.h5", "figures", fields=FIELDS)
     alone, step = without_contact(problem(), step_result(1))
     ResultsWriter("alone.h5", alone, "", "0").recorded(step)
     plot("alone.h5", "figures", only=["bodies"])

@@ -10,21 +10,25 @@ import numpy as np
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import LineCollection, QuadMesh
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
 from isomortar.driver import run
 from isomortar.errors import InputError, ResultsError
 from isomortar.geometry.patch import FACES, Direction
+from isomortar.model.entities import Problem
 from isomortar.model.numbering import Numbering
 from isomortar.results import Results, ResultsWriter, bodies, maps, style
-from isomortar.results.alone import _painted
 from isomortar.results.bodies import draw_bodies
+from isomortar.results.coloured import _painted, draw_coloured, stress
 from isomortar.results.curves import draw_curve, draw_reactions
 from isomortar.results.fields import body_points, contact_surfaces
+from isomortar.results.laid import laid
 from isomortar.results.maps import draw_map
 from isomortar.results.pictures import plot
 from isomortar.results.rendering import Camera, Canvas
+from isomortar.results.shown import shown_field
 from isomortar.results.stress import cauchy_stress, deformation_gradient, von_mises
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
@@ -46,6 +50,16 @@ def quiet(number: int) -> StepResult:
     return replace(result, state=replace(result.state, positions=rest + 0.1 * (result.state.positions - rest)))
 
 
+def mapped(made: Problem, step: StepResult, field: str = "pressure") -> Axes:
+    """The map of the first contact."""
+    return draw_map(made, step, shown_field(made, step, 0, field)).axes[0]
+
+
+def mesh(axes: Axes) -> QuadMesh:
+    """The colours of a map."""
+    return next(drawn for drawn in axes.collections if isinstance(drawn, QuadMesh))
+
+
 @pytest.fixture
 def results_path(tmp_path: Path) -> Path:
     path = tmp_path / "run.h5"
@@ -65,11 +79,11 @@ def test_plot_draws_every_support_that_moves_and_every_contact(results_path: Pat
 
 def test_what_is_drawn_may_be_chosen(results_path: Path, tmp_path: Path) -> None:
     """Kinds, types of files, and the load step."""
-    names = {path.name for path in plot(results_path, tmp_path / "some", [Curve()], step=3, only=["bodies", "pressure"], formats=["svg"])}
+    names = {path.name for path in plot(results_path, tmp_path / "some", [Curve()], step=3, only=["bodies", "maps"], formats=["svg"])}
     assert names == {"bodies-tread.png", "bodies-ground.png", "pressure-tread.svg", "pressure-ground.svg"}
     assert "load step 3 (press)" in (tmp_path / "some" / "pressure-tread.svg").read_text()
     assert {path.suffix for path in plot(results_path, tmp_path / "curves", only=["curves"])} == {".png", ".pdf"}
-    with pytest.raises(InputError, match=r"only: is 'forces'; allowed: curves, bodies, pressure"):
+    with pytest.raises(InputError, match=r"only: is 'forces'; allowed: curves, bodies, maps"):
         plot(results_path, tmp_path, only=["forces"])
     with pytest.raises(InputError, match=r"format: is 'jpg'; allowed: png, pdf, svg"):
         plot(results_path, tmp_path, formats=["png", "jpg"])
@@ -77,10 +91,32 @@ def test_what_is_drawn_may_be_chosen(results_path: Path, tmp_path: Path) -> None
         plot(results_path, tmp_path, step=9)
 
 
+def test_fields_may_be_chosen(results_path: Path, tmp_path: Path) -> None:
+    """Those of contacts are drawn as maps, those of bodies on bodies; what is not there is refused."""
+    wanted = {"fields": ["traction", "slip", "gap", "stress", "J", "displacement"], "formats": ["png"]}
+    names = {path.name for path in plot(results_path, tmp_path / "all", only=["bodies", "maps"], **wanted)}
+    assert names == {
+        *(f"{field}-{contact}.png" for field in ("traction", "slip", "gap") for contact in ("tread", "ground")),
+        *(f"bodies-{field}.png" for field in ("stress", "J", "displacement")),
+    }
+    with pytest.raises(InputError, match="field: is 'strain'; allowed: pressure, traction, slip, gap, stress, J, displacement"):
+        plot(results_path, tmp_path, fields=["strain"])
+    with pytest.raises(ResultsError, match="of which stress or maps could be drawn"):
+        plot(results_path, tmp_path, fields=["stress"], only=["maps"])
+
+
+def test_slips_of_a_step_whose_beginning_nobody_kept_are_refused(tmp_path: Path) -> None:
+    writer = ResultsWriter(tmp_path / "last.h5", problem(), "", "0", states="last")
+    for number in (1, 2):
+        writer.recorded(quiet(number))
+    with pytest.raises(ResultsError, match="slips of load step 2 begin at load step 1, of which no state was kept"):
+        plot(tmp_path / "last.h5", tmp_path, fields=["slip"])
+
+
 def test_without_contact_bodies_are_drawn(tmp_path: Path) -> None:
     alone, step = without_contact(problem(), quiet(1))
     ResultsWriter(tmp_path / "alone.h5", alone, "", "0").recorded(step)
-    assert "bodies.png" in {path.name for path in plot(tmp_path / "alone.h5", tmp_path)}
+    assert "bodies-stress.png" in {path.name for path in plot(tmp_path / "alone.h5", tmp_path)}
 
 
 def test_a_ball_whose_middle_is_one_point_is_drawn(tmp_path: Path) -> None:
@@ -108,7 +144,7 @@ def test_their_colours_are_those_of_the_stress_there(face: str) -> None:
             return np.zeros((*stress.shape, 4))
 
     parts = (2, 3)
-    cells, _ = _painted(body, points, Seen(), face, parts)
+    cells, _ = _painted(body, points, stress, Seen(), face, parts)
     first, second = body.patch.face_directions(face)
     assert cells.shape == (parts[1] * second.elements, parts[0] * first.elements, 3)
     for row, column in ((0, 0), (1, -1), (-1, 1)):
@@ -128,10 +164,10 @@ def test_where_nothing_presses_the_material_is_bare() -> None:
     open_face = replace(contact, pressure=np.zeros_like(contact.pressure))
     without = replace(step, state=replace(step.state, contacts=(open_face, step.state.contacts[1])))
     bare = np.array(to_rgb(style.SLAVE))
-    drawn = draw_map(made, without, 0).axes[0].collections[0]
+    drawn = mesh(mapped(made, without))
     assert drawn.get_array().mask.all()
     assert drawn.cmap.get_bad()[:3] == pytest.approx(bare)
-    pressed = draw_map(made, step, 0).axes[0].collections[0].get_array()
+    pressed = mesh(mapped(made, step)).get_array()
     assert np.ma.getmaskarray(pressed).sum() == (np.abs(pressed.data) < 2e-3 * pressed.data.max()).sum() < pressed.size
 
 
@@ -159,11 +195,12 @@ def test_the_map_shows_each_state_at_its_control_points() -> None:
     status = np.zeros(16, np.int32)
     status[[5, 6]] = 1, 2  # the face runs along w first: points (w, u) = (1, 2) and (0, 3)
     first = replace(step.contacts[0], status=status)
-    axes = draw_map(made, replace(step, contacts=(first, step.contacts[1])), 0).axes[0]
+    axes = mapped(made, replace(step, contacts=(first, step.contacts[1])))
     shown = {line.get_label(): np.column_stack(line.get_data()) for line in axes.lines}
     assert len(shown["open"]) == 18 - 2
-    assert shown["stick"] == pytest.approx(np.array([[1.0, 1.0]]))  # u to the right
-    assert shown["slip"] == pytest.approx(np.array([[1.5, 0.0]]))
+    quarter = 0.25 * np.pi  # of the ring's circumference, which runs to the right
+    assert shown["stick"] == pytest.approx(np.array([[quarter, 0.3]]), rel=1e-4)
+    assert shown["slip"] == pytest.approx(np.array([[1.5 * quarter, 0.0]]), rel=1e-4)
 
 
 def test_places_of_control_points() -> None:
@@ -189,21 +226,36 @@ def test_both_pictures_of_bodies_show_the_contact_face(monkeypatch: pytest.Monke
     assert np.all(np.subtract(shown, left) > 1000)
 
 
-def test_the_longer_side_of_a_face_runs_to_the_right_with_all_that_is_drawn_on_it() -> None:
-    """Knot lines, control points, samples and letters are turned alike: each lies within the face as it is drawn."""
+def test_a_round_face_is_laid_flat_in_lengths_its_knot_lines_too() -> None:
+    """The longer side runs to the right, and what is drawn is named and as long as it is."""
     made, step = problem(), step_result(1)
-    surface = contact_surfaces(made, step)[0]
-    assert surface.lengths[0] < surface.lengths[1]  # so it has to be turned
-    right, up = surface.directions[::-1]
-    axes = draw_map(made, step, 0).axes[0]
-    assert (axes.get_xlabel()[-1], axes.get_ylabel()[-1]) == surface.letters[::-1]
-    upright, level = (np.array(lines.get_segments()) for lines in axes.collections[1:3])
-    assert np.array_equal(upright[:, 0, 0], right.boundaries)
-    assert np.array_equal(upright[0, :, 1], up.boundaries[[0, -1]])
-    assert np.array_equal(level[:, 0, 1], up.boundaries)
-    assert np.array_equal(level[0, :, 0], right.boundaries[[0, -1]])
-    ratio = surface.lengths[0] / np.ptp(up.boundaries) / (surface.lengths[1] / np.ptp(right.boundaries))
-    assert axes.get_aspect() == pytest.approx(ratio)
+    axes = mapped(made, step)
+    assert (axes.get_xlabel(), axes.get_ylabel(), axes.get_aspect()) == ("distance along u", "distance along w", 1.0)
+    (drawn,) = (drawn for drawn in axes.collections if isinstance(drawn, LineCollection))
+    ends = np.array([[line[0], line[-1]] for line in drawn.get_segments()])
+    level = ends[:, 0, 1] == ends[:, 1, 1]
+    upright = ends[~level]
+    assert upright[:, 0, 0] == pytest.approx(np.arange(5) * np.pi / 4, rel=1e-4)
+    assert upright[:, :, 1] == pytest.approx(np.tile([0.0, 0.3], (5, 1)))
+    assert ends[level] == pytest.approx(np.array([[[0.0, y], [np.pi, y]] for y in (0.0, 0.3)]), rel=1e-4)
+
+
+def test_a_flat_face_is_drawn_where_it_lies() -> None:
+    surface = contact_surfaces(problem(), quiet(1))[0]
+    road = problem().body("road").patch
+    points = road.face_points("w1")
+    flat = laid(
+        replace(
+            surface,
+            directions=road.face_directions("w1"),
+            weights=road.weights[points],
+            reference_points=road.control_points[points],
+        )
+    )
+    assert flat.labels == ("x", "y")
+    places, _ = flat.at([direction.boundaries for direction in road.face_directions("w1")])
+    assert places[..., 0] == pytest.approx(np.tile([-1.0, 0.5, 2.0], (2, 1)))
+    assert places[..., 1] == pytest.approx(np.array([[-0.3] * 3, [0.7] * 3]))
 
 
 @pytest.mark.parametrize(
@@ -212,19 +264,37 @@ def test_the_longer_side_of_a_face_runs_to_the_right_with_all_that_is_drawn_on_i
 )
 def test_a_map_looks_at_the_contact_and_two_elements_round_it(active: list[float], low: float, high: float) -> None:
     ten = Direction("N", 1, [0.0, *range(11), 10.0])
-    margin = 0.03 * (high - low)
-    assert maps._limits(ten, np.array(active)) == pytest.approx((low - margin, high + margin))
+    assert list(maps._within(ten, np.array(active))[[0, -1]]) == [low, high]
 
 
 def test_a_map_looks_at_contact_along_both_of_its_coordinates() -> None:
     made, step = problem(), step_result(1)
     surface = contact_surfaces(made, step)[0]
-    axes = draw_map(made, step, 0).axes[0]
-    marks = np.concatenate([np.column_stack(line.get_data()) for line in axes.lines if line.get_label() != "open"])
-    right, up = surface.directions[::-1]
-    assert axes.get_xlim() == pytest.approx(maps._limits(right, marks[:, 0]))
-    assert axes.get_ylim() == pytest.approx(maps._limits(up, marks[:, 1]))
-    assert axes.get_xlim() != axes.get_ylim()
+    along, round_it = np.meshgrid(*(direction.greville for direction in surface.directions))
+    first, second = (maps._within(d, x.ravel()[surface.status > 0]) for d, x in zip(surface.directions, (along, round_it), strict=True))
+    axes = mapped(made, step)
+    for limits, ends in ((axes.get_xlim(), second[[0, -1]] * np.pi / 4), (axes.get_ylim(), first[[0, -1]] * 0.3)):
+        margin = 0.03 * np.ptp(ends)
+        assert limits == pytest.approx((ends[0] - margin, ends[1] + margin), rel=1e-3)
+
+
+def test_gaps_have_colours_of_both_signs_and_nothing_bare() -> None:
+    made, step = problem(), step_result(1)
+    drawn = mesh(mapped(made, step, "gap"))
+    low, high = drawn.get_clim()
+    assert low == -high < 0.0
+    assert not np.ma.getmaskarray(drawn.get_array()).any()
+
+
+def test_bodies_are_drawn_in_colours_by_each_of_their_fields() -> None:
+    """From zero on, or between the least and the largest value inside; rigid bodies have none."""
+    made, step = problem(), quiet(1)
+    for name, label in (("stress", "von Mises stress (force / area)"), ("J", "J (volume / volume at rest)"), ("displacement", "length")):
+        figure = draw_coloured(made, step, name)
+        assert label in figure.axes[1].get_ylabel()
+        low, high = figure.axes[1].get_ylim()
+        assert (low == 0.0) == (name != "J")
+        assert low < high
 
 
 def square(height: float, size: float) -> np.ndarray:

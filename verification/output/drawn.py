@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from matplotlib.collections import QuadMesh
+from matplotlib.collections import LineCollection, QuadMesh
 from matplotlib.figure import Figure
+from matplotlib.quiver import Quiver
 from output import exported, records
 from rational_functions import nodes_of, shares
 
@@ -21,6 +23,8 @@ from isomortar.results.curves import draw_curve, draw_reactions, moving_supports
 from isomortar.results.maps import draw_map
 from isomortar.results.paraview import states
 from isomortar.results.reader import Results
+from isomortar.results.shown import shown_field
+from isomortar.results.vectors import contact_vectors
 from isomortar.results.view import of_bodies
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
@@ -113,49 +117,138 @@ def centres(direction: Direction) -> FloatArray:
     return nodes_of(direction)
 
 
+#: Besides the flat slave faces one that is round: it is laid flat by distances.
+_MAPPED = exported.SCENE.replace(
+    "friction = 0 }",
+    'friction = 0.4 }\nround = { slave = "wheel.v1", plane = { point = [0, 4, -1], normal = [0, 0, 1] }, friction = 0.2 }',
+)
+_CENTRE, _RADIUS = (0.5, 0.0), 0.4
+
+
 @case(
-    claim="Maps show the pressure and the states of control points where they are on the slave face, in its proportions.",
+    claim="Maps show the pressure and the states of control points where they are on the slave face, in its lengths.",
     tier="gate",
-    grid={"contact": (0, 1)},
+    grid={"contact": (0, 1, 2)},
     bounds={
         "pressure": Bound(at_most=1e-12, reason=_ROUND_OFF),
-        "control points": Bound(at_most=1e-14, reason="round-off: means of knots"),
-        "aspect": Bound(at_most=1e-12, reason="definition: lengths of the face's sides; round-off"),
+        "places": Bound(at_most=5e-5, reason="theory: of 64 chords of a quarter turn (pi / 128)^2 / 24; round-off where it is flat"),
+        "control points": Bound(at_most=5e-5, reason="theory: as places"),
+        "outline": Bound(at_most=5e-5, reason="theory: as places"),
         "longer": Bound(1.0, 1.0, "definition: the longer side runs to the right"),
     },
 )
 def maps(contact: int) -> dict[str, float]:
-    """Largest errors of the pressure, relative to the largest, of places and of the proportions of the picture."""
-    problem = _in_other_parameters(Scene.from_toml(exported.SCENE).problem())
-    step = records.load_steps(problem)[0]
-    status = step.contacts[contact].status % 3
+    """Largest errors of the pressure, relative to the largest, and of places, relative to the longer side."""
+    problem, step = _mapped(contact)
     pressure = np.abs(step.state.contacts[contact].pressure) + 1.0
     given = replace(
         step,
         state=replace(step.state, contacts=_with(step.state.contacts, contact, replace(step.state.contacts[contact], pressure=pressure))),
-        contacts=_with(step.contacts, contact, replace(step.contacts[contact], status=status)),
     )
-    axes = draw_map(problem, given, contact).axes[0]
-    slave = problem.contacts[contact].slave
-    patch = problem.body(slave.body).patch
-    directions, points = patch.face_directions(slave.face), patch.face_points(slave.face)
-    grid = patch.control_points[points].reshape(directions[1].count, directions[0].count, 3)
-    sides = [float(np.linalg.norm(grid[0, -1] - grid[0, 0])), float(np.linalg.norm(grid[-1, 0] - grid[0, 0]))]
-    first, second = (0, 1) if sides[0] >= sides[1] else (1, 0)
+    axes = draw_map(problem, given, shown_field(problem, given, contact)).axes[0]
+    directions, weights, control_points = _slave(problem, contact)
     mesh = next(drawn for drawn in axes.collections if isinstance(drawn, QuadMesh))
-    places = np.asarray(mesh.get_coordinates()).reshape(-1, 2)[:, [first, second]]
+    coordinates = np.asarray(mesh.get_coordinates())
+    samples = _on_grid([_parts(d, (n - 1) // d.elements) for d, n in zip(directions, coordinates.shape[1::-1], strict=True)])
+    functions = shares(directions, weights, samples)
+    exact = functions @ np.resize(pressure, len(control_points))  # the wheel's last ones are its first
     shown = np.ma.getdata(mesh.get_array()).ravel()  # type: ignore[arg-type]
-    exact = shares(directions, patch.weights[points], places) @ pressure
-    belongs = np.stack(np.meshgrid(*map(centres, directions)), axis=-1).reshape(-1, 2)
-    marks = [np.asarray(line.get_xydata())[:, [first, second]] for line in axes.lines[-3:]]
-    ends = [float(np.ptp(d.boundaries)) for d in directions]
-    aspect = (sides[second] / ends[second]) / (sides[first] / ends[first])
+    laid = _laid(contact, functions @ control_points, control_points[0])
+    belongs = _laid(contact, shares(directions, weights, _on_grid([centres(d) for d in directions])) @ control_points, control_points[0])
+    marks = [np.asarray(line.get_xydata()) for line in axes.lines[-3:]]
+    status, size = np.resize(step.contacts[contact].status, len(control_points)), np.ptp(laid, axis=0)
+    lines = np.concatenate([np.concatenate(drawn.get_segments()) for drawn in axes.collections if isinstance(drawn, LineCollection)])
     return {
         "pressure": float(np.abs(shown - exact).max() / np.abs(exact).max()),
-        "control points": float(np.max([np.abs(mark - belongs[status == k]).max(initial=0.0) for k, mark in enumerate(marks)])),
-        "aspect": abs(float(axes.get_aspect()) / aspect - 1.0),
-        "longer": float(sides[first] >= sides[second]),
+        "places": float(np.abs(coordinates.reshape(-1, 2) - laid).max() / size[0]),
+        "control points": float(np.max([_farthest(mark, belongs[status == k]) for k, mark in enumerate(marks)]) / size[0]),
+        "outline": float(np.abs(np.array([lines.min(axis=0) - laid.min(axis=0), lines.max(axis=0) - laid.max(axis=0)])).max() / size[0]),
+        "longer": float(size[0] >= size[1] and axes.get_aspect() == 1.0),
     }
+
+
+@case(
+    claim="Arrows on maps are the friction on the slave: on a face at rest its components along the two lengths of the map.",
+    tier="gate",
+    grid={"contact": (0, 1, 2)},
+    bounds={
+        "arrows": Bound(at_most=1e-10, reason="round-off: inverse tangents"),
+        "places": Bound(at_most=5e-5, reason="theory: as of maps"),
+    },
+)
+def arrows(contact: int) -> dict[str, float]:
+    """Largest error of the arrows, relative to the longest, and of where they begin, relative to the longer side."""
+    problem, step = _mapped(contact)
+    sticks = np.ones_like(step.contacts[contact].status)
+    given = replace(
+        step,
+        state=replace(step.state, positions=Numbering(problem).reference),
+        contacts=_with(step.contacts, contact, replace(step.contacts[contact], status=sticks)),
+    )
+    directions, weights, control_points = _slave(problem, contact)
+    axes = draw_map(problem, given, shown_field(problem, given, contact, "traction")).axes[0]
+    quiver = next(drawn for drawn in axes.collections if isinstance(drawn, Quiver))
+    drawn, places = np.column_stack([quiver.U, quiver.V]), np.column_stack([quiver.X, quiver.Y])
+    counts = [len(np.unique(of_axis.round(9))) for of_axis in places.T]
+    if contact != 0:  # the second direction runs to the right
+        counts = counts[::-1]
+    middles = [np.interp((np.arange(n) + 0.5) / n, [0.0, 1.0], d.boundaries[[0, -1]]) for d, n in zip(directions, counts, strict=True)]
+    functions = shares(directions, weights, _on_grid(middles))
+    points, tractions = functions @ control_points, functions @ contact_vectors(problem, given, None)[contact].traction
+    exact = np.stack([np.einsum("nc,nc->n", tractions, along) for along in _along(contact, points, control_points[0])], axis=1)
+    exact *= (np.linalg.norm(tractions, axis=1) / np.linalg.norm(exact, axis=1))[:, None]  # they are along the plane, not along the wheel
+    laid = _laid(contact, points, control_points[0])
+    return {
+        "arrows": float(np.abs(drawn - exact).max() / np.linalg.norm(exact, axis=1).max()),
+        "places": float(np.abs(places - laid).max() / np.ptp(laid[:, 0])),
+    }
+
+
+def _mapped(contact: int) -> tuple[Problem, StepResult]:
+    """Bodies of which no two directions have parameters as long, and a load step in which all states are on the slave face."""
+    problem = _in_other_parameters(Scene.from_toml(_MAPPED).problem())
+    step = records.load_steps(problem)[0]
+    status = np.arange(len(step.contacts[contact].status), dtype=np.int32) % 3
+    return problem, replace(step, contacts=_with(step.contacts, contact, replace(step.contacts[contact], status=status)))
+
+
+def _slave(problem: Problem, contact: int) -> tuple[tuple[Direction, Direction], FloatArray, FloatArray]:
+    """Directions, weights and control points of a slave face."""
+    slave = problem.contacts[contact].slave
+    patch = problem.body(slave.body).patch
+    points = patch.face_points(slave.face)
+    return patch.face_directions(slave.face), patch.weights[points], patch.control_points[points]
+
+
+def _on_grid(parameters: Sequence[FloatArray]) -> FloatArray:
+    return np.stack(np.meshgrid(*parameters), axis=-1).reshape(-1, 2)
+
+
+def _parts(direction: Direction, count: int) -> FloatArray:
+    """Ends of equal parts of each element."""
+    return np.interp(np.arange(count * direction.elements + 1) / count, np.arange(direction.elements + 1), direction.boundaries)
+
+
+def _laid(contact: int, points: FloatArray, corner: FloatArray) -> FloatArray:
+    """Points of a slave face at rest on its map: two of their coordinates, or ways round the wheel and along it from a corner."""
+    if contact < 2:
+        return points[:, [(0, 1), (2, 1)][contact]]
+    from_centre = np.concatenate([corner[None], points]) - [_CENTRE[0], 0.0, _CENTRE[1]]
+    turned = np.unwrap(np.arctan2(from_centre[:, 0], from_centre[:, 2]))[1:] - np.arctan2(from_centre[0, 0], from_centre[0, 2])
+    return np.abs(np.column_stack([_RADIUS * turned, points[:, 1] - corner[1]]))
+
+
+def _along(contact: int, points: FloatArray, corner: FloatArray) -> FloatArray:
+    """Unit vectors along both lengths of the map, shape (2, n, 3); round the wheel turns count from z to x, as its angles do."""
+    if contact < 2:
+        return np.broadcast_to(np.eye(3)[[(0, 1), (2, 1)][contact], None], (2, len(points), 3))
+    outward = (points - [_CENTRE[0], 0.0, _CENTRE[1]]) * [1.0, 0.0, 1.0] / _RADIUS
+    across = np.broadcast_to([0.0, np.sign(points[:, 1].mean() - corner[1]), 0.0], points.shape)
+    return np.stack([np.cross([0.0, 1.0, 0.0], outward), across])
+
+
+def _farthest(drawn: FloatArray, exact: FloatArray) -> float:
+    return float(np.abs(drawn - exact).max(initial=0.0))
 
 
 def _in_other_parameters(problem: Problem) -> Problem:

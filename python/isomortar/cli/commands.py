@@ -150,10 +150,19 @@ def plot(
     output: Annotated[
         Path | None, typer.Option(file_okay=False, help="Folder of the figures.", show_default="RESULTS-plots, beside the file")
     ] = None,
-    step: Annotated[int | None, typer.Option(help="Load step whose bodies and pressures are drawn.", show_default="the last one")] = None,
+    step: Annotated[int | None, typer.Option(help="Load step whose bodies and maps are drawn.", show_default="the last one")] = None,
+    fields: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--field",
+            metavar="FIELD",
+            help="In colours: pressure, traction, slip or gap of contacts, stress, J or displacement of bodies; may be given again.",
+            show_default="pressure",
+        ),
+    ] = None,
     only: Annotated[
         list[str] | None,
-        typer.Option(metavar="WHAT", help="Draw these alone, curves, bodies or pressure; may be given again.", show_default="all"),
+        typer.Option(metavar="WHAT", help="Draw these alone, curves, bodies or maps; may be given again.", show_default="all"),
     ] = None,
     formats: Annotated[
         list[str] | None,
@@ -168,20 +177,21 @@ def plot(
         str, typer.Option("--x", metavar="WHAT", help="What curves are drawn over: time, or the displacement or rotation of a support.")
     ] = "time",
 ) -> None:
-    """Draw force curves, bodies and contact pressure, and print where they lie.
+    """Draw force curves, bodies, and maps of contact faces in colours by pressure or other fields, and print where they lie.
 
     Works while the computation is still running: it draws the load steps that are done.
 
     For example:
 
     - `isomortar plot results/iron.h5`
-    - `isomortar plot results/iron.h5 --step 20 --only bodies --only pressure --format svg`
+    - `isomortar plot results/iron.h5 --step 20 --only bodies --only maps --format svg`
+    - `isomortar plot results/iron.h5 --field traction --field slip --field stress --only maps --only bodies`
     - `isomortar plot results/iron.h5 --x "displacement x of top"` (without x its size; a rotation is in degrees: `--x "rotation of top"`)
     """
     with isomortar.Results(results) as stored:
         curves = isomortar.Scene.from_toml(stored.scene_text).record.curves or ()
     folder = output or _beside(results, "plots")
-    for path in isomortar.plot(results, folder, curves, step=step, only=only or (), formats=formats or (), x=x):
+    for path in isomortar.plot(results, folder, curves, step=step, fields=fields or (), only=only or (), formats=formats or (), x=x):
         print(path)
 
 

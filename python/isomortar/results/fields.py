@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +12,7 @@ from isomortar.model.enforcement import METHODS, SlaveFace
 from isomortar.model.entities import Contact, Problem
 from isomortar.model.numbering import Numbering
 from isomortar.model.sheet import Sheet
-from isomortar.results.bezier import rational
+from isomortar.results.bezier import functions_at, rational, rational_gradient
 from isomortar.solve.record import ContactResult, ContactState, StepResult
 
 
@@ -54,6 +55,19 @@ class ContactSurface:
     def field(self, matrices: tuple[FloatArray, FloatArray], control_values: FloatArray) -> FloatArray:
         """The field of control values of shape (n, k), shape (m, k)."""
         return rational(matrices, self.weights, control_values)[0]
+
+    def on_grid(self, parameters: Sequence[FloatArray], control_values: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """The field of control values of shape (n, k) on a grid of n1 parameters times n2, and its derivatives by them.
+
+        Returns
+        -------
+        field : ndarray, shape (n2, n1, k)
+        gradient : ndarray, shape (n2, n1, k, 2)
+        """
+        functions = [functions_at(d, x) for d, x in zip(self.directions, parameters, strict=True)]
+        field, gradient = rational_gradient(functions, self.weights, control_values)
+        shape = (len(parameters[1]), len(parameters[0]), control_values.shape[1])
+        return field.reshape(shape), gradient.reshape(*shape, 2)
 
 
 def body_points(problem: Problem, positions: FloatArray) -> dict[str, FloatArray]:

@@ -1,81 +1,126 @@
-"""Flat map of a slave face: contact pressure, control points and their state."""
+"""Flat map of a slave face: a field of it, control points and their state."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
-from matplotlib.patches import Rectangle
+from matplotlib.patches import Polygon
 
 from isomortar.geometry.patch import Direction, FloatArray
 from isomortar.model.entities import Problem
 from isomortar.results import style
-from isomortar.results.bezier import sampling_matrix
-from isomortar.results.fields import contact_surfaces
+from isomortar.results.fields import ContactSurface
+from isomortar.results.laid import Laid, directions_of, laid
+from isomortar.results.shown import Shown
 from isomortar.solve.record import StepResult
 
 #: By status of a control point: marker, filling, label.
 _STATES = (("o", "none", "open"), ("s", style.BLUE, "stick"), ("^", "white", "slip"))
-_SAMPLES = 240
+#: Samples along a face, and arrows along the longer side of what is seen of it.
+_SAMPLES, _ARROWS = 240, 24
 
 
-def draw_map(problem: Problem, step: StepResult, number: int) -> Figure:
-    """The slave face of contact pair `number`, laid flat in its surface coordinates.
+def draw_map(problem: Problem, step: StepResult, field: Shown) -> Figure:
+    """A slave face laid flat, in colours by a field, with arrows where that is one of vectors.
 
     Control points stand where the face's functions have their Greville abscissae (Lagrange: their nodes).
     """
-    surface = contact_surfaces(problem, step)[number]
-    letters = surface.letters
-    directions = surface.directions
-    lengths = surface.lengths
-    parts = [max(4, _SAMPLES // d.elements) for d in directions]
-    samples = [d.subdivided(n) for d, n in zip(directions, parts, strict=True)]
-    _, field, _ = surface.fields((sampling_matrix(directions[0], parts[0]), sampling_matrix(directions[1], parts[1])))
-    grid = field.reshape(len(samples[1]), len(samples[0]))
-    points = np.stack(np.meshgrid(directions[0].greville, directions[1].greville), axis=-1).reshape(-1, 2)
-    if lengths[0] < lengths[1]:  # the longer coordinate runs to the right
-        samples, grid, points = samples[::-1], grid.T, points[:, ::-1]
-        directions, letters, lengths = directions[::-1], letters[::-1], lengths[::-1]
+    surface, flat = field.surface, laid(field.surface)
     figure = Figure(figsize=(6.4, 4.4), layout="constrained")
     axes = figure.subplots()
-    peak = max(float(field.max()), 1e-300)
-    shown = np.ma.masked_where(np.abs(grid) < style.UNSEEN * peak, grid)
-    image = axes.pcolormesh(*samples, shown, shading="gouraud", cmap=style.pressure_colours(), vmin=0.0, vmax=peak, rasterized=True)
-    pulls = bool(grid.min() < -style.NOTHING * peak)
-    bar = figure.colorbar(image, cax=axes.inset_axes((1.02, 0.0, 0.025, 1.0)), extend="min" if pulls else "neither")
-    bar.set_label("contact pressure (force / area)")
-    _draw_elements(axes, directions)
-    for state, (marker, filling, label) in enumerate(_STATES):
-        mine = points[surface.status == state]
-        axes.plot(*mine.T, marker, color=style.BLACK, markerfacecolor=filling, markeredgewidth=0.8, markersize=4.5, label=label)
-    axes.set(xlabel=f"surface coordinate {letters[0]}", ylabel=f"surface coordinate {letters[1]}")
+    _draw_material(axes, surface, flat)
+    seen = _seen(surface)
+    _draw_field(axes, field, flat, seen)
+    _draw_states(axes, surface, flat)
+    axes.set(xlabel=flat.labels[0], ylabel=flat.labels[1], aspect="equal")
     axes.set_title(f"{problem.name}, {surface.contact.name}, load step {step.step} ({step.stage})", loc="left", pad=24)
     axes.legend(ncols=3, loc="lower right", bbox_to_anchor=(1.0, 1.0), handletextpad=0.2, columnspacing=1.2)
-    ranges = [np.ptp(d.boundaries) for d in directions]
-    axes.set_aspect((lengths[1] / ranges[1]) / (lengths[0] / ranges[0]))
-    _look_at_contact(axes, directions, points[surface.status > 0])
+    low, high = (end(flat.at(seen)[0], axis=(0, 1)) for end in (np.min, np.max))
+    margin = 0.03 * (high - low)
+    axes.set(xlim=(low[0] - margin[0], high[0] + margin[0]), ylim=(low[1] - margin[1], high[1] + margin[1]))
+    if field.values.shape[1] > 1:
+        _draw_arrows(axes, field, flat, seen)
     return figure
 
 
-def _draw_elements(axes: Axes, directions: tuple[Direction, Direction]) -> None:
+def _draw_material(axes: Axes, surface: ContactSurface, flat: Laid) -> None:
     """Knot lines on bare material, which is seen where nothing presses."""
-    (left, right), (bottom, top) = (d.boundaries[[0, -1]] for d in directions)
-    axes.add_patch(Rectangle((left, bottom), right - left, top - bottom, color=style.SLAVE, linewidth=0, zorder=0))
-    axes.vlines(directions[0].boundaries, bottom, top, color=style.BLACK, linewidth=0.4, alpha=0.6)
-    axes.hlines(directions[1].boundaries, left, right, color=style.BLACK, linewidth=0.4, alpha=0.6)
+    first, second = surface.directions
+    along, across = _samples(first), _samples(second)
+    upright = flat.at((first.boundaries, across))[0].swapaxes(0, 1)
+    level = flat.at((along, second.boundaries))[0]
+    outline = np.concatenate([level[0], upright[-1], level[-1][::-1], upright[0][::-1]])
+    axes.add_patch(Polygon(outline, facecolor=style.SLAVE, linewidth=0, zorder=0))
+    axes.add_collection(LineCollection([*upright, *level], colors=style.BLACK, linewidths=0.4, alpha=0.6))
 
 
-def _look_at_contact(axes: Axes, directions: tuple[Direction, Direction], active: FloatArray) -> None:
-    """Show the part of the face that is in contact and two elements around it; the whole face if nothing is."""
-    axes.set_xlim(_limits(directions[0], active[:, 0]))
-    axes.set_ylim(_limits(directions[1], active[:, 1]))
+def _draw_field(axes: Axes, field: Shown, flat: Laid, seen: tuple[FloatArray, FloatArray]) -> None:
+    """Colours, up to the largest value of what is seen, and their bar."""
+    samples = [_samples(direction) for direction in field.surface.directions]
+    sizes, values = (_sizes(field, parameters) for parameters in (seen, samples))
+    peak = max(float((np.abs(sizes) if field.signed else sizes).max()), 1e-300)
+    pulls = not field.signed and bool(values.min() < -style.NOTHING * peak)
+    shown = values if field.signed else np.ma.masked_where(np.abs(values) < style.UNSEEN * peak, values)
+    x, y = np.moveaxis(flat.at(samples)[0], -1, 0)
+    lowest = -peak if field.signed else 0.0
+    image = axes.pcolormesh(x, y, shown, shading="gouraud", cmap=field.colours, vmin=lowest, vmax=peak, rasterized=True)
+    bar = axes.figure.colorbar(image, cax=axes.inset_axes((1.02, 0.0, 0.025, 1.0)), extend="min" if pulls else "neither")
+    bar.set_label(field.label)
 
 
-def _limits(direction: Direction, active: FloatArray) -> tuple[float, float]:
-    ends = direction.boundaries
-    low, high = ends[0], ends[-1]
-    if len(active):
-        first, last = np.searchsorted(ends, [active.min(), active.max()])
-        low, high = ends[max(first - 2, 0)], ends[min(last + 2, len(ends) - 1)]
-    margin = 0.03 * (high - low)
-    return float(low - margin), float(high + margin)
+def _sizes(field: Shown, parameters: Sequence[FloatArray]) -> FloatArray:
+    """Values on a grid of parameters, or the norms of vectors, shape (n2, n1)."""
+    values = field.surface.on_grid(parameters, field.values)[0]
+    return values[..., 0] if values.shape[-1] == 1 else np.linalg.norm(values, axis=-1)
+
+
+def _draw_states(axes: Axes, surface: ContactSurface, flat: Laid) -> None:
+    points = flat.at([direction.greville for direction in surface.directions])[0].reshape(-1, 2)
+    for state, (marker, filling, label) in enumerate(_STATES):
+        mine = points[surface.status == state]
+        axes.plot(*mine.T, marker, color=style.BLACK, markerfacecolor=filling, markeredgewidth=0.8, markersize=4.5, label=label)
+
+
+def _draw_arrows(axes: Axes, field: Shown, flat: Laid, seen: tuple[FloatArray, FloatArray]) -> None:
+    """Vectors on a grid of places, the longest as long as these are apart."""
+    surface = field.surface
+    ends = flat.at([x[[0, -1]] for x in seen])[0]
+    lengths = np.array([np.linalg.norm(ends[0, 1] - ends[0, 0]), np.linalg.norm(ends[1, 0] - ends[0, 0])])
+    counts = np.maximum(np.round(_ARROWS * lengths / lengths.max()), 2).astype(int)
+    grid = [_middles(x[0], x[-1], count) for x, count in zip(seen, counts, strict=True)]
+    vectors = surface.on_grid(grid, field.values)[0]
+    sizes = np.linalg.norm(vectors, axis=-1)
+    arrows = sizes[..., None] * directions_of(surface, flat, grid, vectors)
+    places, felt = flat.at(grid)[0], sizes > style.UNSEEN * max(float(sizes.max()), 1e-300)
+    if felt.any():
+        scale = float(sizes.max()) * _ARROWS / lengths.max()
+        axes.quiver(*places[felt].T, *arrows[felt].T, angles="xy", scale_units="xy", scale=scale, color=style.BLACK, width=2.5e-3)
+
+
+def _samples(direction: Direction) -> FloatArray:
+    return direction.subdivided(max(4, _SAMPLES // direction.elements))
+
+
+def _middles(low: float, high: float, count: int) -> FloatArray:
+    return low + (np.arange(count) + 0.5) / count * (high - low)
+
+
+def _seen(surface: ContactSurface) -> tuple[FloatArray, FloatArray]:
+    """Samples of the part of the face that is in contact and two elements around it; of the whole face if nothing is."""
+    points = np.stack(np.meshgrid(*(direction.greville for direction in surface.directions)), axis=-1).reshape(-1, 2)
+    active = points[surface.status > 0]
+    first, second = (_within(direction, active[:, axis]) for axis, direction in enumerate(surface.directions))
+    return first, second
+
+
+def _within(direction: Direction, active: FloatArray) -> FloatArray:
+    ends, samples = direction.boundaries, _samples(direction)
+    if not len(active):
+        return samples
+    first, last = np.searchsorted(ends, [active.min(), active.max()])
+    low, high = ends[max(first - 2, 0)], ends[min(last + 2, len(ends) - 1)]
+    return samples[(samples >= low) & (samples <= high)]

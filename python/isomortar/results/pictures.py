@@ -10,18 +10,24 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from isomortar.errors import InputError, ResultsError
+from isomortar.model.entities import Problem
 from isomortar.results.abscissa import Abscissa, abscissa
-from isomortar.results.alone import draw_alone
 from isomortar.results.bodies import draw_bodies
+from isomortar.results.coloured import BODY_FIELDS, draw_coloured
 from isomortar.results.curves import WantedCurve, draw_curve, draw_reactions, moving_supports
 from isomortar.results.files import make_folder, writing
 from isomortar.results.maps import draw_map
 from isomortar.results.reader import Results
+from isomortar.results.shown import CONTACT_FIELDS, shown_field
 from isomortar.results.style import style
 from isomortar.solve.record import StepResult
 
 #: What can be drawn, and the types of files that curves and maps are written as.
-DRAWABLE, FORMATS = ("curves", "bodies", "pressure"), ("png", "pdf", "svg")
+DRAWABLE, FORMATS = ("curves", "bodies", "maps"), ("png", "pdf", "svg")
+#: Name of a figure's file, and what draws it.
+Named = tuple[str, Callable[[], Figure]]
+#: Fields that maps show, of slave faces, and then those that bodies show.
+FIELDS = (*CONTACT_FIELDS, *BODY_FIELDS)
 
 
 def plot(
@@ -30,11 +36,12 @@ def plot(
     curves: Sequence[WantedCurve] = (),
     *,
     step: int | None = None,
+    fields: Sequence[str] = (),
     only: Sequence[str] = (),
     formats: Sequence[str] = (),
     x: str = "time",
 ) -> list[Path]:
-    """Draw curves over all load steps, and bodies and contact pressure of one of them; without contact the bodies by their stress.
+    """Draw curves over all load steps, and of one of them the bodies, and slave faces laid flat, in colours by fields.
 
     Parameters
     ----------
@@ -44,8 +51,11 @@ def plot(
     curves : sequence of WantedCurve
         Single curves to draw besides force and moment of every support that moves.
     step : int, optional
-        Load step whose bodies and pressures are drawn; default: the last one.
-    only : sequence of {"curves", "bodies", "pressure"}
+        Load step whose bodies and maps are drawn; default: the last one.
+    fields : sequence of {"pressure", "traction", "slip", "gap", "stress", "J", "displacement"}
+        What is drawn in colours: pressure, friction, slip and gap on maps of slave faces, pressure on slave bodies too; stress, J and
+        displacement on all bodies. Default: pressure, without contact stress.
+    only : sequence of {"curves", "bodies", "maps"}
         What is drawn; default: all of it.
     formats : sequence of {"png", "pdf", "svg"}
         Of curves and maps; default: png and pdf. Bodies, of which vectors would be many, are always PNG.
@@ -62,8 +72,10 @@ def plot(
     InputError
         Something else is to be drawn, or over something else, or another type of file.
     ResultsError
-        The results file is missing, damaged, or holds no such load step; or a figure cannot be written.
+        The results file is missing, damaged, or holds no such load step, or not the one before it, of a slip; or a figure cannot be
+        written.
     """
+    _among("field", fields, FIELDS)
     _among("only", only, DRAWABLE)
     _among("format", formats, FORMATS)
     folder = Path(outdir)
@@ -72,9 +84,13 @@ def plot(
         if shown is None:
             raise ResultsError(f"{results.path} holds no load step yet: nothing to draw")
         over = abscissa(results, x)
-        figures = dict(_figures(results, shown, curves, only or DRAWABLE, over))
+        chosen = fields or (("pressure",) if results.problem.contacts else ("stress",))
+        drawers = {"curves": _of_curves(results, curves, over), "bodies": _of_bodies(results, shown, chosen)}
+        drawers["maps"] = _of_contacts(results, shown, chosen)
+        figures = {stem: draw for kind, drawn in drawers.items() if kind in (only or DRAWABLE) for stem, draw in drawn}
         if not figures:
-            raise ResultsError(f"{results.path} has no contact, or no support, of which {' or '.join(only)} could be drawn")
+            wanted = " or ".join([*fields, *only])
+            raise ResultsError(f"{results.path} has no contact, or no support, of which {wanted} could be drawn")
         make_folder(folder)
         paths = []
         for stem, draw in figures.items():
@@ -89,20 +105,29 @@ def _among(field: str, names: Sequence[str], allowed: tuple[str, ...]) -> None:
             raise InputError(f"is {name!r}; allowed: {', '.join(allowed)}", field)
 
 
-def _figures(
-    results: Results, step: StepResult, curves: Sequence[WantedCurve], kinds: Sequence[str], over: Abscissa
-) -> Iterator[tuple[str, Callable[[], Figure]]]:
-    """Names of the figures, and what draws each."""
-    if "curves" in kinds:
-        yield from ((f"reactions-{s.name}", partial(draw_reactions, results, s.name, over)) for s in moving_supports(results))
-        yield from ((f"curve-{curve.name}", partial(draw_curve, results, curve, over)) for curve in curves)
-    if "bodies" in kinds and not results.problem.contacts:
-        yield "bodies", partial(draw_alone, results.problem, step)
-    for number, contact in enumerate(results.problem.contacts):
-        if "bodies" in kinds:
-            yield f"bodies-{contact.name}", partial(draw_bodies, results.problem, step, number)
-        if "pressure" in kinds:
-            yield f"pressure-{contact.name}", partial(draw_map, results.problem, step, number)
+def _of_curves(results: Results, curves: Sequence[WantedCurve], over: Abscissa) -> Iterator[Named]:
+    yield from ((f"reactions-{s.name}", partial(draw_reactions, results, s.name, over)) for s in moving_supports(results))
+    yield from ((f"curve-{curve.name}", partial(draw_curve, results, curve, over)) for curve in curves)
+
+
+def _of_bodies(results: Results, step: StepResult, fields: Sequence[str]) -> Iterator[Named]:
+    problem = results.problem
+    for number, contact in enumerate(problem.contacts) if "pressure" in fields else ():
+        yield f"bodies-{contact.name}", partial(draw_bodies, problem, step, number)
+    yield from ((f"bodies-{field}", partial(draw_coloured, problem, step, field)) for field in fields if field in BODY_FIELDS)
+
+
+def _of_contacts(results: Results, step: StepResult, fields: Sequence[str]) -> Iterator[Named]:
+    problem = results.problem
+    before = results.step(step.step - 1) if step.step - 1 in results.kept_states else None
+    for number, contact in enumerate(problem.contacts):
+        for field in fields:
+            if field in CONTACT_FIELDS:
+                yield f"{field}-{contact.name}", partial(_map, problem, step, number, field, before)
+
+
+def _map(problem: Problem, step: StepResult, number: int, field: str, before: StepResult | None) -> Figure:
+    return draw_map(problem, step, shown_field(problem, step, number, field, before))
 
 
 def _save(figure: Figure, stem: Path, formats: Sequence[str]) -> list[Path]:
