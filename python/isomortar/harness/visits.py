@@ -42,7 +42,7 @@ class RecordingPair(PairMechanics):
     def __init__(self, pair: PairMechanics, problem: Problem, simulation: Simulation, notes: list[Note]) -> None:
         others = [other.pair for other in simulation.equilibrium.pairs if other.pair is not pair.pair]
         super().__init__(pair.pair, problem.settings, simulation.ledger, simulation.equilibrium.origin, others)
-        self._notes, self.drifts = notes, pair.drifts
+        self._notes = notes
 
     def kinematics(self, positions: FloatArray, start: ContactState) -> Kinematics:
         """Project and integrate."""

@@ -69,11 +69,6 @@ class Blocks:
     geometric: FloatArray
 
 
-def _heights(control: Control) -> FloatArray:
-    """Mean gaps of constraints, shape (n,), positive where they penetrate; of those without a foot minus infinity."""
-    return np.divide(control.gap, control.weight, out=np.full_like(control.gap, -np.inf), where=control.weight > 0.0)
-
-
 def median(values: FloatArray) -> Any:
     """Median over the first axis of one finite number or more; NumPy's own takes twenty times as long for a few hundred."""
     ordered = np.sort(values, axis=0)
@@ -117,13 +112,10 @@ class PairMechanics:
     ----------
     shared : ndarray of bool, shape (test functions,)
         Those that constrain control points of the slave of another pair as well.
-    drifts : sequence of ndarray, each of shape (control points, 3)
-        Where loads act, ways that its bodies may go rigidly, as supports leave them: displacements.
     """
 
     def __init__(self, pair: Pair, settings: SolverSettings, ledger: Ledger, origin: FloatArray, others: Sequence[Pair]) -> None:
         self.pair = pair
-        self.drifts: Sequence[FloatArray] = ()
         self._feet = Feet(pair, origin)
         self._separation = Separation(pair)
         self.friction = pair.contact.friction_law
@@ -225,22 +217,6 @@ class PairMechanics:
         sunk = alone & (kinematics.control.gap > depth * kinematics.control.weight)
         self.held.bears[sunk] = 1
         return bool(sunk.any())
-
-    def nearest(self, positions: FloatArray, start: ContactState, penalty: float | Scales) -> FloatArray | None:
-        """Pressures whose trials are above zero at the nearest constraints, though these are open (theory 6.8).
-
-        With scales in its place the penalty is that of `parameters`. None unless all is open, and loads alone bring the bodies together.
-        """
-        if not self.drifts or np.any(start.pressure != 0.0):
-            return None
-        control = self.kinematics(positions, start).control
-        height, least = _heights(control), constants.NO_PART * float(np.sqrt(self.pair.area))
-        near = np.isfinite(height) & (height >= height.max() - least)
-        passed = [_heights(self.kinematics(positions + least * motion, start).control)[near] for motion in self.drifts]
-        if not np.any(np.array(passed) - height[near] > constants.IN_THE_WAY * least):
-            return None
-        size = float(self.parameters(control, penalty)[0]) if isinstance(penalty, Scales) else penalty
-        return np.where(near, size * np.maximum(least, least - height), 0.0)
 
     def sliding(self, start: ContactState) -> FloatArray:
         """Tractions of the last converged state, with those of sliding where supports push (theory 4.12); shape (n, 2)."""

@@ -14,12 +14,11 @@ from isomortar._sparse import Ordering
 from isomortar.errors import SingularSystemError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
-from isomortar.model.entities import Body, Face, Problem
+from isomortar.model.entities import Problem
 from isomortar.model.loads import Loads
 from isomortar.model.numbering import Numbering
 from isomortar.model.origin import about, by_near_points, origin_of
 from isomortar.model.pairs import Pair
-from isomortar.model.rank import motions_left, moved
 from isomortar.model.solid import Solid
 from isomortar.model.supports import Supports
 from isomortar.solve.condensed import Bodies, CondensedSystem, engine_of, touched
@@ -29,6 +28,7 @@ from isomortar.solve.scales import PieceMeasures, Scales
 from isomortar.solve.singular import PairConditions, explain
 from isomortar.solve.system import CheckedSystem, LinearSystem, Source, add_product, entries
 from isomortar.solve.timing import Ledger
+from isomortar.solve.touching import Touching
 
 
 @dataclass(frozen=True)
@@ -101,33 +101,7 @@ class Equilibrium:
         self._system: CheckedSystem | None = None
         self._system_patterns: list[object] = []
         self._solid_entries: sparse.csr_array | None = None
-        loaded = bool(self.problem.loads or self.supports.plates)
-        self._motions = [self._motions_left(piece) for piece in self.numbering.pieces] if loaded else []
-
-    def _motions_left(self, piece: tuple[Body, ...]) -> FloatArray:
-        """Rigid motions that supports leave a body, with all that is glued to it: displacements of all control points, one each."""
-        own = np.concatenate([self.numbering.points[body.name] for body in piece])
-        motions = motions_left(self.problem, piece, self.supports.stage)
-        displacements = np.zeros((len(motions), *self.numbering.reference.shape))
-        for displacement, motion in zip(displacements, motions, strict=True):
-            displacement[own] = moved(piece, motion, self.numbering.reference[own])
-        return displacements
-
-    def _drift(self, positions: FloatArray, time: float) -> None:
-        """Tell pairs which way their bodies would go by loads alone; those that no load moves may go any way (theory 6.8)."""
-        left = self.supports.unbalanced(-sum(self.loads.forces(positions, time), np.zeros_like(positions)), positions, time)
-        turning = any(plate.across for plate in self.supports.plates)
-        ways = []
-        for motions in self._motions:
-            works = -np.einsum("mij,ij->m", motions, left)
-            way = np.tensordot(works, motions, 1)
-            driven = not turning and np.abs(works).max(initial=0.0) > constants.NO_PART * np.abs(left).sum()
-            ways.append(way[None] / np.abs(way).max() if driven else np.concatenate([motions, -motions]))
-        for pair in self.pairs:
-            sides = (side for side in (pair.pair.contact.slave, pair.pair.contact.master) if isinstance(side, Face))
-            names = {face.body for side in sides for face in side.faces}
-            theirs = (of for piece, of in zip(self.numbering.pieces, ways, strict=True) if any(body.name in names for body in piece))
-            pair.drifts = [way for of in theirs for way in of]
+        self._touching = Touching(self.problem, self.numbering, self.supports, self.loads)
 
     def standing(self, step: int) -> Supports:
         """The supports of the stage of a load step."""
@@ -177,13 +151,16 @@ class Equilibrium:
         self.time = time
         if self._system is not None:
             self._system.begin()
-        if self._motions:
-            self._drift(start.positions, time)
+        self._touching.begin(start.positions, time)
         for pair, contact in zip(self.pairs, start.contacts, strict=True):
             pair.begin(self.supports, start.positions, contact, time)
         with self.ledger.phase("solid"):
             scales = self.measures.scales(start.positions if first is None else first)
         return self.supports.increment(start.positions, time), scales
+
+    def closed(self, start: State, penalties: Sequence[float | Scales]) -> list[FloatArray | None]:
+        """First pressures of the pairs that loads close, of which all is open at the start; see `Touching.closed` (theory 6.8)."""
+        return self._touching.closed(self.pairs, start, penalties)
 
     def state(self, balance: Balance) -> State:
         """The state that a balance leaves, to go on from."""

@@ -100,9 +100,9 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
         """
         pairs, positions = self._equilibrium.pairs, self._start.positions
         multipliers = []
-        for pair, contact in zip(pairs, self._start.contacts, strict=True):
-            nearest = pair.nearest(positions, contact, self._scales)
-            multipliers.append((contact.pressure if nearest is None else nearest, pair.sliding(contact)))
+        closed = self._equilibrium.closed(self._start, [self._scales] * len(pairs))
+        for pair, contact, pressure in zip(pairs, self._start.contacts, closed, strict=True):
+            multipliers.append((contact.pressure if pressure is None else pressure, pair.sliding(contact)))
         return self._evaluate(positions, multipliers, self._margin, [pair.held.still for pair in pairs])
 
     def ahead(self, positions: FloatArray, length: float) -> _BorderedIterate:

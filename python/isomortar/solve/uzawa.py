@@ -112,10 +112,9 @@ class Uzawa(Method):
 
     def _first(self, newton: _PositionNewton, laws: list[Law], start: State) -> Iterate:
         """The first iterate of an increment."""
-        pairs = zip(self._equilibrium.pairs, laws, start.contacts, strict=True)
-        nearest = [pair.nearest(start.positions, contact, float(law.penalties[0])) for pair, law, contact in pairs]
-        if any(pressures is not None for pressures in nearest):
-            given = [np.zeros_like(law.pressure) if p is None else p for p, law in zip(nearest, laws, strict=True)]
+        closed = self._equilibrium.closed(start, [float(law.penalties[0]) for law in laws])
+        if any(pressure is not None for pressure in closed):
+            given = [np.zeros_like(law.pressure) if p is None else p for p, law in zip(closed, laws, strict=True)]
             return newton.closing(laws, start.positions, given)
         return newton.held(laws, start.positions)
 

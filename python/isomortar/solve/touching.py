@@ -1,0 +1,117 @@
+"""What loads bring together: without contact there is no tangent to begin with, so what they close first begins as closed (theory 6.8)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from isomortar._bindings import Control
+from isomortar.geometry.patch import FloatArray
+from isomortar.model import constants
+from isomortar.model.entities import Body, Face, Problem
+from isomortar.model.loads import Loads
+from isomortar.model.numbering import Numbering
+from isomortar.model.rank import motions_left, moved
+from isomortar.model.supports import BoolArray, Supports
+from isomortar.solve.contact import PairMechanics
+from isomortar.solve.record import ContactState, State
+from isomortar.solve.scales import Scales
+
+
+@dataclass(frozen=True)
+class _Approach:
+    """A pair by each of some ways: mean gaps of its constraints, the nearest of these, and how far bodies go until they close."""
+
+    heights: FloatArray
+    near: BoolArray
+    distances: FloatArray
+
+
+class Touching:
+    """Ways that bodies go by loads alone, as the supports of a stage leave them.
+
+    Parameters
+    ----------
+    problem : Problem
+    numbering : Numbering
+    supports : Supports
+    loads : Loads
+    """
+
+    def __init__(self, problem: Problem, numbering: Numbering, supports: Supports, loads: Loads) -> None:
+        self._pieces, self._supports, self._loads = numbering.pieces, supports, loads
+        loaded = bool(problem.loads or supports.plates)
+        self._motions = [_motions_left(problem, numbering, piece, supports.stage) for piece in self._pieces] if loaded else []
+        self._ways: list[tuple[set[str], FloatArray]] = []
+
+    def begin(self, positions: FloatArray, time: float) -> None:
+        """Begin an increment: a body goes as loads move it, one that no load moves may go any way (theory 6.8)."""
+        if not self._motions:
+            return
+        left = self._supports.unbalanced(-sum(self._loads.forces(positions, time), np.zeros_like(positions)), positions, time)
+        turning = any(plate.across for plate in self._supports.plates)
+        self._ways = []
+        for piece, motions in zip(self._pieces, self._motions, strict=True):
+            works = -np.einsum("mij,ij->m", motions, left)
+            way = np.tensordot(works, motions, 1)
+            driven = not turning and np.abs(works).max(initial=0.0) > constants.NO_PART * np.abs(left).sum()
+            ways = way[None] / np.abs(way).max() if driven else np.concatenate([motions, -motions])
+            self._ways += [({body.name for body in piece}, one) for one in ways]
+
+    def closed(self, pairs: Sequence[PairMechanics], start: State, penalties: Sequence[float | Scales]) -> list[FloatArray | None]:
+        """Pressures whose trials are above zero where loads close pairs first (theory 6.8); None of other pairs, and of those that bear.
+
+        With scales in its place a penalty is that of `PairMechanics.parameters`.
+        """
+        if not self._ways or all(np.any(contact.pressure != 0.0) for contact in start.contacts):
+            return [None] * len(pairs)
+        approaches = [self._approach(pair, start.positions, contact) for pair, contact in zip(pairs, start.contacts, strict=True)]
+        first = np.min([approach.distances for approach in approaches], axis=0)
+        found: list[FloatArray | None] = []
+        for pair, contact, approach, penalty in zip(pairs, start.contacts, approaches, penalties, strict=True):
+            behind = constants.BEHIND * np.sqrt(pair.pair.area)
+            among = np.isfinite(approach.distances) & (approach.distances <= first + behind)
+            if np.any(contact.pressure != 0.0) or not among.any():
+                found.append(None)
+                continue
+            control, least = pair.kinematics(start.positions, contact).control, _least(pair)
+            size = float(pair.parameters(control, penalty)[0]) if isinstance(penalty, Scales) else penalty
+            found.append(np.where(approach.near, size * np.maximum(least, least - approach.heights), 0.0))
+        return found
+
+    def _approach(self, pair: PairMechanics, positions: FloatArray, start: ContactState) -> _Approach:
+        """Of a pair; one that bears is where it stands (theory 6.8)."""
+        sides = (side for side in (pair.pair.contact.slave, pair.pair.contact.master) if isinstance(side, Face))
+        names = {face.body for side in sides for face in side.faces}
+        heights, least = _heights(pair.kinematics(positions, start).control), _least(pair)
+        bears = start.pressure != 0.0
+        near = np.isfinite(heights) & (bears if bears.any() else heights >= heights.max() - least)
+        distances = np.full(len(self._ways), np.inf)
+        for k, (bodies, way) in enumerate(self._ways):
+            if names & bodies:
+                rates = (_heights(pair.kinematics(positions + least * way, start).control)[near] - heights[near]) / least
+                closes = rates > constants.IN_THE_WAY
+                distances[k] = np.min(np.where(bears[near], 0.0, -heights[near])[closes] / rates[closes], initial=np.inf)
+        return _Approach(heights, near, distances)
+
+
+def _motions_left(problem: Problem, numbering: Numbering, piece: tuple[Body, ...], stage: int) -> FloatArray:
+    """Rigid motions that supports leave a body, with all that is glued to it: displacements of all control points, one each."""
+    own = np.concatenate([numbering.points[body.name] for body in piece])
+    motions = motions_left(problem, piece, stage)
+    displacements = np.zeros((len(motions), *numbering.reference.shape))
+    for displacement, motion in zip(displacements, motions, strict=True):
+        displacement[own] = moved(piece, motion, numbering.reference[own])
+    return displacements
+
+
+def _heights(control: Control) -> FloatArray:
+    """Mean gaps of constraints, shape (n,), positive where they penetrate; of those without a foot minus infinity."""
+    return np.divide(control.gap, control.weight, out=np.full_like(control.gap, -np.inf), where=control.weight > 0.0)
+
+
+def _least(pair: PairMechanics) -> float:
+    """A length that is next to nothing beside the slave face."""
+    return constants.NO_PART * float(np.sqrt(pair.pair.area))
