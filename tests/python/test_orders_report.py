@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import tomlkit
 from orders.analysis import analyse
+from orders.finding import findings, recommended, summary
 from orders.plan import Plan
 from typer.testing import CliRunner
 
@@ -177,6 +178,41 @@ def test_refinement_against_elevation(plan):
     assert step.gains["pressure"] == pytest.approx((1 / 6**3 - truth) / (100 / 8 - truth), rel=1e-12)
 
 
+def test_the_finding_is_the_cheapest_run_that_is_within_an_error_and_stays_there(plan):
+    """Of N3 errors are a small part of those of N1; N2, of which the reference is, is known to be off by what it changes."""
+    found = analyse(plan, synthetic(plan, {"N1": (400.0, 2.0), "N3": (1.0, 2.0)}, reference_order=3.0))
+    force = findings(found)[0]
+    assert (force.measure, force.target) == ("force", 0.01)
+    by_kind = {point.discretisation.kind: point for point in force.within}
+    for kind, point in by_kind.items():
+        assert all(finer.errors["force"] <= 0.01 for finer in found.sequence(kind) if finer.unknowns >= point.unknowns)
+    assert "N1" in force.beyond
+    assert recommended(found, [force]) == overrides(plan.scene, plan.sweep, force.within[0].discretisation)
+    assert force.sentence.startswith("The force within 1 %: ")
+    assert "N1 is not within it" in force.sentence
+
+
+def test_a_mesh_that_is_right_by_luck_is_not_recommended(plan):
+    runs = synthetic(plan, {"N1": (400.0, 2.0), "N3": (400.0, 2.0)}, reference_order=3.0)
+    lucky = plan.meshes("N3")[0]
+    runs[lucky] = runs[plan.reference[2]]
+    assert all(point.discretisation != lucky for finding in findings(analyse(plan, runs)) for point in finding.within)
+
+
+def test_raising_the_order_is_said_to_pay_or_not(plan):
+    runs = synthetic(plan, {"N1": (400.0, 2.0), "N2": (4.0, 2.0), "N3": (0.04, 2.0)}, reference_order=3.0)
+    (force, *_) = findings(analyse(plan, runs))
+    assert force.elevation.startswith("Raising the order pays: N3 takes ")
+    slow = {chosen: replace(m, numbers=m.numbers | {"cpu_seconds": 1e4}) if chosen.kind == "N3" else m for chosen, m in runs.items()}
+    assert findings(analyse(plan, slow))[0].elevation.startswith("Raising the order does not pay: N3 takes ")
+
+
+def test_where_the_reference_tells_nothing_nothing_is_recommended(plan):
+    runs = synthetic(plan, {})
+    runs[plan.reference[0]] = replace(runs[plan.reference[0]], ending="crashed")
+    assert summary(analyse(plan, runs)) == ["No run is known to be within 50 % of anything: nothing is recommended."]
+
+
 def test_a_failed_run_leaves_the_others(plan):
     runs = synthetic(plan, {})
     lost = plan.meshes("N1")[0]
@@ -235,6 +271,8 @@ def test_a_tiny_scene_from_end_to_end(run_orders, tmp_path):
     page = (tmp_path / "out/report.html").read_text()
     assert page.count("<svg") >= 5
     assert "verdict on the order of accuracy of L1" in page
+    assert all(sentence.split("'")[0] in result.output.replace("\n", " ") for sentence in data["finding"])
+    assert "<b>Quick:</b>" in page
     assert Scene.load(tmp_path / "out/scenes/tiny-L1-2x2x1.toml").problem().bodies[0].patch.shape == (3, 3, 2)
     again = run_orders("--orders", "N2,L1")
     assert again.exit_code == 0

@@ -10,6 +10,7 @@ from typing import Any
 
 from orders import figures
 from orders.analysis import CURVES, Analysis, Point
+from orders.finding import summary
 
 from isomortar.harness.report import percent, plain, template
 from isomortar.harness.store import identity, write_whole
@@ -36,6 +37,7 @@ def as_data(analysis: Analysis, started: datetime) -> dict[str, Any]:
         "runs": [_run(point) for point in analysis.points.values()],
         "orders": {kind: {name: asdict(order) for name, order in orders.items()} for kind, orders in analysis.verdicts.items()},
         "refinement": [asdict(step) for step in analysis.steps],
+        "finding": summary(analysis) if analysis.reference.errors else [],
     }
 
 
@@ -47,6 +49,7 @@ def page(analysis: Analysis, started: datetime) -> str:
         plan=plan,
         started=started,
         done=done,
+        finding=summary(analysis) if done else [],
         groups=_groups(analysis),
         costs=[(m, figures.error_against_cost(analysis, m)) for m in analysis.measures] if done else [],
         roughness=[(m, figures.roughness_against_cost(analysis, m)) for m in analysis.curves] if done else [],

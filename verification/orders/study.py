@@ -9,6 +9,7 @@ from pathlib import Path
 
 from orders import page
 from orders.analysis import analyse
+from orders.finding import summary
 from orders.plan import Plan
 from orders.run import discretised
 
@@ -29,4 +30,4 @@ def study(scene: Scene, kinds: Sequence[str], body: str | None, quick: bool) -> 
 def _written(plan: Plan, folder: Path, results: Sequence[Result], started: datetime) -> Conclusion:
     """Compare the discretisations and write ``report.html``."""
     analysis = analyse(plan, {chosen: result.measurement for chosen, result in zip(plan.runs, results, strict=True)})
-    return Conclusion(page.write(folder, analysis, started), len(analysis.failed), not analysis.failed)
+    return Conclusion(page.write(folder, analysis, started), len(analysis.failed), not analysis.failed, "\n".join(summary(analysis)))
