@@ -3,6 +3,7 @@
 import itertools
 import json
 import math
+from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 
@@ -515,5 +516,7 @@ def test_advice_is_what_loses_least_of_the_scene_as_it_is(scene, tmp_path):
     assert laboratory.name(answer.best.choice) == "elements of block along u: 2"  # 0.06 more; with the lazy way 0.09
     assert 0.0 < answer.error <= 0.07
     assert "times less than as it is" in page.sentence(advice, answer)
+    dearer = replace(answer, best=replace(answer.best, numbers={**answer.best.numbers, "cpu_seconds": 2.0 * advice.own.cost}))
+    assert page.sentence(advice, dearer).endswith("run afresh it saves nothing: keep the scene as it is.")
     assert "what it could do without" in page.write(tmp_path, scene, advice, [answer], datetime.now().astimezone()).read_text()
     assert advice.answer(1e-4).best is None

@@ -63,13 +63,14 @@ def screening(search: Search) -> str:
         figure = Figure(figsize=(10.6, 0.8 + 0.34 * len(dials)), layout="constrained")
         costs, changes = figure.subplots(1, 2, sharey=True)
         for number, dial in enumerate(dials):
-            row = len(dials) - 1 - number
-            for setting in model.settings(number):
-                if setting != dial.own:
-                    outcome = search.laboratory.outcomes[search.single(number, setting)]
-                    dearer = not dial.refines or setting > dial.own
-                    _bar(costs, row, outcome.cost / search.own.cost, dial.settings[setting].label, dearer, dial.refines, 1.0)
-                    _bar(changes, row, 100 * model.effect(number, setting), dial.settings[setting].label, dearer, dial.refines, 0.0)
+            others = [setting for setting in model.settings(number) if setting != dial.own]
+            for place, setting in enumerate(others):
+                outcome = search.laboratory.outcomes[search.single(number, setting)]
+                height = len(dials) - 1 - number + 0.3 * (place - 0.5 * (len(others) - 1)) / max(0.5 * len(others), 1.0)
+                colour = style.GREY if not dial.refines else style.VERMILION if setting > dial.own else style.BLUE
+                _bar(costs, height, outcome.cost / search.own.cost, dial.settings[setting].label, colour, 1.0)
+                _bar(changes, height, 100 * model.effect(number, setting), dial.settings[setting].label, colour, 0.0)
+        costs.margins(x=0.18)  # labels stand beside the ends
         costs.set(xscale="log", xlabel="cost over that of the scene as it is", yticks=range(len(dials)))
         costs.set_yticklabels([dial.name for dial in reversed(dials)])
         costs.axvline(1.0, color=style.BLACK, linewidth=0.8)
@@ -138,11 +139,9 @@ def _failed(axes: Axes, runs: Sequence[Tried]) -> None:
         axes.plot(at, [0.97] * len(at), "x", color=style.VERMILION, transform=axes.get_xaxis_transform(), label="failed", clip_on=False)
 
 
-def _bar(axes: Axes, row: int, value: float, label: str, dearer: bool, refines: bool, start: float) -> None:
+def _bar(axes: Axes, height: float, value: float, label: str, colour: str, start: float) -> None:
     if not math.isfinite(value) or value <= 0.0:
         return
-    colour = style.GREY if not refines else style.VERMILION if dearer else style.BLUE
-    height = row + (0.15 if dearer else -0.15)
     if start:
         axes.plot([start, value], [height, height], color=colour, linewidth=2.0)
     axes.plot(value, height, "o", color=colour, markersize=3.5)
