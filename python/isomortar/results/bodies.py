@@ -25,8 +25,6 @@ Paint = Callable[[str, tuple[int, int]], tuple[FloatArray, float]]
 FINENESS = (72, 4)
 _FINENESS_OF_CONTACT = (144, 8)
 VIEW = Camera(azimuth=-62.0, elevation=24.0)
-#: Light falls weakly on the contact face, so that its colours are those of the colour bar.
-_SHADING_OF_PRESSURE = 0.25
 
 
 @dataclass(frozen=True)
@@ -244,11 +242,11 @@ def plain(colour: str, shading: float = 1.0) -> Paint:
 
 
 def _add_contact(canvas: Canvas, surface: ContactSurface, colours: ScalarMappable) -> None:
-    """Add the contact face, by its pressure."""
+    """Add the contact face, by its pressure; no light falls on it, so that its colours are those of the colour bar."""
     parts = face_parts(surface.directions, _FINENESS_OF_CONTACT)
     matrices = _samplings(surface.directions, parts)
     places, pressure, _ = surface.fields(matrices)
     grid = pressure.reshape(len(matrices[1]), len(matrices[0]))
     middle = 0.25 * (grid[1:, 1:] + grid[1:, :-1] + grid[:-1, 1:] + grid[:-1, :-1])
     cells = colours.to_rgba(np.ma.masked_where(np.abs(middle) <= style.UNSEEN * np.abs(middle).max(), middle))
-    _add_face(canvas, matrices, parts, places, (cells[..., :3], _SHADING_OF_PRESSURE), surface.outward)
+    _add_face(canvas, matrices, parts, places, (cells[..., :3], 0.0), surface.outward)

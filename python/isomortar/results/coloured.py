@@ -24,8 +24,6 @@ from isomortar.solve.record import StepResult
 #: Values of a field on a grid of parameters of a body whose control points are at some places.
 Values = Callable[[Body, FloatArray, Sequence[FloatArray]], FloatArray]
 
-#: Light falls weakly on coloured faces, so that their colours are those of the colour bar.
-_SHADING = 0.25
 #: Share of its body that a face's field is taken below it: faces that are one point or line, as in the middle of a ball, have none.
 _BELOW = 1e-6
 
@@ -92,7 +90,7 @@ def draw_coloured(problem: Problem, step: StepResult, name: str = "stress") -> F
 def _painted(
     body: Body, points: FloatArray, values: Values, colours: ScalarMappable, name: str, parts: tuple[int, int]
 ) -> tuple[FloatArray, float]:
-    """Colours of the parts of a face by the field in their middle."""
+    """Colours of the parts of a face by the field in their middle; no light falls on it, so that they are those of the colour bar."""
     axis = "uvw".index(name[0])
     begin, end = body.patch.directions[axis].boundaries[[0, -1]]
     parameters = [np.array([begin + abs(int(name[1]) - _BELOW) * (end - begin)])] * 3
@@ -100,7 +98,7 @@ def _painted(
     for along, count in zip((first, second), parts, strict=True):
         parameters[along] = _middles(body.patch.directions[along], count)
     found = values(body, points, parameters).reshape([len(of_axis) for of_axis in parameters], order="F")
-    return colours.to_rgba(found.transpose(second, first, axis)[..., 0])[..., :3], _SHADING
+    return colours.to_rgba(found.transpose(second, first, axis)[..., 0])[..., :3], 0.0
 
 
 def _middles(direction: Direction, parts: int) -> FloatArray:
