@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -67,6 +68,8 @@ class Benchmark:
         What the sources leave open, and how it is taken here; empty: nothing.
     finest : two str
         Discretisations of other order and other elements: the value is that of the first, what they differ by its uncertainty.
+    settings : dict
+        Other settings of the case.
     """
 
     case: str
@@ -76,6 +79,12 @@ class Benchmark:
     finest: tuple[str, str]
     quantities: tuple[Quantity, ...]
     drawings: tuple[Drawing, ...] = ()
+    settings: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def name(self) -> str:
+        """The case and its other settings: nothing else on the page is called so."""
+        return "-".join([self.case, *(f"{name}-{value:g}" for name, value in self.settings.items())])
 
 
 def points(benchmark: str, name: str) -> dict[str, FloatArray]:

@@ -25,12 +25,18 @@ _MARKS = "osD^vP"
 
 def write(folder: Path, benchmarks: Sequence[Benchmark], results: Sequence[Result], started: datetime) -> Conclusion:
     """Write ``published.html``."""
-    sections = [_section(benchmark, [r for r in results if r.cell.case.name.split("/")[-1] == benchmark.case]) for benchmark in benchmarks]
+    sections = [_section(benchmark, [result for result in results if _of(result, benchmark)]) for benchmark in benchmarks]
     path = folder / "published.html"
     failed = sum(result.state != "passed" for result in results)
     text = template("page.html", Path(__file__)).render(sections=sections, started=started, failed=failed, total=len(results))
     write_whole(path, text)
     return Conclusion(path, failed, not failed, f"{len(benchmarks)} benchmarks, {len(results)} runs")
+
+
+def _of(result: Result, benchmark: Benchmark) -> bool:
+    """Whether it is a run of a benchmark."""
+    settings = {name: value for name, value in result.cell.settings.items() if name != "mesh"}
+    return result.cell.case.function.__name__ == benchmark.case and settings == benchmark.settings
 
 
 def _section(benchmark: Benchmark, results: Sequence[Result]) -> dict[str, Any]:
@@ -65,4 +71,4 @@ def _drawn(drawing: Drawing, benchmark: Benchmark, found: Found) -> str:
             axes.plot(*rows.T, mark, label=source, markersize=4.0, color=style.GREY, markerfacecolor="white", zorder=5)
         axes.set(xlabel=drawing.x_label, ylabel=drawing.y_label, **({"xscale": "log", "yscale": "log"} if drawing.log else {}))
         figure.legend(loc="outside right upper")
-        return svg_text(figure, f"{benchmark.case}-{drawing.y}")
+        return svg_text(figure, f"{benchmark.name}-{drawing.y}")
