@@ -7,6 +7,7 @@ import re
 import runpy
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -105,10 +106,38 @@ def test_calculix_names_what_it_lacks_in_a_solid(overrides: tuple[str, ...], fie
     LagrangeProblem(solid(*overrides), "GetFEM", ENERGIES)  # which GetFEM does not
 
 
-def test_calculix_is_told_of_no_contact_in_small_strain() -> None:
+def test_calculix_has_small_strain_in_all_bodies_or_in_none() -> None:
+    problem = block()
+    slave, master = problem.bodies
+    small = replace(slave, material=replace(slave.material, law="linear-elastic"))
     with pytest.raises(InputError, match="small strain") as refused:
-        CalculiX().run(block("materials.rubber.law=linear-elastic"))
-    assert refused.value.field == "bodies.slave.material.law"
+        CalculiX().run(replace(problem, bodies=(small, master)))
+    assert refused.value.field == "bodies.master.material.law"
+
+
+PRESSURE = ('loads.wind={face="block.u1", pressure=0.5}', "stages.turn.loads.wind=0.8")
+
+
+def test_pressures_are_told_by_load_step() -> None:
+    told = LagrangeProblem(solid(*PRESSURE), "GetFEM", ENERGIES)
+    np.testing.assert_allclose(told.pressures, [[0.2], [0.4]])
+    lines = list(calculix.deck(told, 1e4, 1e3))
+    first = lines.index("*SURFACE, NAME=LOAD0") + 1
+    assert lines[first : first + 2] == ["2, S4", "*MATERIAL, NAME=MATERIAL0"], "the second element's end along x"
+    assert [lines[k + 1] for k, line in enumerate(lines) if line == "*DSLOAD"] == [f"LOAD0, P, {size:.12e}" for size in (0.2, 0.4)]
+    found = getfem.description(told)
+    assert found["loads"] == [{"body": 0, "face": "u1", "elements": [1]}]
+    np.testing.assert_allclose(found["pressures"], told.pressures / told.stiffest)
+
+
+def test_loads_that_a_program_cannot_express_are_named() -> None:
+    pull = solid('loads.pull={face="block.u1", traction=[1,0,0]}')
+    with pytest.raises(InputError, match="no loads but pressures") as refused:
+        GetFEM().run(pull)
+    assert refused.value.field == "loads.pull.traction"
+    with pytest.raises(InputError, match="forces of supports") as refused:  # the base holds an edge of that face
+        CalculiX().run(solid(*PRESSURE))
+    assert refused.value.field == "loads.wind.face"
 
 
 def test_rigid_planes_are_refused() -> None:
@@ -250,8 +279,8 @@ def test_what_getfem_answers_is_read() -> None:
     assert (found.ending, len(found.steps), found.solves) == ("not converged", 1, 63)
     np.testing.assert_allclose(found.steps[0].positions, told.nodes + 1.0)
     total = sum(reaction.force.sum() for reaction in found.steps[0].reactions)
-    np.testing.assert_allclose(total, len(told.prescribed) * (len(told.prescribed) - 1) / 2)
-    assert found.steps[0].works == (0.5, -0.25)
+    np.testing.assert_allclose(total, told.stiffest * len(told.prescribed) * (len(told.prescribed) - 1) / 2)
+    np.testing.assert_allclose(found.steps[0].works, told.stiffest * np.array([0.5, -0.25]))
     untold = getfem._outcome(told, Finished(End("measured", "", 0), line.replace(', "friction": 0.5, "spurious": -0.25', ""), "", 1.0))
     np.testing.assert_array_equal(untold.steps[0].works, [np.nan, np.nan])
 
@@ -262,9 +291,11 @@ def test_getfem_integrates_works_only_where_it_is_asked(
 ) -> None:
     model = SimpleNamespace(nbdof=lambda: 0, solve=lambda *_: (1, 1))
     monkeypatch.setitem(sys.modules, "getfem", SimpleNamespace(Model=lambda _: model, util_trace_level=lambda _: None))
-    nothing: dict[str, object] = {key: [] for key in ("bodies", "contacts", "nodes", "prescribed")}
+    nothing: dict[str, object] = {key: [] for key in ("bodies", "contacts", "loads", "nodes", "prescribed")}
     told = tmp_path / "problem.json"
-    told.write_text(json.dumps({**nothing, "displacements": [[], []], "tolerance": 1e-9, "iterations": 5, "works": works}))
+    told.write_text(
+        json.dumps({**nothing, "displacements": [[], []], "pressures": [[], []], "tolerance": 1e-9, "iterations": 5, "works": works})
+    )
     runpy.run_path(str(Path(getfem.__file__).with_name("getfem_job.py")))["main"](str(told))
     steps = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
     assert ["friction" in step and "spurious" in step for step in steps] == [works, works]

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 
 from isomortar.geometry.patch import FloatArray
+from isomortar.harness.cases import Claim
+from isomortar.model.entities import Problem
+from isomortar.program.declaration import LoadStep
 
 
 @dataclass(frozen=True)
@@ -55,6 +59,33 @@ class Drawing:
 
 
 @dataclass(frozen=True)
+class Beside:
+    """A benchmark as other programs can be told of it, beside our solver, on coarse Lagrange elements.
+
+    Parameters
+    ----------
+    about : str
+        What is other than above.
+    problem : callable
+        By a kind of elements, ``L1``.
+    numbers : callable
+        Some of the benchmark's quantities, of the problem and its load steps, which have positions and reactions alone.
+    within : dict of str to Bound
+        What is claimed of them, whatever program they are of.
+    kinds : tuple of str
+    stops : dict of str to str
+        Runs that do not come to their end, ``L2 CalculiX``, with what becomes of them.
+    """
+
+    about: str
+    problem: Callable[[str], Problem]
+    numbers: Callable[[Problem, Sequence[LoadStep]], dict[str, float]]
+    within: Mapping[str, Claim]
+    kinds: tuple[str, ...] = ("L1", "L2")
+    stops: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
 class Benchmark:
     """A published benchmark.
 
@@ -68,6 +99,8 @@ class Benchmark:
         What the sources leave open, and how it is taken here; empty: nothing.
     finest : two str
         Discretisations of other order and other elements: the value is that of the first, what they differ by its uncertainty.
+    beside : Beside or str
+        How other programs compute it, or why they do not.
     settings : dict
         Other settings of the case.
     """
@@ -78,7 +111,8 @@ class Benchmark:
     open: str
     finest: tuple[str, str]
     quantities: tuple[Quantity, ...]
-    drawings: tuple[Drawing, ...] = ()
+    drawings: tuple[Drawing, ...]
+    beside: Beside | str
     settings: Mapping[str, Any] = field(default_factory=dict)
 
     @property
@@ -103,3 +137,13 @@ def ratios(above: Sequence[Known], below: Sequence[Known]) -> tuple[Known, ...]:
     """Quotients of values by the same sources."""
     values = {known.source: known.value for known in below}
     return tuple(Known(known.source, known.value / values[known.source]) for known in above)
+
+
+def reaction(problem: Problem, step: LoadStep, support: str) -> FloatArray:
+    """Force of a support on its body."""
+    return next(r.force for s, r in zip(problem.supports, step.reactions, strict=True) if s.name == support)
+
+
+def at_force(force: float, forces: Sequence[float], values: Sequence[float]) -> float:
+    """A value at a force among those of load steps, which both begin at zero: other programs press by displacements."""
+    return float(PchipInterpolator([0.0, *forces], [0.0, *values], extrapolate=False)(force))

@@ -126,5 +126,6 @@ BENCHMARKS = (
             Drawing("angle", "torque", "angle, degrees", "torque", _TORQUES),
             Drawing("angle", "force", "angle, degrees", "force", {_SAUER: np.array([[0.0, 1.2295], [180.0, 1.2887]])}),
         ),
+        "The hemisphere's poles are on its rim: GetFEM and CalculiX are told here of no elements of which an edge is a point.",
     ),
 )

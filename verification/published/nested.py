@@ -174,6 +174,7 @@ def _benchmark(title: str, friction: float, between: str, curve: dict[str, Float
         ("N3 fine", "N2 fine"),
         tuple(Quantity(f"force at {at:g}", f"force at {at:g} mm", "N", among(curve, at)) for at in AT),
         (Drawing("way", "force", "way of the plate, mm", "force, N", curve),),
+        "GetFEM and CalculiX are told here of no rigid planes, nor of supports of some stages, as those of the led poles.",
         {"friction": friction},
     )
 

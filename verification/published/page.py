@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from published.benchmark import Benchmark, Drawing, Quantity
+from published.benchmark import Benchmark, Beside, Drawing, Quantity
+from published.others import OWN, PROGRAMS
 
 from isomortar.harness.figures import look, page_style, svg_text
 from isomortar.harness.report import template
@@ -25,10 +26,16 @@ _MARKS = "osD^vP"
 
 def write(folder: Path, benchmarks: Sequence[Benchmark], results: Sequence[Result], started: datetime) -> Conclusion:
     """Write ``published.html``."""
-    sections = [_section(benchmark, [result for result in results if _of(result, benchmark)]) for benchmark in benchmarks]
+    others = {result.cell.settings["run"]: result for result in results if result.cell.case.function.__name__ == "by_program"}
+    sections = [
+        _section(benchmark, [result for result in results if _of(result, benchmark)]) | {"others": _others(benchmark, others)}
+        for benchmark in benchmarks
+    ]
     path = folder / "published.html"
-    failed = sum(result.state != "passed" for result in results)
-    text = template("page.html", Path(__file__)).render(sections=sections, started=started, failed=failed, total=len(results))
+    failed = sum(result.state not in ("passed", "skipped") for result in results)
+    missing = sorted({result.measurement.reason for result in results if result.state == "skipped"})
+    told = {"started": started, "failed": failed, "missing": missing, "total": len(results)}
+    text = template("page.html", Path(__file__)).render(sections=sections, **told)
     write_whole(path, text)
     return Conclusion(path, failed, not failed, f"{len(benchmarks)} benchmarks, {len(results)} runs")
 
@@ -47,6 +54,23 @@ def _section(benchmark: Benchmark, results: Sequence[Result]) -> dict[str, Any]:
         "figures": [_drawn(drawing, benchmark, found) for drawing in benchmark.drawings],
         "runs": [(r.cell.settings["mesh"], r.state, r.measurement.reason, r.measurement.cpu_seconds) for r in results],
     }
+
+
+def _others(benchmark: Benchmark, results: Mapping[str, Result]) -> list[dict[str, Any]]:
+    """What became of the benchmark by each program: its numbers, and how much more they are than ours on the same elements."""
+    if not isinstance(beside := benchmark.beside, Beside):
+        return []
+    rows: list[dict[str, Any]] = []
+    own: Mapping[str, Any] = {}
+    for kind, program in ((kind, program) for kind in beside.kinds for program in PROGRAMS):
+        result = results.get(f"{benchmark.name} {kind} {program}")
+        numbers = result.measurement.numbers if result and result.measurement.ending == "measured" else {}
+        own = numbers if program == OWN else own
+        reason = result.measurement.reason if result and not numbers else beside.stops.get(f"{kind} {program}", "")
+        off = {name: float(value) / float(own[name]) - 1.0 for name, value in numbers.items() if program != OWN and name in own}
+        state = result.state if result else "not run"
+        rows.append({"kind": kind, "program": program, "state": state, "reason": reason, "numbers": numbers, "off": off})
+    return rows
 
 
 def _row(quantity: Quantity, benchmark: Benchmark, found: Found) -> dict[str, Any]:

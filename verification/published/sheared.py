@@ -138,5 +138,6 @@ BENCHMARKS = (
             Drawing("shares", "sticks", "Q / mu P", "c / a", {_SOURCE: np.column_stack([_GROWING, np.cbrt(1.0 - _GROWING)])}),
             Drawing("places", "tractions", "x / a", f"traction over mu p0, Q = {DRAWN:g} mu P", {_SOURCE: _TRACTIONS}),
         ),
+        "GetFEM and CalculiX are told here of no supports by force, and tell positions and forces of supports, but no tractions.",
     ),
 )

@@ -7,23 +7,13 @@ from datetime import datetime
 from functools import partial
 from pathlib import Path
 
-from published import cylinders, hemisphere, ironing, nested, page, punches, roller, sheared, spheres
+from published import page
 from published.benchmark import Benchmark
+from published.benchmarks import BENCHMARKS
 
 from isomortar.harness.collection import collect
 from isomortar.harness.runner import Result, select
 from isomortar.harness.study import Conclusion, Study
-
-BENCHMARKS: tuple[Benchmark, ...] = (
-    *cylinders.BENCHMARKS,
-    *roller.BENCHMARKS,
-    *spheres.BENCHMARKS,
-    *sheared.BENCHMARKS,
-    *punches.BENCHMARKS,
-    *ironing.BENCHMARKS,
-    *hemisphere.BENCHMARKS,
-    *nested.BENCHMARKS,
-)
 
 
 def study(folder: Path) -> Study:

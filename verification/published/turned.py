@@ -52,15 +52,15 @@ def disc(inner: float, radius: float, bottom: float, top: float, spans: Sequence
     return turned(line(inner, radius), line(bottom, top), np.stack([r, z, np.ones((2, 2))], axis=-1), spans)
 
 
-def punch(flat: float, fillet: float, radius: float, height: float, spans: Sequence[Sequence[float]]) -> Patch:
-    """A quarter of a round punch whose flat underside, at height zero, goes over into an arc up to its side.
+def punch(inner: float, flat: float, fillet: float, radius: float, height: float, spans: Sequence[Sequence[float]]) -> Patch:
+    """A quarter of a round punch, hollow up to an inner radius, whose flat underside, at height zero, goes over into an arc up to its side.
 
     Along the underside the parameter is the radius of the flat part, then goes on to `radius` along the arc.
 
     Parameters
     ----------
-    flat, fillet : float
-        Radius of the flat part, and of the arc that begins there.
+    inner, flat, fillet : float
+        Radii of the hole, of the flat part, and of the arc that begins there.
     radius, height : float
         Of the punch; the arc ends at its side.
     spans : two sequences of float
@@ -68,18 +68,18 @@ def punch(flat: float, fillet: float, radius: float, height: float, spans: Seque
     half = 0.5 * np.arcsin((radius - flat) / fillet)
     rise = fillet * (1.0 - np.cos(2.0 * half))
     below = [
-        (0.0, 0.0, 1.0),
-        (0.5 * flat, 0.0, 1.0),
+        (inner, 0.0, 1.0),
+        (0.5 * (inner + flat), 0.0, 1.0),
         (flat, 0.0, 1.0),
         (flat + fillet * np.tan(half), 0.0, np.cos(half)),
         (radius, rise, 1.0),
     ]
     above = [
-        (0.0, height, 1.0),
-        (0.5 * flat, height, 1.0),
+        (inner, height, 1.0),
+        (0.5 * (inner + flat), height, 1.0),
         (flat, height, 1.0),
         (0.5 * (flat + radius), height, 1.0),
         (radius, height, 1.0),
     ]
-    along = Direction("N", 2, np.array([0.0, 0.0, 0.0, flat, flat, radius, radius, radius]))
+    along = Direction("N", 2, np.array([inner, inner, inner, flat, flat, radius, radius, radius]))
     return turned(along, line(0.0, height), np.stack([np.array(below), np.array(above)], axis=1), spans)

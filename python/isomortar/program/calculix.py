@@ -12,6 +12,8 @@ import numpy as np
 
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model.entities import Body, Contact, Face, Material, Problem
+from isomortar.model.loads import Loads
+from isomortar.model.numbering import Numbering
 from isomortar.program.declaration import NotInstalledError, Outcome, ended, load_step
 from isomortar.program.lagrange import LagrangeProblem
 from isomortar.program.process import Ending, Finished, run
@@ -39,6 +41,8 @@ _FACES = {"w0": "S1", "w1": "S2", "v0": "S3", "u1": "S4", "v1": "S5", "u0": "S6"
 _TABLE = re.compile(r"^ (forces|displacements) \(.*\) for set \S+ and time.*\n\n((?: +\d+(?: +\S+){3}\n)+)", re.MULTILINE)
 #: What it says of a mistake, on its standard output.
 _ERROR = re.compile(r"\*ERROR.*(?:\n {2,}\S.*)*")
+#: Share of a pressure's forces below which a support is along the face, not against it: round-off.
+_ALONG = 1e-12
 #: What CalculiX says where a load step does not converge.
 _GAVE_UP = re.compile(r"increment size\s+smaller than minimum|too many cutbacks|solution seems to diverge", re.IGNORECASE)
 
@@ -47,8 +51,9 @@ class CalculiX:
     """CalculiX, from its input deck, with one thread.
 
     Order 1 is C3D8, with two Gauss points a direction. Order 2 is C3D20, with three: it has no nodes within faces and elements, so that
-    its functions are others than those of 27 nodes. Where all bodies have small strain the steps are geometrically linear. Contact is
-    surface to surface with a linear pressure-overclosure, friction with an elastic stick slope: neither is exact.
+    its functions are others than those of 27 nodes. Where all bodies have small strain the steps are geometrically linear,
+    and pressures stay as they are on the reference. Contact is surface to surface with a linear pressure-overclosure, friction with an
+    elastic stick slope: neither is exact.
 
     Parameters
     ----------
@@ -69,7 +74,7 @@ class CalculiX:
         ------
         InputError
             What `LagrangeProblem` refuses; orders other than 1 and 2, or other by direction; other Gauss points; small strain beside large
-            ones, or in contact.
+            ones; pressures where supports act against them.
         NotInstalledError
             There is no command ``ccx``.
         """
@@ -129,11 +134,12 @@ def _rows(numbers: IntArray) -> Iterator[str]:
 
 
 def _places(problem: Problem, body: Body) -> Iterator[tuple[str, Face]]:
-    """Names and places of a body's surfaces in contact."""
+    """Names and places of a body's surfaces in contact and under loads."""
     for number, contact in enumerate(problem.contacts):
         for side, place in (("SLAVE", contact.slave), ("MASTER", contact.master)):
             if isinstance(place, Face) and place.body == body.name:
                 yield f"{side}{number}", place
+    yield from ((f"LOAD{number}", load.place) for number, load in enumerate(problem.loads) if load.body == body.name)
 
 
 def _law(material: Material) -> tuple[str, str]:
@@ -155,12 +161,14 @@ def _steps(told: LagrangeProblem, used: IntArray) -> Iterator[str]:
     large = "" if _small(told.problem.bodies[0]) else ", NLGEOM"
     yield "*NSET, NSET=HELD"
     yield from (f"{node + 1}," for node in np.unique(told.prescribed[prescribed] // 3))
-    for displacements in told.displacements:
+    for displacements, pressures in zip(told.displacements, told.pressures, strict=True):
         yield from (f"*STEP{large}, INC=1000", "*STATIC, SOLVER=SPOOLES", "1.0, 1.0, 1e-5, 1.0")
         yield from ("*CONTROLS, PARAMETERS=FIELD", f"{told.problem.settings.newton_tolerance:g}, 0.01", "*BOUNDARY")
         for unknown, value in zip(told.prescribed[prescribed], displacements[prescribed], strict=True):
             node, component = divmod(int(unknown), 3)
             yield f"{node + 1}, {component + 1}, {component + 1}, {_number(value)}"
+        for number, size in enumerate(pressures):
+            yield from ("*DSLOAD", f"LOAD{number}, P, {_number(size)}")
         for nodes, what in (("HELD", "RF"), ("ALL", "U")):
             yield from (f"*NODE PRINT, NSET={nodes}, FREQUENCY=100000", what)
         yield "*END STEP"
@@ -182,10 +190,12 @@ def _check(told: LagrangeProblem) -> None:
             raise told.refuse("has hexahedra of order 1 and 2, the same along all directions", f"bodies.{body.name}.mesh.order")
         if _order(body) == 1 and set(body.quadrature) != {2}:
             raise told.refuse("has 2 Gauss points a direction in elements of order 1", f"bodies.{body.name}.mesh.quadrature")
-        if _small(body) and told.problem.contacts:
-            raise told.refuse("is not told of contacts between bodies of small strain", f"bodies.{body.name}.material.law")
         if _small(body) != _small(told.problem.bodies[0]):
             raise told.refuse("has small strain in all bodies or in none", f"bodies.{body.name}.material.law")
+    pressed = Loads(told.problem, Numbering(told.problem)).forces(told.nodes, float(told.problem.total_steps))
+    for load, forces in zip(told.problem.loads, pressed, strict=True):
+        if np.abs(forces.ravel()[told.prescribed]).max(initial=0.0) > _ALONG * np.abs(forces).max():
+            raise told.refuse("adds pressures to the forces of supports that they act against", f"loads.{load.name}.face")
 
 
 def _outcome(told: LagrangeProblem, finished: Finished, dat: str, cvg: str) -> Outcome:

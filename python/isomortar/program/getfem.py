@@ -81,8 +81,11 @@ def has_module(python: str, module: str) -> bool:
 
 
 def description(told: LagrangeProblem) -> dict[str, Any]:
-    """What GetFEM has to know, in plain numbers that JSON holds: nodes count from 0, unknowns are 3 * node + component."""
-    problem = told.problem
+    """What GetFEM has to know, in plain numbers that JSON holds: nodes count from 0, unknowns are 3 * node + component.
+
+    The unit of force is such that the largest Young's modulus is 1: its tolerance knows none.
+    """
+    problem, unit = told.problem, told.stiffest
     bodies = [
         {
             "name": body.name,
@@ -90,8 +93,8 @@ def description(told: LagrangeProblem) -> dict[str, Any]:
             "elements": told.elements(body).tolist(),
             "gauss": body.quadrature,
             "energy": ENERGIES[body.material.law].format(g=f"Grad_u_{number}", b=number),
-            "bulk": body.material.bulk,
-            "shear": body.material.shear,
+            "bulk": body.material.bulk / unit,
+            "shear": body.material.shear / unit,
         }
         for number, body in enumerate(problem.bodies)
     ]
@@ -107,13 +110,18 @@ def description(told: LagrangeProblem) -> dict[str, Any]:
         }
         for contact in problem.contacts
     ]
+    loads = [
+        {"body": names.index(load.body), "face": load.place.face, "elements": told.touching(load.place).tolist()} for load in problem.loads
+    ]
     return {
         "bodies": bodies,
         "contacts": contacts,
+        "loads": loads,
         "nodes": told.nodes.tolist(),
         "prescribed": told.prescribed.tolist(),
         "displacements": told.displacements.tolist(),
-        "augmentation": 0.5 * told.stiffest / told.thinnest,
+        "pressures": (told.pressures / unit).tolist(),
+        "augmentation": 0.5 / told.thinnest,
         "release": 0.6 * told.thinnest,
         "tolerance": problem.settings.newton_tolerance,
         "iterations": MOST_ITERATIONS,
@@ -140,8 +148,9 @@ def _outcome(told: LagrangeProblem, finished: Finished) -> Outcome:
             ending, words = "not converged", f"Newton's method did not converge in {MOST_ITERATIONS} iterations"
             break
         forces = np.zeros(told.nodes.size)
-        forces[told.prescribed] = found["forces"]
+        forces[told.prescribed] = told.stiffest * np.array(found["forces"])
         positions = told.nodes + np.reshape(found["displacements"], (-1, 3))
         step = load_step(told.problem, len(steps) + 1, positions, forces.reshape(-1, 3))
-        steps.append(replace(step, works=(found["friction"], found["spurious"])) if "friction" in found else step)
+        works = (told.stiffest * found["friction"], told.stiffest * found["spurious"]) if "friction" in found else step.works
+        steps.append(replace(step, works=works))
     return Outcome(*ended(steps, told.problem, ending, words), tuple(steps), solves, finished.cpu_seconds)

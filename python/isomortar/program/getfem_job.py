@@ -18,6 +18,10 @@ import numpy as np
 FACES = {"u1": 0, "u0": 1, "v1": 2, "v0": 3, "w1": 4, "w0": 5}
 #: Unknowns below which factors are dense: MUMPS estimates its memory by shares of the matrix, and of a small one that may be too little.
 SMALL = 1000
+#: Number of the region of the first load: those of contacts are lower.
+FIRST_LOAD = 1000
+#: Gap below which faces touch at the start, over the largest one at which they can.
+TOUCH = 1e-9
 
 
 def product(kind: str, parts: list[str]) -> str:
@@ -31,6 +35,15 @@ def gauss(points: list[int]) -> Any:
     return gf.Integ(product("IM", [f"IM_GAUSS1D({2 * count - 1})" for count in points]))
 
 
+def displacement(orders: list[int], cells: list[int], elements: Any) -> str:
+    """A displacement with its own nodes, as GetFEM reads it: where it counts nodes itself, some that are close may become one."""
+    kind = product("FEM", [f"FEM_PK(1,{order})" for order in orders])
+    kinds = [f"CONVEX {cell} '{kind}'" for cell in cells]
+    nodes = [f"{cell}: {' '.join(map(str, 3 * element))}" for cell, element in zip(cells, elements, strict=True)]
+    lines = ["BEGIN MESH_FEM", "QDIM 3", *kinds, "BEGIN DOF_ENUMERATION", *nodes, "END DOF_ENUMERATION", "END MESH_FEM"]
+    return "\n".join(lines)
+
+
 class MeshedBody:
     """A body of the model: its mesh, its displacement, and where GetFEM's degrees of freedom stand among all nodes."""
 
@@ -40,12 +53,10 @@ class MeshedBody:
         shape = gf.GeoTrans(product("GT", [f"GT_PK(1,{order})" for order in told["orders"]]))
         cells = [int(self.mesh.add_convex(shape, nodes[element].T)[0]) for element in told["elements"]]
         self.cells = cells
-        self.field = gf.MeshFem(self.mesh, 3)
-        self.field.set_fem(gf.Fem(product("FEM", [f"FEM_PK(1,{order})" for order in told["orders"]])))
+        elements = np.array(told["elements"])
         #: Number among all nodes of each of this body's.
-        self.node = np.zeros(self.field.nbdof() // 3, dtype=int)
-        for cell, element in zip(cells, told["elements"], strict=True):
-            self.node[self.field.basic_dof_from_cvid(cell)[0][::3] // 3] = element
+        self.node = np.unique(elements)
+        self.field = gf.MeshFem("from string", displacement(told["orders"], cells, np.searchsorted(self.node, elements)), self.mesh)
         self.solid = gf.MeshIm(self.mesh, gauss(told["gauss"]))
         model.add_fem_variable(self.variable, self.field)
         model.add_fem_data(f"{self.variable}_before", self.field)
@@ -119,6 +130,12 @@ class TouchingFaces:
         """Begin a load step: multipliers of the last one are those before."""
         self.model.set_variable(f"{self.multiplier}_before", self.model.variable(self.multiplier))
 
+    def press(self, traction: float) -> None:
+        """Guess that all presses a little: what touches without any traction counts as open, and nothing else may hold a body."""
+        normals = self.model.interpolation("Normal", self.slave.field, self.face)
+        field = self.model.mesh_fem_of_variable(self.multiplier)
+        self.model.set_variable(self.multiplier, -traction * field.reduce_vector(normals))
+
     def works(self) -> tuple[float, float]:
         """Friction work of a load step, and spurious work of points that press at both ends of it (theory 3.31).
 
@@ -150,6 +167,23 @@ class TouchingFaces:
         return float(gf.asm_generic(self.rules[0], 0, text, self.face, self.model))
 
 
+class PressedFace:
+    """A pressure on a face, along its current normal."""
+
+    def __init__(self, model: Any, number: int, load: dict[str, Any], bodies: list[MeshedBody]) -> None:
+        body = bodies[load["body"]]
+        self.model, self.size = model, f"pressure_{number}"
+        model.add_initialized_data(self.size, 0.0)
+        gradient = f"(Id(3)+Grad_{body.variable})"
+        term = f"{self.size}*Det{gradient}*(Inv{gradient}'*Normal).Test_{body.variable}"
+        # Regions of contacts come before.
+        model.add_nonlinear_term(body.solid, term, body.region(FIRST_LOAD + number, load))
+
+    def put(self, size: float) -> None:
+        """Prescribe its size."""
+        self.model.set_variable(self.size, size)
+
+
 def main(path: str) -> None:
     """Read, compute, print."""
     told = json.loads(Path(path).read_text())
@@ -159,13 +193,18 @@ def main(path: str) -> None:
     bodies = [MeshedBody(model, number, body, nodes) for number, body in enumerate(told["bodies"])]
     held = [HeldUnknowns(model, body, prescribed) for body in bodies]
     contacts = [TouchingFaces(model, number, told, contact, bodies) for number, contact in enumerate(told["contacts"])]
+    loads = [PressedFace(model, number, load, bodies) for number, load in enumerate(told["loads"])]
     solver = "dense_lu" if model.nbdof() < SMALL else "mumps"
-    for wanted in np.array(told["displacements"]):
+    for step, (wanted, sizes) in enumerate(zip(np.array(told["displacements"]), told["pressures"], strict=True)):
         for body, support in zip(bodies, held, strict=True):
             support.put(wanted)
             model.set_variable(f"{body.variable}_before", model.variable(body.variable))
         for contact in contacts:
             contact.begin()
+            if step == 0 and loads:
+                contact.press(TOUCH * told["augmentation"] * told["release"])
+        for load, size in zip(loads, sizes, strict=True):
+            load.put(size)
         solves, converged = model.solve("max_res", told["tolerance"], "max_iter", told["iterations"], "lsolver", solver)
         found = _found(model, bodies, held, nodes) if converged else {}
         if converged and told["works"]:

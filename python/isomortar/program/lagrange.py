@@ -13,7 +13,7 @@ from isomortar.model.checks import check
 from isomortar.model.entities import Body, Contact, Face, Problem
 from isomortar.model.numbering import Numbering
 from isomortar.model.pattern import element_points
-from isomortar.model.supports import Supports
+from isomortar.model.supports import Supports, factor_at
 
 
 class LagrangeProblem:
@@ -38,7 +38,7 @@ class LagrangeProblem:
     ------
     InputError
         No program of Lagrange elements has this, or not this one: NURBS, weights, elements of which an edge is a point, another law of
-        material, glue, loads, rigid bodies and planes, friction other than Coulomb's.
+        material, glue, loads other than pressures, rigid bodies and planes, friction other than Coulomb's.
     """
 
     def __init__(self, problem: Problem, program: str, laws: Collection[str]) -> None:
@@ -46,8 +46,9 @@ class LagrangeProblem:
         self.problem, self._program = problem, program
         if problem.glue:
             raise self.refuse("is not told of glued bodies", "glue")
-        if problem.loads:
-            raise self.refuse("is not told of loads", f"loads.{problem.loads[0].name}")
+        for load in problem.loads:
+            if load.kind != "pressure":
+                raise self.refuse("is told of no loads but pressures", f"loads.{load.name}.{load.kind}")
         for support in problem.supports:
             if support.is_plate:
                 raise self.refuse("is not told of forces of supports", f"supports.{support.name}.force")
@@ -75,9 +76,20 @@ class LagrangeProblem:
     @cached_property
     def displacements(self) -> FloatArray:
         """What is prescribed at the end of each load step, shape (load steps, m)."""
-        steps = range(1, self.problem.total_steps + 1)
-        places = np.array([self._supports.place(float(step)) for step in steps]).reshape(-1, len(self.nodes) * 3)
+        places = np.array([self._supports.place(time) for time in self._times]).reshape(-1, len(self.nodes) * 3)
         return (places - self.nodes.ravel())[:, self.prescribed]
+
+    @cached_property
+    def pressures(self) -> FloatArray:
+        """Sizes of the loads, all pressures, at the end of each load step, shape (load steps, loads)."""
+        stages = self.problem.stages
+        sizes = [[load.value[0] * factor_at(stages, load.factors, time) for load in self.problem.loads] for time in self._times]
+        return np.array(sizes).reshape(len(self._times), -1)
+
+    @property
+    def _times(self) -> list[float]:
+        """Load time at the end of each load step."""
+        return [float(step) for step in range(1, self.problem.total_steps + 1)]
 
     @property
     def thinnest(self) -> float:
