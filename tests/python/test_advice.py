@@ -143,6 +143,7 @@ DOUBTFUL = {
     "other unit of motions": (PRESS, "[0, 0, -0.1]", "[0, 0, -100]", "moves by 100 in each load step"),
     "held on both sides": (*UNUSUAL["support on the contact face"], "can move nothing: its slave face is held by support 'bottom'"),
     "friction in per cent": (PRESS, "[supports.top]", "friction = 30\n[supports.top]", "Was it meant in per cent, 0.3?"),
+    "friction of no material": (PRESS, "[supports.top]", "friction = 3\n[supports.top]", "is above what materials have"),
     "motion of what is not held": (
         PRESS,
         'face = "block.w1"',
@@ -194,6 +195,13 @@ DOUBTFUL = {
     "half a ring": (_HALF, "", "", 'supports with components = ["x"] to arch.u0, arch.u1'),
     "slender elements": (PRESS, "elements = [2, 2, 1]", "elements = [2, 2, 40]", "take fewer along w, or more along u"),
     "one element": (PRESS, "elements = [2, 2, 1]", "elements = [1, 1, 1]", "the slave face block.w0 is a single element"),
+    "graded away": (PRESS, "elements = [2, 2, 1]", "elements = [2, 2, 3], grading = [1, 1, 0.2]", "mesh.grading along w above 1"),
+    "graded away from a last face": (
+        PAIR,
+        "[2, 2, 1] }\n[contacts.pair]",
+        "[2, 2, 3], grading = [1, 1, 5] }\n[contacts.pair]",
+        "Take bodies.lower.mesh.grading along w below 1",
+    ),
     "few Gauss points": (PRESS, "elements = [2, 2, 1]", "elements = [2, 2, 1], quadrature = 1", "mesh.quadrature = [2, 2, 2] or more"),
     "few contact points": (PRESS, "[supports.top]", "quadrature = 2\n[supports.top]", "contacts.floor.quadrature = [3, 3] or more"),
     "loose": (PRESS, "[supports.top]", "[solver]\nnewton_tolerance = 1e-3\n[supports.top]", "Take 0.0001 or less"),
@@ -210,7 +218,13 @@ DOUBTFUL = {
         PRESS,
         "[supports.top]",
         '[loads.wind]\nface = "block.u0"\npressure = 1e3\n[supports.top]',
-        "nothing bears that",
+        "hardly anything bears that",
+    ),
+    "load as large as the modulus": (
+        PRESS,
+        "[supports.top]",
+        '[loads.wind]\nface = "block.u0"\ntraction = [8, 0, 0]\n[supports.top]',
+        "hardly anything bears that",
     ),
     "weight in another unit": (
         PRESS,

@@ -6,12 +6,15 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from isomortar.geometry.patch import opposite
 from isomortar.model.contrasts import element_lengths
-from isomortar.model.entities import Body, Contact, Problem
+from isomortar.model.entities import Body, Contact, Face, Problem
 from isomortar.model.sheet import Sheet
 
 #: Mean lengths of elements in two directions further apart make them slender, as when numbers of elements are in another order.
 SLENDER = 20.0
+#: Elements at a face in contact longer than those at the opposite face by this factor were to be the finer ones, most likely.
+GRADED = 3.0
 #: Shares that solvers may leave open: more shows in the second digit of forces, and is told.
 LOOSE = {"newton_tolerance": 1e-4, "augmentation_tolerance": 0.01}
 
@@ -21,6 +24,10 @@ def of_meshes(problem: Problem) -> Iterator[str]:
     for body in problem.deformable:
         yield from _slender(body)
         yield from _few_points(body)
+    touching = {face for contact in problem.contacts for side in (contact.slave, contact.master) for face in getattr(side, "faces", ())}
+    for face in sorted(touching, key=lambda face: face.words):
+        if Face(face.body, opposite(face.face)) not in touching:
+            yield from _graded_away(problem.body(face.body), face)
     for contact in problem.contacts:
         yield from _one_element(problem, contact)
         yield from _few_contact_points(problem, contact)
@@ -37,6 +44,19 @@ def _slender(body: Body) -> Iterator[str]:
             f"body {body.name!r}: its elements are {lengths[shortest]:.2g} long along {'uvw'[shortest]} and {lengths[longest]:.2g} along "
             f"{'uvw'[longest]}, on average. bodies.{body.name}.mesh.elements, {elements}, are along u, v, w: take fewer along "
             f"{'uvw'[shortest]}, or more along {'uvw'[longest]}"
+        )
+
+
+def _graded_away(body: Body, face: Face) -> Iterator[str]:
+    """Elements that are longest where contact acts, and much shorter at the opposite face, where it does not."""
+    axis, end = "uvw".index(face.face[0]), int(face.face[1])
+    lengths = element_lengths(body.patch)[axis]
+    near, far = (lengths[0], lengths[-1])[:: -1 if end else 1]
+    if not body.rigid and near == lengths.max() and near > GRADED * far:
+        yield (
+            f"body {body.name!r}: its elements behind {face.words}, a face in contact, are {near:.2g} long, and {far:.2g} at the opposite "
+            f"face: finest where nothing touches. Take bodies.{body.name}.mesh.grading along {face.face[0]} "
+            f"{'below' if end else 'above'} 1"
         )
 
 

@@ -17,7 +17,8 @@ from isomortar.model.supports import Supports
 
 #: Angles that people give in radians, over pi, and how near to one a number of degrees has to be: 3.14 is meant as well.
 RADIANS = {1 / 6: "pi/6", 1 / 4: "pi/4", 1 / 3: "pi/3", 1 / 2: "pi/2", 2 / 3: "2 pi/3", 3 / 4: "3 pi/4", 5 / 6: "5 pi/6", 1.0: "pi"}
-RADIANS |= {3 / 2: "3 pi/2", 2.0: "2 pi", 3.0: "3 pi", 4.0: "4 pi"}
+RADIANS |= {1 / 36: "pi/36", 1 / 18: "pi/18", 1 / 12: "pi/12", 1 / 9: "pi/9", 1 / 8: "pi/8"}
+RADIANS |= {3 / 2: "3 pi/2", 2.0: "2 pi", 3.0: "3 pi", 4.0: "4 pi", 6.0: "6 pi", 8.0: "8 pi", 10.0: "10 pi", 20.0: "20 pi"}
 NEARLY = 1e-3
 #: Share of what is between the supports of two sides by which they may come nearer to each other: beyond, nothing is left between them.
 FLAT = 0.9

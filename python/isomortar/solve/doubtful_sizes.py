@@ -14,6 +14,8 @@ from isomortar.model.sheet import Sheet
 
 #: Young's moduli further apart were given in two units, most likely: steel is 2e5 times as stiff as soft rubber.
 STIFFER = 3e5
+#: What acts on a face by a larger share of Young's modulus flattens what it acts on, or tears it.
+BORNE = 0.5
 #: Elastic slip above this share of a body leaves friction no say before the body has gone that far.
 ELASTIC = 0.1
 #: Friction that bears a smaller share of Young's modulus is as good as none.
@@ -33,8 +35,7 @@ def of_sizes(problem: Problem) -> Iterator[str]:
         yield from _elastic_slip(problem, contact)
     for load in problem.loads:
         yield from _no_load(load)
-        yield from _acceleration(load)
-        yield from _large_load(problem, load)
+        yield from [*_acceleration(load)] or _large_load(problem, load)
     for support in problem.supports:
         yield from _large_force(problem, support)
 
@@ -112,11 +113,11 @@ def _large_load(problem: Problem, load: Load) -> Iterator[str]:
     body = problem.body(load.body)
     length = body.size if load.kind == "weight" else 1.0
     size = length * _norm(load.value) * _largest(load.factors)
-    if size > body.material.young:
+    if size > BORNE * body.material.young:
         words = f"times the size of its body, {body.size:.3g}, " if load.kind == "weight" else ""
         yield (
-            f"load {load.name!r} {words}comes to {size:.3g} force per area, and Young's modulus is {body.material.young:g}: nothing bears "
-            "that. Are both given in the same units?"
+            f"load {load.name!r} {words}comes to {size:.3g} force per area, and Young's modulus is {body.material.young:g}: hardly "
+            "anything bears that. Are both given in the same units?"
         )
 
 
@@ -129,10 +130,10 @@ def _large_force(problem: Problem, support: Support) -> Iterator[str]:
     if not area > LEAST * body.size**2:  # a line or a point
         return
     size = float(np.linalg.norm(force)) * _largest(support.factors) / area / problem.images
-    if size > body.material.young:
+    if size > BORNE * body.material.young:
         yield (
             f"support {support.name!r} presses by {size:.3g} force per area of its face, and Young's modulus is {body.material.young:g}: "
-            "nothing bears that. Are both given in the same units?"
+            "hardly anything bears that. Are both given in the same units?"
         )
 
 

@@ -35,8 +35,8 @@ TOLD_OVERLAP = 0.02
 NEAR = 0.5
 #: Faces whose sizes (square roots of their areas) differ by more were given in different units, most likely.
 SIZE_RATIO = 100.0
-#: Coefficients of friction above this one were meant in per cent, or to make things stick.
-HIGH_FRICTION = 10.0
+#: Coefficients of friction above this one are of no pair of materials (dry metals and rubber: up to 1.5), and make things stick.
+HIGH_FRICTION = 2.0
 #: Bulk over shear modulus above which elements of order 1 lock; a tenfold of it for every order more (docs/method.md).
 LOCKING = 10.0
 #: Lengths of elements along a direction further apart cost pressures at the short ones all digits but two: 1e-16 times their square.
@@ -211,8 +211,8 @@ def _of_contact(contact: Contact) -> Iterator[str]:
     """What is given for a contact, wherever its faces are."""
     if contact.friction > HIGH_FRICTION and contact.traction_max is None:
         yield (
-            f"contact {contact.name!r}: a coefficient of friction of {contact.friction:g} makes all stick. Was it meant in per cent, "
-            f"{contact.friction / 100.0:g}?"
+            f"contact {contact.name!r}: a coefficient of friction of {contact.friction:g} is above what materials have, and makes nearly "
+            f"all stick. Was it meant in per cent, {contact.friction / 100.0:g}?"
         )
 
 
