@@ -61,7 +61,7 @@ def scene(**changes: Any) -> Simulation:
 
 
 def said(simulation: Simulation, error: Exception | None = None) -> list[str]:
-    return list(causes(simulation.equilibrium, simulation.state.positions, error or ConvergenceError("")))
+    return list(causes(simulation.equilibrium, simulation.state, error or ConvergenceError("")))
 
 
 #: A block pressed onto a larger one, and slid off over its edge.
@@ -102,6 +102,56 @@ def test_a_slave_that_slides_over_an_edge_comes_past_it_or_says_so_and_how(
     coarse = run(2)
     assert coarse == "load step 12" if comes_past else ("goes over an edge" in coarse and "Refine the slave" in coarse)
     assert run(4) == "load step 12"
+
+
+#: A block that lies on something by its weight, and is pushed by other loads; it bears 0.6, and can bear 0.18 along its face.
+PUSHED = """
+format = 1
+materials.soft.young = 100
+bodies.block = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 0.3] }, mesh.elements = [2, 2, 1] }
+contacts.floor = { slave = "block.w0", friction = 0.3, GROUND }
+loads.own = { body = "block", weight = [0, 0, -2] }
+supports.hand = { face = "block.w1", centre = [0.5, 0.5, 0.3], stages = ["push"], force = { PUSH }
+solver = { max_cuts = 6, max_iterations = 12 }
+stages = [{ name = "lie", steps = 1 }, { name = "push", steps = 4 }]
+"""
+ON = {
+    "plane": "plane = {}",
+    "body": """master = "table.w1" }
+supports.table.face = "table.w0"
+bodies.table = { geometry = { kind = "box", lower = [-1, -1, -0.5], upper = [2, 2, 0] }, mesh.elements = [2, 2, 1]""",
+}
+PUSHES = {"along": ("x = SIZE, y = 0, z = 0 }", 0.17, 0.24), "round": ("x = 0, y = 0, z = 0 }, moment = SIZE", 0.03, 0.1)}
+
+
+def pushed(push: str, ground: str, size: float) -> Simulation:
+    text = PUSHED.replace("GROUND", ON[ground]).replace("PUSH", PUSHES[push][0].replace("SIZE", str(size)))
+    return Simulation(Scene.from_toml(text).problem())
+
+
+@pytest.mark.parametrize("push", PUSHES)
+@pytest.mark.parametrize("ground", ON)
+def test_a_body_that_its_weight_holds_rests_as_long_as_friction_bears_its_loads_and_slides_beyond(ground: str, push: str) -> None:
+    _, least, most = PUSHES[push]
+    (*_, last) = pushed(push, ground, least).run()
+    np.testing.assert_allclose(last.contacts[0].force_slave, -last.reactions[-1].force - last.loads[0].force, atol=1e-9)
+    with pytest.raises(ConvergenceError, match="nothing else keeps body 'block' from going along with its loads: beyond that it slides"):
+        list(pushed(push, ground, most).run())
+
+
+def test_what_a_support_drags_does_not_slide_by_its_loads() -> None:
+    """All of its friction is used up, along what the support prescribes."""
+    text = """
+format = 1
+bodies.block = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 0.3] }, mesh.elements = [3, 3, 1] }
+contacts.floor = { slave = "block.w0", friction = 0.3, plane = {} }
+supports.top = { face = "block.w1", force.z = -1 }
+stages = [{ name = "press", steps = 1 }, { name = "drag", steps = 4, motions.top.translate = [0.5, 0, 0] }]
+"""
+    simulation = Simulation(Scene.from_toml(text).problem())
+    (*_, last) = simulation.run()
+    assert np.hypot(*last.reactions[0].force[:2]) == pytest.approx(0.3)
+    assert said(simulation) == []
 
 
 def test_a_sound_scene_gives_no_cause() -> None:

@@ -43,7 +43,7 @@ from isomortar.solve.singular import PairConditions, explain
 from isomortar.solve.timing import Ledger
 from results_samples import problem, step_result, without_contact
 from test_advice import warnings
-from test_causes import said
+from test_causes import pushed, said
 from test_causes import scene as causes
 from test_feet import cone, loaded, on_the_axis, ridge
 from test_poles import drawn_together
@@ -284,6 +284,7 @@ def of_causes(patch: pytest.MonkeyPatch) -> Told:
     (yield "pressed flat", *said(simulation))
     yield "turns", re.sub(r"\(.*?\)", "(#)", error(BLOCK + 'supports.top = { face = "block.w1", components = ["z"] }'))
     yield "over an edge", error(FROM_BESIDE).partition("to iteration. ")[2]
+    yield "slides", refusal(lambda: list(pushed("along", "plane", 0.24).run())).partition("Friction")[2]
     same = ["contacts.wall.slave='block.w0'", "contacts.wall.plane={ point = [1, 0, 0] }"]
     yield "repeat others", re.sub(r"\d+|'\w+'", "#", error(CORNER, *same).partition("the first of them ")[2])
     equilibrium = Equilibrium(Scene.from_toml(BLOCK + 'supports.top.face = "block.w1"').problem(), Ledger())

@@ -15,7 +15,7 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.geometry.refinement import surface_samples
 from isomortar.model import constants
 from isomortar.model.contact_checks import check_contacts
-from isomortar.model.entities import Body, Contact, Face, Problem, SolverSettings, Support, unit
+from isomortar.model.entities import Body, Contact, Face, Problem, RigidPlane, SolverSettings, Support, unit
 from isomortar.model.glue import check_glue, named, pieces
 from isomortar.model.load_checks import check_loads
 from isomortar.model.memory import memory_needed, memory_of_machine
@@ -260,23 +260,23 @@ def _check_moment(problem: Problem, support: Support) -> None:
 
 
 def _check_held(problem: Problem) -> None:
-    """Every body needs a support, or must be glued to or touch a held body from the start; without one later it has to be in contact."""
+    """Every body needs a support, or to be glued to or touch what is held from the start; without one later it has to be in contact."""
     whole = {body.name: piece for piece in pieces(problem) for body in piece}
     held = {body.name for support in problem.given_supports if support.holds(0) for body in whole[support.place.body]}
     held |= {body.name for body in problem.bodies if body.rigid}
     touching = [c for c in problem.contacts if _touch(problem, c)]
     for _ in problem.bodies:
         for contact in touching:
-            assert isinstance(contact.master, Face)  # a plane holds nobody
-            pair = {body.name for place in (contact.slave, contact.master) for face in place.faces for body in whole[face.body]}
-            if pair & held:
+            sides = [side for side in (contact.slave, contact.master) if isinstance(side, Face)]
+            pair = {body.name for side in sides for face in side.faces for body in whole[face.body]}
+            if pair & held or isinstance(contact.master, RigidPlane):
                 held |= pair
     touched = [face.body for c in problem.contacts for side in (c.slave, c.master) if isinstance(side, Face) for face in side.faces]
     in_contact = {body.name for name in touched for body in whole[name]}
     for body in problem.deformable:
         if body.name not in held:
             raise InputError(
-                f"{named(whole[body.name], body.name)} is free: it has no support and touches no held body at the start; "
+                f"{named(whole[body.name], body.name)} is free: it has no support and touches no held body or plane at the start; "
                 "add a support on one of its faces",
                 f"bodies.{body.name}",
             )
@@ -293,15 +293,18 @@ def _check_held(problem: Problem) -> None:
 
 
 def _touch(problem: Problem, contact: Contact) -> bool:
-    """Whether two faces may touch in the reference configuration: their bounding boxes meet."""
-    if not isinstance(contact.master, Face):
-        return False
-    slave, master = (
-        np.concatenate([surface_samples(problem.body(face.body).patch, face.face) for face in side.faces])
-        for side in (contact.slave, contact.master)
-    )
+    """Whether two sides may touch in the reference configuration: their bounding boxes meet, or the slave comes down to the plane."""
+    slave = _samples(problem, contact.slave)
     margin = 0.01 * np.ptp(slave, axis=0).max()
+    if isinstance(contact.master, RigidPlane):
+        return bool(((slave - contact.master.point) @ unit(contact.master.normal)).min() <= margin)
+    master = _samples(problem, contact.master)
     return bool(np.all(slave.min(axis=0) - margin <= master.max(axis=0)) and np.all(master.min(axis=0) - margin <= slave.max(axis=0)))
+
+
+def _samples(problem: Problem, side: Face) -> FloatArray:
+    """Points on a side of a contact, shape (n, 3)."""
+    return np.concatenate([surface_samples(problem.body(face.body).patch, face.face) for face in side.faces])
 
 
 def _check_agreement(problem: Problem, numbering: Numbering, one: Support, other: Support) -> None:

@@ -14,6 +14,8 @@ from isomortar.model.entities import Body, Problem
 from isomortar.solve.advice import few_points
 from isomortar.solve.contact import PairMechanics
 from isomortar.solve.equilibrium import Equilibrium
+from isomortar.solve.record import State
+from isomortar.solve.sliding import sliding
 
 #: Volume ratios below this one are those of elements about to fold.
 FLAT = 0.1
@@ -30,18 +32,19 @@ PENALTY = 1e3
 BESIDE = "beside the master"
 
 
-def causes(equilibrium: Equilibrium, positions: FloatArray, error: Exception) -> Iterator[str]:
+def causes(equilibrium: Equilibrium, state: State, error: Exception) -> Iterator[str]:
     """Sentences, without a capital, on what a person should look at.
 
     Parameters
     ----------
     equilibrium : Equilibrium
-    positions : ndarray, shape (control points, 3)
+    state : State
         Where the last load increment ended that converged.
     error : Exception
         Why the next one did not.
     """
-    problem = equilibrium.problem
+    problem, positions = equilibrium.problem, state.positions
+    yield from sliding(equilibrium, state)
     yield from _flat(problem.deformable, equilibrium.solid.smallest_jacobians(positions))
     for body in problem.deformable:
         yield from _lengths(body, LENGTHS_BENT if isinstance(error, SingularSystemError) else LENGTHS)

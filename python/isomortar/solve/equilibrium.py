@@ -67,6 +67,8 @@ class Equilibrium:
         In coordinates about `origin`.
     time : float
         Load time at the end of the increment that was begun last: loads are those of then.
+    motions : list of ndarray, each of shape (motions, control points, 3)
+        Rigid motions that supports leave each piece, where loads act in the scene; else none.
     orderings : dict
         Orderings of the unknowns that are in use, by the number of sources: with each pair that is in contact the matrix differs.
 
@@ -102,6 +104,7 @@ class Equilibrium:
         self._system_patterns: list[object] = []
         self._solid_entries: sparse.csr_array | None = None
         self._touching = Touching(self.problem, self.numbering, self.supports, self.loads)
+        self.motions = self._touching.motions
 
     def standing(self, step: int) -> Supports:
         """The supports of the stage of a load step."""

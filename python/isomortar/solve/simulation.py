@@ -175,7 +175,7 @@ class Simulation:
         """Halve the load increment, or give up with a sentence that says where and why; `state` is where the increment began."""
         self._increment = 0.5 * increment / longest
         if self._increment < 0.5**self.problem.settings.max_cuts or time - 0.5 * increment == time:
-            likely = causes(self.equilibrium, state.positions, error)
+            likely = causes(self.equilibrium, state, error)
             raise ConvergenceError(
                 f"load step {step} (stage {self._stage_of(step)!r}) does not converge at load time {time:.6g}, even with an increment of "
                 f"1/{round(1 / increment)} step: {error}{''.join(f'. {cause[0].upper()}{cause[1:]}' for cause in likely)}"

@@ -38,22 +38,27 @@ class Touching:
     numbering : Numbering
     supports : Supports
     loads : Loads
+
+    Attributes
+    ----------
+    motions : list of ndarray, each of shape (motions, control points, 3)
+        Rigid motions that supports leave each piece, where loads act in the scene; else none.
     """
 
     def __init__(self, problem: Problem, numbering: Numbering, supports: Supports, loads: Loads) -> None:
         self._pieces, self._supports, self._loads = numbering.pieces, supports, loads
         loaded = bool(problem.loads or supports.plates)
-        self._motions = [_motions_left(problem, numbering, piece, supports.stage) for piece in self._pieces] if loaded else []
+        self.motions = [_motions_left(problem, numbering, piece, supports.stage) for piece in self._pieces] if loaded else []
         self._ways: list[tuple[set[str], FloatArray]] = []
 
     def begin(self, positions: FloatArray, time: float) -> None:
         """Begin an increment: a body goes as loads move it, one that no load moves may go any way (theory 6.8)."""
-        if not self._motions:
+        if not self.motions:
             return
         left = self._supports.unbalanced(-sum(self._loads.forces(positions, time), np.zeros_like(positions)), positions, time)
         turning = any(plate.across for plate in self._supports.plates)
         self._ways = []
-        for piece, motions in zip(self._pieces, self._motions, strict=True):
+        for piece, motions in zip(self._pieces, self.motions, strict=True):
             works = -np.einsum("mij,ij->m", motions, left)
             way = np.tensordot(works, motions, 1)
             driven = not turning and np.abs(works).max(initial=0.0) > constants.NO_PART * np.abs(left).sum()

@@ -1,0 +1,66 @@
+"""Bodies that loads push on until friction bears all that it can: beyond that they slide, and no place is one of rest."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from isomortar.geometry.patch import FloatArray
+from isomortar.model.entities import Face
+from isomortar.model.glue import named
+from isomortar.solve.contact import PairMechanics
+from isomortar.solve.equilibrium import Equilibrium
+from isomortar.solve.record import ContactState, State
+
+#: Share of what friction can bear above which a body is about to slide: what the last load increment before adds is less than the rest.
+ALL = 0.9
+#: Friction holds a body where at least this share of it acts along rigid motions that supports leave: where it is squeezed only, none does.
+HOLDS = 0.1
+
+
+def sliding(equilibrium: Equilibrium, state: State) -> Iterator[str]:
+    """Sentences, without a capital, on bodies that nothing but friction keeps from going along with their loads, which has no more to give.
+
+    Parameters
+    ----------
+    equilibrium : Equilibrium
+    state : State
+        Where the last load increment ended that converged.
+    """
+    for piece, motions in zip(equilibrium.numbering.pieces, equilibrium.motions, strict=bool(equilibrium.motions)):
+        names = {body.name for body in piece}
+        pairs = [(pair, begun) for pair, begun in zip(equilibrium.pairs, state.contacts, strict=True) if _bodies(pair) & names]
+        if not len(motions) or not pairs:
+            continue
+        borne, most = np.sum([_share(pair, state.positions, begun) for pair, begun in pairs], axis=0)
+        friction = np.sum([_friction(pair, state.positions, begun) for pair, begun in pairs], axis=0)
+        along = np.linalg.norm(np.einsum("mij,ij->m", motions, friction))
+        if most > 0.0 and borne > ALL * most and along > HOLDS * np.linalg.norm(friction, axis=1).sum():
+            contacts = " and ".join(repr(pair.pair.contact.name) for pair, _ in pairs)
+            yield (
+                f"friction of contact {contacts} bears {100.0 * borne / most:.0f} % of what it can by then, and nothing else keeps "
+                f"{named(piece, piece[0].name)} from going along with its loads: beyond that it slides, and is nowhere at rest. Take "
+                "smaller loads or more friction, or hold or move it by a support"
+            )
+
+
+def _bodies(pair: PairMechanics) -> set[str]:
+    contact = pair.pair.contact
+    return {face.body for side in (contact.slave, contact.master) if isinstance(side, Face) for face in side.faces}
+
+
+def _share(pair: PairMechanics, positions: FloatArray, state: ContactState) -> tuple[float, float]:
+    """Sums of the sizes of a pair's tractions, and of what these can be: forces."""
+    control = pair.kinematics(positions, state).control
+    norms = pair.traction_norms(control, state.traction)
+    return float(control.weight @ norms), float(control.weight @ pair.radius(state.pressure))
+
+
+def _friction(pair: PairMechanics, positions: FloatArray, state: ContactState) -> FloatArray:
+    """Forces of a pair's tractions alone on all control points, shape (control points, 3)."""
+    forces = np.zeros_like(positions)
+    tractions = replace(state, pressure=np.zeros_like(state.pressure))
+    pair.add_forces(positions, pair.kinematics(positions, state), pair.bearing(tractions), forces)
+    return forces
