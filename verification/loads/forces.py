@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import permutations
+
 import numpy as np
 
 from isomortar.geometry.patch import FACES, Family, FloatArray, Patch
@@ -9,7 +11,7 @@ from isomortar.geometry.primitives import bowl, box, ring
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, Shown, case
 from isomortar.model.entities import Body, Load, Material, Problem, Stage
-from isomortar.model.loads import Loads
+from isomortar.model.loads import Loads, control_areas, control_volumes
 from isomortar.model.numbering import Numbering
 from isomortar.solve.system import block_product
 
@@ -157,3 +159,33 @@ def weight(kind: str) -> dict[str, float]:
         "bowl": float(np.linalg.norm(bowls.sum(axis=0) / (1.0 - 0.2 * 2.0 / 3.0) - _WEIGHT) / np.linalg.norm(_WEIGHT)),
         "arm": float(np.linalg.norm(turning) / (volume * np.linalg.norm(_WEIGHT))),
     }
+
+
+@case(
+    claim="Each direction has a rule of its own: of a box with three orders, and no more Gauss points than each needs, the shares of the "
+    "control points in volume and areas are products of those along its directions, which knots tell.",
+    tier="gate",
+    grid={"orders": [" ".join(orders) for orders in permutations("135")]},
+    bounds={
+        "volumes": Bound(at_most=1e-14, reason="theory: rules of n points are exact to order 2 n - 1; " + _ROUND_OFF),
+        "areas": Bound(at_most=1e-14, reason="theory: the same on each face; " + _ROUND_OFF),
+    },
+)
+def shares(orders: str) -> dict[str, float]:
+    """Largest error of a share over the largest of them."""
+    of = tuple(map(int, orders.split()))
+    patch = mesh(box(_LOWER, _UPPER), ("N", "N", "N"), of, (2, 3, 4))
+    body = Body("body", patch, Material(), tuple((order + 2) // 2 for order in of))  # type: ignore[arg-type]
+    along = []
+    for direction, length in zip(patch.directions, np.subtract(_UPPER, _LOWER), strict=True):
+        p, knots = direction.order, direction.knots
+        along.append(length * (knots[p + 1 :] - knots[: -p - 1]) / ((p + 1) * (knots[-1] - knots[0])))
+    u, v, w = along
+    exact = np.einsum("i,j,k->kji", u, v, w).ravel()
+    areas = []
+    for face in FACES:
+        first, second = (along[patch.directions.index(direction)] for direction in patch.face_directions(face))
+        of_face = np.zeros(len(exact))
+        of_face[patch.face_points(face)] = np.outer(second, first).ravel()
+        areas.append(np.abs(control_areas(patch, face) - of_face).max() / of_face.max())
+    return {"volumes": float(np.abs(control_volumes(body) - exact).max() / exact.max()), "areas": float(np.max(areas))}
