@@ -204,7 +204,7 @@ stages = [{ name = "fall", steps = 1 }]
 
 @pytest.mark.parametrize("method", ["monolithic", "uzawa"])
 def test_a_beam_that_falls_onto_two_steps_rests_on_both(method: str) -> None:
-    """One is a little lower: what stands in the way first does not hold the beam alone."""
+    """One is a little lower: the beam comes to the other one first."""
     (step,) = Simulation(Scene.from_toml(BEAM, overrides=[f'solver.method="{method}"']).problem()).run()
     forces = [contact.force_slave[2] for contact in step.contacts]
     assert min(forces) > 0.0

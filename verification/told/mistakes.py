@@ -24,8 +24,7 @@ def told(scene: str, changes: Sequence[str]) -> tuple[str, list[str]]:
 
 
 @case(
-    claim="Mistakes of each kind that make a wrong model of a scene are refused, or warned of by a first look at it, in words that say what to "
-    "change.",
+    claim="Mistakes of each kind that make a wrong model are refused, or warned of by a first look at it, and what to change is said.",
     tier="gate",
     grid={"said": ("refused", "check")},
     bounds={

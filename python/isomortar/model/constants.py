@@ -7,9 +7,6 @@ None of them is part of a problem. Thresholds at which something is refused, war
 
 #: Least part along the normal of a rigid motion that a contact stands in the way of: loads close no contact that the body slides past.
 IN_THE_WAY = 0.05
-#: How far behind the contact that loads close first another one begins as closed too, in sizes of its face: elements bear such a strain,
-#: and a body that rests on several others is held by all of them.
-BEHIND = 0.05
 #: Share of a body's size within which control points are one: ends of rings and rows of poles are computed, and meet to round-off.
 SAME_POINT = 1e-9
 #: Share of a unit vector, or of the size of all, below which there is nothing of it: normals and axes are given to some digits.

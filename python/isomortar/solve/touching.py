@@ -76,8 +76,7 @@ class Touching:
         first = np.min([approach.distances for approach in approaches], axis=0)
         found: list[FloatArray | None] = []
         for pair, contact, approach, penalty in zip(pairs, start.contacts, approaches, penalties, strict=True):
-            behind = constants.BEHIND * np.sqrt(pair.pair.area)
-            among = np.isfinite(approach.distances) & (approach.distances <= first + behind)
+            among = np.isfinite(approach.distances) & (approach.distances <= first + _least(pair))
             if np.any(contact.pressure != 0.0) or not among.any():
                 found.append(None)
                 continue
@@ -98,7 +97,7 @@ class Touching:
             if names & bodies:
                 rates = (_heights(pair.kinematics(positions + least * way, start).control)[near] - heights[near]) / least
                 closes = rates > constants.IN_THE_WAY
-                distances[k] = np.min(np.where(bears[near], 0.0, -heights[near])[closes] / rates[closes], initial=np.inf)
+                distances[k] = np.min(-heights[near][closes] / rates[closes], initial=np.inf)
         return _Approach(heights, near, distances)
 
 
