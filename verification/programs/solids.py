@@ -128,3 +128,38 @@ def with_other_elements() -> dict[str, FloatArray]:
     pairs = [[run(program, block("neo-hookean-j", "222", mesh)) for program in (Isomortar(), CalculiX())] for mesh in meshes]
     force = np.array([apart(*pair)["force"] for pair in pairs])
     return {"force": force, "share of the coarser mesh's": force[1:] / force[:-1]}
+
+
+#: The block under a pressure on its top, which is free: it follows the bulge.
+PUSHED = (
+    BLOCK[: BLOCK.index("[supports.top]")]
+    + """
+[loads.top]
+face = "block.w1"
+pressure = 3.0
+
+[[stages]]
+name = "press"
+steps = 2
+
+[solver]
+newton_tolerance = 1e-11
+"""
+)
+_FOLLOWS = {
+    "GetFEM": Bound(at_most=1e-9, reason="round-off: the same elements and Gauss points, Newton's method to 1e-11 in either"),
+    "CalculiX": Bound(at_most=1e-6, reason=_DIGITS),
+}
+
+
+@case(
+    claim="A pressure that follows its face deforms a solid as in other programs.",
+    tier="nightly",
+    grid={"program": tuple(_FOLLOWS)},
+    bounds=lambda program: dict.fromkeys(NUMBERS, _FOLLOWS[program]),
+    files=FILES,
+)
+def under_pressure(program: str) -> dict[str, float]:
+    """Linear elements, full integration, by the law that all have."""
+    problem = Scene.from_toml(PUSHED.format(law="neo-hookean-j", order=[1, 1, 1], elements=[4, 3, 3])).problem()
+    return apart(*(run(known, problem) for known in (Isomortar(), {"GetFEM": GetFEM(), "CalculiX": CalculiX()}[program])))

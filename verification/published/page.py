@@ -64,10 +64,10 @@ def _others(benchmark: Benchmark, results: Mapping[str, Result]) -> list[dict[st
     own: Mapping[str, Any] = {}
     for kind, program in ((kind, program) for kind in beside.kinds for program in PROGRAMS):
         result = results.get(f"{benchmark.name} {kind} {program}")
-        numbers = result.measurement.numbers if result and result.measurement.ending == "measured" else {}
+        numbers: Mapping[str, Any] = result.measurement.numbers if result and result.measurement.ending == "measured" else {}
         own = numbers if program == OWN else own
         reason = result.measurement.reason if result and not numbers else beside.stops.get(f"{kind} {program}", "")
-        off = {name: float(value) / float(own[name]) - 1.0 for name, value in numbers.items() if program != OWN and name in own}
+        off = {name: numbers[name] / own[name] - 1.0 for name in beside.within if program != OWN and numbers and own}
         state = result.state if result else "not run"
         rows.append({"kind": kind, "program": program, "state": state, "reason": reason, "numbers": numbers, "off": off})
     return rows

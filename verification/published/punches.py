@@ -322,6 +322,7 @@ BENCHMARKS = (
             lambda kind: _rounded(f"{kind} coarse"),
             lambda problem, steps: {"force": -4.0 * float(reaction(problem, steps[-1], "top")[2])},
             {"force": Bound(at_least=0.95 * _EXACT.force, at_most=1.05 * _EXACT.force, reason="theory: half-spaces; facets take a share")},
+            ("L1",),
         ),
     ),
     Benchmark(
@@ -391,7 +392,7 @@ BENCHMARKS = (
             lambda kind: _nafems(f"{kind} coarse", 0.1),
             lambda problem, steps: {"middle": settled(problem, steps[-1].positions)},
             {"middle": _FACETS},
-            kinds=("L1",),
+            ("L1",),
         ),
         {"friction": 0.1},
     ),

@@ -98,7 +98,7 @@ _BY_WAY = (
     f"bodies.cylinder.geometry={{kind='ring',centre=[0,{_SLAB / 2},{RADIUS}],inner=1,outer={RADIUS},width={_SLAB},angles=[0,180]}}",
     f"bodies.block.geometry.upper=[100,{_SLAB},0]",
     'supports.top={edge="cylinder.u0.v1"}',
-    'stages=[{name="press",steps=4,motions.top.translate=[0,0,-2]}]',
+    'stages=[{name="press",steps=8,motions.top.translate=[0,0,-2]}]',
 )
 
 
