@@ -75,11 +75,11 @@ def test_a_value_is_told_at_the_force() -> None:
 def test_the_punch_settles_where_its_axis_does() -> None:
     problem = punches.problem(40.0, 10.0, punches._NAFEMS, "L1 coarse", {"a": {"young": 2.0}, "b": {"young": 1.0}}, {})
     nodes = Numbering(problem).reference
-    axis = np.argmin(np.linalg.norm(nodes - [0.02, 0.0, 0.0], axis=1))
+    axis = np.argmin(np.linalg.norm(nodes - [0.5, 0.0, 0.0], axis=1))
     lower = Numbering(problem).points["cylinder"]
     moved = nodes.copy()
-    moved[lower[np.isclose(nodes[lower, 2], 0.0) & (np.hypot(*nodes[lower, :2].T) < 0.021)], 2] -= 0.25
-    assert np.hypot(*nodes[axis, :2]) == pytest.approx(0.02)
+    moved[lower[np.isclose(nodes[lower, 2], 0.0) & (np.hypot(*nodes[lower, :2].T) < 0.51)], 2] -= 0.25
+    assert np.hypot(*nodes[axis, :2]) == pytest.approx(0.5)
     assert punches.settled(problem, moved) == pytest.approx(-0.25)
 
 
