@@ -33,7 +33,7 @@ _ROUNDED = (2.5, 5.0, 7.5, 11.0, 12.0, 13.0, 13.7, 14.3, 15.0, 16.5, 19.0, 25.0,
 _NAFEMS = (10.0, 20.0, 27.0, 32.0, 35.0, 37.5, 39.0, 40.5, 41.0, 42.0, 43.0, 45.0)
 #: With friction the cylinder has a hole of this radius, held as an axis is: at a pole slips have no coordinates. Load steps with friction.
 _HOLE, _STEPS = 0.02, 4
-#: Other programs take no edges that are points: for them both bodies have a hole, so wide that GetFEM's multipliers round it are told apart.
+#: Other programs take no edges that are points: for them both bodies have a hole, as wide as lets GetFEM tell multipliers apart.
 _WIDER = 0.5
 #: Lagrange elements round the axis, by order.
 _ROUND = {1: 6, 2: 4}
