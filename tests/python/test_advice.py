@@ -299,6 +299,13 @@ def test_what_is_doubtful_is_told_once(case: str) -> None:
     assert words in said[0]
 
 
+def test_a_fit_too_tight_by_little_is_no_scene_in_which_nothing_happens() -> None:
+    """An interference of a thousandth is what shafts are shrunk with; round-off is none."""
+    still = PRESS.replace("[0, 0, -0.1]", "[0, 0, 0]")
+    assert warnings(still.replace("point = [0, 0, 0]", "point = [0, 0, 0.001]")) == []
+    assert len(warnings(still.replace("point = [0, 0, 0]", "point = [0, 0, 1e-12]"))) == 1
+
+
 def test_the_material_of_a_rigid_body_says_nothing_of_what_presses_it() -> None:
     text = """
 format = 1

@@ -56,3 +56,52 @@ def test_a_clamp_is_pressed_open() -> None:
     (contact,) = last.contacts
     assert contact.force_slave[0] > 0.0
     assert last.reactions[0].force == pytest.approx(-contact.force_slave, abs=1e-10)
+
+
+#: A ring with a slit, or the half of it whose end is pressed onto a plane in the middle of the slit.
+CLOSED = """
+format = 1
+[bodies.ring]
+geometry = { kind = "ring", inner = 0.6, outer = 0.8, width = 0.3, angles = [3, ANGLE] }
+mesh = { family = "L", order = 2, elements = [ELEMENTS, 1, 1] }
+[contacts.slit]
+slave = "ring.u0"
+friction = 0
+MASTER
+[supports]
+across = { edge = "ring.v1.w0", components = ["y"] }
+end = { edge = "ring.u0.v1", components = ["x", "z"] }
+OTHER
+[[stages]]
+name = "close"
+steps = 2
+motions.end.translate = [-0.0415, 0, 0]
+MOTION
+"""
+WHOLE = {
+    "ANGLE": "357",
+    "ELEMENTS": "24",
+    "MASTER": 'master = "ring.u1"\nprojection = "closest"',
+    "OTHER": 'other = { edge = "ring.u1.v1", components = ["x", "z"] }',
+    "MOTION": "motions.other.translate = [0.0415, 0, 0]",
+}
+HALF = {
+    "ANGLE": "180",
+    "ELEMENTS": "12",
+    "MASTER": "plane = { normal = [1, 0, 0] }",
+    "OTHER": 'other = { face = "ring.u1", components = ["x"] }',
+    "MOTION": "",
+}
+
+
+def test_a_ring_with_a_slit_closes_on_itself_as_its_half_does_on_a_plane() -> None:
+    """What is across from an end of it is its other end, and tells no depth of the body below: nothing has passed through it."""
+    forces = []
+    for places in (WHOLE, HALF):
+        text = CLOSED
+        for place, words in places.items():
+            text = text.replace(place, words)
+        *_, last = Simulation(Scene.from_toml(text).problem()).run()
+        forces.append(last.contacts[0].force_slave[0])
+    assert forces[0] == pytest.approx(forces[1], rel=2e-3)
+    assert forces[1] > 1e-4

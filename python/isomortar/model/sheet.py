@@ -1,4 +1,8 @@
-"""A side of a contact as a sheet: its face, or its faces joined to one, over the faces opposite them in their bodies."""
+"""A side of a contact as a sheet: its face, or its faces joined to one, over the faces opposite them in their bodies.
+
+Where a body is bent round so far that the face opposite is in front, as the ends of a ring with a slit are, that tells no depth: the sheet
+is over the row of control points in between that is farthest away.
+"""
 
 from __future__ import annotations
 
@@ -10,8 +14,10 @@ import numpy as np
 
 from isomortar._bindings import PatchArrays
 from isomortar.errors import InputError
+from isomortar.geometry.faces import cells
 from isomortar.geometry.net import BESIDE, Net
-from isomortar.geometry.patch import Direction, IntArray, Patch
+from isomortar.geometry.patch import Direction, IntArray, Patch, opposite
+from isomortar.model import constants
 from isomortar.model.entities import Body, Face, Problem
 from isomortar.model.numbering import Numbering, patch_arrays
 from isomortar.model.remembered import remembered
@@ -111,11 +117,27 @@ class _Tile:
     factor: float = 1.0
 
     def layers(self, end: int) -> IntArray:
-        """Numbers of its control points and those opposite, layer by layer across, its own at the start (0) or the end (1); (2, n2, n1)."""
-        shape, axis = self.body.patch.shape, "uvw".index(self.face[0])
-        through = (shape[axis] - 1) * int(np.prod(shape[:axis]))
-        opposite = self.net.numbers + (through if self.face[1] == "0" else -through)
-        return np.stack([opposite, self.net.numbers] if end else [self.net.numbers, opposite]).astype(np.int32)
+        """Numbers of its control points and those below, layer by layer across, its own at the start (0) or the end (1); (2, n2, n1)."""
+        axis = "uvw".index(self.face[0])
+        through = self._across(axis) * int(np.prod(self.body.patch.shape[:axis]))
+        below = self.net.numbers + (through if self.face[1] == "0" else -through)
+        return np.stack([below, self.net.numbers] if end else [self.net.numbers, below]).astype(np.int32)
+
+    def _across(self, axis: int) -> int:
+        """How many rows of control points away that is which tells how deep the body is below its face (theory 3.19)."""
+        patch = self.body.patch
+        rows = np.moveaxis(patch.control_points.reshape(*patch.shape, 3, order="F"), axis, 0)
+        rows = rows[::-1] if self.face[1] == "1" else rows
+        away = np.linalg.norm(rows - rows[0], axis=-1).mean(axis=(1, 2))
+        farthest = int(np.argmax(away > (1.0 - constants.NO_PART) * away.max()))
+        return farthest if farthest < len(rows) - 1 and _bent_round(patch, self.face) else len(rows) - 1
+
+
+def _bent_round(patch: Patch, face: str) -> bool:
+    """Whether a body has the face opposite a face of it in front of that."""
+    here, there = cells(patch, face), cells(patch, opposite(face))
+    ways = np.einsum("ij,ij->i", there.centres - here.centres, here.normals)
+    return bool(here.areas @ ways > constants.NO_PART * (here.areas @ here.thickness))
 
 
 def _joined(problem: Problem, place: Face) -> Sheet:

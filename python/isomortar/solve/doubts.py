@@ -69,7 +69,7 @@ def doubts(problem: Problem, state: State) -> Iterator[str]:
     yield from of_what_is_left_out(problem)
     stances = [stance(problem, contact) for contact in problem.contacts]
     travel = _travel(problem) if problem.contacts else 0.0
-    presses = any(contact.smoothing for contact in problem.contacts) or any(_overlaps(found) for found in stances)
+    presses = any(c.smoothing for c in problem.contacts) or any(s.depth > constants.NO_PART * s.thickness for s in stances)
     if not any(support.moves for support in problem.supports) and not presses and not _loaded(problem):
         yield "no support moves in any stage, and nothing overlaps at the start: nothing will happen"
     for contact, found, feet in zip(problem.contacts, stances, (contact.projected for contact in state.contacts), strict=True):
