@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from rational_functions import shares
 
+from isomortar.errors import InputError
+from isomortar.geometry.faces import CELLS, cells
 from isomortar.geometry.halves import upper_half
-from isomortar.geometry.patch import Direction, FloatArray, Patch
+from isomortar.geometry.patch import FACES, Direction, FloatArray, Patch
+from isomortar.geometry.primitives import box
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
 
@@ -117,3 +122,57 @@ def _mirrored(
     rising = np.expand_dims(along - along[::-1], [k for k in range(3) if k != cut]) * table.mean(axis=cut, keepdims=True)
     whole[..., axis] = place + (-rising if falls else rising)
     return Patch(directions, whole.reshape(-1, 3, order="F"), (0.5 * (table + np.flip(table, cut))).ravel(order="F"))
+
+
+@case(
+    claim="A body is halved wherever it is, though round-off of its place is more than that of its size, and however small or large it is; "
+    "where one point is off by more than round-off it is not its own mirror image.",
+    tier="gate",
+    grid={"size": (1e-6, 1.0, 1e6), "away": (0.0, 1e3, 1e5)},
+    bounds={
+        "refused": Bound(0.0, 0.0, "definition: bodies whose points are mirror images to a bit or two of where they are"),
+        "taken": Bound(0.0, 0.0, "definition: bodies with a point that is off"),
+    },
+)
+def halved_anywhere(size: float, away: float) -> dict[str, float]:
+    """How many of the halves across each axis, of a box that is as many times its size away."""
+    random, lower = np.random.default_rng(44), size * (away * np.array([1.0, -0.7, 0.4]) + [0.1, 0.2, 0.3])
+    patch = mesh(box(tuple(lower), tuple(lower + size)), ("N",) * 3, (2, 2, 2), (2, 2, 2))
+    far, refused, taken = float(np.abs(patch.control_points).max()), 0, 0
+    for axis in range(3):
+        place = float(lower[axis] + 0.5 * size)
+        for off in (0.0, 1e-16, 1e-9):
+            points = patch.control_points + off * far * random.choice([-1.0, 1.0], patch.control_points.shape)
+            try:
+                upper_half(replace(patch, control_points=points), axis, place)
+                taken += off == 1e-9
+            except InputError:
+                refused += off != 1e-9
+    return {"refused": float(refused), "taken": float(taken)}
+
+
+@case(
+    claim="Cells of a face have its area and its normal, are as many in each direction as they are to be at least, and end with its "
+    "elements, however few or many these are.",
+    tier="gate",
+    grid={"elements": (1, 5, CELLS - 1, CELLS, CELLS + 1, 3 * CELLS)},
+    bounds={
+        "area": Bound(at_most=1e-13, reason=_ROUND_OFF),
+        "normal": Bound(at_most=1e-13, reason=_ROUND_OFF),
+        "thickness": Bound(at_most=1e-13, reason=_ROUND_OFF),
+        "few": Bound(0.0, 0.0, "definition: faces with fewer cells than are to be, or none that end with an element"),
+    },
+)
+def cells_of_faces(elements: int) -> dict[str, float]:
+    """Largest errors over the faces of a box with so many elements along two directions; how many have too few cells."""
+    lengths = np.array([1.0, 0.5, 2.0])
+    patch = mesh(box((0.0, 0.0, 0.0), tuple(lengths)), ("N",) * 3, (1, 2, 1), (elements, elements, 1))
+    worst, few = np.zeros(3), 0
+    for face in FACES:
+        axis, found = "uvw".index(face[0]), cells(patch, face)
+        out = np.where(np.arange(3) == axis, 1.0 if face[1] == "1" else -1.0, 0.0)
+        area = float(np.prod(np.delete(lengths, axis)))
+        errors = (found.areas.sum() / area - 1.0, found.normals - out, found.thickness / lengths[axis] - 1.0)
+        worst = np.maximum(worst, [np.abs(error).max() for error in errors])
+        few += len(found.areas) < CELLS**2 or len(found.areas) % (elements if axis == 2 else 1) != 0
+    return dict(zip(("area", "normal", "thickness"), map(float, worst), strict=True)) | {"few": float(few)}

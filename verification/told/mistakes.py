@@ -11,7 +11,7 @@ from isomortar.harness import Bound, case
 from isomortar.scene import Scene
 from isomortar.solve.outlook import outlook
 
-#: A scene that comes with the program, what is changed in it, where it is noticed, and words of what is said; the tests run those of a run.
+#: A scene that comes with the program, what is changed in it, where it is noticed, and words of what is said.
 MISTAKES = Path(__file__).parents[2] / "tests" / "python" / "wrong_models.toml"
 
 
@@ -24,7 +24,8 @@ def told(scene: str, changes: Sequence[str]) -> tuple[str, list[str]]:
 
 
 @case(
-    claim="Mistakes of each kind that make a wrong model are refused, or warned of by a first look at it, and what to change is said.",
+    claim="Mistakes of each kind that make a wrong model of a scene are refused, or warned of at a first look, in words that say what "
+    "to change.",
     tier="gate",
     grid={"said": ("refused", "check")},
     bounds={
