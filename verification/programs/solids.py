@@ -162,4 +162,5 @@ _FOLLOWS = {
 def under_pressure(program: str) -> dict[str, float]:
     """Linear elements, full integration, by the law that all have."""
     problem = Scene.from_toml(PUSHED.format(law="neo-hookean-j", order=[1, 1, 1], elements=[4, 3, 3])).problem()
-    return apart(*(run(known, problem) for known in (Isomortar(), {"GetFEM": GetFEM(), "CalculiX": CalculiX()}[program])))
+    others: dict[str, Program] = {"GetFEM": GetFEM(), "CalculiX": CalculiX()}
+    return apart(*(run(known, problem) for known in (Isomortar(), others[program])))
