@@ -178,7 +178,7 @@ def test_a_campaign_may_keep_to_files_and_folders():
     inside = python.within(sources, ["model/enforcement", "model/glue.py"])
     assert inside.keys() == {file for file in sources if file.startswith("model/enforcement/") or file == "model/glue.py"}
     assert python.within(sources, []) == sources
-    with pytest.raises(InputError, match=r"'model/enforce'.*an example: geometry/"):
+    with pytest.raises(InputError, match=r"'model/enforce'.*an example: accuracy/"):
         python.within(sources, ["model", "model/enforce"])
 
 

@@ -1,0 +1,72 @@
+"""What is said of slave points beside the master, before a run and in it, counted from where the points are."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+
+from isomortar.harness import Bound, case
+from isomortar.scene import Scene
+from isomortar.solve.outlook import outlook
+from isomortar.solve.record import Observer
+from isomortar.solve.simulation import Simulation
+
+#: A block that begins beyond the edge x = 0 of its master by as much as START, and goes on.
+SCENE = """
+format = 1
+bodies.slave.geometry = {{ kind = "box", lower = [{low}, -0.4, -0.001], upper = [{high}, 0.4, 0.4] }}
+bodies.slave.mesh = {{ order = [2, 1, 1], elements = [8, 2, 1] }}
+bodies.master.geometry = {{ kind = "box", lower = [-3, -1, -0.5], upper = [0, 1, 0] }}
+bodies.master.mesh = {{ order = [1, 1, 1], elements = [3, 1, 1] }}
+contacts.between = {{ slave = "slave.w0", master = "master.w1", friction = 0, quadrature = [3, 2] }}
+supports = {{ top.face = "slave.w1", floor.face = "master.w0" }}
+stages = [{{ name = "drag", steps = 1, motions.top.translate = [{way}, 0, 0] }}]
+"""
+LENGTH, ELEMENTS = 0.8, 8
+
+
+class Heard(Observer):
+    """Keeps what it is warned of."""
+
+    def __init__(self) -> None:
+        self.said: list[str] = []
+
+    def warned(self, message: str) -> None:
+        """Keep it."""
+        self.said.append(message)
+
+
+def beyond(low: float) -> int:
+    """How many quadrature points of a block that begins at `low` are beyond the master's edge."""
+    within = 0.5 * (1.0 + np.polynomial.legendre.leggauss(3)[0])
+    places = low + LENGTH / ELEMENTS * (np.arange(ELEMENTS)[:, None] + within).ravel()
+    return int(np.count_nonzero(places > 0.0)) * 2 * 2
+
+
+@case(
+    claim="Before a run and in it as many points are said to be beside the master as are beyond its edge, and of a load step those "
+    "alone that were not before.",
+    tier="gate",
+    grid={"start": (-0.75, -0.53)},
+    bounds={
+        "points": Bound(0.0, 0.0, "definition: quadrature points that are not told of, or too many"),
+        "beside": Bound(0.0, 0.0, "definition: of those beside the master before the run"),
+        "left": Bound(0.0, 0.0, "definition: of those that have left it within the load step"),
+        "apart": Bound(at_most=1e-12, reason="round-off: the block begins a thousandth deep in its master"),
+    },
+)
+def told_of_points(start: float) -> dict[str, float]:
+    """By how many what is said is off; by how much the distance is that is told."""
+    way = 0.21
+    problem = Scene.from_toml(SCENE.format(low=start, high=start + LENGTH, way=way)).problem()
+    (contact,) = outlook(problem).contacts
+    heard = Heard()
+    list(Simulation(problem, heard).run())
+    numbers = [int(found[1]) for said in heard.said if (found := re.search(r"(\d+) slave quadrature points have left the master", said))]
+    return {
+        "points": float(contact.quadrature_points - ELEMENTS * 3 * 2 * 2),
+        "beside": float(contact.excluded - beyond(start)),
+        "left": float(sum(numbers) - (beyond(start + way) - beyond(start))),
+        "apart": abs(contact.apart + 0.001),
+    }
