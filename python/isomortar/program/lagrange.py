@@ -84,7 +84,7 @@ class LagrangeProblem:
         """Sizes of the loads, all pressures, at the end of each load step, shape (load steps, loads)."""
         stages = self.problem.stages
         sizes = [[load.value[0] * factor_at(stages, load.factors, time) for load in self.problem.loads] for time in self._times]
-        return np.array(sizes).reshape(len(self._times), -1)
+        return np.array(sizes).reshape(len(self._times), len(self.problem.loads))
 
     @property
     def _times(self) -> list[float]:
