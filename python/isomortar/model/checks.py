@@ -260,16 +260,20 @@ def _check_moment(problem: Problem, support: Support) -> None:
 
 
 def _check_held(problem: Problem) -> None:
-    """Every body needs a support, or to be glued to or touch what is held from the start; without one later it has to be in contact."""
+    """Every body needs a support, or to touch what is held, or under a load a plane, from the start, or to be glued to one that does.
+
+    Without supports later it has to be in contact.
+    """
     whole = {body.name: piece for piece in pieces(problem) for body in piece}
     held = {body.name for support in problem.given_supports if support.holds(0) for body in whole[support.place.body]}
     held |= {body.name for body in problem.bodies if body.rigid}
+    loaded = {body.name for load in problem.loads for body in whole[load.body]}
     touching = [c for c in problem.contacts if _touch(problem, c)]
     for _ in problem.bodies:
         for contact in touching:
             sides = [side for side in (contact.slave, contact.master) if isinstance(side, Face)]
             pair = {body.name for side in sides for face in side.faces for body in whole[face.body]}
-            if pair & held or isinstance(contact.master, RigidPlane):
+            if pair & (loaded if isinstance(contact.master, RigidPlane) else held):
                 held |= pair
     touched = [face.body for c in problem.contacts for side in (c.slave, c.master) if isinstance(side, Face) for face in side.faces]
     in_contact = {body.name for name in touched for body in whole[name]}
