@@ -201,6 +201,7 @@ def of_files(patch: pytest.MonkeyPatch) -> Told:
     writer.recorded(step_result(1))
     writer.recorded(step_result(2))
     yield "not kept", refusal(lambda: Results("run.h5").step(1))
+    yield "drawn: slip", refusal(lambda: plot("run.h5", "figures", fields=["slip"]))
     yield "drawn over: words", refusal(lambda: plot("run.h5", "figures", x="strain"))
     yield "drawn over: still", refusal(lambda: plot("run.h5", "figures", x="rotation of bed"))
     with patch.context() as within:
@@ -284,7 +285,7 @@ def of_causes(patch: pytest.MonkeyPatch) -> Told:
     (yield "pressed flat", *said(simulation))
     yield "turns", re.sub(r"\(.*?\)", "(#)", error(BLOCK + 'supports.top = { face = "block.w1", components = ["z"] }'))
     yield "over an edge", error(FROM_BESIDE).partition("to iteration. ")[2]
-    yield "slides", refusal(lambda: list(pushed("along", "plane", 0.24).run())).partition("Friction")[2]
+    yield "slides", refusal(lambda: list(pushed("along", "plane", 0.24).run())).partition("Friction")[2].replace(" of", "friction of", 1)
     same = ["contacts.wall.slave='block.w0'", "contacts.wall.plane={ point = [1, 0, 0] }"]
     yield "repeat others", re.sub(r"\d+|'\w+'", "#", error(CORNER, *same).partition("the first of them ")[2])
     equilibrium = Equilibrium(Scene.from_toml(BLOCK + 'supports.top.face = "block.w1"').problem(), Ledger())
