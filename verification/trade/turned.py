@@ -53,7 +53,7 @@ CHANGES = {
     r"the scene beyond y = 1": r"symmetry|bodies|contacts|supports",
 }
 #: What follows from other settings, and may change with any: rules that contacts take where nothing is said.
-FOLLOWS = r"contacts\.\w+\.(quadrature|subcells)"
+FOLLOWS = r"contacts\.\w+\.(quadrature|subcells|projection|by_default)"
 #: Dials that there must be among others.
 THERE = {
     "trade": {"order of block", "elements of base along v", "load steps of drag", "tolerance", "method", "smoothing of side"},
