@@ -148,7 +148,7 @@ def test_a_face_without_area_is_refused() -> None:
 def test_other_programs_are_not_told_of_loads() -> None:
     text = HALVED.replace("symmetry = { y = 0.0 }", "").replace("LOAD", 'own = { body = "block", weight = [0, 0, 1] }')
     text = text.replace("mesh = {", 'mesh = { family = "L", order = 1,')
-    with pytest.raises(InputError, match="is not told of loads"):
+    with pytest.raises(InputError, match="is told of no loads but pressures"):
         GetFEM().run(Scene.from_toml(text).problem())
 
 

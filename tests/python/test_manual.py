@@ -35,7 +35,7 @@ def test_the_manual_is_built_of_blocks_that_run(tmp_path: Path) -> None:
     tutorial = (html / "tutorial.html").read_text(encoding="utf-8")
     assert "load steps done, 0 warnings" in tutorial, "what a block prints is on the page"
     pictures = re.findall(r'<img alt="[^"]+" src="([^"]+)"', tutorial)
-    assert len(pictures) == 2
+    assert len(pictures) == 4
     assert all((html / picture).stat().st_size > 10_000 for picture in pictures)
     count = re.search(r"(\d+) blocks run", ended.stdout)
     assert count is not None

@@ -23,12 +23,12 @@ from isomortar.results import Results, ResultsWriter, bodies, maps, style
 from isomortar.results.bodies import draw_bodies
 from isomortar.results.coloured import _painted, draw_coloured, stress
 from isomortar.results.curves import draw_curve, draw_reactions
+from isomortar.results.face_field import shown_field
 from isomortar.results.fields import body_points, contact_surfaces
 from isomortar.results.laid import laid
 from isomortar.results.maps import draw_map
 from isomortar.results.pictures import plot
 from isomortar.results.rendering import Camera, Canvas
-from isomortar.results.shown import shown_field
 from isomortar.results.stress import cauchy_stress, deformation_gradient, von_mises
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult

@@ -20,10 +20,10 @@ from isomortar.model.entities import Body, Problem
 from isomortar.model.numbering import Numbering
 from isomortar.results.abscissa import abscissa
 from isomortar.results.curves import draw_curve, draw_reactions, moving_supports
+from isomortar.results.face_field import shown_field
 from isomortar.results.maps import draw_map
 from isomortar.results.paraview import states
 from isomortar.results.reader import Results
-from isomortar.results.shown import shown_field
 from isomortar.results.vectors import contact_vectors
 from isomortar.results.view import of_bodies
 from isomortar.scene import Scene

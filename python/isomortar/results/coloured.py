@@ -22,7 +22,7 @@ from isomortar.results.stress import cauchy_stress, deformation_gradient, von_mi
 from isomortar.solve.record import StepResult
 
 #: Values of a field on a grid of parameters of a body whose control points are at some places.
-Values = Callable[[Body, FloatArray, Sequence[FloatArray]], FloatArray]
+BodyValues = Callable[[Body, FloatArray, Sequence[FloatArray]], FloatArray]
 
 #: Share of its body that a face's field is taken below it: faces that are one point or line, as in the middle of a ball, have none.
 _BELOW = 1e-6
@@ -50,7 +50,7 @@ class BodyField:
     """A field of bodies: how a colour bar names it, its values, and whether colours begin at zero."""
 
     label: str
-    values: Values
+    values: BodyValues
     from_zero: bool = True
 
 
@@ -88,7 +88,7 @@ def draw_coloured(problem: Problem, step: StepResult, name: str = "stress") -> F
 
 
 def _painted(
-    body: Body, points: FloatArray, values: Values, colours: ScalarMappable, name: str, parts: tuple[int, int]
+    body: Body, points: FloatArray, values: BodyValues, colours: ScalarMappable, name: str, parts: tuple[int, int]
 ) -> tuple[FloatArray, float]:
     """Colours of the parts of a face by the field in their middle; no light falls on it, so that they are those of the colour bar."""
     axis = "uvw".index(name[0])

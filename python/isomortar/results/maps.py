@@ -13,9 +13,9 @@ from matplotlib.patches import Polygon
 from isomortar.geometry.patch import Direction, FloatArray
 from isomortar.model.entities import Problem
 from isomortar.results import style
+from isomortar.results.face_field import FaceField
 from isomortar.results.fields import ContactSurface
 from isomortar.results.laid import Laid, directions_of, laid
-from isomortar.results.shown import Shown
 from isomortar.solve.record import StepResult
 
 #: By status of a control point: marker, filling, label.
@@ -24,7 +24,7 @@ _STATES = (("o", "none", "open"), ("s", style.BLUE, "stick"), ("^", "white", "sl
 _SAMPLES, _ARROWS = 240, 24
 
 
-def draw_map(problem: Problem, step: StepResult, field: Shown) -> Figure:
+def draw_map(problem: Problem, step: StepResult, field: FaceField) -> Figure:
     """A slave face laid flat, in colours by a field, with arrows where that is one of vectors.
 
     Control points stand where the face's functions have their Greville abscissae (Lagrange: their nodes).
@@ -58,7 +58,7 @@ def _draw_material(axes: Axes, surface: ContactSurface, flat: Laid) -> None:
     axes.add_collection(LineCollection([*upright, *level], colors=style.BLACK, linewidths=0.4, alpha=0.6))
 
 
-def _draw_field(axes: Axes, field: Shown, flat: Laid, seen: tuple[FloatArray, FloatArray]) -> None:
+def _draw_field(axes: Axes, field: FaceField, flat: Laid, seen: tuple[FloatArray, FloatArray]) -> None:
     """Colours, up to the largest value of what is seen, and their bar."""
     samples = [_samples(direction) for direction in field.surface.directions]
     sizes, values = (_sizes(field, parameters) for parameters in (seen, samples))
@@ -72,7 +72,7 @@ def _draw_field(axes: Axes, field: Shown, flat: Laid, seen: tuple[FloatArray, Fl
     bar.set_label(field.label)
 
 
-def _sizes(field: Shown, parameters: Sequence[FloatArray]) -> FloatArray:
+def _sizes(field: FaceField, parameters: Sequence[FloatArray]) -> FloatArray:
     """Values on a grid of parameters, or the norms of vectors, shape (n2, n1)."""
     values = field.surface.on_grid(parameters, field.values)[0]
     return values[..., 0] if values.shape[-1] == 1 else np.linalg.norm(values, axis=-1)
@@ -85,7 +85,7 @@ def _draw_states(axes: Axes, surface: ContactSurface, flat: Laid) -> None:
         axes.plot(*mine.T, marker, color=style.BLACK, markerfacecolor=filling, markeredgewidth=0.8, markersize=4.5, label=label)
 
 
-def _draw_arrows(axes: Axes, field: Shown, flat: Laid, seen: tuple[FloatArray, FloatArray]) -> None:
+def _draw_arrows(axes: Axes, field: FaceField, flat: Laid, seen: tuple[FloatArray, FloatArray]) -> None:
     """Vectors on a grid of places, the longest as long as these are apart."""
     surface = field.surface
     ends = flat.at([x[[0, -1]] for x in seen])[0]

@@ -15,10 +15,10 @@ from isomortar.results.abscissa import Abscissa, abscissa
 from isomortar.results.bodies import draw_bodies
 from isomortar.results.coloured import BODY_FIELDS, draw_coloured
 from isomortar.results.curves import WantedCurve, draw_curve, draw_reactions, moving_supports
+from isomortar.results.face_field import CONTACT_FIELDS, shown_field
 from isomortar.results.files import make_folder, writing
 from isomortar.results.maps import draw_map
 from isomortar.results.reader import Results
-from isomortar.results.shown import CONTACT_FIELDS, shown_field
 from isomortar.results.style import style
 from isomortar.solve.record import StepResult
 

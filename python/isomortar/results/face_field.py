@@ -25,7 +25,7 @@ CONTACT_FIELDS = {
 
 
 @dataclass(frozen=True)
-class Shown:
+class FaceField:
     """A field of a slave face: its name among `CONTACT_FIELDS`, and values by control point, of shape (n, 1), or vectors, (n, 3)."""
 
     surface: ContactSurface
@@ -48,7 +48,7 @@ class Shown:
         return style.signed_colours() if self.signed else style.pressure_colours()
 
 
-def shown_field(problem: Problem, step: StepResult, number: int, name: str = "pressure", before: StepResult | None = None) -> Shown:
+def shown_field(problem: Problem, step: StepResult, number: int, name: str = "pressure", before: StepResult | None = None) -> FaceField:
     """A field of contact pair `number` at the end of a load step.
 
     Parameters
@@ -75,4 +75,4 @@ def shown_field(problem: Problem, step: StepResult, number: int, name: str = "pr
         raise ResultsError(
             f"slips of load step {step.step} begin at load step {step.step - 1}, of which no state was kept: nothing to draw"
         )
-    return Shown(surface, name, values)
+    return FaceField(surface, name, values)
