@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import islice
 from pathlib import Path
 
 import h5py
@@ -171,44 +170,6 @@ def test_a_pad_that_rests_by_its_weight_alone_is_not_drawn_to_a_wall(method: str
         found.append(next(iter(Simulation(problem).run())))
     assert np.any(found[0].state.contacts[0].pressure > 0.0)
     np.testing.assert_allclose(found[1].state.positions, found[0].state.positions, rtol=0.0, atol=1e-12)
-
-
-@pytest.mark.parametrize("method", ["monolithic", "uzawa"])
-def test_of_two_that_a_pad_falls_onto_the_first_holds_it(method: str) -> None:
-    """A floor below the die, at twice the pad's height: it is in the pad's way too, and nothing gets there; two load steps."""
-    floor = '[contacts.floor]\nslave = "pad.w0"\nplane = { point = [0, 0, -1], normal = [0, 0, 1] }\n[supports.top]'
-    found = []
-    for text in (GOOD, GOOD.replace("[supports.top]", floor)):
-        problem = Scene.from_toml(text, overrides=[f'solver.method="{method}"']).problem()
-        found.append(list(islice(Simulation(problem).run(), 2)))
-    for alone, both in zip(*found, strict=True):
-        assert np.any(alone.state.contacts[0].pressure > 0.0)
-        np.testing.assert_allclose(both.state.positions, alone.state.positions, rtol=0.0, atol=1e-12)
-
-
-BEAM = """
-format = 1
-bodies.beam = { geometry = { kind = "box", lower = [0, 0, 0.1], upper = [2, 0.5, 0.5] }, mesh = { order = 2, elements = [6, 1, 1] } }
-bodies.low = { rigid = true, geometry = { kind = "box", lower = [-0.2, -0.2, -1], upper = [0.5, 0.7, -0.01] }, mesh = { order = 1 } }
-bodies.high = { rigid = true, geometry = { kind = "box", lower = [1.5, -0.2, -1], upper = [2.2, 0.7, 0] }, mesh = { order = 1 } }
-contacts.low = { slave = "beam.w0", master = "low.w1", friction = 0 }
-contacts.high = { slave = "beam.w0", master = "high.w1", friction = 0 }
-supports.low.face = "low.w0"
-supports.high.face = "high.w0"
-supports.x = { face = "beam.u0", components = ["x"] }
-supports.y = { face = "beam.v0", components = ["y"] }
-loads.own = { body = "beam", weight = [0, 0, -0.01] }
-stages = [{ name = "fall", steps = 1 }]
-"""
-
-
-@pytest.mark.parametrize("method", ["monolithic", "uzawa"])
-def test_a_beam_that_falls_onto_two_steps_rests_on_both(method: str) -> None:
-    """One is a little lower: the beam comes to the other one first."""
-    (step,) = Simulation(Scene.from_toml(BEAM, overrides=[f'solver.method="{method}"']).problem()).run()
-    forces = [contact.force_slave[2] for contact in step.contacts]
-    assert min(forces) > 0.0
-    assert sum(forces) == pytest.approx(0.01 * 2.0 * 0.5 * 0.4, rel=1e-8)
 
 
 def test_results_hold_forces_and_ways_to_the_last_bit(tmp_path: Path) -> None:
