@@ -23,7 +23,7 @@ from isomortar.results import Results, ResultsWriter, bodies, maps, style
 from isomortar.results.bodies import draw_bodies
 from isomortar.results.coloured import _painted, draw_coloured, stress
 from isomortar.results.curves import draw_curve, draw_reactions
-from isomortar.results.face_field import shown_field
+from isomortar.results.face_field import face_field
 from isomortar.results.fields import body_points, contact_surfaces
 from isomortar.results.laid import laid
 from isomortar.results.maps import draw_map
@@ -52,7 +52,7 @@ def quiet(number: int) -> StepResult:
 
 def mapped(made: Problem, step: StepResult, field: str = "pressure") -> Axes:
     """The map of the first contact."""
-    return draw_map(made, step, shown_field(made, step, 0, field)).axes[0]
+    return draw_map(made, step, face_field(made, step, 0, field)).axes[0]
 
 
 def mesh(axes: Axes) -> QuadMesh:

@@ -48,7 +48,7 @@ class FaceField:
         return style.signed_colours() if self.signed else style.pressure_colours()
 
 
-def shown_field(problem: Problem, step: StepResult, number: int, name: str = "pressure", before: StepResult | None = None) -> FaceField:
+def face_field(problem: Problem, step: StepResult, number: int, name: str = "pressure", before: StepResult | None = None) -> FaceField:
     """A field of contact pair `number` at the end of a load step.
 
     Parameters

@@ -15,7 +15,7 @@ from isomortar.results.abscissa import Abscissa, abscissa
 from isomortar.results.bodies import draw_bodies
 from isomortar.results.coloured import BODY_FIELDS, draw_coloured
 from isomortar.results.curves import WantedCurve, draw_curve, draw_reactions, moving_supports
-from isomortar.results.face_field import CONTACT_FIELDS, shown_field
+from isomortar.results.face_field import CONTACT_FIELDS, face_field
 from isomortar.results.files import make_folder, writing
 from isomortar.results.maps import draw_map
 from isomortar.results.reader import Results
@@ -127,7 +127,7 @@ def _of_contacts(results: Results, step: StepResult, fields: Sequence[str]) -> I
 
 
 def _map(problem: Problem, step: StepResult, number: int, field: str, before: StepResult | None) -> Figure:
-    return draw_map(problem, step, shown_field(problem, step, number, field, before))
+    return draw_map(problem, step, face_field(problem, step, number, field, before))
 
 
 def _save(figure: Figure, stem: Path, formats: Sequence[str]) -> list[Path]:

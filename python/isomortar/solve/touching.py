@@ -22,9 +22,9 @@ from isomortar.solve.scales import Scales
 
 @dataclass(frozen=True)
 class _Approach:
-    """A pair by each of some ways: mean gaps of its constraints, the nearest of these, and how far bodies go until they close."""
+    """A pair by each of some ways: its control quantities, its nearest constraints, and how far bodies go until these close."""
 
-    heights: FloatArray
+    control: Control
     near: BoolArray
     distances: FloatArray
 
@@ -80,16 +80,16 @@ class Touching:
             if np.any(contact.pressure != 0.0) or not among.any():
                 found.append(None)
                 continue
-            control, least = pair.kinematics(start.positions, contact).control, _least(pair)
-            size = float(pair.parameters(control, penalty)[0]) if isinstance(penalty, Scales) else penalty
-            found.append(np.where(approach.near, size * np.maximum(least, least - approach.heights), 0.0))
+            size, least = float(pair.parameters(approach.control, penalty)[0]) if isinstance(penalty, Scales) else penalty, _least(pair)
+            found.append(np.where(approach.near, size * np.maximum(least, least - _heights(approach.control)), 0.0))
         return found
 
     def _approach(self, pair: PairMechanics, positions: FloatArray, start: ContactState) -> _Approach:
         """Of a pair; one that bears is where it stands (theory 6.8)."""
         sides = (side for side in (pair.pair.contact.slave, pair.pair.contact.master) if isinstance(side, Face))
         names = {face.body for side in sides for face in side.faces}
-        heights, least = _heights(pair.kinematics(positions, start).control), _least(pair)
+        control, least = pair.kinematics(positions, start).control, _least(pair)
+        heights = _heights(control)
         bears = start.pressure != 0.0
         near = np.isfinite(heights) & (bears if bears.any() else heights >= heights.max() - least)
         distances = np.full(len(self._ways), np.inf)
@@ -98,7 +98,7 @@ class Touching:
                 rates = (_heights(pair.kinematics(positions + least * way, start).control)[near] - heights[near]) / least
                 closes = rates > constants.IN_THE_WAY
                 distances[k] = np.min(-heights[near][closes] / rates[closes], initial=np.inf)
-        return _Approach(heights, near, distances)
+        return _Approach(control, near, distances)
 
 
 def _motions_left(problem: Problem, numbering: Numbering, piece: tuple[Body, ...], stage: int) -> FloatArray:

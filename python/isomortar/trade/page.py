@@ -26,15 +26,9 @@ def sentence(search: Search, answer: Recommendation) -> str:
     if answer.best is None:
         return f"Within {percent(answer.target)}: nothing is recommended; {answer.why}."
     if isinstance(search, CheaperSearch):
-        found, times = (
-            f"{answer.best.name}: loses {percent(answer.error)} for {_seconds(answer.best.cost)}",
-            search.own.cost / answer.best.cost,
-        )
-        return (
-            f"{found}, {times:.2g} times less than as it is."
-            if times > 1
-            else f"{found}; run afresh it saves nothing: keep the scene as it is."
-        )
+        times = search.own.cost / answer.best.cost
+        saved = f", {times:.2g} times less than as it is" if times > 1 else "; run afresh it saves nothing: keep the scene as it is"
+        return f"{answer.best.name}: loses {percent(answer.error)} for {_seconds(answer.best.cost)}{saved}."
     parts = [f"{answer.best.name}: {percent(answer.error)} ± {percent(search.uncertainty)} for {_seconds(answer.best.cost)}"]
     if answer.best.choice != search.own.choice:
         parts.append(f"the scene as it is: {percent(search.error(search.own))} for {_seconds(search.own.cost)}")
