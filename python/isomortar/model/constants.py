@@ -59,9 +59,9 @@ HARD_TANGENTS = 25
 #: Load steps before the end of one that an increment still ends there: times are sums of increments, to round-off.
 SAME_TIME = 1e-12
 
-#: Forces the largest of which is between these are squared as they are: what is twenty digits smaller than that has a square, too, and
-#: sums do not overflow. Others are brought to size before.
-SQUARED = (1e-40, 1e40)
+#: Sums of squares of forces between these are what they should be: what is twenty digits smaller than the largest force has a square, too,
+#: and none overflowed. Forces with others are brought to size and squared again.
+SQUARED = (1e-80, 1e80)
 
 # ---- Newton's method (theory 6.5, 6.6, 7.5)
 

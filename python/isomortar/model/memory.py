@@ -18,8 +18,8 @@ from isomortar.model.entities import Problem
 BLOCK_BYTES = 900.0
 #: Bytes of each entry of the factors, fronts included (measured: 11 to 24).
 FACTOR_BYTES = 16.0
-#: What the machine could give at once, or all of what a control group may have.
-_LIMIT = re.compile(r"(?:MemAvailable: +|^)([0-9]+)")
+#: Files that tell what the machine could give at once, and all of what a control group may have; how they do, and in how many bytes.
+_LIMITS = (("/proc/meminfo", "MemAvailable: +([0-9]+)", 1024.0), ("/sys/fs/cgroup/memory.max", "^([0-9]+)", 1.0))
 
 
 def memory_needed(problem: Problem) -> float:
@@ -31,9 +31,9 @@ def memory_of_machine() -> float:
     """Bytes that a process may take: of what the machine has free, its group's limit, and its own; infinite where none is told."""
     own, _ = resource.getrlimit(resource.RLIMIT_AS)
     limits = [float(own) if own != resource.RLIM_INFINITY else np.inf]
-    for path, unit in (("/proc/meminfo", 1024.0), ("/sys/fs/cgroup/memory.max", 1.0)):
+    for path, told, unit in _LIMITS:
         with suppress(OSError):
-            limits += [unit * float(number) for number in _LIMIT.findall(Path(path).read_text(encoding="utf-8"))]
+            limits += [unit * float(number) for number in re.findall(told, Path(path).read_text(encoding="utf-8"))]
     return min(limits)
 
 

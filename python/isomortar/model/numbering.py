@@ -121,7 +121,8 @@ def same_points(patch: Patch, closed: str | None) -> IntArray:
     for axis in range(3):
         lines = np.moveaxis(numbers, axis, 0).reshape(numbers.shape[axis], -1)
         of_no_length = np.linalg.norm(np.ptp(patch.control_points[lines], axis=0), axis=1) <= constants.SAME_POINT * size
-        links += [np.stack([lines[0, of_no_length], line[of_no_length]]) for line in lines[1:]]
+        first, others = lines[0, of_no_length], lines[1:, of_no_length]
+        links.append(np.stack([np.broadcast_to(first, others.shape).ravel(), others.ravel()]))
     return _linked(numbers.size, links)
 
 

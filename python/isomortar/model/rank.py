@@ -23,12 +23,12 @@ def motions_left(problem: Problem, piece: tuple[Body, ...], stage: int = 0) -> F
         pressed = [np.eye(6)[k] for support in holding for k in support.pressed]
         turned = [(unit(s.axis), c) for s, c in zip(holding, centres, strict=True) if s.moment is not None]
         return np.array([*pressed, *(np.concatenate([np.cross(c, axis), axis]) for axis, c in turned)]).reshape(-1, 6)
-    rows = [np.zeros((1, 6))]
+    rows = [np.zeros((6, 6))]  # six at least, so that all motions are told
     for support, c in zip(holding, centres, strict=True):
         patch = problem.body(support.place.body).patch
         arms = patch.control_points[patch.common_points(support.place.meeting)] - centre
         rows.append(_prevented(support, arms / size, c))
-    *_, values, motions = np.linalg.svd(np.vstack(rows))
+    *_, values, motions = np.linalg.svd(np.vstack(rows), full_matrices=False)
     return np.asarray(motions[np.count_nonzero(values > 1e-9) :])
 
 

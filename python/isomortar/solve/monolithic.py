@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -69,7 +69,7 @@ class _BorderedIterate(Iterate):
     gap_pressure: float
     gap_traction: float
 
-    @property
+    @cached_property
     def merit(self) -> float:
         """What an update should make smaller (theory 6.6)."""
         return float(np.max([self.residual, self.gap_pressure, self.gap_traction]))  # not a number where one is not: `max` drops it

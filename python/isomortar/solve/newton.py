@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import count
 from typing import Generic, TypeVar
 
@@ -29,7 +30,7 @@ class Iterate:
     balance: Balance
     residual: float
 
-    @property
+    @cached_property
     def merit(self) -> float:
         """What an update should make smaller."""
         return self.residual

@@ -38,16 +38,23 @@ class PieceMeasures:
 
     def __init__(self, numbering: Numbering, supports: Supports, solid: Solid) -> None:
         self._numbering, self._solid = numbering, solid
-        self._starts = numbering.starts
+        self._starts, self._components = numbering.starts, 3 * numbering.starts
         self._free = supports.balanced
         self._rigid = np.array([piece[0].rigid for piece in numbering.pieces])
 
     def norms(self, forces: FloatArray) -> FloatArray:
         """Norm of the forces, shape (control points, 3), on each piece, shape (pieces,)."""
         least, most = constants.SQUARED
-        size = 1.0 if least < np.abs(forces).max(initial=0.0) < most else _power_of_two(forces)
-        scaled = forces if size == 1.0 else forces / size
-        return np.sqrt(np.add.reduceat(np.einsum("ij,ij->i", scaled, scaled), self._starts)) * size
+        with np.errstate(over="ignore"):
+            squares = self._squares(forces)
+        if np.all((least < squares) & (squares < most)):
+            return np.sqrt(squares)
+        size = _power_of_two(forces)
+        return np.sqrt(self._squares(forces / size)) * size
+
+    def _squares(self, forces: FloatArray) -> FloatArray:
+        """The sum of all components squared, of each piece."""
+        return np.add.reduceat(np.square(forces).ravel(), self._components)
 
     def free_norms(self, forces: FloatArray) -> FloatArray:
         """The same over the free unknowns."""

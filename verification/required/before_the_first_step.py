@@ -1,0 +1,41 @@
+"""What looking at a scene before its first load step takes, beside what there is of it."""
+
+from __future__ import annotations
+
+import tracemalloc
+
+from isomortar.harness import Bound, case
+from isomortar.model.checks import check
+from isomortar.scene import Scene
+from isomortar.solve.simulation import Simulation
+
+#: A plate half of whose control points are held, and nothing else.
+_PLATE = """
+format = 1
+bodies.plate.geometry = {{ kind = "box", lower = [0, 0, 0], upper = [1, 1, 0.1] }}
+bodies.plate.mesh = {{ order = [1, 1, 1], elements = [{n}, {n}, 1] }}
+supports.top.face = "plate.w1"
+stages = [{{ name = "lift", steps = 1, motions.top.translate = [0, 0, 0.1] }}]
+"""
+
+
+def taken(elements: int) -> tuple[int, int]:
+    """Bytes that checks and doubts hold at once at most, and the scene's control points."""
+    problem = Scene.from_toml(_PLATE.format(n=elements)).problem()
+    tracemalloc.start()
+    check(problem)
+    list(Simulation(problem).doubts())
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    return peak, sum(len(body.patch.weights) for body in problem.bodies)
+
+
+@case(
+    claim="Looking at a scene before its first load step takes memory as its control points do, however many of them a support holds.",
+    tier="gate",
+    bounds={"growth": Bound(at_most=1.5, at_least=0.5, reason="definition: as many bytes a control point, half as many more for what is small")},
+)
+def looked_at() -> dict[str, float]:
+    """Twelve elements along each side, and forty-eight."""
+    (few, fewer), (many, more) = taken(12), taken(48)
+    return {"growth": (many / more) / (few / fewer)}
