@@ -33,7 +33,7 @@ def taken(elements: int) -> tuple[int, int]:
 @case(
     claim="Looking at a scene before its first load step takes memory as its control points do, however many of them a support holds.",
     tier="gate",
-    bounds={"growth": Bound(at_most=1.5, at_least=0.5, reason="definition: as many bytes a control point, half as many more for what is small")},
+    bounds={"growth": Bound(at_most=1.5, at_least=0.5, reason="definition: as many bytes a control point, and a half for what is small")},
 )
 def looked_at() -> dict[str, float]:
     """Twelve elements along each side, and forty-eight."""
