@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import subprocess
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -18,7 +19,7 @@ from isomortar.errors import InputError
 from isomortar.geometry.primitives import ring
 from isomortar.model.entities import Face, Material, Motion, Problem, RigidPlane, SolverSettings
 from isomortar.scene import Scene, bundled_scenes, json_schema
-from isomortar.scene.source import read_source
+from isomortar.scene.source import as_options, read_source
 
 ROOT = Path(__file__).parents[2]
 PATCHES = json.loads((ROOT / "reference_data/scene_patches/patches.json").read_text())
@@ -150,6 +151,12 @@ def test_overrides_reach_every_kind_of_place() -> None:
     assert [s.steps for s in problem.stages] == [10, 7]
     assert problem.supports[0].motions[0] == Motion((0, 0, -0.25))
     assert (problem.settings.slip_sum, scene.record.states, problem.contacts[0].friction) == ("paper", "last", 0)
+
+
+def test_overrides_are_options_that_a_shell_takes_as_they_stand() -> None:
+    overrides = ["bodies.block.mesh.elements=[4, 4, 2]", 'bodies.block.mesh.family=["N", "N", "N"]', "title=it's"]
+    words = subprocess.run(["bash", "-c", f"printf '%s\\n' {as_options(overrides)}"], capture_output=True, text=True).stdout.splitlines()
+    assert words == [word for override in overrides for word in ("--set", override)]
 
 
 def test_overrides_may_be_values_by_path() -> None:

@@ -415,6 +415,7 @@ def test_a_knob_is_one_entry(scene, tmp_path):
     shown = page.write(tmp_path, scene, search, [answer], datetime.now().astimezone()).read_text()
     assert "everything that slides" in shown
     assert "friction of floor" in shown
+    assert "<code>--set contacts.floor.friction=0</code>" in shown
     assert Scene.load(tmp_path / "within-10-percent.toml").problem().contacts[0].friction == 0.0
 
 

@@ -8,6 +8,7 @@ from orders.analysis import Analysis, Point
 
 from isomortar.accuracy.discretisations import overrides, parse_kind
 from isomortar.harness.report import percent
+from isomortar.scene.source import as_options
 
 #: Errors that are asked for: of each measure the smallest that a run is within, for all that the reference knows.
 TARGETS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5)
@@ -79,9 +80,8 @@ def summary(analysis: Analysis) -> list[str]:
     if not found:
         return [f"No run is known to be within {percent(TARGETS[-1])} of anything: nothing is recommended."]
     chosen = recommended(analysis, found)
-    line = " ".join(f"--set '{override}'" for override in chosen)
     asked = ", ".join(f"{finding.measure} within {percent(finding.target)}" for finding in found)
-    advice = f"Recommended for {asked}: {line}" if chosen else f"No run has all of: {asked}."
+    advice = f"Recommended for {asked}: {as_options(chosen)}" if chosen else f"No run has all of: {asked}."
     return [sentence for sentence in (found[0].sentence, found[0].elevation, advice) if sentence]
 
 

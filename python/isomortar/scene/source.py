@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shlex
 import tomllib
 from collections.abc import Iterable, Mapping
 from importlib import resources
@@ -88,6 +89,11 @@ def apply_overrides(data: dict[str, Any], overrides: SceneChanges) -> None:
         if not equals or not _PATH.fullmatch(path):
             raise InputError(f"override {override!r} is not of the form KEY=VALUE, e.g. solver.max_cuts=4")
         _set(data, path, _value(value, override))
+
+
+def as_options(overrides: Iterable[str]) -> str:
+    """Overrides as the options of a command, in a line that a shell takes as it stands."""
+    return shlex.join(word for override in overrides for word in ("--set", override))
 
 
 def _plain(value: Any, path: str) -> Any:

@@ -12,6 +12,7 @@ from typing import Any
 from isomortar.harness.report import percent, plain, template
 from isomortar.harness.store import identity, write_whole
 from isomortar.scene.scene import Scene
+from isomortar.scene.source import as_options
 from isomortar.solve.timing import PHASES
 from isomortar.trade import figures
 from isomortar.trade.advice import CheaperSearch
@@ -78,7 +79,7 @@ def _page(scene: Scene, search: Search, answers: Sequence[Recommendation], files
                 "best": a.best,
                 "sentence": sentence(search, a),
                 "file": files[a.target],
-                "overrides": [f"--set {change}" for change in search.laboratory.overrides(a.best.choice)] if a.best else [],
+                "overrides": as_options(search.laboratory.overrides(a.best.choice)) if a.best else "",
             }
             for a in answers
         ],
