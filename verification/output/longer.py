@@ -116,3 +116,23 @@ def more_steps(counts: str) -> dict[str, float]:
             off = np.abs(found - way - share * np.asarray(motion.translate)).max() + abs(turned - angle - share * motion.rotate)
             beyond = float(np.maximum(beyond, off))
     return {"before": apart(problem, longer, end), "after": beyond, "said": float(is_longer(problem, longer))}
+
+
+@case(
+    claim="Further stages of a scene are also those of supports that hold in its last stage, and of no others.",
+    tier="gate",
+    bounds={"wrong": Bound(0.0, 0.0, "definition: supports and stages in which one holds, or does not, and should not, or should")},
+)
+def more_steps_of_held() -> dict[str, float]:
+    """How many, of supports that hold throughout, first, last, and in between."""
+    stages = "".join(f'[[stages]]\nname = "{name}"\nsteps = 2\n' for name in ("one", "two", "three"))
+    held = {"always": None, "first": ["one"], "last": ["three"], "both": ["one", "three"], "middle": ["two"]}
+    body = 'bodies.block.geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }\nsupports.always.face = "block.w0"\n'
+    given = "".join(f'supports.{name} = {{ face = "block.w1", stages = {on} }}\n' for name, on in held.items() if on)
+    longer = Scene.from_toml(f"format = 1\n{body}{given}{stages}").with_more_steps(1, 2).problem()
+    wrong = sum(
+        support.holds(stage) != (held[support.name] is None or "three" in held[support.name])  # type: ignore[operator]
+        for support in longer.supports
+        for stage in (3, 4)
+    )
+    return {"wrong": float(wrong + abs(len(longer.stages) - 5))}

@@ -1,0 +1,52 @@
+"""Colours of bodies by a field: over the range that it has inside, and each face in those of its own values."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from matplotlib.collections import PolyCollection
+from output import exported
+from output.records import load_steps
+
+from isomortar.harness import Bound, case
+from isomortar.model.numbering import Numbering
+from isomortar.results import style
+from isomortar.results.coloured import draw_coloured
+from isomortar.scene import Scene
+
+#: A box under an affine motion, or moved as a whole.
+SCENE = """
+format = 1
+materials.m = { young = 2, poisson = 0.25 }
+bodies.block = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 0.5, 0.8] }, mesh = { order = [2, 1, 1], elements = 1 } }
+supports.base.face = "block.w0"
+stages = [{ name = "one", steps = 1 }]
+"""
+
+
+@case(
+    claim="Bodies are coloured by the field that is asked for, as they are deformed, over its range: from zero on, but J over its own.",
+    tier="gate",
+    grid={"field": ("stress", "J", "displacement")},
+    bounds={
+        "range": Bound(at_most=1e-12, reason="round-off: a field that is the same everywhere, against its formula"),
+        "colours": Bound(at_most=1e-6, reason="definition: where the range begins at zero all is of its last colour; lines are few"),
+    },
+)
+def coloured(field: str) -> dict[str, float]:
+    """Ends of the colour bar, or of J their mean, off what they are to be; by how much the colour of most parts is not the last one."""
+    problem = Scene.from_toml(SCENE).problem()
+    (step,), at_rest = load_steps(problem), Numbering(problem).reference
+    motion = np.eye(3) if field == "displacement" else exported.GRADIENT
+    moved = replace(step, state=replace(step.state, positions=at_rest @ motion.T + exported.SHIFT))
+    figure = draw_coloured(problem, moved, field)
+    *_, mises, ratio = exported.stressed(problem.bodies[0], motion[None])[0]
+    exact = {"stress": mises, "J": ratio, "displacement": np.linalg.norm(exported.SHIFT)}[field]
+    low, high = figure.axes[1].get_ylim()
+    drawn = np.concatenate([c.get_facecolor() for c in figure.axes[0].collections if isinstance(c, PolyCollection)])
+    alone = field == "J"  # a range of one value, which is drawn wider
+    return {
+        "range": float(np.abs([0.5 * (low + high) - exact] if alone else [low, high - exact]).max()),
+        "colours": 0.0 if alone else float(np.abs(np.median(drawn, axis=0) - style.field_colours()(1.0)).max()),
+    }

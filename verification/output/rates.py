@@ -1,0 +1,64 @@
+"""Rates that a load step keeps for the first guess of the next one: changes of its last increment, and none over what begins or ends."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from isomortar.harness import Bound, case
+from isomortar.scene import Scene
+from isomortar.solve.extrapolation import multipliers_ahead
+from isomortar.solve.simulation import Simulation
+
+#: A pad that comes down onto a plane in the second of three load steps, is dragged, and lifted.
+SCENE = """
+format = 1
+bodies.pad = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 0.5] }, mesh = { order = 2, elements = [2, 2, 1] } }
+contacts.floor = { slave = "pad.w0", plane = { point = [0, 0, -0.015] }, friction = 0.3 }
+supports.top.face = "pad.w1"
+stages = [
+    { name = "press", steps = 3, motions.top.translate = [0, 0, -0.03] },
+    { name = "drag", steps = 3, motions.top.translate = [0.03, 0.01, 0] },
+]
+"""
+#: Load steps with rates: not where a contact has begun, 2, nor at the ends of the stages, 3 and 6.
+WITH = (1, 4, 5)
+_EXACT = "round-off: differences of what is recorded"
+
+
+@case(
+    claim="A load step keeps the changes of its last increment, by its length, unless a contact or the stage began or ended with it.",
+    tier="gate",
+    bounds={
+        "steps": Bound(0.0, 0.0, "definition: load steps that keep rates and should not, or the other way round"),
+        **dict.fromkeys(("positions", "pressures", "tractions"), Bound(at_most=1e-12, reason=_EXACT)),
+        "ahead": Bound(at_most=1e-14, reason="definition: straight on, and no pressure below zero; round-off"),
+        "cut off": Bound(at_least=1.0, reason="definition: a pressure would come below zero, or that is not tried"),
+    },
+)
+def kept() -> dict[str, float]:
+    """Largest differences of rates from those of recorded states, and of pressures a length ahead from straight lines."""
+    simulation = Simulation(Scene.from_toml(SCENE).problem())
+    states = [simulation.state]
+    found = {"steps": 0.0, "positions": 0.0, "pressures": 0.0, "tractions": 0.0, "ahead": 0.0, "cut off": 0.0}
+    for result in simulation.run():
+        assert result.substeps == 1
+        before, state, rates = states[-1], result.state, result.state.rates
+        found["steps"] += (rates is not None) != (result.step in WITH)
+        states.append(state)
+        if rates is None:
+            continue
+        (old,), (new,), (rate,) = before.contacts, state.contacts, rates.contacts
+        at_origin = before.positions + (simulation.equilibrium.origin if result.step == 1 else 0.0)
+        for name, change in (
+            ("positions", rates.positions - (state.positions - at_origin)),
+            ("pressures", rate.pressure - (new.pressure - old.pressure)),
+            ("tractions", rate.traction - (new.traction - old.traction)),
+        ):
+            found[name] = float(np.maximum(found[name], np.abs(change).max()))
+        for length in (0.5, -0.25, -1e3, 1e3):
+            pressure, traction = multipliers_ahead(simulation.equilibrium.pairs[0], new, rate, length)
+            straight = new.pressure + length * rate.pressure
+            off = np.abs(np.concatenate([pressure - np.maximum(straight, 0.0), (traction - new.traction - length * rate.traction).ravel()]))
+            found["ahead"] = float(np.maximum(found["ahead"], off.max() / (1.0 + np.abs(straight).max())))
+            found["cut off"] += float(np.count_nonzero(straight < 0.0))
+    return found

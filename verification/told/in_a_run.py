@@ -1,0 +1,90 @@
+"""What is said at the ends of load steps, by what they are made of: pressures, points beside the master, and when a contact was closed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from isomortar.harness import Bound, case
+from isomortar.model.entities import Problem
+from isomortar.scene import Scene
+from isomortar.solve.advice import StepAdvice
+from isomortar.solve.record import ContactResult, ContactState, StepResult
+from isomortar.solve.simulation import Simulation
+
+#: Two contacts of which the first one is never spoken of.
+SCENE = """
+format = 1
+bodies.a = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }, mesh = { order = 2, elements = 1 } }
+bodies.b = { geometry = { kind = "box", lower = [2, 0, 0], upper = [3, 1, 1] }, mesh = { order = 2, elements = 2 } }
+contacts.quiet = { slave = "a.w0", plane = {}, friction = 0.3 }
+contacts.told = { slave = "b.w0", plane = {}, friction = 0.3 }
+supports = { a.face = "a.w1", b.face = "b.w1" }
+stages = [{ name = "press", steps = 5, motions.a.translate = [0, 0, -0.01], motions.b.translate = [0, 0, -0.01] }]
+"""
+#: Words of what is said.
+SAID = {"left": "have left the master", "beside": "wholly beside", "never": "never closed", "spurious": "spurious work"}
+Given = tuple[int, float, float, int, float, float]
+#: Active constraints, largest control pressure, largest pressure, points without a foot, and works, of each load step.
+CLOSED: Given = (9, 1.0, 1.0, 0, 1.0, 0.0)
+OPEN: Given = (0, 0.0, 0.0, 0, 0.0, 0.0)
+HISTORIES: tuple[tuple[tuple[Given, ...], str], ...] = (
+    ((CLOSED,) * 4, ""),
+    ((CLOSED, (9, 1.49, 1.0, 0, 1.0, 0.0)), ""),
+    (((9, 1.51, 1.0, 0, 1.0, 0.0),) * 2, "oscillate"),
+    (((3, 1.51, 1.0, 0, 1.0, 0.0),), ""),
+    ((CLOSED, (9, 1.0, 1.0, 5, 1.0, 0.0), (9, 1.0, 1.0, 7, 1.0, 0.0)), "left"),
+    (((9, 1.0, 1.0, 7, 1.0, 0.0), (9, 1.0, 1.0, 5, 1.0, 0.0)), "left"),
+    ((CLOSED, (0, 0.0, 0.0, 5, 0.0, 0.0)), ""),
+    ((CLOSED, (0, 0.0, 0.0, -1, 0.0, 0.0)), "beside"),
+    ((OPEN,) * 4, "never"),
+    ((OPEN, OPEN, CLOSED), ""),
+    ((CLOSED, OPEN), ""),
+    ((OPEN, CLOSED, OPEN, OPEN), "opened in load step 3"),
+    ((OPEN, CLOSED, OPEN, CLOSED, OPEN), ""),
+    (((9, 1.0, 1.0, 0, 1.0, 0.019), (9, 1.0, 1.0, 0, 1.0, -0.05)), ""),
+    (((9, 1.0, 1.0, 0, 1.0, 0.01), (9, 1.0, 1.0, 0, 1.0, 0.031)), "spurious"),
+    (((9, 1.0, 1.0, 0, 1.0, 0.01), (9, 1.0, 1.0, 0, 1.0, -0.051)), "spurious"),
+)
+
+
+def made(result: ContactResult, state: ContactState, given: Given) -> tuple[ContactResult, ContactState]:
+    """A result and state with some numbers; -1 points without a foot: all."""
+    active, largest, field, excluded, friction, spurious = given
+    pressure = np.zeros_like(state.pressure)
+    pressure[1] = largest
+    points = len(state.projected) if excluded < 0 else excluded
+    range_ = np.array([-0.25 * field, field])
+    told = replace(result, active=active, pressure_field=range_, excluded=points, friction_work=friction, spurious_work=spurious)
+    return told, replace(state, pressure=pressure)
+
+
+def said(problem: Problem, start: tuple[ContactState, ...], step: StepResult, history: tuple[Given, ...]) -> str:
+    """What is said of a history of the second contact, beside one that stays closed."""
+    advice = StepAdvice(problem, 0, start)
+    heard: list[str] = []
+    for number, given in enumerate(history, start=1):
+        both = [made(*of) for of in zip(step.contacts, step.state.contacts, (CLOSED, given), strict=True)]
+        heard += advice.after_step(number, [result for result, _ in both], [state for _, state in both])
+    heard += advice.at_the_end()
+    return "; ".join(heard)
+
+
+@case(
+    claim="At the ends of load steps it is said once what is doubtful of a contact, of that contact, and nothing of what is sound.",
+    tier="gate",
+    bounds={"wrong": Bound(0.0, 0.0, "definition: histories of which something else is said, or nothing, or too much")},
+)
+def histories() -> dict[str, float]:
+    """Of how many."""
+    problem = Scene.from_toml(SCENE).problem()
+    simulation = Simulation(problem)
+    start = simulation.state.contacts
+    step = next(iter(simulation.run()))
+    wrong = 0
+    for history, expected in HISTORIES:
+        words = SAID.get(expected, expected)
+        heard = said(problem, start, step, history)
+        wrong += heard.count("contact '") != bool(words) or heard.count("contact 'told'") != bool(words) or words not in heard
+    return {"wrong": float(wrong)}
