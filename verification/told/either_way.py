@@ -18,11 +18,11 @@ supports.top.face = "above.w1"
 supports.base.face = "below.w0"
 stages = [{ name = "one", steps = 10, motions.top = { translate = [0, 0, -0.02] } }]
 """
-#: A column beside the two that goes down below the upper face of the lower one, from some x and y on.
+#: A small body wholly inside the lower block, or beside it, from some x and y on.
 THIRD = """
 [bodies.third]
-geometry = {{ kind = "box", lower = [{x}, {x}, -0.25], upper = [2, 2, 3] }}
-mesh = {{ order = 1, elements = [1, 1, 8] }}
+geometry = {{ kind = "box", lower = [{x}, {x}, -1.6], upper = [{end}, {end}, -1.4] }}
+mesh = {{ order = 1 }}
 [supports.third]
 face = "third.w1"
 """
@@ -32,12 +32,13 @@ _BALL = 'kind = "sphere", centre = [0, 0, 0.5], inner = 0.1, outer = 0.5, axis =
 BALL = (
     SCENE.replace(_BOX, _BALL).replace("supports.top", "supports.hub").replace("above.w1", "above.v0").replace("motions.top", "motions.hub")
 )
+_DEEP = ("bodies.below.geometry.lower=[-1,-1,-3]",)
 _MASTER = 'contacts.c={slave="below.w1",master="above.v1",friction=0.3}'
 
 
 def third(x: float) -> str:
-    """The scene with the column."""
-    return SCENE + THIRD.format(x=x)
+    """The scene with the small body."""
+    return SCENE + THIRD.format(x=x, end=x + 0.2)
 
 
 #: A scene, what is changed in it, and words of what is said of it; none: nothing is said.
@@ -49,8 +50,8 @@ SAID = (
     (SCENE, ('loads={wind={face="below.u0",pressure=0.001}}',), ""),
     (SCENE, ('loads={wind={face="below.w1",pressure=0.001}}',), "a face of contact 'c'"),
     (SCENE, ('loads={wind={face="above.w0",pressure=0.001}}',), "a face of contact 'c'"),
-    (third(0.4), (), "bodies 'below' and 'third' meet"),
-    (third(1.2), (), "is in no contact"),
+    (third(0.3), _DEEP, "bodies 'below' and 'third' meet"),
+    (third(1.2), _DEEP, "is in no contact"),
     (BALL.replace("AXIS", "z"), ('contacts.c.slave="above.v1"',), ""),
     (BALL.replace("AXIS", "z"), (_MASTER,), "has a pole"),
     (BALL.replace("AXIS", "y"), (_MASTER, "stages.one.motions.hub.rotate=3"), ""),

@@ -66,12 +66,17 @@ def _ways(problem: Problem, body: Body, whole: list[set[str]]) -> FloatArray:
 
 
 def _meet(one: Body, other: Body, way: FloatArray) -> bool:
-    """Whether a body that has gone some way is within or at another one, by cells of their faces."""
+    """Whether a body that has gone some way and another one are within or at each other, by cells of their faces."""
     first, second = one.patch.control_points + way, other.patch.control_points
     size = float(np.ptp(np.concatenate([first, second]), axis=0).max())
     low, high = np.maximum(first.min(axis=0), second.min(axis=0)), np.minimum(first.max(axis=0), second.max(axis=0))
     if np.any(high < low - SAME_POINT * size):
         return False
+    return _reaches(one, other, way, size) or _reaches(other, one, -way, size)  # of two the smaller may be wholly inside
+
+
+def _reaches(one: Body, other: Body, way: FloatArray, size: float) -> bool:
+    """Whether a part of the outside of a body that has gone some way is within or at another one."""
     centres, normals, _ = _outside(one)
     step = max(1, len(centres) // SOME)
     points, normals = centres[::step] + way, normals[::step]
