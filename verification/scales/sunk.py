@@ -1,0 +1,45 @@
+"""Control points that supports hold along the normal, and push into a plane: they bear, whatever the unit of length."""
+
+from __future__ import annotations
+
+import numpy as np
+from transforms import scaled
+
+from isomortar.harness import Bound, case
+from isomortar.scene import Scene
+from isomortar.solve.simulation import Simulation
+
+#: A block of which a side goes into the plane by a share of the block's size, and the rest follows.
+SCENE = """
+format = 1
+bodies.block = {{ geometry = {{ kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }}, mesh = {{ order = 2, elements = [2, 1, 1] }} }}
+contacts.floor = {{ slave = "block.w0", plane = {{}}, friction = 0 }}
+supports.top.face = "block.w1"
+supports.side.face = "block.u0"
+stages = [{{ name = "press", steps = 1, motions = {{ top.translate = [0, 0, {way}], side.translate = [0, 0, {way}] }} }}]
+"""
+
+
+@case(
+    claim="What is pushed into a plane bears on it, by the same pressures in any unit of length.",
+    tier="gate",
+    grid={"depth": (2e-3, 2e-5)},
+    bounds={
+        "pressures": Bound(at_most=1e-6, reason="theory: what Newton's method leaves, of the largest pressure"),
+        "bearing": Bound(at_least=3.0, reason="definition: control points that are held, and bear"),
+    },
+)
+def in_any_unit(depth: float) -> dict[str, float]:
+    """Largest difference of pressures of three units, over the largest; control points of the side that bear."""
+    problem = Scene.from_toml(SCENE.format(way=-depth)).problem()
+    found, bearing = [], []
+    for length in (1.0, 2.0**-12, 2.0**12):
+        simulation = Simulation(scaled(problem, length, 1.0))
+        (last,) = simulation.run()
+        found.append(last.state.contacts[0].pressure)
+        side = np.isin(simulation.equilibrium.pairs[0].pair.slave.point, simulation.equilibrium.supports.points[1])
+        bearing.append(np.count_nonzero(found[-1][side]))
+    return {
+        "pressures": float(np.max([np.abs(other - found[0]).max() for other in found]) / np.abs(found[0]).max()),
+        "bearing": float(np.min(bearing)),
+    }
