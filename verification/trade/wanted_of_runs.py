@@ -166,3 +166,19 @@ def offered(steps: int) -> dict[str, float]:
         "taken": float(sum(not refused(text) for text in wrong)),
         "rough": float(rough != (steps >= 3)),
     }
+
+
+@case(
+    claim="All that is offered of a scene has an error of every run of it: a number, or, of the roughness of a run with fewer than three load "
+    "steps in a stage, none.",
+    tier="gate",
+    grid={"steps": (1, 2, 3)},
+    bounds={"wrong": Bound(0.0, 0.0, "definition: wishes that have a number and should not, or should and have none")},
+)
+def of_short_runs(steps: int) -> dict[str, float]:
+    """How many, of a run with so many load steps in its first stage."""
+    problem = problem_of(4)
+    truth, run = (Tried((), "", numbers, "", 0.0, 0.0) for numbers in (run_of(1, (12, 18)), run_of(2, (steps, 6))))
+    none = {text for text in wishes(problem) if math.isnan(Yardstick(wanted(text, problem), truth, truth).error(run))}
+    rough = {text for text in wishes(problem) if text.endswith(":roughness")}
+    return {"wrong": float(len(none ^ (rough if steps < 3 else set())))}

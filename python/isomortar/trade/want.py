@@ -172,9 +172,14 @@ def _of_gap(text: str, number: int) -> Want:
 
 
 def _roughness(times: FloatArray, heights: FloatArray, stage: int) -> float:
-    """Second-difference energy of a curve in a stage, by second difference: the same of a smooth curve however many load steps show it."""
+    """Second-difference energy of a curve in a stage, by second difference: the same of a smooth curve however many load steps show it.
+
+    Not a number where too few show it: a run may have fewer of them than the scene.
+    """
     inside = (times > stage + 1e-9) & (times < stage + 1 + 1e-9)
     count = int(np.count_nonzero(inside))
+    if count < _BENDS:
+        return math.nan
     return roughness(times[inside], heights[inside], np.zeros(count)) / (count + 1 - _BENDS)
 
 
