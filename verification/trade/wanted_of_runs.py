@@ -169,8 +169,8 @@ def offered(steps: int) -> dict[str, float]:
 
 
 @case(
-    claim="All that is offered of a scene has an error of every run of it: a number, or, of the roughness of a run with fewer than three load "
-    "steps in a stage, none.",
+    claim="All that is offered of a scene has an error of every run of it: a number, or, of the roughness of a run with fewer than three "
+    "load steps in a stage, none.",
     tier="gate",
     grid={"steps": (1, 2, 3)},
     bounds={"wrong": Bound(0.0, 0.0, "definition: wishes that have a number and should not, or should and have none")},

@@ -15,8 +15,8 @@ from isomortar.model.entities import Body, Contact, Face, Projection, RigidPlane
 from isomortar.scene.scene import Scene
 from isomortar.trade.want import Want
 
-#: Numbers of elements over the scene's own, and of load steps.
-MESHES, STEPS = (1 / 3, 1 / 2, 2 / 3, 1.0, 4 / 3, 5 / 3, 2.0, 2.5, 3.0), (1 / 8, 1 / 4, 1 / 2, 1.0, 2.0, 3.0, 4.0)
+#: Numbers of elements over the scene's own, and of load steps: these double, so that runs have load steps in common to be compared at.
+MESHES, STEPS = (1 / 3, 1 / 2, 2 / 3, 1.0, 4 / 3, 5 / 3, 2.0, 2.5, 3.0), (1 / 8, 1 / 4, 1 / 2, 1.0, 2.0, 4.0)
 #: Tolerances of Newton's method over the scene's own; those of the contact conditions go along.
 TOLERANCES, LOOSEST = (1e5, 1e3, 1.0, 1e-2), 1e-3
 #: Elastic slip over the size of the slave body.
