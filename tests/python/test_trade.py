@@ -356,6 +356,23 @@ def test_the_truth_is_as_good_as_each_target_asks(scene):
     assert steps == [3, 5]
 
 
+def test_what_over_refined_runs_took_tells_what_finer_ones_will(scene):
+    """Costs of single settings do not multiply: a forecast from these alone leaves half of a budget unspent."""
+
+    class Cheaper(Formula):
+        def of(self, choice):
+            error, cost, failure = super().of(choice)
+            together = sum(number != own for number, own in zip(choice, self.own, strict=True)) > 1
+            return error, cost**0.5 if together else cost, failure
+
+    dials = synthetic()
+    search = Search(Cheaper(scene, dials), dials, [wanted("force.top.x", scene.problem())], 400.0)
+    search.screen()
+    search.find_truth([0.01])
+    assert 3 * search.uncertainty <= 0.01
+    assert search.laboratory.spent < 200.0
+
+
 def test_what_can_not_be_refined_has_no_truth(scene):
     """Else one run twice would know it to the last bit."""
     dials = (Dial("elements of block along u", (Setting("2"), Setting("4")), 1, "", part="elements"),)

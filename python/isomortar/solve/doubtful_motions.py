@@ -1,4 +1,4 @@
-"""What is doubtful of the motions of supports: units, signs, centres, and where they end."""
+"""What is doubtful of the ways that supports go: units, signs, and where they end."""
 
 from __future__ import annotations
 
@@ -15,11 +15,6 @@ from isomortar.model.numbering import Numbering
 from isomortar.model.sheet import Sheet
 from isomortar.model.supports import Supports
 
-#: Angles that people give in radians, over pi, and how near to one a number of degrees has to be: 3.14 is meant as well.
-RADIANS = {1 / 6: "pi/6", 1 / 4: "pi/4", 1 / 3: "pi/3", 1 / 2: "pi/2", 2 / 3: "2 pi/3", 3 / 4: "3 pi/4", 5 / 6: "5 pi/6", 1.0: "pi"}
-RADIANS |= {1 / 36: "pi/36", 1 / 18: "pi/18", 1 / 12: "pi/12", 1 / 9: "pi/9", 1 / 8: "pi/8"}
-RADIANS |= {3 / 2: "3 pi/2", 2.0: "2 pi", 3.0: "3 pi", 4.0: "4 pi", 6.0: "6 pi", 8.0: "8 pi", 10.0: "10 pi", 20.0: "20 pi"}
-NEARLY = 1e-3
 #: Share of what is between the supports of two sides by which they may come nearer to each other: beyond, nothing is left between them.
 FLAT = 0.9
 
@@ -29,9 +24,6 @@ def of_motions(problem: Problem) -> Iterator[str]:
     for support in problem.supports:
         yield from _far_steps(problem, support)
         yield from _idle_motions(problem, support)
-        yield from _idle_turns(problem, support)
-        yield from _radians(problem, support)
-        yield from _axis_beside(problem, support)
         yield from _as_absolute(problem, support)
     yield from _idle_stages(problem)
     yield from _pushed_in(problem)
@@ -63,7 +55,7 @@ def nearest_approach(problem: Problem, contact: Contact) -> float | None:
 
 def _ways(problem: Problem, place: Face, towards: FloatArray) -> list[FloatArray]:
     """How far each support of a side's bodies has gone along a vector at the end of each stage; none: nobody knows."""
-    names = {body.name for body in _piece(problem, place)}
+    names = {body.name for body in piece_of(problem, place)}
     supports = [support for support in problem.supports if support.place.body in names]
     if any(support.turns or support.pressed for support in supports) or any(load.body in names for load in problem.loads):
         return []
@@ -77,7 +69,7 @@ def _ways(problem: Problem, place: Face, towards: FloatArray) -> list[FloatArray
     ]
 
 
-def _piece(problem: Problem, place: Face) -> tuple[Body, ...]:
+def piece_of(problem: Problem, place: Face) -> tuple[Body, ...]:
     """The bodies of a side with what is glued to them."""
     return next(piece for piece in pieces(problem) if place.body in {body.name for body in piece})
 
@@ -85,7 +77,7 @@ def _piece(problem: Problem, place: Face) -> tuple[Body, ...]:
 def between(problem: Problem, contact: Contact, towards: FloatArray) -> float:
     """How thick the deformable bodies of a contact are together along a unit vector."""
     sides = [contact.slave] if isinstance(contact.master, RigidPlane) else [contact.slave, contact.master]
-    bodies = {body.name: body for place in sides for body in _piece(problem, place) if not body.rigid}
+    bodies = {body.name: body for place in sides for body in piece_of(problem, place) if not body.rigid}
     return float(sum(np.ptp(body.patch.control_points @ towards) for body in bodies.values()))
 
 
@@ -116,33 +108,6 @@ def _idle_motions(problem: Problem, support: Support) -> Iterator[str]:
                 f"support {support.name!r} is to move along {', '.join(idle)} in stage {stage.name!r}, but prescribes only {held}: "
                 "that motion does nothing"
             )
-
-
-def _idle_turns(problem: Problem, support: Support) -> Iterator[str]:
-    """Turns across which a support leaves a component free."""
-    free = [axis for k, axis in enumerate("xyz") if abs(unit(support.axis)[k]) < 1.0 - NO_PART and k not in support.carried]
-    for stage, motion in zip(problem.stages, support.motions, strict=True):
-        if motion.rotate and free:
-            yield (
-                f"support {support.name!r} is to turn by {motion.rotate:g} degrees in stage {stage.name!r}, but leaves {', '.join(free)} "
-                f"free, across its axis: its points do not go round. Prescribe these as well, or look at supports.{support.name}.axis"
-            )
-
-
-def spinning(problem: Problem, contact: Contact, towards: FloatArray) -> Iterator[str]:
-    """Round bodies that go along their contact and turn about its normal at once, as where the axis of what rolls was left out."""
-    sides = [_piece(problem, place) for place in (contact.slave, contact.master) if isinstance(place, Face)]
-    names = {body.name for piece in sides if any(body.closed for body in piece) for body in piece}
-    for support in problem.supports:
-        upright = abs(unit(support.axis) @ towards) > FLAT and support.place.body in names
-        for stage, motion in zip(problem.stages, support.motions, strict=True):
-            along = np.linalg.norm(np.cross(motion.translate, towards))
-            if upright and motion.rotate and along > FLAT * np.linalg.norm(motion.translate) > 0.0:
-                axis = ", ".join(f"{a:g}" for a in support.axis)
-                yield (
-                    f"support {support.name!r} goes along contact {contact.name!r} in stage {stage.name!r} and turns about its normal: it "
-                    f"spins. If it is to roll, give supports.{support.name}.axis another direction than [{axis}]"
-                )
 
 
 def _idle_stages(problem: Problem) -> Iterator[str]:
@@ -185,32 +150,6 @@ def _unchanged(problem: Problem) -> int:
     """Number of the first stages in which the same supports hold."""
     holding = [[support.holds(k) for support in problem.supports] for k in range(len(problem.stages))]
     return next((k for k, held in enumerate(holding) if held != holding[0]), len(holding))
-
-
-def _radians(problem: Problem, support: Support) -> Iterator[str]:
-    """Angles in radians."""
-    for stage, motion in zip(problem.stages, support.motions, strict=True):
-        meant = [(share, words) for share, words in RADIANS.items() if abs(abs(motion.rotate) / np.pi - share) < NEARLY * share]
-        if meant:
-            (share, words), *_ = meant
-            yield (
-                f"stage {stage.name!r} turns support {support.name!r} by {motion.rotate:g} degrees, and {words} is as much: angles are in "
-                f"degrees. If radians were meant, give {np.copysign(180.0 * share, motion.rotate):g}"
-            )
-
-
-def _axis_beside(problem: Problem, support: Support) -> Iterator[str]:
-    """A turn about an axis that is not where the body is."""
-    body = problem.body(support.place.body)
-    arms = body.patch.control_points - np.asarray(support.centre)
-    along = arms @ unit(support.axis)
-    beside = float(np.linalg.norm(arms - along[:, None] * unit(support.axis), axis=1).min())
-    if support.turns and beside > body.size:
-        yield (
-            f"support {support.name!r} turns about an axis that is {beside:.3g} beside its body, which is {body.size:.3g} long: it goes "
-            f"round on a large circle. If it is to turn where it is, give supports.{support.name}.centre (the origin by default), "
-            "and axis"
-        )
 
 
 def _as_absolute(problem: Problem, support: Support) -> Iterator[str]:

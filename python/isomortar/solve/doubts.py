@@ -22,8 +22,9 @@ from isomortar.model.rational import QUADRATURE_TOLD, quadrature_error, too_few_
 from isomortar.model.stance import FACING, Stance, stance
 from isomortar.solve.doubtful_faces import of_faces
 from isomortar.solve.doubtful_meshes import of_meshes
-from isomortar.solve.doubtful_motions import FLAT, approach, between, in_far_steps, nearest_approach, of_motions, spinning
+from isomortar.solve.doubtful_motions import FLAT, approach, between, in_far_steps, nearest_approach, of_motions
 from isomortar.solve.doubtful_sizes import of_sizes
+from isomortar.solve.doubtful_turns import of_rolling, of_turns
 from isomortar.solve.feet import gaps
 from isomortar.solve.left_out import of_what_is_left_out
 from isomortar.solve.poles import doubts_at_poles
@@ -63,6 +64,7 @@ def doubts(problem: Problem, state: State) -> Iterator[str]:
     if not problem.deformable:
         yield "all bodies are rigid: nothing deforms, and all forces are zero. Let one of them deform"
     yield from of_motions(problem)
+    yield from of_turns(problem)
     yield from of_meshes(problem)
     yield from of_sizes(problem)
     yield from of_faces(problem)
@@ -77,7 +79,7 @@ def doubts(problem: Problem, state: State) -> Iterator[str]:
         yield from _of_stance(contact, found, travel, too_deep, beside=not np.any(feet))
         yield from _of_ways(problem, contact, found, beside=not np.any(feet))
         yield from _of_contact(contact)
-        yield from spinning(problem, contact, found.towards)
+        yield from of_rolling(problem, contact, found.towards)
         yield from doubts_at_poles(problem, contact, travel)
     for one, other in combinations(problem.contacts, 2):
         if (one.slave, one.master) == (other.master, other.slave):

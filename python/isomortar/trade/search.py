@@ -209,16 +209,18 @@ class Search:
         return {number for number, setting in dearer.items() if model.effect(number, setting) <= limit}
 
     def _cost(self, choice: Choice) -> float:
-        """CPU seconds that an over-refined run will take about, by what one setting took."""
+        """CPU seconds that an over-refined run will take about: what the nearest of those before took, and one setting alone."""
         known = self.laboratory.outcomes
         if choice in known:
             return 0.0
-        cost = self.own.cost
-        for number, (dial, setting) in enumerate(zip(self.dials, choice, strict=True)):
-            if setting > dial.own:
+        before = [outcome for outcome in (self.own, self.truth, self.rival) if outcome]
+        near = min(before, key=lambda outcome: sum(a != b for a, b in zip(outcome.choice, choice, strict=True)))
+        cost = near.cost
+        for number, (dial, start, setting) in enumerate(zip(self.dials, near.choice, choice, strict=True)):
+            if setting > start:
                 next_one = known.get(self.single(number, dial.own + 1))
                 growth = max(1.0, next_one.cost / self.own.cost) if next_one else 2.0
-                cost *= growth ** _times(dial, setting)
+                cost *= growth ** (_times(dial, setting) - _times(dial, start))
         return cost
 
     def _needed(self, target: float) -> str:
