@@ -254,6 +254,22 @@ DOUBTFUL = {
         "but leaves y free, across its axis",
     ),
     "spins": (TYRE, "axis = [0, 1, 0]", "axis = [0, 0, 1]", "If it is to roll, give supports.rim.axis another direction"),
+    "rolls the other way": (TYRE, "rotate = 30", "rotate = -30", "it slides by 1.02. If it is to roll, turn it by 28.8 degrees"),
+    "turned by a tenth": (TYRE, "rotate = 30", "rotate = 3", "turn it by 28.8 degrees"),
+    "turns off its centre": (TYRE, "centre = [0, 0, 1]\naxis", "centre = [0, 0, 0]\naxis", "give that as supports.rim.centre"),
+    "half a turn in a step": (
+        PRESS.replace("rotate = 0", "rotate = 180"),
+        'face = "block.w1"',
+        'face = "block.w1"\ncentre = [0, 0, 0]',
+        "Take 2 load steps or more",
+    ),
+    "setting of the other method": (PRESS, "[supports.top]", "[solver]\npenalty_growth = 3\n[supports.top]", "Take it out, or take that"),
+    "setting of the first method": (
+        PRESS,
+        "[supports.top]",
+        '[solver]\nmethod = "uzawa"\ncomplementarity_tolerance = 1e-9\n[supports.top]',
+        "does nothing",
+    ),
     "idle stage": (PRESS, "rotate = 0 }", 'rotate = 0 }\n[[stages]]\nname = "hold"\nsteps = 20', "compute the same state again"),
     "held on one side": (PAIR, 'face = "lower.w0"', 'face = "lower.w1"', "its face lower.w1 is held by support 'base'"),
     "load on contact": (

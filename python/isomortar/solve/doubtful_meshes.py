@@ -1,4 +1,4 @@
-"""What is doubtful of meshes, quadratures and tolerances: numbers that cost digits of the result."""
+"""What is doubtful of meshes, quadratures and settings of the solver: numbers that cost digits of the result, or do nothing."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from isomortar.geometry.patch import opposite
 from isomortar.model.contrasts import element_lengths
-from isomortar.model.entities import Body, Contact, Face, Problem
+from isomortar.model.entities import Body, Contact, Face, Problem, SolverSettings
 from isomortar.model.sheet import Sheet
 
 #: Mean lengths of elements in two directions further apart make them slender, as when numbers of elements are in another order.
@@ -17,6 +17,14 @@ SLENDER = 20.0
 GRADED = 3.0
 #: Shares that solvers may leave open: more shows in the second digit of forces, and is told.
 LOOSE = {"newton_tolerance": 1e-4, "augmentation_tolerance": 0.01}
+#: Settings that one method alone looks at.
+OF_METHOD = {
+    "uzawa": (
+        "penalty_normal", "penalty_tangential", "penalty_growth", "penalty_growth_max",
+        "augmentation_tolerance", "augmentation_norm", "max_augmentations",
+    ),
+    "monolithic": ("complementarity_tolerance",),
+}  # fmt: skip
 
 
 def of_meshes(problem: Problem) -> Iterator[str]:
@@ -32,6 +40,7 @@ def of_meshes(problem: Problem) -> Iterator[str]:
         yield from _one_element(problem, contact)
         yield from _few_contact_points(problem, contact)
     yield from _loose(problem)
+    yield from _without_effect(problem)
 
 
 def _slender(body: Body) -> Iterator[str]:
@@ -100,3 +109,16 @@ def _loose(problem: Problem) -> Iterator[str]:
                 f"solver.{name} = {value:g} leaves that share of forces or contact conditions open, in each load step. Take "
                 f"{LOOSE[name]:g} or less, or none"
             )
+
+
+def _without_effect(problem: Problem) -> Iterator[str]:
+    """Settings of the method that is not in use: who varies them sees nothing change."""
+    settings = problem.settings
+    for method, names in OF_METHOD.items():
+        for name in names if method != settings.method else ():
+            value = getattr(settings, name)
+            if value != getattr(SolverSettings(), name):
+                yield (
+                    f'solver.{name} = {value} does nothing: it is of method "{method}", and solver.method is "{settings.method}". Take it '
+                    "out, or take that method"
+                )

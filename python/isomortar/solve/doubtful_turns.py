@@ -57,9 +57,10 @@ def _sliding(problem: Problem, contact: Contact, support: Support, arm: FloatArr
         goes, round_ = float(np.linalg.norm(way)), np.radians(motion.rotate) * turn
         slides = float(np.linalg.norm(way + round_))
         rolls_not = slides > SLIDES * max(goes, float(np.linalg.norm(round_)))
-        if motion.rotate and goes > FLAT * whole > 0.0 and rolls_not and np.linalg.norm(arm) > least:
+        turns = motion.rotate and not _meant(motion.rotate) and np.linalg.norm(arm) > least
+        if turns and rolls_not and goes > FLAT * whole > 0.0:
             angle = -(way @ turn) / (turn @ turn) if np.linalg.norm(turn) > least else 0.0
-            cure = f"turn it by {np.degrees(angle):.4g} degrees"
+            cure = f"turn it by {np.degrees(angle):.3g} degrees"
             if np.linalg.norm(way + angle * turn) > SLIDES * goes:
                 axis = ", ".join(f"{a:g}" for a in support.axis)
                 cure = f"give supports.{support.name}.axis another direction than [{axis}]"
@@ -109,13 +110,16 @@ def _idle_turns(problem: Problem, support: Support) -> Iterator[str]:
 def _radians(problem: Problem, support: Support) -> Iterator[str]:
     """Angles in radians."""
     for stage, motion in zip(problem.stages, support.motions, strict=True):
-        meant = [(share, words) for share, words in RADIANS.items() if abs(abs(motion.rotate) / np.pi - share) < NEARLY * share]
-        if meant:
-            (share, words), *_ = meant
+        for share, words in _meant(motion.rotate):
             yield (
                 f"stage {stage.name!r} turns support {support.name!r} by {motion.rotate:g} degrees, and {words} is as much: angles are in "
                 f"degrees. If radians were meant, give {np.copysign(180.0 * share, motion.rotate):g}"
             )
+
+
+def _meant(angle: float) -> list[tuple[float, str]]:
+    """What an angle is in radians, as a share of pi and in words: the first that it is, if any."""
+    return [(share, words) for share, words in RADIANS.items() if abs(abs(angle) / np.pi - share) < NEARLY * share][:1]
 
 
 def _far_turns(problem: Problem, support: Support) -> Iterator[str]:
