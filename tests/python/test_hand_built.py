@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import get_args
 
 import pytest
+from told.wrong.contacts import PAIR
 
 from isomortar._arrays import MaterialLaw
 from isomortar.errors import InputError
@@ -14,7 +15,6 @@ from isomortar.model.entities import Face, Problem, Support
 from isomortar.scene import Scene
 from isomortar.solve.simulation import Simulation
 from test_advice import rational
-from test_scene_contacts import PAIR
 
 
 def _without_supports(problem: Problem) -> Problem:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from told.wrong.contacts import PRESS
 
 from isomortar.geometry.patch import Family
 from isomortar.scene import Scene
 from isomortar.scene.build import _MeshPlan, coarse_patch
-from test_scene_contacts import PRESS
 
 
 @pytest.mark.parametrize("family", ["N", "L"])

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from told.wrong.contacts import PAIR
 
 from isomortar.errors import InputError
 from isomortar.geometry.patch import FACES
@@ -13,7 +14,6 @@ from isomortar.model.contact_checks import check_contacts, has_pole
 from isomortar.model.entities import Problem
 from isomortar.model.sheet import Sheet
 from isomortar.scene import Scene
-from test_scene_contacts import PAIR
 
 #: Edges of a face's net of control points.
 EDGES = (np.s_[0, :], np.s_[-1, :], np.s_[:, 0], np.s_[:, -1])

@@ -15,6 +15,11 @@ import pytest
 import splinepy
 from matplotlib.figure import Figure
 from matplotlib.text import Text
+from told.wrong.contacts import LAGRANGE, PAIR, PRESS
+from told.wrong.halves import PLANE
+from told.wrong.sides import ALL
+from told.wrong.sides import GOOD as SIDES
+from told.wrong.sides import PAIR as ROW
 
 from isomortar import Results, Scene, _distributed, film, plot, view
 from isomortar._codes import Status
@@ -47,13 +52,8 @@ from test_causes import pushed, said
 from test_causes import scene as causes
 from test_feet import cone, loaded, on_the_axis, ridge
 from test_poles import drawn_together
-from test_scene_contacts import LAGRANGE, PAIR, PRESS
 from test_sentences import SENTENCES, Told, refusal, without_digits
-from test_sides import ALL
-from test_sides import GOOD as SIDES
-from test_sides import PAIR as ROW
 from test_singular import BLOCK, CORNER, FROM_BESIDE, error
-from test_symmetry import PLANE, REFUSED
 
 
 def of_geometry(_: pytest.MonkeyPatch) -> Told:
@@ -161,8 +161,6 @@ def of_problems(patch: pytest.MonkeyPatch) -> Told:
     )
     yield "folded", refusal(lambda: Simulation(torn))
     yield "left-handed", refusal(lambda: Simulation(mirrored))
-    for name, (text, planes, *_) in REFUSED.items():
-        yield f"symmetry: {name}", _of(text, f"symmetry={{ {planes} }}")
     raised = "bodies.block.mesh={ order = 2, contact_order = 3, elements = [4, 4, 2] }"
     yield "symmetry: raised", _of(PLANE, raised, "symmetry={ x = 0.0 }")
     yield "symmetry: closed", _of(_TYRE, "symmetry={ x = 0.0 }")

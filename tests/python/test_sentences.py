@@ -12,6 +12,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from told.word_by_word import KINDS as OF_SCENES
+from told.wrong.contacts import PRESS
 
 from isomortar.errors import IsomortarError, SingularSystemError
 from isomortar.results.reader import Results
@@ -22,27 +24,10 @@ from isomortar.solve.advice import StepAdvice
 from isomortar.solve.simulation import Simulation
 from isomortar.solve.trail import toggling
 from results_samples import problem, step_result
-from test_advice import DOUBTFUL, PLATE, PRESS, RUNS, Warned, _of_weights, material, rational, warnings
+from test_advice import PLATE, RUNS, Warned, _of_weights, rational, warnings
 from test_causes import said, scene
-from test_glue import WRONG as UNGLUED
-from test_loads import GOOD as LOADED
-from test_loads import HALVED, UNEVEN
-from test_loads import WRONG as UNBEARABLE
-from test_plates import ELSEWHERE, ROLLS
-from test_plates import GOOD as TILTING
-from test_plates import WRONG as UNTURNED
-from test_raised import WRONG as UNRAISED
-from test_raised import wrong
-from test_rigid import GOOD as DIE
-from test_rigid import WRONG as UNBENDING
-from test_scene_contacts import WRONG
-from test_scene_errors import CASES, GOOD
-from test_sides import GOOD as SIDES
-from test_sides import WRONG as NO_SIDES
+from test_plates import ROLLS
 from test_singular import BLOCK, CORNER, STICKING, Heard, error, explained
-from test_support_forces import GOOD as PRESSED
-from test_support_forces import HALVED as HALF_PRESSED
-from test_support_forces import WRONG as UNMOVING
 
 SENTENCES: dict[str, dict[str, str]] = tomllib.loads((Path(__file__).parent / "sentences.toml").read_text(encoding="utf-8"))
 
@@ -55,72 +40,6 @@ def refusal(action: Callable[[], object]) -> str:
     with pytest.raises(IsomortarError) as raised:
         action()
     return str(raised.value)
-
-
-def refused(text: str) -> str:
-    """What is said of a scene that is wrong."""
-    return refusal(lambda: Scene.from_toml(text).problem())
-
-
-def bad_scenes(_: pytest.MonkeyPatch) -> Told:
-    """Refused for one wrong key."""
-    for name, (old, new, *_) in CASES.items():
-        yield name, refused(GOOD.replace(old, new, 1))
-
-
-def bad_contacts(_: pytest.MonkeyPatch) -> Told:
-    """Refused for what cannot be meant."""
-    for name, (text, old, new, *_) in WRONG.items():
-        yield name, refused(text.replace(old, new))
-
-
-def bad_joints(_: pytest.MonkeyPatch) -> Told:
-    """Refused for faces that cannot be glued."""
-    for name, (text, *_) in UNGLUED.items():
-        yield name, refused(text)
-
-
-def bad_rigid_bodies(_: pytest.MonkeyPatch) -> Told:
-    """Refused for rigid bodies that cannot be."""
-    for name, (old, new, *_) in UNBENDING.items():
-        yield name, refused(DIE.replace(old, new))
-
-
-def bad_loads(_: pytest.MonkeyPatch) -> Told:
-    """Refused for loads that cannot be meant."""
-    for name, (old, new, *_) in UNBEARABLE.items():
-        yield name, refused(LOADED.replace(old, new))
-    for name, (load, *_) in UNEVEN.items():
-        yield name, refused(HALVED.replace("LOAD", load))
-
-
-def bad_forces(_: pytest.MonkeyPatch) -> Told:
-    """Refused for forces that supports cannot exert."""
-    for name, (old, new, *_) in UNMOVING.items():
-        yield name, refused(PRESSED.replace(old, new))
-    halved = HALF_PRESSED.replace("FORCE", "force.y = 0") + "symmetry = { y = 0.0 }"
-    yield "through the plane", refused(halved)
-
-
-def bad_plates(_: pytest.MonkeyPatch) -> Told:
-    """Refused for moments that supports cannot exert, and stages in which they cannot hold; and what nothing holds any more."""
-    for name, (old, new, *_) in UNTURNED.items():
-        yield name, refused(TILTING.replace(old, new))
-    for name, (text, *_) in ELSEWHERE.items():
-        yield name, refused(text)
-    yield "rolls away", re.sub(r"condition [^)]*", "condition #", refusal(lambda: list(Simulation(Scene.from_toml(ROLLS).problem()).run())))
-
-
-def bad_raised_faces(_: pytest.MonkeyPatch) -> Told:
-    """Refused for orders that a face in contact cannot have."""
-    for name in UNRAISED:
-        yield name, refused(wrong(name))
-
-
-def bad_sides(_: pytest.MonkeyPatch) -> Told:
-    """Refused for faces that make no side of a contact."""
-    for name, (old, new, *_) in NO_SIDES.items():
-        yield name, refused(SIDES.replace(old, new))
 
 
 def bad_words(_: pytest.MonkeyPatch) -> Told:
@@ -139,13 +58,8 @@ def bad_words(_: pytest.MonkeyPatch) -> Told:
     yield "seam", refusal(lambda: Scene.load("tire", ["contacts.road.slave=tire.u0"]).problem())
 
 
-def doubtful(patch: pytest.MonkeyPatch) -> Told:
-    """Warnings on scenes that run."""
-    for name, (text, old, new, _) in DOUBTFUL.items():
-        (yield name, *warnings(text.replace(old, new)))
-    rubber = PRESS.replace("[bodies.block]", "[materials.rubber]\n[bodies.block]")
-    (yield "locks", *warnings(rubber, material(0.4999, "N", 3)))
-    (yield "locks at any order", *warnings(rubber, material(0.5 - 1e-13, "N", 3)))
+def of_weights_and_memory(patch: pytest.MonkeyPatch) -> Told:
+    """Warnings on weights that differ too much, and on too little memory."""
     (yield "weights", *_of_weights(rational(8.0)))
     yield "weights, refused", refusal(partial(_of_weights, rational(30.0)))
     yield "weights without a cure", refusal(partial(_of_weights, rational(1e6)))
@@ -215,6 +129,7 @@ def without_digits(sentence: str) -> str:
 
 def given_up(_: pytest.MonkeyPatch) -> Told:
     """Causes of a load step that is given up."""
+    yield "rolls away", re.sub(r"condition [^)]*", "condition #", refusal(lambda: list(Simulation(Scene.from_toml(ROLLS).problem()).run())))
     (yield "thin", *said(scene(TOP=1.000001)))
     (yield "thin, bent", *said(scene(TOP=1.0004), SingularSystemError("")))
     (yield "incompressible", *said(scene(POISSON=0.499999)))
@@ -286,17 +201,8 @@ def _general(part: str) -> str:
 
 
 KINDS = (
-    bad_scenes,
-    bad_contacts,
-    bad_joints,
-    bad_rigid_bodies,
-    bad_loads,
-    bad_forces,
-    bad_plates,
-    bad_raised_faces,
-    bad_sides,
     bad_words,
-    doubtful,
+    of_weights_and_memory,
     along_the_way,
     given_up,
     of_results,
@@ -308,3 +214,8 @@ KINDS = (
 def test_every_word(kind: Callable[[pytest.MonkeyPatch], Told], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     assert dict(kind(monkeypatch)) == SENTENCES[kind.__name__]
+
+
+@pytest.mark.parametrize("kind", OF_SCENES)
+def test_every_word_of_scenes(kind: str) -> None:
+    assert dict(OF_SCENES[kind]()) == SENTENCES[kind]

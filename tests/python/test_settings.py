@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from told.wrong.contacts import PRESS
 
 from isomortar.errors import InputError
 from isomortar.scene import Scene
 from isomortar.solve.simulation import Simulation
-from test_scene_contacts import PRESS
 
 
 @pytest.mark.parametrize(

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from told.wrong.contacts import PRESS
 from transforms import scaled
 
 from isomortar.scene import Scene
 from isomortar.solve.small_strains import left_out
-from test_advice import PRESS
 
 BOWL = Scene.from_toml(PRESS).problem()
 

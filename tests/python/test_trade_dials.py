@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import numpy as np
+from told.wrong.raised import GOOD as RAISED
 
 from isomortar.model.entities import Raised
 from isomortar.results.bezier import functions_at
@@ -13,7 +14,6 @@ from isomortar.trade.advice import cheaper_dials
 from isomortar.trade.knobs import KNOBS, changed, dials_of
 from isomortar.trade.run import traded
 from isomortar.trade.want import wanted
-from test_raised import GOOD as RAISED
 from test_symmetry import PLANE
 
 
