@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from told.wrong.plates import ELSEWHERE, GOOD, HALVED, WRONG
+from told.wrong.plates import ELSEWHERE, GOOD, HALVED, ROLLS, WRONG
 
 from isomortar import run
 from isomortar.cli.check import lines
@@ -24,19 +24,6 @@ from isomortar.solve.record import Observer, StepResult
 from isomortar.solve.simulation import Simulation
 from isomortar.solve.system import LinearSystem
 from isomortar.solve.timing import Ledger
-
-#: A pipe on a plane without friction, which rolls away where nothing holds it.
-ROLLS = """
-format = 1
-bodies.pipe.geometry = { kind = "ring", inner = 0.7, outer = 1, width = 0.25 }
-bodies.pipe.mesh = { order = [2, 2, 1], elements = [16, 1, 1] }
-contacts.floor = { slave = "pipe.v1", plane = { point = [0, 0, -1] }, friction = 0 }
-supports.side = { face = "pipe.w0", components = ["y"] }
-supports.hold = { face = "pipe.v0", stages = ["touch"] }
-loads.own = { body = "pipe", weight = [0, 0, -0.1] }
-solver.max_cuts = 2
-stages = [{ name = "touch", steps = 1, motions.hold.translate = [0, 0, -0.01] }, { name = "let-go", steps = 1 }]
-"""
 
 
 class Stopped(Observer):

@@ -20,6 +20,7 @@ from told.wrong.halves import PLANE
 from told.wrong.sides import ALL
 from told.wrong.sides import GOOD as SIDES
 from told.wrong.sides import PAIR as ROW
+from told.wrong.singular import BLOCK, error
 
 from isomortar import Results, Scene, _distributed, film, plot, view
 from isomortar._codes import Status
@@ -44,16 +45,15 @@ from isomortar.solve import doubts, feet, singular, system
 from isomortar.solve.advice import by_default
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.simulation import Simulation
-from isomortar.solve.singular import PairConditions, explain
+from isomortar.solve.singular import PairConditions
 from isomortar.solve.timing import Ledger
 from results_samples import problem, step_result, without_contact
 from test_advice import warnings
-from test_causes import pushed, said
-from test_causes import scene as causes
+from test_causes import pushed
 from test_feet import cone, loaded, on_the_axis, ridge
 from test_poles import drawn_together
 from test_sentences import SENTENCES, Told, refusal, without_digits
-from test_singular import BLOCK, CORNER, FROM_BESIDE, error
+from test_singular import FROM_BESIDE
 
 
 def of_geometry(_: pytest.MonkeyPatch) -> Told:
@@ -276,26 +276,16 @@ def _stopped(text: str, *overrides: str) -> str:
 
 def of_causes(patch: pytest.MonkeyPatch) -> Told:
     """What may be behind it, and warnings that no other test hears."""
-    simulation = causes()
-    positions = simulation.state.positions.copy()
-    positions[np.unique(simulation.equilibrium.numbering.points["lower"]), 2] *= 0.05
-    simulation.state = replace(simulation.state, positions=positions)
-    (yield "pressed flat", *said(simulation))
-    yield "turns", re.sub(r"\(.*?\)", "(#)", error(BLOCK + 'supports.top = { face = "block.w1", components = ["z"] }'))
     yield "over an edge", error(FROM_BESIDE).partition("to iteration. ")[2]
     yield "slides", refusal(lambda: list(pushed("along", "plane", 0.24).run())).partition("Friction")[2].replace(" of", "friction of", 1)
-    same = ["contacts.wall.slave='block.w0'", "contacts.wall.plane={ point = [1, 0, 0] }"]
-    yield "repeat others", re.sub(r"\d+|'\w+'", "#", error(CORNER, *same).partition("the first of them ")[2])
     equilibrium = Equilibrium(Scene.from_toml(BLOCK + 'supports.top.face = "block.w1"').problem(), Ledger())
-    reference, numbering = equilibrium.numbering.reference, equilibrium.numbering
-    yield "nothing", str(explain(0.0, np.full(3, np.nan), equilibrium.supports, reference, numbering, []))
+    reference = equilibrium.numbering.reference
     pair, start = equilibrium.pairs[0], equilibrium.initial_state().contacts[0]
     conditions = PairConditions(pair, np.full(3 * pair.pair.slave.test.count, -1), pair.kinematics(reference, start))
     held = np.zeros(reference.size, dtype=np.bool_)
     held[3 * pair.pair.slave.point[0]] = True
     yield "prescribed", str(singular._repeated("singular", conditions, np.arange(9), [conditions], held))
     (yield "kinks", *by_default(Scene.from_toml(LAGRANGE).problem().contacts[0]))
-    (yield "spans", *warnings(_GRADED))
     die = "bodies.lower.rigid=true"
     yield "nothing moves", warnings(PAIR, [die, "supports.top.face=upper.w0"])[0]
 
@@ -304,17 +294,6 @@ def of_causes(patch: pytest.MonkeyPatch) -> Told:
 
     patch.setattr(doubts, "quadrature_error", fold)
     (yield "between Gauss points", *warnings(PRESS))
-
-
-_GRADED = """
-format = 1
-bodies.a.patch.order = [1, 1, 1]
-bodies.a.patch.knots = [[0, 0, 1e-9, 1, 1], [0, 0, 1, 1], [0, 0, 1, 1]]
-bodies.a.patch.control_points = [[0, 0, 0], [1e-9, 0, 0], [1, 0, 0], [0, 1, 0], [1e-9, 1, 0], [1, 1, 0],
-                                 [0, 0, 1], [1e-9, 0, 1], [1, 0, 1], [0, 1, 1], [1e-9, 1, 1], [1, 1, 1]]
-supports = { top.face = "a.w1", base.face = "a.w0" }
-stages = [{ name = "pull", steps = 1, motions.top.translate = [0, 0, 0.1] }]
-"""
 
 
 def on_figures(patch: pytest.MonkeyPatch) -> Told:

@@ -12,22 +12,22 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from told.given_up import all_told, without_digits
 from told.word_by_word import KINDS as OF_SCENES
 from told.wrong.contacts import PRESS
+from told.wrong.singular import CORNER
 
-from isomortar.errors import IsomortarError, SingularSystemError
+from isomortar.errors import IsomortarError
 from isomortar.results.reader import Results
 from isomortar.results.writer import ResultsWriter
 from isomortar.scene import Scene
 from isomortar.solve import doubts, pulling
 from isomortar.solve.advice import StepAdvice
 from isomortar.solve.simulation import Simulation
-from isomortar.solve.trail import toggling
 from results_samples import problem, step_result
 from test_advice import PLATE, RUNS, Warned, _of_weights, rational, warnings
-from test_causes import said, scene
-from test_plates import ROLLS
-from test_singular import BLOCK, CORNER, STICKING, Heard, error, explained
+from test_causes import scene
+from test_singular import STICKING, Heard
 
 SENTENCES: dict[str, dict[str, str]] = tomllib.loads((Path(__file__).parent / "sentences.toml").read_text(encoding="utf-8"))
 
@@ -122,38 +122,6 @@ def _before_the_first_step(simulation: Simulation, number: int = 0) -> str:
     return observer.said[number]
 
 
-def without_digits(sentence: str) -> str:
-    """Numbers with an exponent, which are round-off, in short."""
-    return re.sub(r"\d(\.\d+)?e[+-]\d+", "#", sentence)
-
-
-def given_up(_: pytest.MonkeyPatch) -> Told:
-    """Causes of a load step that is given up."""
-    yield "rolls away", re.sub(r"condition [^)]*", "condition #", refusal(lambda: list(Simulation(Scene.from_toml(ROLLS).problem()).run())))
-    (yield "thin", *said(scene(TOP=1.000001)))
-    (yield "thin, bent", *said(scene(TOP=1.0004), SingularSystemError("")))
-    (yield "incompressible", *said(scene(POISSON=0.499999)))
-    (yield "stiffness", *said(scene(HARD=1e12)))
-    (yield "penalty", *said(scene(METHOD="uzawa", PENALTY=1e4)))
-    (yield "points", *said(scene(SLAVE=1, MASTER=8)))
-    yield "slides", without_digits(error(BLOCK + 'supports.top = { face = "block.w1", components = ["y", "z"] }'))
-    yield "held", explained([4], [])
-    sole = "stages.press.motions={top={translate=[0, 0, -0.02]}, sole={translate=[0, 0, -0.02]}}"
-    yield "all held", without_digits(error(BLOCK + 'supports.top = { face = "block.w1" }\nsupports.sole = { face = "block.w0" }', sole))
-    yield "repeated", explained([], [3, 5])
-    yield "left", explained([], [3, 5], found=0)
-    states = [np.array(s, dtype=np.int32).tobytes() for s in ([0, 1, 2], [0, 2, 2])]
-    places = [np.zeros((2, 4), dtype=np.int32), np.array([[0, 0, 0, 0], [1, 0, 0, 0]], dtype=np.int32)]
-    away, near = np.zeros(2, dtype=bool), np.ones(2, dtype=bool)
-    yield "changing states", toggling(states, places, away, summed=False)
-    yield "changing states, paper's sum", toggling(states, places, away, summed=True)
-    yield "knot lines", toggling(states[:1] * 2, places, away, summed=True)
-    yield "poles", toggling(states[:1] * 2, places, near, summed=True)
-    yield "nothing changes", toggling(states[:1] * 2, places[:1] * 2, near, summed=True)
-    few = ["solver.method=uzawa", "solver.max_augmentations=2", "solver.max_cuts=0"]
-    yield "augmentations", without_digits(error(PRESS, *few))
-
-
 def of_results(_: pytest.MonkeyPatch) -> Told:
     """Refused by a results file; beside it stands what it is not."""
     writer = ResultsWriter("run.h5", problem(), "", "0")
@@ -204,7 +172,6 @@ KINDS = (
     bad_words,
     of_weights_and_memory,
     along_the_way,
-    given_up,
     of_results,
     in_results,
 )
@@ -219,3 +186,7 @@ def test_every_word(kind: Callable[[pytest.MonkeyPatch], Told], tmp_path: Path, 
 @pytest.mark.parametrize("kind", OF_SCENES)
 def test_every_word_of_scenes(kind: str) -> None:
     assert dict(OF_SCENES[kind]()) == SENTENCES[kind]
+
+
+def test_every_word_of_load_steps_that_are_given_up() -> None:
+    assert all_told() == SENTENCES["given_up"]

@@ -53,6 +53,16 @@ _STEEL = """
 soft = { young = 1 }
 steel = { young = 2e6 }
 """
+#: A body with one knot span far shorter than the other.
+_GRADED = """
+format = 1
+bodies.a.patch.order = [1, 1, 1]
+bodies.a.patch.knots = [[0, 0, 1e-9, 1, 1], [0, 0, 1, 1], [0, 0, 1, 1]]
+bodies.a.patch.control_points = [[0, 0, 0], [1e-9, 0, 0], [1, 0, 0], [0, 1, 0], [1e-9, 1, 0], [1, 1, 0],
+                                 [0, 0, 1], [1e-9, 0, 1], [1, 0, 1], [0, 1, 1], [1e-9, 1, 1], [1, 1, 1]]
+supports = { top.face = "a.w1", base.face = "a.w0" }
+stages = [{ name = "pull", steps = 1, motions.top.translate = [0, 0, 0.1] }]
+"""
 #: Nearly incompressible.
 _RUBBER = PRESS.replace("[bodies.block]", "[materials.rubber]\npoisson = POISSON\n[bodies.block]")
 _RUBBER = _RUBBER.replace("elements = [2, 2, 1]", "order = 3, elements = [2, 2, 1]")
@@ -272,6 +282,7 @@ DOUBTFUL = {
         '[supports.cut]\nface = "lower.u0"\ncomponents = ["y"]\n[supports.base]',
         "nothing holds them there",
     ),
+    "spans": (_GRADED, "", "", "1e+09"),
     "locks": (_RUBBER.replace("POISSON", "0.4999"), "", "", "Take order 4 or more"),
     "locks at any order": (_RUBBER.replace("POISSON", "0.4999999999999"), "", "", "Take a Poisson's ratio that is lower"),
 }

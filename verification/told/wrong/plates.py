@@ -64,6 +64,18 @@ supports.base = { face = "block.w0", stages = ["one"] }
 stages = [{ name = "one", steps = 1 }, { name = "two", steps = 1 }]
 """
 
+#: A pipe on a plane without friction, which rolls away where nothing holds it.
+ROLLS = """
+format = 1
+bodies.pipe.geometry = { kind = "ring", inner = 0.7, outer = 1, width = 0.25 }
+bodies.pipe.mesh = { order = [2, 2, 1], elements = [16, 1, 1] }
+contacts.floor = { slave = "pipe.v1", plane = { point = [0, 0, -1] }, friction = 0 }
+supports.side = { face = "pipe.w0", components = ["y"] }
+supports.hold = { face = "pipe.v0", stages = ["touch"] }
+loads.own = { body = "pipe", weight = [0, 0, -0.1] }
+solver.max_cuts = 2
+stages = [{ name = "touch", steps = 1, motions.hold.translate = [0, 0, -0.01] }, { name = "let-go", steps = 1 }]
+"""
 #: A bar that is bent by a moment about a horizontal axis, cut by a plane of symmetry.
 HALVED = """
 format = 1

@@ -1,0 +1,100 @@
+"""What is said of a load step that is given up, word by word: what a singular tangent leaves free, what toggles, and what is behind it."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+from told.word_by_word import SENTENCES
+from told.wrong.causes import said, scene
+from told.wrong.contacts import PRESS
+from told.wrong.plates import ROLLS
+from told.wrong.singular import BLOCK, CORNER, error, explained
+
+from isomortar.errors import SingularSystemError
+from isomortar.harness import Bound, case
+from isomortar.scene import Scene
+from isomortar.solve.equilibrium import Equilibrium
+from isomortar.solve.simulation import Simulation
+from isomortar.solve.singular import explain
+from isomortar.solve.timing import Ledger
+from isomortar.solve.trail import toggling
+
+
+def without_digits(sentence: str) -> str:
+    """Numbers with an exponent, which are round-off, in short."""
+    return re.sub(r"\d(\.\d+)?e[+-]\d+", "#", sentence)
+
+
+def of_causes() -> Iterator[tuple[str, str]]:
+    """Of a scene that is sound but for one number; of one whose lower body is pressed flat."""
+    changes = {
+        "thin": {"TOP": 1.000001},
+        "incompressible": {"POISSON": 0.499999},
+        "stiffness": {"HARD": 1e12},
+        "penalty": {"METHOD": "uzawa", "PENALTY": 1e4},
+        "points": {"SLAVE": 1, "MASTER": 8},
+    }
+    yield from ((name, "\n".join(said(scene(**changed)))) for name, changed in changes.items())
+    yield "thin, bent", "\n".join(said(scene(TOP=1.0004), SingularSystemError("")))
+    flat: Simulation = scene()
+    positions = flat.state.positions.copy()
+    positions[np.unique(flat.equilibrium.numbering.points["lower"]), 2] *= 0.05
+    flat.state = replace(flat.state, positions=positions)
+    yield "pressed flat", "\n".join(said(flat))
+
+
+def of_singular_tangents() -> Iterator[tuple[str, str]]:
+    """What moves freely, what repeats, and what rests on nothing."""
+    yield "rolls away", re.sub(r"condition [^)]*", "condition #", error(ROLLS))
+    yield "slides", without_digits(error(BLOCK + 'supports.top = { face = "block.w1", components = ["y", "z"] }'))
+    yield "turns", re.sub(r"\(.*?\)", "(#)", error(BLOCK + 'supports.top = { face = "block.w1", components = ["z"] }'))
+    yield "held", explained([4], [])
+    sole = "stages.press.motions={top={translate=[0, 0, -0.02]}, sole={translate=[0, 0, -0.02]}}"
+    yield "all held", without_digits(error(BLOCK + 'supports.top = { face = "block.w1" }\nsupports.sole = { face = "block.w0" }', sole))
+    yield "repeated", explained([], [3, 5])
+    yield "left", explained([], [3, 5], found=0)
+    same = ("contacts.wall.slave='block.w0'", "contacts.wall.plane={ point = [1, 0, 0] }")
+    yield "repeat others", re.sub(r"\d+|'\w+'", "#", error(CORNER, *same).partition("the first of them ")[2])
+    bodies = Equilibrium(Scene.from_toml(BLOCK + 'supports.top.face = "block.w1"').problem(), Ledger())
+    yield "nothing", str(explain(0.0, np.full(3, np.nan), bodies.supports, bodies.numbering.reference, bodies.numbering, []))
+
+
+def of_iterations() -> Iterator[tuple[str, str]]:
+    """What goes to and fro from iteration to iteration, and augmentations that are too few."""
+    states = [np.array(s, dtype=np.int32).tobytes() for s in ([0, 1, 2], [0, 2, 2])]
+    places = [np.zeros((2, 4), dtype=np.int32), np.array([[0, 0, 0, 0], [1, 0, 0, 0]], dtype=np.int32)]
+    away, near = np.zeros(2, dtype=bool), np.ones(2, dtype=bool)
+    yield "changing states", toggling(states, places, away, summed=False)
+    yield "changing states, paper's sum", toggling(states, places, away, summed=True)
+    yield "knot lines", toggling(states[:1] * 2, places, away, summed=True)
+    yield "poles", toggling(states[:1] * 2, places, near, summed=True)
+    yield "nothing changes", toggling(states[:1] * 2, places[:1] * 2, near, summed=True)
+    few = ("solver.method=uzawa", "solver.max_augmentations=2", "solver.max_cuts=0")
+    yield "augmentations", without_digits(error(PRESS, *few))
+
+
+def all_told() -> dict[str, str]:
+    """What is said, by name."""
+    return {name: text for told in (of_causes, of_singular_tangents, of_iterations) for name, text in told()}
+
+
+@case(
+    claim="Of a load step that is given up it is said what is behind it, by the one sentence that people read of it: what is singular, "
+    "what changes from iteration to iteration, what of the scene is too extreme.",
+    tier="gate",
+    bounds={
+        "others": Bound(0.0, 0.0, "definition: load steps of which something else is said, or nothing, or more"),
+        "told": Bound(at_least=20.0, reason="definition: or nothing is tried"),
+    },
+    files=[SENTENCES],
+)
+def given_up() -> dict[str, float]:
+    """Of how many."""
+    expected = tomllib.loads(SENTENCES.read_text(encoding="utf-8"))["given_up"]
+    told = all_told()
+    others = [name for name in told.keys() | expected.keys() if told.get(name) != expected.get(name)]
+    return {"others": float(len(others)), "told": float(len(told))}
