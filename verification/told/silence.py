@@ -1,0 +1,145 @@
+"""What who says nothing gets: the keys of the published schema with their defaults, and Gauss points by order, as documented."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import isomortar.scene
+from isomortar.geometry.patch import Direction
+from isomortar.geometry.primitives import bowl
+from isomortar.geometry.quadrature import contact_points, volume_points
+from isomortar.geometry.refinement import mesh
+from isomortar.harness import Bound, case
+from isomortar.model.entities import Body, Contact, Face, Material, Motion, Problem, RigidPlane, Stage, Support
+from isomortar.results.definition import differences
+from isomortar.scene import Scene, json_schema
+
+PUBLISHED = Path(isomortar.scene.__file__).parent / "scene.schema.json"
+
+#: No word on the solver, the material, the quadrature, friction, and what a support holds.
+SILENT = """
+format = 1
+name = "quiet"
+[bodies.block]
+geometry = { kind = "bowl", half_width = 0.5, bottom = 0.0, rise = 0.1, top = 0.6 }
+mesh = { order = [2, 3, 1], elements = [3, 2, 1] }
+[contacts.floor]
+slave = "block.w0"
+plane = {}
+[supports.top]
+face = "block.w1"
+[[stages]]
+name = "press"
+steps = 2
+motions.top.translate = [0, 0, -0.1]
+[[stages]]
+name = "hold"
+steps = 1
+"""
+#: The same as docs say that it is.
+SPOKEN = (
+    SILENT.replace(
+        "elements = [3, 2, 1] }",
+        'elements = [3, 2, 1], family = "N", quadrature = [4, 6, 2], grading = [1, 1, 1] }\nrigid = false\nmaterial = "m"',
+    )
+    .replace("half_width", "centre = [0, 0], half_width")
+    .replace(
+        "plane = {}",
+        'friction = 0.3\ncohesion = 0\nelastic_slip = 0\nsmoothing = 0\nenforcement = "mortar"\nprojection = "closest"\nquadrature = '
+        "[6, 6]\nsubcells = 0\nplane = { point = [0, 0, 0], normal = [0, 0, 1], tangent = [1, 0, 0] }",
+    )
+    .replace('face = "block.w1"', 'face = "block.w1"\ncomponents = ["x", "y", "z"]\ncentre = [0, 0, 0]\naxis = [0, 0, 1]')
+    .replace("translate = [0, 0, -0.1]", "translate = [0, 0, -0.1]\nmotions.top.rotate = 0")
+    + """
+[materials.m]
+young = 10.0
+poisson = 0.3
+law = "neo-hookean"
+[solver]
+method = "monolithic"
+slip_sum = "local"
+penalty_normal = 100
+penalty_tangential = 10
+penalty_growth = 2
+penalty_growth_max = 200
+augmentation_tolerance = 0.01
+augmentation_norm = "separate"
+newton_tolerance = 1e-9
+complementarity_tolerance = 1e-8
+max_augmentations = 100
+max_iterations = 30
+max_cuts = 8
+measures = ["forgiving", "margin", "reversal", "halving", "keeping", "extrapolation"]
+engine = "own"
+compression = 0
+"""
+)
+#: Gauss points by order, from 1 on, of elements and of slave elements: Table 1 of the paper, and beyond it the order and two.
+POINTS = {
+    "N": ((2, 4, 6, 6, 7, 8, 9), (4, 6, 6, 6, 7, 8, 9)),
+    "L": ((2, 4, 4, 6), (4, 4, 9, 12)),
+}
+
+
+def by_hand() -> Problem:
+    """The scene made in Python of what it must be given."""
+    patch = mesh(bowl((0.0, 0.0), 0.5, 0.0, 0.1, 0.6), ("N", "N", "N"), (2, 3, 1), (3, 2, 1))
+    return Problem(
+        name="quiet",
+        bodies=(Body("block", patch, Material(), (4, 6, 2)),),
+        contacts=(Contact("floor", Face("block", "w0"), RigidPlane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)), 0.3, (6, 6)),),
+        supports=(Support("top", Face("block", "w1"), (Motion((0.0, 0.0, -0.1)), Motion())),),
+        stages=(Stage("press", 2), Stage("hold", 1)),
+    )
+
+
+def leaves(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
+    """What a schema says, by where."""
+    if isinstance(value, dict):
+        for key, entry in value.items():
+            yield from leaves(entry, f"{path}/{key}")
+    else:
+        yield path, repr(value)
+
+
+@case(
+    claim="Keys of scene files, what they allow and mean, and what they are where nothing is said are those of the published schema.",
+    tier="gate",
+    bounds={
+        "others": Bound(0.0, 0.0, "definition: words and numbers of the schema that differ"),
+        "said": Bound(at_least=500.0, reason="definition: or nothing is compared"),
+    },
+)
+def keys() -> dict[str, float]:
+    """How many."""
+    published, own = (dict(leaves(schema)) for schema in (json.loads(PUBLISHED.read_text(encoding="utf-8")), json_schema()))
+    others = [path for path in published.keys() | own.keys() if published.get(path) != own.get(path)]
+    return {"others": float(len(others)), "said": float(len(published))}
+
+
+@case(
+    claim="A scene that says nothing is the one that says what is documented, and that made in Python of what it must be given; Gauss "
+    "points are those of the paper's table.",
+    tier="gate",
+    bounds={
+        "scene": Bound(0.0, 0.0, "definition: what differs where all is said"),
+        "by hand": Bound(0.0, 0.0, "definition: what differs from what is made in Python"),
+        "points": Bound(0.0, 0.0, "definition: orders with other numbers of Gauss points"),
+    },
+)
+def silence() -> dict[str, float]:
+    """How much differs."""
+    silent, spoken = (Scene.from_toml(text).problem() for text in (SILENT, SPOKEN))
+    wrong = 0
+    for family, rules in POINTS.items():
+        for rule, points in zip((volume_points, contact_points), rules, strict=True):
+            lines = [Direction(family, p, [0, 1] if family == "L" else [0] * (p + 1) + [1] * (p + 1)) for p in range(1, len(points) + 1)]
+            wrong += sum(rule(line) != count for line, count in zip(lines, points, strict=True))
+    return {
+        "scene": float(len(differences(silent, spoken))),
+        "by hand": float(len(differences(silent, by_hand())) + (silent.settings != by_hand().settings)),
+        "points": float(wrong),
+    }
