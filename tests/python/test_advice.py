@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from told.wrong.contacts import PAIR, PRESS, RINGS, TYRE
 from told.wrong.doubts import AVERAGED, DOUBTFUL
+from told.wrong.runs import LINEAR, PLATE, RUNS
 from transforms import scaled
 
 from isomortar import cli
@@ -36,10 +37,6 @@ def material(poisson: float, family: str, order: int) -> list[str]:
 def warnings(text: str, overrides: list[str] | None = None) -> list[str]:
     problem = Scene.from_toml(text, overrides=overrides or ()).problem()
     return list(doubts(problem, Simulation(problem).state))
-
-
-#: A law of small strains.
-_LINEAR = PRESS.replace("[bodies.block]", '[materials.steel]\nlaw = "linear-elastic"\n[bodies.block]')
 
 
 @pytest.mark.parametrize("case", DOUBTFUL)
@@ -137,21 +134,6 @@ def test_weights_that_the_points_miss_are_refused_with_a_cure_that_cures() -> No
         _of_weights(rational(1e6))
 
 
-PLATE = """
-format = 1
-[bodies.b]
-geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, THICKNESS] }
-mesh = { order = [4, 1, 2], elements = [2, 1, 1] }
-[supports.root]
-face = "b.u0"
-TIP
-[[stages]]
-name = "move"
-steps = 1
-MOTION
-"""
-
-
 @pytest.mark.parametrize(
     ("thickness", "tip", "motion", "told"),
     [
@@ -192,7 +174,7 @@ _CAPPED = PRESS.replace("[supports.top]", "friction = 30\ntraction_max = 0.2\n[s
 
 
 #: Small strains of a body that turns a little; smooth contact, which presses before anything moves.
-_TURNED = _LINEAR.replace("rotate = 0", "rotate = 2")
+_TURNED = LINEAR.replace("rotate = 0", "rotate = 2")
 _SMOOTH = PRESS.replace("[supports.top]", "smoothing = 1e-3\n[supports.top]").replace("[0, 0, -0.1]", "[0, 0, 0]")
 
 
@@ -213,73 +195,6 @@ def test_a_shrink_fit_runs_with_a_word() -> None:
     said = warnings(RINGS)
     assert len(said) == 1
     assert "overlap by 0.02" in said[0]
-
-
-def staged(text: str, *stages: tuple[int, str, str]) -> str:
-    """A scene with other stages: load steps, and the translation and turn of its top."""
-    text = text.replace('face = "block.w1"', 'face = "block.w1"\naxis = [0, 1, 0]\ncentre = [0, 0, 0.8]')
-    tables = [f'name = "{k}"\nsteps = {n}\nmotions.top = {{ translate = {u}, rotate = {a} }}' for k, (n, u, a) in enumerate(stages)]
-    return text[: text.index("[[stages]]")] + "".join(f"[[stages]]\n{table}\n" for table in tables)
-
-
-WRONG_FACE = PAIR.replace('"lower.w1"', '"lower.w0"')
-OTHER_FACE = PRESS.replace('slave = "block.w0"', 'slave = "block.w1"').replace(
-    'face = "block.w1"', 'face = "block.w0"\naxis = [0, 1, 0]\ncentre = [0, 0, 0.8]'
-)
-#: Forces on control points at corners are negative where their functions are, though all of the pressure presses.
-DIE = """
-format = 1
-[bodies.block]
-geometry = { kind = "box", lower = [-0.5, -0.3, 0.0], upper = [0.5, 0.3, 0.4] }
-mesh = { family = "L", order = [2, 2, 1], elements = [2, 2, 1] }
-[bodies.die]
-rigid = true
-geometry = { kind = "bowl", half_width = 0.6, bottom = 0.4, rise = 0.1, top = 0.8 }
-[contacts.die]
-slave = "block.w1"
-master = "die.w0"
-friction = 0.0
-[supports.floor]
-face = "block.w0"
-[supports.die]
-face = "die.w1"
-[[stages]]
-name = "press"
-steps = 1
-motions.die.translate = [0, 0, -0.04]
-"""
-DOWN, UP, STAY = "[0, 0, -0.1]", "[0, 0, 0.3]", "[0, 0, 0]"
-#: Scene, and the contact's and words of the warnings of a run of it: none for sound ones.
-RUNS = {
-    "pressed": (staged(PRESS, (2, DOWN, "0"), (2, STAY, "0")), []),
-    "lifted at the end": (staged(PRESS, (2, DOWN, "0"), (1, UP, "0")), []),
-    "lifted and pressed again": (staged(PRESS, (1, DOWN, "0"), (3, UP, "0"), (1, "[0, 0, -0.3]", "0")), []),
-    "lifted for good": (staged(PRESS, (2, DOWN, "0"), (3, UP, "0")), ["opened in load step 3 and stayed open"]),
-    "rolling": (  # by an element: its averaged gaps are open where control points are beside the lowest line
-        TYRE.replace("normal = [0, 0, 1]", "point = [0, 0, 0.02], normal = [0, 0, 1]").replace("rotate = 30", "rotate = 22.5"),
-        [],
-    ),
-    "slid off": (
-        staged(PAIR, (2, "[0, 0, -0.05]", "0"), (10, "[2.5, 0, 0]", "0")),
-        ["left the master", "coefficients oscillate", "wholly beside", "opened in load step 8"],
-    ),
-    "slid off in one load step": (staged(PAIR, (1, DOWN, "0"), (1, "[0, 2.5, 0]", "0")), ["wholly beside"]),
-    "beside from the first load step on": (staged(PAIR, (1, "[0, 2.5, 0]", "0")), ["wholly beside", "never closed"]),
-    "turned over and pushed through": (staged(PRESS, (1, "[0, 0, 1]", "0"), (4, STAY, "180"), (4, "[0, 0, -2.7]", "0")), ["it pulls"]),
-    "turned over and pressed": (staged(OTHER_FACE, (4, "[0, 0, 0.5]", "180"), (2, "[0, 0, -1.35]", "0")), []),
-    "far side of the master": (WRONG_FACE.replace("-0.1]\n", "-0.7]\nmotions.top.rotate = 1\n"), ["it pulls"]),
-    "far side of the master, by Uzawa": (
-        WRONG_FACE.replace("-0.1]\n", "-0.7]\nmotions.top.rotate = 1\n") + '[solver]\nmethod = "uzawa"',
-        ["it pulls"],
-    ),
-    "outside of a ring": (RINGS.replace('"outside.v0"', '"outside.v1"'), ["it pulls"]),
-    "shrink fit": (RINGS, []),
-    "small strains": (_LINEAR, []),
-    "small strains that are large": (_LINEAR.replace("-0.1]", "-0.3]"), ["load step 1: its law, linear-elastic"]),
-    "small strains, turned": (staged(_LINEAR, (3, "[0, 0, 0.1]", "-9")), ["load step 2: its law, linear-elastic", "never closed"]),
-    "quadratic Lagrange elements pressed within": (DIE, []),
-    "pressed within, averaged normals": (DIE.replace("friction", 'projection = "averaged"\nfriction'), []),
-}
 
 
 @pytest.mark.parametrize("case", RUNS)

@@ -15,6 +15,7 @@ import pytest
 from told.given_up import all_told, without_digits
 from told.word_by_word import KINDS as OF_SCENES
 from told.wrong.contacts import PRESS
+from told.wrong.runs import PLATE, RUNS
 from told.wrong.singular import CORNER
 
 from isomortar.errors import IsomortarError
@@ -25,7 +26,7 @@ from isomortar.solve import doubts, pulling
 from isomortar.solve.advice import StepAdvice
 from isomortar.solve.simulation import Simulation
 from results_samples import problem, step_result
-from test_advice import PLATE, RUNS, Warned, _of_weights, rational, warnings
+from test_advice import Warned, _of_weights, rational, warnings
 from test_causes import scene
 from test_singular import STICKING, Heard
 

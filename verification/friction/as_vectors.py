@@ -121,3 +121,30 @@ def vectors(master: str) -> dict[str, float]:
         "slipping": float(np.min([result.contacts[0].slip for result in results])),
         "unknown": float(np.isnan(alone.slip[results[-1].contacts[0].status > 0]).all()),
     }
+
+
+@case(
+    claim="What sticks has friction as well, which adds up to the force, and does not slip.",
+    tier="gate",
+    bounds={
+        "force": Bound(at_most=1e-11, reason=_ROUND_OFF),
+        "slip": Bound(at_most=1e-12, reason="round-off: constraints that hold, over the way of the support"),
+        "sticking": Bound(at_least=8.0, reason="definition: two fifths of the control points, at the end of both load steps"),
+    },
+)
+def sticking() -> dict[str, float]:
+    """Largest errors of the block on the plane with friction that nothing overcomes."""
+    little = ("press.motions.top.translate=[0.006,-0.004,-0.03]", "drag.motions.top={translate=[0.004,0.003,0],rotate=0.5}")
+    overrides = ["contacts.pair.friction=2", *(f"stages.{motion}" for motion in little)]
+    problem = Scene.from_toml(SCENES["plane"], overrides=overrides).problem()
+    results = list(Simulation(problem).run())
+    patch = problem.body("block").patch
+    areas = shares(patch).sum(axis=1)
+    forces, slips = [], []
+    for number, result in enumerate(results):
+        (found,) = contact_vectors(problem, result, results[number - 1] if number else None)
+        sticks, force = result.contacts[0].status == 1, result.contacts[0].force_slave[:2]
+        forces.append(np.linalg.norm(areas @ found.traction[:, :2] - force) / np.linalg.norm(force))
+        slips.append(np.abs(found.slip[sticks]).max() / 0.005)
+    counts = [np.count_nonzero(result.contacts[0].status == 1) for result in results]
+    return {"force": float(np.max(forces)), "slip": float(np.max(slips)), "sticking": float(np.min(counts))}

@@ -163,6 +163,29 @@ def point_of_plane(distance: float) -> dict[str, float]:
     return change("plane", elsewhere)
 
 
+#: A turn about the x-axis by an eighth: of a plane z = 0 it makes one that any point with the same y and z is on, exactly.
+EIGHTH = np.array([[1.0, 0.0, 0.0], [0.0, np.sqrt(0.5), -np.sqrt(0.5)], [0.0, np.sqrt(0.5), np.sqrt(0.5)]])
+
+
+@case(
+    claim="So it is of a plane that is not along the axes, but for the last bits that its point has.",
+    tier="gate",
+    grid={"distance": (1e4, 1e6)},
+    bounds=lambda distance: {name: bound for name, bound in _last_bits(distance).items() if name != "contact"},
+)
+def point_of_oblique_plane(distance: float) -> dict[str, float]:
+    """The scene turned by an eighth, its plane given by a point that is so many units of length aside."""
+
+    def elsewhere(problem: Problem) -> Problem:
+        oblique = turned(problem, EIGHTH)
+        (contact,) = oblique.contacts
+        assert isinstance(contact.master, RigidPlane)
+        plane = replace(contact.master, point=(-0.3 * distance, distance, distance))
+        return replace(oblique, contacts=(replace(contact, master=plane),))
+
+    return change("plane", elsewhere, lambda found: found | {"forces": found["forces"] @ EIGHTH, "moments": found["moments"] @ EIGHTH})
+
+
 def _contact_wrench(result: StepResult) -> tuple[FloatArray, FloatArray]:
     """Force on the slave and its moment about the origin."""
     return result.contacts[0].force_slave, result.contacts[0].moment_slave

@@ -12,6 +12,7 @@ import numpy as np
 from isomortar import Observer, Results, run
 from isomortar.errors import InputError, IsomortarError, ResultsError
 from isomortar.harness import Bound, case
+from isomortar.results.definition import differences
 from isomortar.results.files import claimed, replace, writing
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
@@ -56,7 +57,7 @@ def refused(action: Callable[[], object], kind: type[IsomortarError], words: str
 
 @case(
     claim="A load step is in the file when it is told of. A file with load steps is an error, gone on with after the last one, or begun "
-    "anew, as is asked for; the end is the same. What is no results file, or held by another run, stays as it is.",
+    "anew, as is asked for, or for longer; the end is the same. What is no results file, or held by another run, stays as it is.",
     tier="gate",
     grid={"states": ("every", "last")},
     bounds={
@@ -91,6 +92,11 @@ def begun(states: str) -> dict[str, float]:
             apart.append(np.abs(one.step(3).state.positions - two.step(3).state.positions).max())
             kept = [1, 2, 3] if states == "every" else [3]
             wrong += list(two.kept_states) != kept or list(two.steps) != [1, 2, 3]
+        longer = Scene.from_toml(SCENE.replace("STATES", states).replace("steps = 3", "steps = 5").replace("0.03", "0.05"))
+        run(longer, path, resume=True).close()
+        with Results(path) as results:
+            wrong += bool(differences(results.problem, longer.problem()))
+            wrong += results.problem.total_steps != 5 or results.scene_text != longer.to_toml() or list(results.steps) != [1, 2, 3, 4, 5]
         again = Stopping(path, 1)
         with contextlib.suppress(KeyboardInterrupt):
             run(scene, path, again, overwrite=True)
