@@ -133,16 +133,6 @@ def of_problems(patch: pytest.MonkeyPatch) -> Told:
     ):
         asked = replace(pair, contacts=(replace(pair.contacts[0], **change),))  # type: ignore[arg-type]
         yield name, refusal(partial(check_contacts, drawn_together(asked, body, face, np.s_[0, :])))
-    averaged = ["contacts.pair.projection=averaged", "contacts.pair.friction=0.1"]
-    yield "averaged normals and the paper's sum", _of(PAIR, *averaged, "solver.slip_sum=paper")
-    yield "averaged normals of a plane", _of(PRESS, "contacts.floor.projection=averaged")
-    yield "abscissae", _of(LAGRANGE, "contacts.pair.enforcement=demko")
-    yield "conditions", _of(PAIR, "contacts.pair.enforcement=kts")
-    dual = "contacts.pair.enforcement=dual"
-    yield "dual: points", _of(PAIR, dual, "contacts.pair.quadrature=[3,2]")
-    yield "dual: sum", _of(PAIR, dual, "solver.slip_sum=paper", "contacts.pair.friction=0.1")
-    yield "cells on a plane", _of(PRESS, "contacts.floor.subcells=1")
-    yield "cells at points", _of(PAIR, "contacts.pair.subcells=1", "contacts.pair.enforcement=greville")
     face = SlaveFace(replace(pair.contacts[0], enforcement="greville"), pair, Numbering(pair))
     yield "areas", refusal(lambda: pointwise(face, np.array([[0.25, 0.5]]), np.array([-1e-3])))
     joints = '["a.v1", "c.v0"], ["b.v1", "d.v0"]]'

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from told.wrong.choices import NEEDED, PROJECTIONS
 from told.wrong.contacts import LAGRANGE, PAIR, PRESS, RINGS, UNUSUAL, WRONG
 
 from isomortar.errors import InputError, LostProjectionError
@@ -33,29 +34,7 @@ def test_bundled_scenes_are_let_through(name: str) -> None:
     Scene.load(name).problem()
 
 
-@pytest.mark.parametrize(
-    ("change", "projection", "by_default"),
-    [
-        ((), "closest", False),
-        (("bodies.lower.mesh.family=L",), "averaged", True),
-        (("bodies.lower.mesh.order=[2,1,2]", "bodies.lower.mesh.elements=[2,2,1]"), "averaged", True),
-        (("bodies.lower.mesh.family=L", "bodies.lower.mesh.elements=[1,1,2]"), "closest", False),
-        (("bodies.lower.mesh.family=L", "solver.method=uzawa", "solver.slip_sum=paper"), "closest", False),
-        (("bodies.lower.mesh.family=L", "contacts.pair.projection=closest"), "closest", False),
-        (("contacts.pair.projection=averaged",), "averaged", False),
-        (
-            (
-                "bodies.lower.geometry={kind='ring',centre=[0,0,-1],inner=0.5,outer=1,width=2}",
-                "bodies.lower.mesh.elements=[8,1,2]",
-                "contacts.pair.master=lower.v1",
-                "supports.base.face=lower.v0",
-            ),
-            "closest",
-            False,
-        ),
-        (("bodies.upper.mesh.family=L",), "closest", False),
-    ],
-)
+@pytest.mark.parametrize(("change", "projection", "by_default"), PROJECTIONS)
 def test_masters_with_lines_inside_have_averaged_normals(change: tuple[str, ...], projection: str, by_default: bool) -> None:
     (contact,) = Scene.from_toml(PAIR, overrides=change).problem().contacts
     assert (contact.projection, contact.by_default) == (projection, by_default)
@@ -97,29 +76,7 @@ def test_quadrature_points_are_enforced_by_augmentations_or_where_they_are_few()
     Scene.from_toml(PAIR, overrides=["contacts.pair.enforcement=kts", "contacts.pair.quadrature=2"]).problem()
 
 
-@pytest.mark.parametrize(
-    ("overrides", "subcells", "points"),
-    [
-        ([], 0, (6, 6)),
-        (["bodies.lower.mesh.elements=[5,5,1]"], 1, (4, 4)),
-        (["bodies.lower.mesh.elements=[20,3,1]"], 2, (4, 4)),
-        (["bodies.lower.mesh.elements=[3,20,1]"], 2, (4, 4)),
-        (["bodies.lower.mesh.elements=[12,3,1]"], 2, (4, 4)),
-        (["bodies.lower.mesh.elements=[60,60,1]"], 4, (4, 4)),
-        (
-            ["bodies.lower.geometry.lower=[-1,-1,-1]", "bodies.lower.geometry.upper=[0.3,1,0]", "bodies.lower.mesh.elements=[1,1,1]"],
-            1,
-            (4, 4),
-        ),
-        (["bodies.lower.mesh.elements=[5,5,1]", "bodies.lower.mesh.order=[2,5,2]"], 1, (5, 5)),
-        (["bodies.lower.mesh.elements=[5,5,1]", "bodies.upper.mesh.order=[1,3,2]"], 1, (3, 5)),
-        (["bodies.lower.mesh.elements=[5,5,1]", "contacts.pair.quadrature=5"], 0, (5, 5)),
-        (["bodies.lower.mesh.elements=[5,5,1]", "contacts.pair.subcells=0"], 0, (6, 6)),
-        (["bodies.lower.mesh.elements=[5,5,1]", "contacts.pair.subcells=3"], 3, (6, 6)),
-        (["bodies.lower.mesh.elements=[5,5,1]", "contacts.pair.enforcement=greville"], 0, (6, 6)),
-        (["bodies.lower.mesh.elements=[5,5,1]", "contacts.pair.enforcement=dual"], 1, (4, 4)),
-    ],
-)
+@pytest.mark.parametrize(("overrides", "subcells", "points"), NEEDED)
 def test_who_says_nothing_of_quadrature_gets_what_the_masters_lines_need(overrides, subcells, points):
     (contact,) = Scene.from_toml(PAIR, overrides=overrides).problem().contacts
     assert (contact.subcells, contact.quadrature) == (subcells, points)

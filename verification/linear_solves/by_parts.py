@@ -8,7 +8,7 @@ from scipy import sparse
 
 from isomortar._compiled import kernel
 from isomortar._condensed import CondensedFactors, SymmetricPattern
-from isomortar.errors import SingularSystemError
+from isomortar.errors import KernelError, SingularSystemError
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, case
 
@@ -114,6 +114,41 @@ def left_to_general_factors() -> dict[str, float]:
         found["repeats"] += _refused(matrix, on_face, repeated) / 20
         found["indefinite within"] += _refused(inside, on_face, block) / 20
     return {name: round(share, 12) for name, share in found.items()}
+
+
+@case(
+    claim="Bodies whose last matrix was refused solve nothing, whatever they solved before, until they have one that is not.",
+    tier="gate",
+    bounds={
+        "stale": Bound(0.0, 0.0, "definition: solutions with factors of an earlier matrix, or with none"),
+        "anew": Bound(at_most=1e-13, reason="round-off: the same matrix once more"),
+    },
+)
+def nothing_stale() -> dict[str, float]:
+    """How many there are: before the first matrix, and after one that was refused; and whether the sound one is solved again."""
+    random = np.random.default_rng(12)
+    (matrix, on_face), block = body(random), added(random)
+    repeated = block.copy(order="F")
+    repeated[-1], repeated[:, -1] = repeated[-2], repeated[:, -2]
+    bodies, right = factors(matrix, on_face), random.standard_normal(matrix.shape[0] + OTHERS)
+    stale = _solves(bodies, right)
+    bodies.factorise(matrix.data, block)
+    solution = bodies.solve(right)
+    try:
+        bodies.factorise(matrix.data, repeated)
+        stale += 1
+    except SingularSystemError:
+        stale += _solves(bodies, right)
+    bodies.factorise(matrix.data, block)
+    return {"stale": float(stale), "anew": float(np.abs(bodies.solve(right) - solution).max() / np.abs(solution).max())}
+
+
+def _solves(bodies: CondensedFactors, right: FloatArray) -> bool:
+    try:
+        bodies.solve(right)
+    except KernelError:
+        return False
+    return True
 
 
 @case(

@@ -7,6 +7,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from told.wrong.choices import NEEDED, PROJECTIONS
+from told.wrong.contacts import PAIR
+
 import isomortar.scene
 from isomortar.geometry.patch import Direction
 from isomortar.geometry.primitives import bowl
@@ -143,3 +146,24 @@ def silence() -> dict[str, float]:
         "by hand": float(len(differences(silent, by_hand())) + (silent.settings != by_hand().settings)),
         "points": float(wrong),
     }
+
+
+@case(
+    claim="A contact that says nothing of projection, points and cells takes what its master's lines need: averaged normals beside lines "
+    "inside, unless the paper's slip sum or a pole is there; cells that come down to its elements.",
+    tier="gate",
+    bounds={
+        "projections": Bound(0.0, 0.0, "definition: contacts that take another one, or say that somebody asked for it"),
+        "cells": Bound(0.0, 0.0, "definition: contacts with other cells or points"),
+    },
+)
+def by_itself() -> dict[str, float]:
+    """How many take something else."""
+    projections = cells = 0
+    for change, projection, by_default in PROJECTIONS:
+        (contact,) = Scene.from_toml(PAIR, overrides=change).problem().contacts
+        projections += (contact.projection, contact.by_default) != (projection, by_default)
+    for changes, subcells, points in NEEDED:
+        (contact,) = Scene.from_toml(PAIR, overrides=changes).problem().contacts
+        cells += (contact.subcells, contact.quadrature) != (subcells, points)
+    return {"projections": float(projections), "cells": float(cells)}

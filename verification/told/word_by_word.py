@@ -6,7 +6,7 @@ import tomllib
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from told.wrong import contacts, doubts, forces, halves, joints, keys, loads, plates, raised, rigid, sides
+from told.wrong import choices, contacts, doubts, forces, halves, joints, keys, loads, plates, raised, rigid, sides
 
 from isomortar.errors import IsomortarError
 from isomortar.harness import Bound, case
@@ -88,6 +88,11 @@ def bad_halves() -> Told:
     yield from ((name, refused(text, f"symmetry={{ {planes} }}")) for name, (text, planes, *_) in halves.REFUSED.items())
 
 
+def bad_choices() -> Told:
+    """Refused for what cannot be chosen together."""
+    yield from ((name, refused(text, *overrides)) for name, (text, overrides) in choices.REFUSED.items())
+
+
 def doubtful() -> Told:
     """Warnings on scenes that run."""
     yield from ((name, doubted(text.replace(old, new))) for name, (text, old, new, *_) in doubts.DOUBTFUL.items())
@@ -106,6 +111,7 @@ KINDS: dict[str, Callable[[], Told]] = {
         bad_raised_faces,
         bad_sides,
         bad_halves,
+        bad_choices,
         doubtful,
     )
 }
