@@ -19,7 +19,7 @@ from isomortar.results.bodies import common_scale, draw_bodies
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
 
-#: A slave below a smaller master, above a plane, or beside one; both are moved and stretched when they are drawn.
+#: A slave below a smaller master, or beside a plane; both are moved and stretched when they are drawn.
 SCENE = """
 format = 1
 bodies.slave = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 0.8, 0.5] }, mesh = { order = [2, 1, 1], elements = [2, 1, 2] } }
@@ -32,13 +32,12 @@ stages = [{ name = "one", steps = 2 }]
 #: many load steps there are.
 SIDES: dict[str, tuple[str, tuple[int, int], tuple[float, float], int]] = {
     "w1": ('master = "master.w0"', (2, 1), (-62.0, 69.0), 2),
-    "w0": ("plane = { point = [0, 0, -0.05], normal = [0, 0, 1] }", (2, 0), (-62.0, -39.0), 1),
     "u1": ("plane = { point = [1.4, 0, 0], normal = [-1, 0, 0] }", (0, 1), (-25.0, 15.0), 2),
 }
 #: From where all bodies are seen.
 WHOLE = (-62.0, 24.0)
-#: Where the planes are.
-PLANES = {"w0": -0.05, "u1": 1.4}
+#: Where the plane is.
+PLANE = 1.4
 STRETCH, SHIFT = np.array([1.1, 0.9, 1.2]), np.array([0.2, -0.1, 0.3])
 #: A pressure that grows along x, y and z: control pressures are those at Greville's abscissae of straight boxes.
 GRADIENT = np.array([0.5, 0.3, 0.7])
@@ -111,7 +110,7 @@ def floor(side: str, slaves: list[FloatArray]) -> dict[str, FloatArray]:
         return {}
     corners = np.array([np.min(slaves, axis=(0, 1)), np.max(slaves, axis=(0, 1))])
     corners += 0.2 * np.ptp(corners, axis=0).max() * np.array([[-1.0], [1.0]])
-    corners[:, axis] = PLANES[side]
+    corners[:, axis] = PLANE
     return {"floor": corners}
 
 

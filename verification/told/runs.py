@@ -11,8 +11,8 @@ from isomortar.solve.simulation import Simulation
 
 #: What is said of a scene before it runs.
 BEFORE = ("in each load step", "at the start", "nothing will happen", "the same state again", "feels no contact")
-#: Those that take many load steps: their tests run them.
-LONG = {"slid off", "rolling"}
+#: Those that take many load steps, or elements: their tests run them.
+LONG = {"slid off", "slid off in one load step", "rolling", "quadratic Lagrange elements pressed within"}
 #: A thin plate whose tip is moved by next to nothing, or further: its forces are round-off, or are not.
 _THIN = PLATE.replace("THICKNESS", "1e-4").replace("TIP", '[supports.tip]\nface = "b.u1"\ncomponents = ["z"]')
 PLATES = {

@@ -61,9 +61,10 @@ def _frictionless(scene: Scene, spoils: str) -> Iterator[Dial]:
 def _orders_across(scene: Scene, spoils: str) -> Iterator[Dial]:
     """Lower orders of bodies away from their faces in contact."""
     for name, letters in faces_in_contact(scene).items():
+        body = scene.whole().body(name)
         across = [axis for axis in "uvw" if axis not in letters]
-        own = {axis: d.order for axis, d in directions(scene.whole().body(name)) if axis in across}
-        if across and max(own.values()) > 1:
+        own = {axis: d.order for axis, d in directions(body) if axis in across}
+        if across and max(own.values()) > 1 and not body.rigid:
             highest = max(own.values())
             settings = tuple(Setting(str(p), None if p == highest else _across(name, across, p)) for p in range(1, highest + 1))
             yield Dial(f"order of {name} across", settings, highest - 1, spoils)
