@@ -366,11 +366,11 @@ def test_what_over_refined_runs_took_tells_what_finer_ones_will(scene):
             return error, cost**0.5 if together else cost, failure
 
     dials = synthetic()
-    search = Search(Cheaper(scene, dials), dials, [wanted("force.top.x", scene.problem())], 400.0)
+    search = Search(Cheaper(scene, dials), dials, [wanted("force.top.x", scene.problem())], 330.0)
     search.screen()
     search.find_truth([0.01])
     assert 3 * search.uncertainty <= 0.01
-    assert search.laboratory.spent < 200.0
+    assert search.laboratory.spent < 165.0
 
 
 def test_what_can_not_be_refined_has_no_truth(scene):

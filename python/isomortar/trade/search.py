@@ -74,6 +74,7 @@ class Search:
         self.laboratory, self.dials, self.wants, self.budget = laboratory, dials, wants, budget
         self.truth: Tried | None = None
         self.rival: Tried | None = None
+        self._before: Tried | None = None  # the truth before this one
 
     @cached_property
     def own(self) -> Tried:
@@ -179,7 +180,7 @@ class Search:
             return False
         if failed:
             raise IsomortarError(f"an over-refined run, which tells the truth, does not come to its end: {failed[0].failure}")
-        self.truth, self.rival = truth, rival
+        self._before, self.truth, self.rival = self.truth, truth, rival
         return True
 
     def _refined(self, settled: set[int], orders: int, meshes: int, last: int) -> Choice:
@@ -209,19 +210,28 @@ class Search:
         return {number for number, setting in dearer.items() if model.effect(number, setting) <= limit}
 
     def _cost(self, choice: Choice) -> float:
-        """CPU seconds that an over-refined run will take about: what the nearest of those before took, and one setting alone."""
-        known = self.laboratory.outcomes
-        if choice in known:
+        """CPU seconds that an over-refined run will take about: what the nearest of those before took, and one setting alone.
+
+        Costs of single settings do not multiply: the forecast is as far off as it was of the truth from the one before.
+        """
+        if choice in self.laboratory.outcomes:
             return 0.0
         before = [outcome for outcome in (self.own, self.truth, self.rival) if outcome]
         near = min(before, key=lambda outcome: sum(a != b for a, b in zip(outcome.choice, choice, strict=True)))
-        cost = near.cost
-        for number, (dial, start, setting) in enumerate(zip(self.dials, near.choice, choice, strict=True)):
-            if setting > start:
+        fit = 1.0
+        if self.truth and self._before:
+            fit = math.log(max(1.0, self.truth.cost / self._before.cost)) / self._growth(self._before.choice, self.truth.choice)
+        return near.cost * math.exp(fit * self._growth(near.choice, choice))
+
+    def _growth(self, start: Choice, end: Choice) -> float:
+        """Logarithm of how many times dearer one choice is than another, if costs of single settings multiply."""
+        known, growth = self.laboratory.outcomes, 0.0
+        for number, (dial, one, other) in enumerate(zip(self.dials, start, end, strict=True)):
+            if other > one:
                 next_one = known.get(self.single(number, dial.own + 1))
-                growth = max(1.0, next_one.cost / self.own.cost) if next_one else 2.0
-                cost *= growth ** (_times(dial, setting) - _times(dial, start))
-        return cost
+                times = max(1.0, next_one.cost / self.own.cost) if next_one else 2.0
+                growth += math.log(times) * (_times(dial, other) - _times(dial, one))
+        return growth
 
     def _needed(self, target: float) -> str:
         """Why a target is refused, and what it would take."""
