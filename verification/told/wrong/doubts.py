@@ -282,7 +282,7 @@ DOUBTFUL = {
         '[supports.cut]\nface = "lower.u0"\ncomponents = ["y"]\n[supports.base]',
         "nothing holds them there",
     ),
-    "spans": (_GRADED, "", "", "1e+09"),
+    "spans": (_GRADED, "", "", "lost in round-off"),
     "locks": (_RUBBER.replace("POISSON", "0.4999"), "", "", "Take order 4 or more"),
     "locks at any order": (_RUBBER.replace("POISSON", "0.4999999999999"), "", "", "Take a Poisson's ratio that is lower"),
 }
