@@ -51,8 +51,9 @@ class Drawn:
         return self._figure(step.step)
 
     def maps(self, _problem: object, step: Any, field: Any) -> Figure:
-        """A map of a load step."""
-        return self._figure(step.step if field[1] is step else -1)
+        """A map of a load step, of a field that knows the one before it."""
+        before = field[4].step if field[4] else 0
+        return self._figure(step.step if field[1] is step and before == step.step - 1 else -1)
 
     def _figure(self, step: int) -> Figure:
         self.steps.append(step)

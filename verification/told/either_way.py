@@ -41,6 +41,11 @@ def third(x: float) -> str:
     return SCENE + THIRD.format(x=x, end=x + 0.2)
 
 
+#: The blocks, and a slanting plane that goes through the lower one and is in the upper one's way.
+SLANTING = SCENE.replace(
+    "supports.top.face",
+    'contacts.floor = { slave = "above.w0", plane = { point = [0, 0, -0.05], normal = [0.1, 0, 1] }, friction = 0.3 }\nsupports.top.face',
+)
 #: A scene, what is changed in it, and words of what is said of it; none: nothing is said.
 SAID = (
     (SCENE, ("bodies.above.mesh.quadrature=[2,2,2]",), ""),
@@ -50,6 +55,12 @@ SAID = (
     (SCENE, ('loads={wind={face="below.u0",pressure=0.001}}',), ""),
     (SCENE, ('loads={wind={face="below.w1",pressure=0.001}}',), "a face of contact 'c'"),
     (SCENE, ('loads={wind={face="above.w0",pressure=0.001}}',), "a face of contact 'c'"),
+    (SCENE, ('loads={own={body="above",weight=[0,0,-9]}}',), ""),
+    (SCENE, ('loads={own={body="above",weight=[0,0,-11]}}',), "times the size of its body, 0.5, comes to 5.5 force per area"),
+    (SCENE, ('loads={wind={face="above.u0",pressure=4.9}}',), ""),
+    (SCENE, ('loads={wind={face="above.u0",pressure=5.1}}',), "comes to 5.1 force per area"),
+    (SLANTING, (), ""),
+    (SLANTING, ("contacts.floor.plane={point=[0,0,0],normal=[0,0,1]}",), "is at or behind the plane"),
     (third(0.3), _DEEP, "bodies 'below' and 'third' meet"),
     (third(1.2), _DEEP, "is in no contact"),
     (BALL.replace("AXIS", "z"), ('contacts.c.slave="above.v1"',), ""),
@@ -65,7 +76,8 @@ def wrong(scene: str, changes: tuple[str, ...], words: str) -> bool:
 
 
 @case(
-    claim="What is right is not doubted, and what is wrong is: numbers of points, loaded faces, and bodies that meet without a contact.",
+    claim="What is right is not doubted, and what is wrong is: numbers of points, loads, planes in the way, and bodies that meet "
+    "without a contact.",
     tier="gate",
     bounds={"wrong": Bound(0.0, 0.0, "definition: scenes of which something else is said")},
 )

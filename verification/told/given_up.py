@@ -65,7 +65,7 @@ def of_singular_tangents() -> Iterator[tuple[str, str]]:
 
 def of_iterations() -> Iterator[tuple[str, str]]:
     """What goes to and fro from iteration to iteration, and augmentations that are too few."""
-    states = [np.array(s, dtype=np.int32).tobytes() for s in ([0, 1, 2], [0, 2, 2])]
+    states = [np.array(s, dtype=np.int32).tobytes() for s in ([0, 1, 2, 1], [0, 1, 2, 2])]
     places = [np.zeros((2, 4), dtype=np.int32), np.array([[0, 0, 0, 0], [1, 0, 0, 0]], dtype=np.int32)]
     away, near = np.zeros(2, dtype=bool), np.ones(2, dtype=bool)
     yield "changing states", toggling(states, places, away, summed=False)

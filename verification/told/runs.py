@@ -17,6 +17,12 @@ LONG = {"slid off", "slid off in one load step", "rolling", "quadratic Lagrange 
 _THIN = PLATE.replace("THICKNESS", "1e-4").replace("TIP", '[supports.tip]\nface = "b.u1"\ncomponents = ["z"]')
 PLATES = {
     "lost": (_THIN.replace("MOTION", "motions.tip.translate = [0, 0, 1e-7]"), ["load step 1: its forces are lost in round-off"]),
+    "turned": (
+        PLATE.replace("THICKNESS", "1e-1")
+        .replace("TIP", "")
+        .replace("MOTION", "motions.root = { translate = [0.3, 0.2, 0.1], rotate = 30 }"),
+        [],
+    ),
     "not lost": (_THIN.replace("MOTION", "motions.tip.translate = [0, 0, 1e-2]"), []),
 }
 

@@ -24,6 +24,16 @@ PROJECTIONS: tuple[tuple[tuple[str, ...], str, bool], ...] = (
         False,
     ),
     (("bodies.upper.mesh.family=L",), "closest", False),
+    (
+        (
+            "bodies.lower.geometry={kind='sphere',centre=[0,0,-1],inner=0.5,outer=1,latitudes=[0,90]}",
+            "bodies.lower.mesh={family='L',elements=[8,1,4]}",
+            "contacts.pair.master=lower.v1",
+            "supports.base.face=lower.w1",
+        ),
+        "closest",
+        False,
+    ),
 )
 #: What is changed, how many times over elements are cut, and the points of each.
 NEEDED: tuple[tuple[list[str], int, tuple[int, int]], ...] = (
