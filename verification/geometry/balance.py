@@ -10,7 +10,7 @@ from transforms import orientations, permuted, reversed_along
 from isomortar import _bindings
 from isomortar.geometry.faces import cells
 from isomortar.geometry.patch import FACES, IntArray, Patch
-from isomortar.geometry.primitives import box
+from isomortar.geometry.primitives import box, ring, sphere
 from isomortar.harness import LAGRANGE, NURBS, Bound, case
 from isomortar.model.numbering import patch_arrays, same_points
 
@@ -85,3 +85,21 @@ def one_place(body: str) -> dict[str, object]:
         named = reversed_along(permuted(patch, order), axes)
         apart.append(float(len(np.unique(same_points(named, None))) - len(np.unique(named.control_points, axis=0))))
     return {"apart": np.array(apart)}
+
+
+@case(
+    claim="So they are in any unit of length: ends of rings and rows of poles that meet to round-off are one, and no others.",
+    tier="gate",
+    bounds={"others": Bound(0.0, 0.0, "definition: control points that are one in another unit, or are not any more")},
+)
+def one_place_in_any_unit() -> dict[str, float]:
+    """How many, of a ball and a ring in no special place, in units twelve decades apart."""
+    turn = np.linalg.qr(np.array([[0.3, -1.1, 0.7], [0.9, 0.4, -0.2], [-0.5, 0.8, 1.3]]))[0]
+    bodies = ((sphere((0.3, 0.1, -0.2), 0.25, 1.0), "u"), (ring((0.3, 0.1, -0.2), 0.25, 1.0, 0.5), "u"))
+    others = 0
+    for patch, closed in bodies:
+        here = same_points(patch, closed)
+        for unit in (1e-12, 1.0, 1e12):
+            there = Patch(patch.directions, unit * patch.control_points @ turn.T, patch.weights)
+            others += int(np.count_nonzero(same_points(there, closed) != here))
+    return {"others": float(others)}

@@ -98,3 +98,16 @@ def given_up() -> dict[str, float]:
     told = all_told()
     others = [name for name in told.keys() | expected.keys() if told.get(name) != expected.get(name)]
     return {"others": float(len(others)), "told": float(len(told))}
+
+
+@case(
+    claim="What a body can do freely is told whatever its modulus is, and in whatever unit that is.",
+    tier="gate",
+    grid={"young": (1e-12, 1.0, 1e12)},
+    bounds={"silent": Bound(0.0, 0.0, "definition: motions that are free and are not told")},
+)
+def freely(young: float) -> dict[str, float]:
+    """Of two: a way, and a turn."""
+    block = BLOCK + f"materials.m.young = {young}\nsupports.top.face = 'block.w1'\nsupports.top.components = "
+    told = {"['y', 'z']": "can move along (1, 0, 0) freely", "['z']": "can turn about an axis along ("}
+    return {"silent": float(sum(words not in error(block + components) for components, words in told.items()))}
