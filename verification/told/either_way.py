@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from isomortar.harness import Bound, case
 from isomortar.scene import Scene
+from isomortar.solve.doubts import doubts
 from isomortar.solve.outlook import outlook
+from isomortar.solve.simulation import Simulation
 
 #: A block on a block.
 SCENE = """
@@ -84,3 +86,47 @@ def wrong(scene: str, changes: tuple[str, ...], words: str) -> bool:
 def doubted() -> dict[str, float]:
     """How many."""
     return {"wrong": float(sum(wrong(*scene) for scene in SAID))}
+
+
+#: The blocks with a material for each.
+OF_TWO = SCENE.replace("format = 1", "format = 1\nmaterials = { soft = { young = 1 }, hard = { young = 1 } }")
+OF_TWO = OF_TWO.replace("bodies.above.mesh", 'bodies.above.material = "soft"\nbodies.below.material = "hard"\nbodies.above.mesh')
+#: What is changed, a number on either side of a limit, of which the second is doubted, and words of that.
+LIMITS: tuple[tuple[str, float, float, str], ...] = (
+    ("materials.hard.young={}", 2.9e5, 3.1e5, "times as stiff as body 'above'"),
+    ("materials.hard.poisson={}", 0.494, 0.496, "elements of order 2 lock"),
+    ("materials.soft.poisson={}", 0.0, -0.01, "grows thicker as it is pulled"),
+    ("contacts.c.elastic_slip={}", 0.049, 0.051, "nothing slides before it has gone that far"),
+    ("contacts.c.cohesion={}", 1.1e-7, 0.9e-7, "is as good as no traction"),
+    ("contacts.c.cohesion={}", 0.99, 1.01, "makes all stick"),
+    ("contacts.c.friction={}", 2.0, 2.01, "is above what materials have"),
+    ("bodies.above.mesh.elements=[{:.0f},2,2]", 40, 41, "take fewer along u, or more along v"),
+    ("bodies.above.mesh.grading=[1,1,{}]", 0.34, 0.33, "mesh.grading along w above 1"),
+    ("bodies.below.mesh={{order=2,elements=[4,4,2],grading=[1,1,{}]}}", 2.95, 3.05, "mesh.grading along w below 1"),
+    ("solver.newton_tolerance={}", 1e-4, 1.01e-4, "leaves that share of forces"),
+    ("bodies.above.geometry.lower=[-0.25,-0.25,{}]", -0.0095, -0.0105, "overlap by 0.0105 at the start"),
+    ("loads={{own={{body='above',weight=[0,0,-{}]}}}}", 0.99, 1.01, "comes to 0.505 force per area"),
+    ("stages.one.motions.top.rotate={}", 3.1381, 3.1389, "If radians were meant, give 180"),
+    ("stages.one.motions.top.rotate={}", 9.435, 9.425, "If radians were meant, give 540"),
+)
+
+
+@case(
+    claim="Numbers are doubted from their limits on: moduli, friction, loads, elements, overlaps, tolerances and angles.",
+    tier="gate",
+    bounds={"wrong": Bound(0.0, 0.0, "definition: numbers within a limit that are doubted, and beyond it that are not")},
+)
+def limits() -> dict[str, float]:
+    """Of how many."""
+    return {
+        "wrong": float(
+            sum(told_of(change, within) != "" or words not in told_of(change, beyond) for change, within, beyond, words in LIMITS)
+        )
+    }
+
+
+def told_of(change: str, value: float) -> str:
+    """The one sentence that is said of the blocks with a number changed; none, or that there are several."""
+    problem = Scene.from_toml(OF_TWO, overrides=(change.format(value),)).problem()
+    said = list(doubts(problem, Simulation(problem).state))
+    return said[0] if len(said) == 1 else "several" * bool(said)
