@@ -16,6 +16,7 @@ from isomortar.model.entities import Problem
 from isomortar.model.numbering import Numbering
 from isomortar.results import style
 from isomortar.results.bodies import common_scale, draw_bodies
+from isomortar.results.coloured import draw_coloured
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
 
@@ -196,3 +197,36 @@ def _seen(
 
 def _face(seen: Seen | None) -> tuple[str, int, int] | None:
     return (seen.box, seen.axis, seen.end) if seen else None
+
+
+@case(
+    claim="Bodies in colours show, at each place, the field there: how far a point has gone, by the colour bar.",
+    tier="gate",
+    bounds={
+        "colours": Bound(at_most=0.02, reason="discretisation: a 72nd of a face has one colour; edges of boxes are left out"),
+        "range": Bound(at_most=0.1, reason="definition: of the longest way, which is at a corner, a tenth and less is missed inside"),
+        "seen": Bound(at_least=15.0, reason="definition: places at which there is a body"),
+    },
+)
+def coloured_in_front() -> dict[str, float]:
+    """Largest error of colours at random places, what the bar lacks of the longest way, and how many places there are."""
+    problem = Scene.from_toml(SCENE.replace("FACE", "w1").replace("MASTER", SIDES["w1"][0])).problem()
+    step, boxes = moved(problem, load_steps(problem)[0], 1.0)
+    figure = draw_coloured(problem, step, "displacement")
+    axes, bar = figure.axes
+    _, most = bar.get_ylim()
+    found, places = _seen(boxes, axes_of(*WHOLE), limits(list(boxes.values()), axes_of(*WHOLE)), np.random.default_rng(1))
+    worst = 0.0
+    for seen, drawn in zip(found, drawn_at(axes, places), strict=True):
+        if seen is None or drawn is None:
+            worst = np.maximum(worst, float((seen is None) != (drawn is None)))
+        else:
+            exact = np.array(style.field_colours()(_gone(seen.place) / most))[:3]
+            worst = np.maximum(worst, np.abs(drawn - exact).max())
+    corners = [_gone(np.array([of[i, 0], of[j, 1], of[k, 2]])) for of in boxes.values() for i in (0, 1) for j in (0, 1) for k in (0, 1)]
+    return {"colours": float(worst), "range": float(np.abs(1.0 - most / np.max(corners))), "seen": float(sum(s is not None for s in found))}
+
+
+def _gone(place: FloatArray) -> float:
+    """How far the point that is at a place has gone."""
+    return float(np.linalg.norm(place - (place - SHIFT) / STRETCH))
