@@ -88,6 +88,10 @@ def earlier(told: str) -> dict[str, float]:
             ways, turns = results.curve("displacement", support="ground")[:RESUMED], results.curve("rotation", support="ground")[:RESUMED]
             pushed = results.curve("displacement", support="push")[:RESUMED]
             apart = [np.abs(ways - WAYS[:RESUMED]).max(), np.abs(turns - TURNS[:RESUMED]).max(), np.abs(pushed).max()]
+            number = [support.name for support in problem.supports].index("ground")
+            for of_step, way, turn in zip(steps[:RESUMED], WAYS, TURNS, strict=False):
+                reaction = results.step(of_step.step).reactions[number]
+                apart += [np.abs(reaction.displacement - way).max(), abs(reaction.rotation - turn)]
         gone_on = wrong(path, steps)
         for version in (EARLIEST_VERSION - 1, FORMAT_VERSION + 1):
             path.write_bytes(now)

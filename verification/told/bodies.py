@@ -67,3 +67,34 @@ def no_body() -> dict[str, float]:
     Simulation(problem)
     Simulation(with_body(problem, "master", rigid=True))
     return {"silent": float(silent)}
+
+
+#: A block of elements of which no two directions have as many.
+_BLOCK = SCENE.replace(
+    "upper = [1, 1, 0] }, mesh = { order = 2, elements = 2 }", "upper = [1, 1, 0] }, mesh = { order = 1, elements = [3, 4, 2] }"
+)
+
+
+@case(
+    claim="Of a body one element of which is folded it is said which one, by its places along u, v, w.",
+    tier="gate",
+    bounds={"elsewhere": Bound(0.0, 0.0, "definition: elements at the corners of a block that are not named, or called otherwise")},
+)
+def which_place() -> dict[str, float]:
+    """How many of eight."""
+    problem = Scene.from_toml(_BLOCK).problem()
+    patch, elsewhere = problem.body("master").patch, 0
+    shape = np.array(patch.shape)
+    for corner in np.ndindex(2, 2, 2):
+        ends = np.array(corner) * (shape - 1)
+        inner = ends + 1 - 2 * np.array(corner)
+        points = patch.control_points.copy()
+        own, other = (place @ [1, shape[0], shape[0] * shape[1]] for place in (ends, inner))
+        points[own] = 1.5 * points[other] - 0.5 * points[own]
+        words = ", ".join(str(k) for k in np.array(corner) * (shape - 2))
+        try:
+            Simulation(with_body(problem, "master", patch=replace(patch, control_points=points)))
+            elsewhere += 1
+        except InputError as error:
+            elsewhere += f"(element {words} along u, v, w)" not in str(error)
+    return {"elsewhere": float(elsewhere)}

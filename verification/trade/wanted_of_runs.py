@@ -182,3 +182,22 @@ def of_short_runs(steps: int) -> dict[str, float]:
     none = {text for text in wishes(problem) if math.isnan(Yardstick(wanted(text, problem), truth, truth).error(run))}
     rough = {text for text in wishes(problem) if text.endswith(":roughness")}
     return {"wrong": float(len(none ^ (rough if steps < 3 else set())))}
+
+
+@case(
+    claim="What is offered is what users look at: force and moment of supports that move, how far a force moves one, area and fields of "
+    "contacts of one face; roughness where all stages have load steps enough.",
+    tier="gate",
+    bounds={"others": Bound(0.0, 0.0, "definition: wishes that are missing, or too many")},
+)
+def what_users_look_at() -> dict[str, float]:
+    """How many, of the scene as it is and with a support that a force moves."""
+    of_floor = {f"{quantity}.floor" for quantity in ("area", "pressure", "traction", "edge", "gap")}
+    of_top = {f"{quantity}.top" for quantity in ("force", "moment")}
+    rough = {f"{name}:roughness" for name in of_top}
+    text = SCENE.format(first=4).replace('components = ["y"] }', "force.y = 0.1 }")
+    pushed = Scene.from_toml(text.replace('top.face = "block.w1"', 'top = { face = "block.w1", components = ["x", "z"] }')).problem()
+    others = set(wishes(problem_of(4))) ^ (of_floor | of_top | rough)
+    others |= set(wishes(problem_of(2))) ^ (of_floor | of_top)
+    others |= set(wishes(pushed)) ^ (of_floor | of_top | rough | {"displacement.rim"})
+    return {"others": float(len(others))}
