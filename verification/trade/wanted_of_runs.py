@@ -7,6 +7,7 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
+from output.records import SCENE as PUSHED
 
 from isomortar.errors import InputError
 from isomortar.harness import Bound, case
@@ -195,9 +196,9 @@ def what_users_look_at() -> dict[str, float]:
     of_floor = {f"{quantity}.floor" for quantity in ("area", "pressure", "traction", "edge", "gap")}
     of_top = {f"{quantity}.top" for quantity in ("force", "moment")}
     rough = {f"{name}:roughness" for name in of_top}
-    text = SCENE.format(first=4).replace('components = ["y"] }', "force.y = 0.1 }")
-    pushed = Scene.from_toml(text.replace('top.face = "block.w1"', 'top = { face = "block.w1", components = ["x", "z"] }')).problem()
     others = set(wishes(problem_of(4))) ^ (of_floor | of_top | rough)
     others |= set(wishes(problem_of(2))) ^ (of_floor | of_top)
-    others |= set(wishes(pushed)) ^ (of_floor | of_top | rough | {"displacement.rim"})
+    pushed = {"force.ground", "moment.ground", "displacement.push"}
+    pushed |= {f"{quantity}.{name}" for quantity in ("area", "pressure", "traction", "edge", "gap") for name in ("under", "over")}
+    others |= set(wishes(Scene.from_toml(PUSHED).problem())) ^ pushed
     return {"others": float(len(others))}
