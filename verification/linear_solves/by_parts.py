@@ -131,7 +131,7 @@ def nothing_stale() -> dict[str, float]:
     repeated = block.copy(order="F")
     repeated[-1], repeated[:, -1] = repeated[-2], repeated[:, -2]
     bodies, right = factors(matrix, on_face), random.standard_normal(matrix.shape[0] + OTHERS)
-    stale = _solves(bodies, right)
+    stale = int(_solves(bodies, right))
     bodies.factorise(matrix.data, block)
     solution = bodies.solve(right)
     try:

@@ -75,7 +75,7 @@ def begun(states: str) -> dict[str, float]:
         with contextlib.suppress(KeyboardInterrupt):
             run(scene, path, first)
         stopped = path.read_bytes()
-        wrong = first.first != 1 or first.held != [True] * 2
+        wrong = int(first.first != 1 or first.held != [True] * 2)
         wrong += not refused(lambda: run(scene, path), InputError, "exists already") or path.read_bytes() != stopped
         other.write_text("notes", encoding="utf-8")
         for options in ({}, {"resume": True}, {"overwrite": True}):
@@ -124,7 +124,7 @@ def system_refuses() -> dict[str, float]:
         old, new, place = folder / "old.svg", folder / "new.svg", folder / "place.h5"
         old.write_text("whole", encoding="utf-8")
         place.mkdir()
-        wrong = not refused(lambda: fail(old), ResultsError, "old.svg cannot be written: No space") or not old.exists()
+        wrong = int(not refused(lambda: fail(old), ResultsError, "old.svg cannot be written: No space") or not old.exists())
         wrong += not refused(lambda: fail(new), ResultsError, "new.svg cannot be written: No space") or new.exists()
         wrong += not refused(lambda: replace(place, b"content"), ResultsError, "what it held before is still in it")
         wrong += not refused(lambda: replace(old / "below.h5", b"content"), ResultsError, "below.h5 cannot be written")

@@ -84,7 +84,7 @@ def chosen() -> dict[str, float]:
         recorded(run, problem, load_steps(problem), "every")
         for number, (asked, names) in enumerate(ASKED):
             drawn, out = Drawn(), Path(folder) / str(number)
-            stand_ins = {
+            stand_ins: dict[str, Any] = {
                 "draw_reactions": drawn.curves,
                 "draw_curve": drawn.curves,
                 "draw_bodies": drawn.bodies,

@@ -79,9 +79,10 @@ def last_left(boxes: dict[str, FloatArray], frame: FloatArray, place: FloatArray
 def drawn_at(axes: Axes, places: FloatArray) -> list[FloatArray | None]:
     """The colour of the last polygon that was painted over each place; None: there is none."""
     (collection,) = (c for c in axes.collections if isinstance(c, PolyCollection))
-    colours, paths = collection.get_facecolor(), collection.get_paths()
-    four = [number for number, path in enumerate(paths) if len(path.vertices) == 5]  # the first again; lines have fewer
-    corners = np.array([paths[number].vertices[:4] for number in four])
+    colours, paths = np.asarray(collection.get_facecolor()), collection.get_paths()
+    outlines = [np.asarray(path.vertices) for path in paths]
+    four = [number for number, outline in enumerate(outlines) if len(outline) == 5]  # the first again; lines have fewer
+    corners = np.array([outlines[number][:4] for number in four])
     sides = np.roll(corners, -1, axis=1) - corners
     found: list[FloatArray | None] = []
     for place in places:

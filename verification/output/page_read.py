@@ -105,7 +105,8 @@ def page_read() -> dict[str, float]:
         view(run, page)
         data, surfaces = taken_apart(page)
     names = [contact.name for contact in problem.contacts]
-    wrong = [(step["step"], step["stage"]) for step in data["steps"]] != [(0, "at rest"), *((step.step, step.stage) for step in steps)]
+    moments = [(0, "at rest"), *((step.step, step.stage) for step in steps)]
+    wrong = int([(step["step"], step["stage"]) for step in data["steps"]] != moments)
     fields = {field["label"]: field for field in data["fields"]}
     wrong += list(fields) != [*(f"{field} of {name}" for name in names for field in OF_CONTACT), *OF_BODIES]
     outer = [

@@ -6,6 +6,7 @@ import re
 import tomllib
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from told.word_by_word import SENTENCES
@@ -31,7 +32,7 @@ def without_digits(sentence: str) -> str:
 
 def of_causes() -> Iterator[tuple[str, str]]:
     """Of a scene that is sound but for one number; of one whose lower body is pressed flat."""
-    changes = {
+    changes: dict[str, dict[str, Any]] = {
         "thin": {"TOP": 1.000001},
         "incompressible": {"POISSON": 0.499999},
         "stiffness": {"HARD": 1e12},

@@ -7,11 +7,12 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from told.wrong.choices import NEEDED, PROJECTIONS
 from told.wrong.contacts import PAIR
 
 import isomortar.scene
-from isomortar.geometry.patch import Direction
+from isomortar.geometry.patch import Direction, Family
 from isomortar.geometry.primitives import bowl
 from isomortar.geometry.quadrature import contact_points, volume_points
 from isomortar.geometry.refinement import mesh
@@ -81,10 +82,16 @@ compression = 0
 """
 )
 #: Gauss points by order, from 1 on, of elements and of slave elements: Table 1 of the paper, and beyond it the order and two.
-POINTS = {
+POINTS: dict[Family, tuple[tuple[int, ...], ...]] = {
     "N": ((2, 4, 6, 6, 7, 8, 9), (4, 6, 6, 6, 7, 8, 9)),
     "L": ((2, 4, 4, 6), (4, 4, 9, 12)),
 }
+
+
+def one_element(family: Family, order: int) -> Direction:
+    """A direction of one element."""
+    ends = [0.0, 1.0] if family == "L" else [0.0] * (order + 1) + [1.0] * (order + 1)
+    return Direction(family, order, np.array(ends))
 
 
 def by_hand() -> Problem:
@@ -139,7 +146,7 @@ def silence() -> dict[str, float]:
     wrong = 0
     for family, rules in POINTS.items():
         for rule, points in zip((volume_points, contact_points), rules, strict=True):
-            lines = [Direction(family, p, [0, 1] if family == "L" else [0] * (p + 1) + [1] * (p + 1)) for p in range(1, len(points) + 1)]
+            lines = [one_element(family, order) for order in range(1, len(points) + 1)]
             wrong += sum(rule(line) != count for line, count in zip(lines, points, strict=True))
     return {
         "scene": float(len(differences(silent, spoken))),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from unittest.mock import patch
 
@@ -71,7 +72,12 @@ def drawn() -> dict[str, float]:
     assert answer.best
     known.outcomes[-1, -1, -1, -1] = replace(search.own, choice=(-1, -1, -1, -1), failure="it does not converge")
     shown: list[Figure] = []
-    with patch.object(figures, "svg_text", lambda figure, _: shown.append(figure) or ""):
+
+    def keep(figure: Figure, _: str) -> str:
+        shown.append(figure)
+        return ""
+
+    with patch.object(figures, "svg_text", keep):
         figures.precision(search, [answer])
         figures.screening(search)
         figures.curves(search, search.yardsticks[0], [answer])
@@ -82,7 +88,9 @@ def drawn() -> dict[str, float]:
     step = next(line for line in precision.lines if line.get_label() == "front")
     own = {(search.own.cost, 100.0 * off(search.own, search.truth))}
     errors, settings, rows = _screened(search, known, costs, changes)
-    curves = [(left, lambda values: values), (right, lambda values: 100.0 * (values - two(search.truth)) / two(search.truth).max())]
+    truth = two(search.truth)
+    curves: list[tuple[Axes, Callable[[np.ndarray], np.ndarray]]]
+    curves = [(left, lambda values: values), (right, lambda values: 100.0 * (values - truth) / truth.max())]
     named = {"own": search.own, "best": answer.best}
     worst = [
         np.abs(np.asarray(line.get_ydata()) - of(two(run))).max()
