@@ -18,8 +18,6 @@ RADIANS = {1 / 6: "pi/6", 1 / 4: "pi/4", 1 / 3: "pi/3", 1 / 2: "pi/2", 2 / 3: "2
 RADIANS |= {1 / 36: "pi/36", 1 / 18: "pi/18", 1 / 12: "pi/12", 1 / 9: "pi/9", 1 / 8: "pi/8"}
 RADIANS |= {3 / 2: "3 pi/2", 2.0: "2 pi", 3.0: "3 pi", 4.0: "4 pi", 6.0: "6 pi", 8.0: "8 pi", 10.0: "10 pi", 20.0: "20 pi"}
 NEARLY = 1e-3
-#: Degrees of a turn in a load step beyond which its points go another way than round: the chord is a tenth shorter than the arc.
-FAR_TURN = 90.0
 #: Share of a round body's size by which the axis of its turns may be beside its middle.
 OFF_CENTRE = 0.05
 #: Share of its ways, along and round, that the foot of a round body may slide before it is not taken to roll: a tyre slides by a tenth.
@@ -33,7 +31,6 @@ def of_turns(problem: Problem) -> Iterator[str]:
     for support in problem.supports:
         yield from _idle_turns(problem, support)
         yield from _radians(problem, support)
-        yield from _far_turns(problem, support)
         yield from [*_axis_beside(problem, support)] or _off_centre(problem, support)
 
 
@@ -120,16 +117,6 @@ def _radians(problem: Problem, support: Support) -> Iterator[str]:
 def _meant(angle: float) -> list[tuple[float, str]]:
     """What an angle is in radians, as a share of pi and in words: the first that it is, if any."""
     return [(share, words) for share, words in RADIANS.items() if abs(abs(angle) / np.pi - share) < NEARLY * share][:1]
-
-
-def _far_turns(problem: Problem, support: Support) -> Iterator[str]:
-    for stage, motion in zip(problem.stages, support.motions, strict=True):
-        step = abs(motion.rotate) / stage.steps
-        if step > FAR_TURN:
-            yield (
-                f"support {support.name!r} turns by {step:.3g} degrees in each load step of stage {stage.name!r}: what slides meanwhile "
-                f"goes round in one stride. Take {int(np.ceil(abs(motion.rotate) / FAR_TURN))} load steps or more"
-            )
 
 
 def _axis_beside(problem: Problem, support: Support) -> Iterator[str]:

@@ -236,12 +236,6 @@ DOUBTFUL = {
     "rolls the other way": (TYRE, "rotate = 30", "rotate = -30", "it slides by 1.02. If it is to roll, turn it by 28.8 degrees"),
     "turned by a tenth": (TYRE, "rotate = 30", "rotate = 3", "turn it by 28.8 degrees"),
     "turns off its centre": (TYRE, "centre = [0, 0, 1]\naxis", "centre = [0, 0, 0]\naxis", "give that as supports.rim.centre"),
-    "half a turn in a step": (
-        PRESS.replace("rotate = 0", "rotate = 180"),
-        'face = "block.w1"',
-        'face = "block.w1"\ncentre = [0, 0, 0]',
-        "Take 2 load steps or more",
-    ),
     "setting of the other method": (PRESS, "[supports.top]", "[solver]\npenalty_growth = 3\n[supports.top]", "Take it out, or take that"),
     "setting of the first method": (
         PRESS,
