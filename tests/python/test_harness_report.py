@@ -8,6 +8,7 @@ from typer.testing import CliRunner
 
 from isomortar.cli.commands import app
 from isomortar.errors import InputError
+from isomortar.harness.report import duration
 
 CASE = """
 from isomortar.harness import Bound, case
@@ -68,3 +69,11 @@ def test_the_widest_limit_is_on_the_page():
 def test_the_page_is_none_of_the_files_beside_it():
     with pytest.raises(InputError, match="the page is an"):
         verify("--report", "out/report.json")
+
+
+@pytest.mark.parametrize(
+    ("seconds", "said"),
+    [(4e-4, "< 1 ms"), (0.5, "500 ms"), (89.0, "89.0 s"), (720.0, "12 min"), (212 * 60.0, "4 h"), (457798 * 60.0, "318 days")],
+)
+def test_times_are_in_units_that_people_count_in(seconds, said):
+    assert duration(seconds) == said

@@ -296,7 +296,12 @@ def duration(seconds: float) -> str:
     """Seconds as people read them."""
     if seconds < 1:
         return f"{1000 * seconds:.0f} ms" if seconds >= 1e-3 else "< 1 ms"
-    return f"{seconds:.1f} s" if seconds < 90 else f"{seconds / 60:.0f} min"
+    if seconds < 90:
+        return f"{seconds:.1f} s"
+    for length, unit in ((60.0, "min"), (3600.0, "h")):
+        if seconds < 90 * length:
+            return f"{seconds / length:.0f} {unit}"
+    return f"{seconds / 86400:.0f} days"
 
 
 def size(memory: float) -> str:

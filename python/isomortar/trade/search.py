@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from isomortar.errors import IsomortarError
+from isomortar.harness.report import duration
 from isomortar.trade.knobs import Dial
 from isomortar.trade.laboratory import Choice, Laboratory, Tried
 from isomortar.trade.model import Model, Yardstick
@@ -240,10 +241,10 @@ class Search:
         finer = (RESOLVED * self.uncertainty / target) ** (1.0 / RATE)
         assert self.truth
         assert self.rival
-        minutes = (self.truth.cost + self.rival.cost) / 60 * finer**COST
+        needed = duration((self.truth.cost + self.rival.cost) * finer**COST)
         return (
             f"two over-refined runs differ by {self.uncertainty:.2g} in what is wanted, and {target:g} is less than {RESOLVED:g} times "
-            f"that: nobody could tell whether it is reached. Meshes about {finer:.1f} times finer would tell, some {minutes:.0f} minutes "
+            f"that: nobody could tell whether it is reached. Meshes about {finer:.1f} times finer would tell, some {needed} "
             f"of the processor for the two (--budget is for all runs, {TRUTH:.0%} of it for these)"
         )
 
