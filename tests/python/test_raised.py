@@ -55,16 +55,16 @@ def test_geometry_is_exact(patch: Patch, face: str) -> None:
     rows = Rows(body)
     assert np.abs(rows.into @ rows.reference - body.patch.control_points).max() < 1e-14
     assert np.abs(rows.into.sum(axis=1) - 1.0).max() < 1e-14
-    assert np.array_equal(np.unique(rows.nearest), np.arange(rows.count))
+    assert np.array_equal(np.unique(rows.nearest), np.arange(len(rows.reference)))
     across = "uvw".index(face[0])
     below = np.prod([d.count - (axis == across) for axis, d in enumerate(patch.directions)])
-    assert rows.count == below + len(body.patch.face_points(face))
+    assert len(rows.reference) == below + len(body.patch.face_points(face))
 
 
 def test_functions_below_the_face_are_of_the_lower_order() -> None:
     body = of_face(BOWL, "w0", 3)
     rows, place = Rows(body), (0.4, 0.7, 0.2)
-    field = rows.into @ np.eye(rows.count)
+    field = rows.into @ np.eye(len(rows.reference))
     at = [BSpline.design_matrix(np.array([x]), d.knots, d.order).toarray()[0] for x, d in zip(place, body.patch.directions, strict=True)]
     found = np.einsum("k,j,i->kji", at[2], at[1], at[0]).ravel() @ field
     u, v, w = (BSpline.design_matrix(np.array([x]), d.knots, d.order).toarray()[0] for x, d in zip(place, BOWL.directions, strict=True))

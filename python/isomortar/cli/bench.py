@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from isomortar.cli import completion
-from isomortar.cli.verification import CASES, FAILED
+from isomortar.cli.endings import FAILED
+from isomortar.cli.verification import CASES
 
 if TYPE_CHECKING:
     from isomortar.harness.bench import Row

@@ -16,7 +16,7 @@ from isomortar.cli.doctor import doctor
 from isomortar.cli.endings import FAILED
 from isomortar.cli.info import info
 from isomortar.cli.mutants import mutants
-from isomortar.cli.options import Overrides, SceneArgument
+from isomortar.cli.options import Overrides, ResultsArgument, SceneArgument
 from isomortar.cli.paper import paper
 from isomortar.cli.report import report
 from isomortar.cli.trade import advise, trade
@@ -32,8 +32,6 @@ app = typer.Typer(
 
 #: Headings of the list of commands.
 SCENES, ACCURACY, CHECKOUT = "Compute and look", "Is it right, and what does accuracy cost?", "In a checkout: is the program right?"
-
-ResultsArgument = Annotated[Path, typer.Argument(metavar="RESULTS", help="Results file of `isomortar run`.")]
 
 
 def _show_version(wanted: bool) -> None:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 import isomortar
+from isomortar.cli.options import ResultsArgument
 
 if TYPE_CHECKING:
     from isomortar.solve.record import StepResult
@@ -85,7 +86,7 @@ class Information:
 
 
 def info(
-    results: Annotated[Path, typer.Argument(metavar="RESULTS", help="Results file of `isomortar run`.")],
+    results: ResultsArgument,
     as_json: Annotated[bool, typer.Option("--json", help="Print all of it as JSON.")] = False,
 ) -> None:
     """Say what a results file holds, how far its computation came, and how its contacts and supports stand at the last load step.

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from isomortar.cli.verification import CASES, CORES, FAILED, REFERENCES, CasesOption, ReferencesOption
+from isomortar.cli.endings import FAILED
+from isomortar.cli.verification import CASES, CORES, REFERENCES, CasesOption, ReferencesOption
 
 if TYPE_CHECKING:
     from isomortar.harness.mutants.score import Score

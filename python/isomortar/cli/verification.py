@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from isomortar.cli import completion
+from isomortar.cli.endings import FAILED
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -23,8 +24,6 @@ if TYPE_CHECKING:
     from isomortar.harness.compare import Lookup
     from isomortar.harness.runner import Result, Submit
     from isomortar.harness.study import Study
-
-FAILED = 1
 
 CasesOption = Annotated[Path, typer.Option("--cases", file_okay=False, help="Folder of families of cases.")]
 ReferencesOption = Annotated[Path, typer.Option("--references", file_okay=False, help="Folder of references.")]

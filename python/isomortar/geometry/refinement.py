@@ -107,10 +107,10 @@ def _evaluated(direction: Direction, grid: FloatArray, axis: int, parameters: Fl
     return np.moveaxis(line.evaluate(parameters[:, None]).reshape(len(parameters), *control.shape[1:]), 0, axis)
 
 
-def surface_samples(patch: Patch, face: str, order: int = 4) -> FloatArray:
-    """Points on a face: its nodes as Lagrange elements of that order, shape (n, 3)."""
+def surface_samples(patch: Patch, face: str) -> FloatArray:
+    """Points on a face: its nodes as Lagrange elements of order 4, or its own ones, shape (n, 3)."""
     if all(d.family == "N" for d in patch.directions):
-        patch = mesh(patch, ("L", "L", "L"), (order,) * 3, [d.elements for d in patch.directions])
+        patch = mesh(patch, ("L", "L", "L"), (4,) * 3, [d.elements for d in patch.directions])
     return patch.control_points[patch.face_points(face)]
 
 

@@ -162,7 +162,7 @@ def _active(state: IntArray) -> np.ndarray:
 
 
 def _sticks(state: IntArray) -> np.ndarray:
-    return state == 1
+    return state == PointState.STICK
 
 
 def _slips(state: IntArray) -> np.ndarray:

@@ -69,9 +69,9 @@ def _factor_entries(shape: tuple[int, ...], widths: tuple[int, ...]) -> float:
         if left < 2 * max(widths[axis], 1):
             return _front(float(np.prod(size)), sides)
         halves = 0.0
-        for half, ends in ((left // 2, (cut[axis] + 1) / 2), (left - left // 2, (cut[axis] + 1) / 2)):
-            part = tuple(half if k == axis else n for k, n in enumerate(size))
-            halves += entries(part, tuple(ends if k == axis else c for k, c in enumerate(cut)))
+        ends = tuple((c + 1) / 2 if k == axis else c for k, c in enumerate(cut))
+        for half in (left // 2, left - left // 2):
+            halves += entries(tuple(half if k == axis else n for k, n in enumerate(size)), ends)
         separator = np.prod(size) / size[axis] * widths[axis]
         return halves + _front(separator, sides)
 

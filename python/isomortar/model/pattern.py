@@ -59,11 +59,7 @@ def elements_about(patch: Patch, face: str, points: IntArray) -> sparse.csr_arra
 
 def _meeting(direction: Direction, closed: bool) -> sparse.csr_array:
     """Elements along a direction that meet at a node of each, shape (elements, elements) (theory 3.21)."""
-    bounds, points = direction.boundaries, _direction_points(direction)
-    if direction.family == "L":
-        nodes = np.interp(np.arange(direction.count) / direction.order, np.arange(len(bounds)), bounds)
-    else:
-        nodes = np.array([direction.knots[j + 1 : j + direction.order + 1].mean() for j in range(direction.count)])
+    bounds, nodes, points = direction.boundaries, direction.greville, _direction_points(direction)
     slack = 1e-6 * np.diff(bounds)
     beside = (nodes[:, None] >= bounds[:-1] - slack) & (nodes[:, None] <= bounds[1:] + slack)
     if closed:  # the first and the last node are the same

@@ -23,9 +23,8 @@ class Rows:
 
     Attributes
     ----------
-    count : int
-    reference : ndarray, shape (count, 3)
-    into : csr_array, shape (control points of the patch, count)
+    reference : ndarray, shape (n, 3)
+    into : csr_array, shape (control points of the patch, n)
         Positions of the control points of the patch from these.
     nearest : ndarray of int32, shape (control points of the patch,)
         Of each the one of these that is nearest to where it belongs; at the face it is the same.
@@ -49,7 +48,7 @@ class Rows:
         own = np.concatenate([_below(homogeneous.reshape((*patch.shape, 4), order="F"), lines)[kept], homogeneous[ends]])
         at_face = sparse.csc_array((np.ones(len(ends)), (ends, np.arange(len(ends)))), shape=(len(homogeneous), len(ends)))
         into = sparse.hstack([sparse.csc_array(_product(lines))[:, kept], at_face])
-        self.count, self.reference = len(own), np.ascontiguousarray(own[:, :3] / own[:, 3:])
+        self.reference = np.ascontiguousarray(own[:, :3] / own[:, 3:])
         self.into = sparse.csr_array(sparse.diags_array(1.0 / patch.weights) @ into @ sparse.diags_array(own[:, 3]))
         near = [abs(high.greville[:, None] - low.greville).argmin(axis=1) for low, high in zip(below, patch.directions, strict=True)]
         place = np.searchsorted(kept, numbers[np.ix_(*near)].ravel(order="F"))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
@@ -54,7 +53,7 @@ def contact_vectors(problem: Problem, result: StepResult, before: StepResult | N
         begun = _at_rest(pair, numbering) if result.step == 1 else None if before is None else _feet(before.state.contacts[number])
         slave = SlaveFace(contact, problem, numbering)
         acts = (result.contacts[number].status > 0)[:, None]
-        by_control = partial(METHODS[contact.enforcement](slave).on_control_points)
+        by_control = METHODS[contact.enforcement](slave).on_control_points
         slip = _slip(pair, problem, positions, _feet(state), begun)
         traction = -np.einsum("na,nca->nc", state.traction, _mean(pair, _dual(pair, problem, positions, _feet(state)), state.projected))
         vectors.append(ContactVectors(*(by_control(np.where(acts, values, 0.0))[slave.within] for values in (slip, traction))))

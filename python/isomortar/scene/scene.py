@@ -66,7 +66,7 @@ class Scene:
         source : str or Path
             Path of a scene file, or a name of `bundled_scenes`.
         overrides : iterable of str, or mapping of str to value
-            SceneChanges of single values: ``bodies.master.mesh.order=[3, 2, 2]``, or ``{"bodies.master.mesh.order": [3, 2, 2]}``.
+            Overrides of single values: ``bodies.master.mesh.order=[3, 2, 2]``, or ``{"bodies.master.mesh.order": [3, 2, 2]}``.
         """
         return cls(*read_source(source), overrides)
 

@@ -16,7 +16,7 @@ from isomortar.scene.types import listed
 
 _BUNDLED = resources.files("isomortar.scene") / "bundled"
 
-#: SceneChanges of single values: ``KEY=VALUE`` each, or values by path.
+#: Overrides of single values: ``KEY=VALUE`` each, or values by path.
 SceneChanges = Iterable[str] | Mapping[str, Any]
 
 _PATH = re.compile(r"[\w-]+(\.[\w-]+)*")

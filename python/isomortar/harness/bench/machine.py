@@ -53,16 +53,16 @@ def machine() -> Machine:
     return Machine(found.group(1) if found else platform.processor(), os.cpu_count() or 1, memory)
 
 
-def dgemm_rate(rows: int = ROWS) -> float:
+def dgemm_rate() -> float:
     """GF/s of a product of square matrices by NumPy's linear algebra library."""
-    one, other = np.random.default_rng(1).standard_normal((2, rows, rows))
-    return float(2e-9 * rows**3 / cpu_seconds(lambda: one @ other, _RUNS)[1])
+    one, other = np.random.default_rng(1).standard_normal((2, ROWS, ROWS))
+    return float(2e-9 * ROWS**3 / cpu_seconds(lambda: one @ other, _RUNS)[1])
 
 
-def triad_rate(entries: int = ENTRIES) -> float:
+def triad_rate() -> float:
     """GB/s of y + a x in place: two vectors are read and one is written."""
-    x, y = np.ones((2, entries))
-    return float(24e-9 * entries / cpu_seconds(lambda: blas.daxpy(x, y, a=0.5), _RUNS)[1])
+    x, y = np.ones((2, ENTRIES))
+    return float(24e-9 * ENTRIES / cpu_seconds(lambda: blas.daxpy(x, y, a=0.5), _RUNS)[1])
 
 
 def limits() -> MachineLimits:

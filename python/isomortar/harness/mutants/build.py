@@ -132,7 +132,7 @@ class PythonWorkshop:
     scout = lines_of_python.__name__
 
     def __init__(self, project: Path, folder: Path, layer: Layer) -> None:
-        self._programs, self._package = folder / "programs", project / layer.folder
+        self._programs = folder / "programs"
         self._files = layer.read(project)
         self.sources, self.rest = package_hash(), kernel_hash()
         self.sound = self.scouted = folder / "sound"
