@@ -146,3 +146,35 @@ def test_a_look_at_a_scene_tells_of_moments_and_stages() -> None:
     said = list(lines(outlook(Scene.from_toml(GOOD).problem())))
     assert "support top: prescribes x, y of pad.w1; goes 0.01 and presses z by -0.3 and turns by a moment of 0.02; in press alone" in said
     assert "support beside: prescribes x, y, z of pad.w1; goes 0.01; in before alone" in said
+
+
+#: A block above another one, which a moment turns about an edge of its top; and a body that a moment twists.
+TURNED = """
+format = 1
+[bodies.upper]
+geometry = { kind = "box", lower = [-0.4, -0.4, 0.1], upper = [0.4, 0.4, 0.7] }
+[bodies.lower]
+geometry = { kind = "box", lower = [-1, -1, -1], upper = [1, 1, 0] }
+mesh = { elements = [2, 2, 1] }
+[bodies.aside]
+geometry = { kind = "box", lower = [3, 3, 0], upper = [4, 4, 1] }
+[contacts.pair]
+slave = "upper.w0"
+master = "lower.w1"
+[supports]
+top = { face = "upper.w1", moment = 0.1, axis = [0, 1, 0], centre = [-0.4, 0, 0.7] }
+lower = { face = "lower.w0" }
+foot = { face = "aside.w0" }
+aside = { face = "aside.w1", moment = 0.1, centre = [3.5, 3.5, 1] }
+[[stages]]
+name = "turn"
+steps = 1
+motions.top.translate = [0, 0, -0.01]
+"""
+
+
+@pytest.mark.parametrize("slave", ["w0", "u0"])
+def test_what_moments_do_is_no_doubt(slave: str) -> None:
+    said = "\n".join(Simulation(Scene.from_toml(TURNED.replace("upper.w0", f"upper.{slave}")).problem()).doubts())
+    for wrong in ("cannot close", "nothing in the scene turns it", "nothing moves or loads it"):
+        assert wrong not in said

@@ -243,12 +243,13 @@ def _check_stance(problem: Problem, contact: Contact, found: Stance) -> None:
             f"{found.thickness:.3g} thick: they have passed through each other; move one of them, or name the faces that meet",
             f"contacts.{contact.name}.master",
         )
-    if looks_away and not _turns(problem):
+    if looks_away and not something_turns(problem):
         raise InputError(
             f"{slave} looks away from its master, and nothing in the scene turns it; name the face that looks at the master",
             f"contacts.{contact.name}.slave",
         )
 
 
-def _turns(problem: Problem) -> bool:
+def something_turns(problem: Problem) -> bool:
+    """Whether a support turns its face, by a motion or by a moment."""
     return any(support.turns or support.moment is not None for support in problem.supports)

@@ -57,7 +57,7 @@ def _ways(problem: Problem, place: Face, towards: FloatArray) -> list[FloatArray
     """How far each support of a side's bodies has gone along a vector at the end of each stage; none: nobody knows."""
     names = {body.name for body in piece_of(problem, place)}
     supports = [support for support in problem.supports if support.place.body in names]
-    if any(support.turns or support.pressed for support in supports) or any(load.body in names for load in problem.loads):
+    if any(support.turns or support.is_plate for support in supports) or any(load.body in names for load in problem.loads):
         return []
     if not supports and problem.body(place.body).rigid:
         return [np.zeros(len(problem.stages))]

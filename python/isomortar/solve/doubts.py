@@ -12,7 +12,7 @@ from isomortar import _bindings
 from isomortar.errors import FoldedElementError
 from isomortar.geometry.patch import MAX_ORDER, FloatArray, IntArray
 from isomortar.model import constants
-from isomortar.model.contact_checks import SAME_WAY
+from isomortar.model.contact_checks import SAME_WAY, something_turns
 from isomortar.model.contrasts import element_lengths
 from isomortar.model.entities import Body, Contact, Face, Problem
 from isomortar.model.memory import memory_needed, memory_of_machine
@@ -181,7 +181,7 @@ def _of_ways(problem: Problem, contact: Contact, found: Stance, beside: bool) ->
     """How the faces of a contact look at each other, and where motions bring them."""
     if beside:
         return
-    if FACING < found.cosine <= SAME_WAY and not any(support.turns for support in problem.supports):
+    if FACING < found.cosine <= SAME_WAY and not something_turns(problem):
         yield (
             f"contact {contact.name!r}: no part of {contact.slave.words} looks at its master, and nothing in the scene turns it. Name the "
             "face that looks at the master"

@@ -99,7 +99,7 @@ def _outside(body: Body) -> tuple[FloatArray, FloatArray, FloatArray]:
 def _idle_bodies(problem: Problem, told: set[str]) -> Iterator[str]:
     """Bodies that nothing touches, loads or moves; but for some."""
     touched = told | {name for names in _in_contact(problem) for name in names}
-    loaded = {load.body for load in problem.loads} | {s.place.body for s in problem.supports if s.moves or s.pressed}
+    loaded = {load.body for load in problem.loads} | {s.place.body for s in problem.supports if s.moves or s.is_plate}
     if len(problem.bodies) > 1:
         for names in _pieces(problem):
             if not names & (touched | loaded):
