@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -36,7 +37,7 @@ class CheaperSearch(Search):
 def cheaper_dials(scene: Scene, wants: Sequence[Want] = ()) -> tuple[Dial, ...]:
     """Dials of what a scene may do without; of those that refine, settings up to the scene's own."""
     found = dials_of(scene, wants, (*VARIANTS, *KNOBS))
-    cut = [Dial(d.name, d.settings[: d.own + 1], d.own, d.spoils, d.refines, d.part) if d.refines else d for d in found]
+    cut = [replace(dial, settings=dial.settings[: dial.own + 1]) if dial.refines else dial for dial in found]
     return tuple(dial for dial in cut if len(dial.settings) > 1)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from isomortar._distributed import is_built
@@ -110,7 +110,7 @@ def _possible(scene: Scene, dial: Dial, wants: Sequence[Want]) -> Dial:
             continue
         if all(want.shown(problem) for want in wants):
             kept.append(number)
-    return Dial(dial.name, tuple(dial.settings[n] for n in kept), kept.index(dial.own), dial.spoils, dial.refines, dial.part)
+    return replace(dial, settings=tuple(dial.settings[n] for n in kept), own=kept.index(dial.own))
 
 
 def _orders(scene: Scene, spoils: str) -> Iterator[Dial]:
