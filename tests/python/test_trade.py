@@ -411,6 +411,25 @@ def test_runs_that_fail_are_shown_and_never_recommended(scene, tmp_path):
     assert page.write(tmp_path, scene, search, [answer], datetime.now().astimezone()).read_text().count("folded") == len(failed)
 
 
+@pytest.mark.parametrize("wants", [("force.top.x", "gap.floor"), ("gap.floor", "force.top.x")])
+def test_runs_that_do_not_tell_what_is_wanted_are_never_recommended(scene, wants):
+    class Silent(Formula):
+        """Of runs with so few load steps feet are lost, and with them gaps."""
+
+        def formula(self, choice):
+            outcome = super().formula(choice)
+            return replace(outcome, numbers=outcome.numbers | {"gap": [math.nan]}) if choice[3] == few else outcome
+
+    dials = synthetic()
+    few = searched(scene, 0.1, wants=wants)[1].best.choice[3]
+    search, answer = searched(scene, 0.1, Silent(scene, dials), wants)
+    assert few < answer.best.choice[3]
+    assert all(math.isinf(search.error(outcome)) == (outcome.choice[3] == few) for outcome in search.laboratory.outcomes.values())
+    few = dials[3].own
+    with pytest.raises(IsomortarError, match=r"there is nothing to trade: not finite: gap\.floor"):
+        searched(scene, 0.1, Silent(scene, dials), wants)
+
+
 def test_a_knob_is_one_entry(scene, tmp_path):
     """It is screened, searched, and shown."""
 

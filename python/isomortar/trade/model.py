@@ -52,8 +52,12 @@ class Yardstick:
         return self.want.size(values, self.weights) / self.size if self.size > 0.0 else math.inf
 
     def error(self, outcome: Tried) -> float:
-        """Distance of a run from the truth over the size of the truth; infinite where it failed."""
-        return math.inf if outcome.failure else self.norm(self.values(outcome) - self.truth)
+        """Distance of a run from the truth over the size of the truth; infinite where it failed, or does not tell what is wanted."""
+        return self.norm(self.values(outcome) - self.truth) if self.told(outcome) else math.inf
+
+    def told(self, outcome: Tried) -> bool:
+        """Whether a run came to its end and tells what is wanted: a gap is no number where a foot was lost."""
+        return not outcome.failure and bool(np.isfinite(self.values(outcome)).all())
 
 
 class Model:
@@ -85,8 +89,8 @@ class Model:
         hopeful: bool = False,
     ) -> None:
         self._dials, self._yardsticks, self._hopeful = dials, yardsticks, hopeful
-        self._centres = [outcome for outcome in outcomes.values() if not outcome.failure]
-        self._failed = {choice for choice, outcome in outcomes.items() if outcome.failure}
+        self._centres = [outcome for outcome in outcomes.values() if all(y.told(outcome) for y in yardsticks)]
+        self._failed = outcomes.keys() - {outcome.choice for outcome in self._centres}
         base = outcomes[own]
         self._costs, self._effects = {}, {}
         for outcome in self._centres:

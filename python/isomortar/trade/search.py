@@ -7,6 +7,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
+import numpy as np
+
 from isomortar.errors import IsomortarError
 from isomortar.harness.report import duration
 from isomortar.trade.knobs import Dial
@@ -84,11 +86,13 @@ class Search:
         Raises
         ------
         IsomortarError
-            It does not come to its end.
+            It does not come to its end, or does not tell what is wanted.
         """
         (own,) = self.laboratory.run([self.laboratory.own])
-        if own.failure:
-            raise IsomortarError(f"the scene as it is does not come to its end, so that there is nothing to trade: {own.failure}")
+        untold = [] if own.failure else [w.text for w in self.wants if not np.isfinite(w.values(own.numbers, own.numbers)).all()]
+        failure = f"not finite: {', '.join(untold)}" if untold else own.failure
+        if failure:
+            raise IsomortarError(f"the scene as it is does not come to its end, so that there is nothing to trade: {failure}")
         return own
 
     @property
@@ -109,7 +113,7 @@ class Search:
         return max(yardstick.uncertainty for yardstick in self.yardsticks)
 
     def error(self, outcome: Tried) -> float:
-        """Distance from the truth: the largest of what is wanted; infinite where the run failed."""
+        """Distance from the truth: the largest of what is wanted; infinite where the run failed, or does not tell it."""
         return max(yardstick.error(outcome) for yardstick in self.yardsticks)
 
     def screen(self) -> None:
