@@ -3,7 +3,9 @@
 import ast
 import importlib.metadata
 import json
+import os
 import re
+import subprocess
 import sys
 from concurrent.futures import Future
 from dataclasses import replace
@@ -82,6 +84,15 @@ def test_a_damaged_file_is_measured_again(root, damage):
     for path in (root.parent / "store").rglob("*.json"):
         path.write_text(damage(path.read_text()))
     assert all(r.fresh for r in measured(root).values())
+
+
+def test_pages_are_utf_8_in_any_locale(tmp_path):
+    """They say what ASCII cannot, which may be all that the system's text is."""
+    words = f"pathlib.Path({str(tmp_path / 'page')!r}), chr(0x2264)"
+    code = f"import pathlib; from isomortar.harness.store import write_whole; write_whole({words})"
+    ascii_alone = {"LC_ALL": "C", "PYTHONCOERCECLOCALE": "0", "PYTHONUTF8": "0"}
+    subprocess.run([sys.executable, "-c", code], env=os.environ | ascii_alone, check=True)
+    assert (tmp_path / "page").read_bytes() == "\u2264".encode()
 
 
 def test_a_file_of_another_cell_is_not_taken(root):

@@ -38,7 +38,7 @@ class Store:
     def get(self, cell: Cell) -> Measurement | None:
         """The measurement of a cell as it is now; None when there is none, or the file is not what was written."""
         try:
-            content = json.loads(self._path(cell).read_text())
+            content = json.loads(self._path(cell).read_text(encoding="utf-8"))
             if content["cell"] != cell.name or content["hash"] != _content_hash(content["measurement"]):
                 return None
             return Measurement(**content["measurement"])
@@ -60,7 +60,7 @@ def write_whole(path: Path, text: str) -> None:
     """Write a file so that a reader finds the old or the new one, never a part."""
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_name(f".{path.name}.{os.getpid()}-{threading.get_ident()}.part")
-    with part.open("w") as file:  # not a temporary file, which only its owner may read
+    with part.open("w", encoding="utf-8") as file:  # not a temporary file, which only its owner may read
         file.write(text)
         file.flush()
         os.fsync(file.fileno())
@@ -160,7 +160,7 @@ def _sources(path: Path) -> list[Path]:
 def _imports_of(path: Path, cases: Path) -> set[Path]:
     """What a file imports itself. Read once, as many cases import the same."""
     files: set[Path] = set()
-    for node in _statements(ast.parse(path.read_text())):
+    for node in _statements(ast.parse(path.read_text(encoding="utf-8"))):
         names: list[str] = []
         within = [cases, _PACKAGE.parent]
         if isinstance(node, ast.Import):
