@@ -153,6 +153,12 @@ def test_overrides_reach_every_kind_of_place() -> None:
     assert (problem.settings.slip_sum, scene.record.states, problem.contacts[0].friction) == ("paper", "last", 0)
 
 
+@pytest.mark.parametrize("table", ["materials", "bodies", "contacts", "supports", "loads"])
+def test_overrides_add_nothing_that_has_a_name(table: str) -> None:
+    with pytest.raises(InputError, match=f"{table}.new: an override changes what the scene has; {table} there: "):
+        Scene.load("press", [f"{table}.new.young=1"])
+
+
 def test_overrides_are_options_that_a_shell_takes_as_they_stand() -> None:
     overrides = ["bodies.block.mesh.elements=[4, 4, 2]", 'bodies.block.mesh.family=["N", "N", "N"]', "title=it's"]
     words = subprocess.run(["bash", "-c", f"printf '%s\\n' {as_options(overrides)}"], capture_output=True, text=True).stdout.splitlines()

@@ -22,7 +22,7 @@ SceneChanges = Iterable[str] | Mapping[str, Any]
 _PATH = re.compile(r"[\w-]+(\.[\w-]+)*")
 
 #: Tables whose entries have names of their own: an override cannot add one.
-_NAMED = ("materials", "bodies", "contacts", "supports")
+_NAMED = ("materials", "bodies", "contacts", "supports", "loads")
 
 
 def bundled_scenes() -> tuple[str, ...]:
