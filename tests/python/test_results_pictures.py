@@ -105,6 +105,19 @@ def test_fields_may_be_chosen(results_path: Path, tmp_path: Path) -> None:
         plot(results_path, tmp_path, fields=["stress"], only=["maps"])
 
 
+def test_of_rigid_bodies_alone_curves_are_drawn(tmp_path: Path) -> None:
+    """Fields of bodies are those of bodies that deform: colours of none have no range."""
+    text = """
+format = 1
+name = "die"
+bodies.die = { rigid = true, geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] } }
+supports.die = { face = "die.w0" }
+stages = [{ name = "go", steps = 1, motions.die.translate = [0, 0, 0.1] }]
+"""
+    run(Scene.from_toml(text), tmp_path / "die.h5").close()
+    assert [path.name for path in plot(tmp_path / "die.h5", tmp_path, formats=["svg"])] == ["reactions-die.svg"]
+
+
 def test_slips_of_a_step_whose_beginning_nobody_kept_are_refused(tmp_path: Path) -> None:
     writer = ResultsWriter(tmp_path / "last.h5", problem(), "", "0", states="last")
     for number in (1, 2):

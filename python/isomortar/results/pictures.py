@@ -114,7 +114,8 @@ def _of_bodies(results: Results, step: StepResult, fields: Sequence[str]) -> Ite
     problem = results.problem
     for number, contact in enumerate(problem.contacts) if "pressure" in fields else ():
         yield f"bodies-{contact.name}", partial(draw_bodies, problem, step, number)
-    yield from ((f"bodies-{field}", partial(draw_coloured, problem, step, field)) for field in fields if field in BODY_FIELDS)
+    of_bodies = [field for field in fields if field in BODY_FIELDS and problem.deformable]
+    yield from ((f"bodies-{field}", partial(draw_coloured, problem, step, field)) for field in of_bodies)
 
 
 def _of_contacts(results: Results, step: StepResult, fields: Sequence[str]) -> Iterator[Named]:
