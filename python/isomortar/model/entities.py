@@ -418,6 +418,11 @@ class Problem:
         """Number of recorded load steps over all stages."""
         return sum(stage.steps for stage in self.stages)
 
+    def stage_of(self, step: int) -> int:
+        """Number of the stage that a load step, counted from 1 over all stages, belongs to."""
+        ends = np.cumsum([stage.steps for stage in self.stages])
+        return int(np.searchsorted(ends, step))
+
     @property
     def given_supports(self) -> tuple[Support, ...]:
         """Its supports but for those that hold planes of symmetry, which come last."""

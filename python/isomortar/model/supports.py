@@ -231,7 +231,7 @@ class Supports:
 
     def longest_increment(self, step: int) -> float:
         """The largest share of a recorded load step in which no support turns by more than LARGEST_TURN (theory 5.2): 1 / n."""
-        stage = int(np.searchsorted(np.cumsum([stage.steps for stage in self._problem.stages]), step))
+        stage = self._problem.stage_of(step)
         turns = [abs(support.motions[stage].rotate) / self._problem.stages[stage].steps for support in self._problem.supports]
         return 1.0 / max(1, int(np.ceil(max(turns, default=0.0) / constants.LARGEST_TURN)))
 

@@ -108,7 +108,7 @@ class Equilibrium:
 
     def standing(self, step: int) -> Supports:
         """The supports of the stage of a load step."""
-        stage = int(np.searchsorted(np.cumsum([stage.steps for stage in self.problem.stages]), step))
+        stage = self.problem.stage_of(step)
         if stage != self.supports.stage and self._changes:
             self._stand(stage)
         return self.supports

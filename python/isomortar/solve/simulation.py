@@ -187,8 +187,7 @@ class Simulation:
         return step in np.cumsum([stage.steps for stage in self.problem.stages])
 
     def _stage_of(self, step: int) -> str:
-        ends = np.cumsum([stage.steps for stage in self.problem.stages])
-        return self.problem.stages[int(np.searchsorted(ends, step))].name
+        return self.problem.stages[self.problem.stage_of(step)].name
 
     def _from_record(self, result: StepResult) -> State:
         """The state of a recorded step, to the digits that are recorded: a run that is resumed there comes to the same numbers.
