@@ -20,19 +20,9 @@ from isomortar.results.definition import read_problem, write_problem
 from isomortar.results.reader import Results
 from isomortar.scene import Scene
 from isomortar.solve.outlook import outlook
-from isomortar.solve.record import LoadResult, Observer, StepResult
+from isomortar.solve.record import LoadResult
 from isomortar.solve.simulation import Simulation
-
-
-class Stopped(Observer):
-    """Ends a run after some load steps."""
-
-    def __init__(self, after: int) -> None:
-        self._after = after
-
-    def recorded(self, result: StepResult) -> None:
-        if result.step == self._after:
-            raise KeyboardInterrupt
+from stopped_runs import Stopped
 
 
 @pytest.mark.parametrize(("old", "new", "field", "text"), WRONG.values(), ids=list(WRONG))

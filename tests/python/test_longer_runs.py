@@ -15,6 +15,7 @@ from isomortar.errors import ResultsError
 from isomortar.results import Results
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
+from stopped_runs import Stopped
 from test_results_files import StopsAtOnce, ended
 from test_results_formats import as_before, without_ways
 from test_results_store import same
@@ -95,23 +96,12 @@ def test_another_stage_is_that_of_a_run_from_the_start(tmp_path: Path) -> None:
     scene = SCENES["block"]
     longer, path = with_stages(scene, TURN), tmp_path / "longer.h5"
     with pytest.raises(KeyboardInterrupt):
-        isomortar.run(scene, path, Stops(3))
+        isomortar.run(scene, path, Stopped(3))
     as_before(path, 3)
     without_ways(path)
     isomortar.run(longer, path, resume=True).close()
     isomortar.run(longer, tmp_path / "whole.h5").close()
     assert_same(path, tmp_path / "whole.h5")
-
-
-class Stops(isomortar.Observer):
-    """Ends a run after a load step."""
-
-    def __init__(self, step: int) -> None:
-        self.step = step
-
-    def recorded(self, result: StepResult) -> None:
-        if result.step == self.step:
-            raise KeyboardInterrupt
 
 
 def lengthened(scene: Scene, steps: int, *stages: dict[str, Any]) -> Scene:

@@ -15,8 +15,9 @@ from isomortar.model.constants import EASY_ITERATIONS, HARD_TANGENTS
 from isomortar.model.entities import Motion, Problem, Stage
 from isomortar.scene import Scene
 from isomortar.solve.method import Increment
-from isomortar.solve.record import AugmentationRecord, IterationRecord, Observer, State, StepResult
+from isomortar.solve.record import AugmentationRecord, IterationRecord, State, StepResult
 from isomortar.solve.simulation import Simulation
+from stopped_runs import Stopped
 
 SCENE = """
 format = 1
@@ -157,17 +158,6 @@ CUTTING = {"monolithic": ["solver.max_iterations=4"], "uzawa": ["solver.max_iter
 COARSE = ["bodies.block.mesh.order=[1,1,1]", "bodies.block.mesh.elements=[2,2,1]", "solver.newton_tolerance=1e-9"]
 
 
-class Stops(Observer):
-    """Ends a run after a load step."""
-
-    def __init__(self, after: int) -> None:
-        self.after = after
-
-    def recorded(self, result: StepResult) -> None:
-        if result.step == self.after:
-            raise KeyboardInterrupt
-
-
 def apart(one: object, other: object) -> float:
     """Largest relative difference of results of a load step; all that is not an array of numbers is the same. Not what it cost."""
     if isinstance(one, np.ndarray) and one.dtype.kind == "f":
@@ -192,7 +182,7 @@ def test_a_run_that_was_stopped_after_cuts_goes_on_from_its_file_as_if_it_had_no
     assert expected[1].cuts > 0
     assert max(result.substeps for result in expected) > 1 == expected[3].substeps
     with pytest.raises(KeyboardInterrupt):
-        run(scene, path, Stops(2))
+        run(scene, path, Stopped(2))
     with run(scene, path, resume=True) as resumed:
         assert list(resumed.steps) == [1, 2, 3, 4]
         found = [resumed.step(int(number)) for number in resumed.steps]
@@ -241,7 +231,7 @@ def test_resumed_with_the_orderings_that_were_chosen_a_run_comes_to_the_same_bit
     monkeypatch.setattr(constants, "UNDOUBTED", (0, 10**9))
     scene, path = Scene.from_toml(TWO_BODIES, overrides=settings), tmp_path / "parts.h5"
     with pytest.raises(KeyboardInterrupt):
-        run(scene, path, Stops(1))
+        run(scene, path, Stopped(1))
     with run(scene, tmp_path / "whole.h5") as whole, run(scene, path, resume=True) as resumed:
         pairs = [(whole.step(int(number)), resumed.step(int(number))) for number in whole.steps]
     assert [apart(one, other) for one, other in pairs] == [0.0] * 5

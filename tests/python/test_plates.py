@@ -20,21 +20,10 @@ from isomortar.scene import Scene
 from isomortar.solve.condensed import CondensedSystem
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.outlook import outlook
-from isomortar.solve.record import Observer, StepResult
 from isomortar.solve.simulation import Simulation
 from isomortar.solve.system import LinearSystem
 from isomortar.solve.timing import Ledger
-
-
-class Stopped(Observer):
-    """Ends a run after some load steps."""
-
-    def __init__(self, step: int) -> None:
-        self._step = step
-
-    def recorded(self, result: StepResult) -> None:
-        if result.step == self._step:
-            raise KeyboardInterrupt
+from stopped_runs import Stopped
 
 
 @pytest.mark.parametrize(("old", "new", "field", "text"), WRONG.values(), ids=list(WRONG))

@@ -15,8 +15,8 @@ from isomortar.results import layout
 from isomortar.results.files import sealed
 from isomortar.results.reader import Results
 from isomortar.results.writer import ResultsWriter
-from isomortar.solve.record import StepResult
 from results_samples import problem, step_result
+from stopped_runs import Stopped
 from test_results_store import same
 
 #: What format 3 held with the other sign.
@@ -99,20 +99,12 @@ def test_other_formats_are_refused_with_what_to_do(tmp_path: Path, number: int, 
     assert path.read_bytes() == before
 
 
-class Stops(isomortar.Observer):
-    """Ends a run after its second load step."""
-
-    def recorded(self, result: StepResult) -> None:
-        if result.step == 2:
-            raise KeyboardInterrupt
-
-
 def test_a_run_that_was_stopped_before_goes_on_to_the_same_numbers(tmp_path: Path) -> None:
     scene = isomortar.Scene.load("press", PRESS)
     with isomortar.run(scene, tmp_path / "whole.h5") as whole:
         path = tmp_path / "stopped.h5"
         with pytest.raises(KeyboardInterrupt):
-            isomortar.run(scene, path, Stops())
+            isomortar.run(scene, path, Stopped(2))
         as_before(path, 3)
         without_ways(path)
         with isomortar.run(scene, path, resume=True) as resumed:

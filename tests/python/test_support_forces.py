@@ -20,16 +20,8 @@ from isomortar.results.files import read, sealed
 from isomortar.results.reader import Results
 from isomortar.scene import Scene
 from isomortar.solve.outlook import outlook
-from isomortar.solve.record import Observer, StepResult
 from isomortar.solve.simulation import Simulation
-
-
-class Stopped(Observer):
-    """Ends a run after some load steps."""
-
-    def recorded(self, result: StepResult) -> None:
-        if result.step == 3:
-            raise KeyboardInterrupt
+from stopped_runs import Stopped
 
 
 @pytest.mark.parametrize(("old", "new", "field", "text"), WRONG.values(), ids=list(WRONG))
@@ -111,7 +103,7 @@ def test_results_hold_forces_and_ways_to_the_last_bit(tmp_path: Path) -> None:
     scene = Scene.from_toml(GOOD)
     run(scene, tmp_path / "whole.h5")
     with pytest.raises(KeyboardInterrupt):
-        run(scene, tmp_path / "parts.h5", observer=Stopped())
+        run(scene, tmp_path / "parts.h5", observer=Stopped(3))
     run(scene, tmp_path / "parts.h5", resume=True)
     with Results(tmp_path / "whole.h5") as one, Results(tmp_path / "parts.h5") as other:
         for quantity in ("force", "displacement"):
