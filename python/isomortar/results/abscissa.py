@@ -45,7 +45,7 @@ def abscissa(results: Results, what: str = "time") -> Abscissa:
         There is no such support.
     """
     if what == "time":
-        return Abscissa(_from_rest(results.curve("time")), "load time (steps)")
+        return Abscissa(from_rest(results.curve("time")), "load time (steps)")
     found = _WAY.fullmatch(what)
     if not found or (found["component"] and found["quantity"] == "rotation"):
         raise InputError(
@@ -54,13 +54,13 @@ def abscissa(results: Results, what: str = "time") -> Abscissa:
     values = results.curve(found["quantity"], support=found["support"])
     if values.ndim == 2:
         values = values[:, "xyz".index(found["component"])] if found["component"] else np.linalg.norm(values, axis=1)
-    values = _from_rest(values)
+    values = from_rest(values)
     if not values.any():
         raise InputError(f"is {what!r}, and it stays zero: nothing can be drawn over it", "x")
     unit = " (degrees)" if found["quantity"] == "rotation" else ""
     return Abscissa(values, f"{what}{unit}")
 
 
-def _from_rest(values: FloatArray) -> FloatArray:
-    """With zero before the first load step."""
-    return np.append(0.0, values)
+def from_rest(values: FloatArray) -> FloatArray:
+    """What is recorded by load step, shape (steps, ...), with the rest before them: zero."""
+    return np.concatenate([np.zeros((1, *values.shape[1:])), values])

@@ -13,7 +13,7 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Support
 from isomortar.model.numbering import Numbering
 from isomortar.results import style
-from isomortar.results.abscissa import Abscissa, abscissa
+from isomortar.results.abscissa import Abscissa, abscissa, from_rest
 from isomortar.results.reader import Results
 
 _COMPONENTS = {"x": (style.BLUE, "-"), "y": (style.GREEN, "--"), "z": (style.VERMILION, "-.")}
@@ -46,7 +46,7 @@ def draw_reactions(results: Results, support: str, over: Abscissa | None = None)
     scale = max(float(np.abs(results.curve("force", support=support)).max()), 1e-300)
     length = Numbering(results.problem).size
     for axes, quantity, label, size in ((force, "force", "force", scale), (moment, "moment", "moment about the centre", scale * length)):
-        values = _from_rest(results.curve(quantity, support=support))
+        values = from_rest(results.curve(quantity, support=support))
         for number, (name, (colour, line)) in enumerate(_COMPONENTS.items()):
             axes.plot(over.values, values[:, number], line, color=colour, label=name, marker=_marker(over), markersize=3, clip_on=False)
         axes.set_ylabel(label)
@@ -63,7 +63,7 @@ def draw_curve(results: Results, curve: WantedCurve, over: Abscissa | None = Non
     over = over or abscissa(results)
     figure = Figure(figsize=(6.4, 3.2), layout="constrained")
     axes = figure.subplots()
-    values = _from_rest(results.curve(curve.quantity, support=curve.support))
+    values = from_rest(results.curve(curve.quantity, support=curve.support))
     chosen = np.linalg.norm(values, axis=1) if curve.component == "norm" else values[:, "xyz".index(curve.component)]
     axes.plot(over.values, chosen, color=style.BLUE, marker=_marker(over), markersize=3, clip_on=False)
     of = f"|{curve.quantity}|" if curve.component == "norm" else f"{curve.quantity} {curve.component}"
@@ -71,11 +71,6 @@ def draw_curve(results: Results, curve: WantedCurve, over: Abscissa | None = Non
     axes.set_title(f"{results.problem.name}: {curve.name} (support {curve.support})", loc="left", pad=18)
     _finish((axes,), results, over)
     return figure
-
-
-def _from_rest(values: FloatArray) -> FloatArray:
-    """What is recorded by load step, with the rest before them: no force."""
-    return np.concatenate([np.zeros((1, *values.shape[1:])), values])
 
 
 def _marker(over: Abscissa) -> str:
