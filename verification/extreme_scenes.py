@@ -10,6 +10,7 @@ import numpy as np
 from extremes.trials import Trial, run
 from scipy.optimize import brentq
 
+from isomortar.geometry.patch import FloatArray
 from isomortar.scene.source import dump, parse
 
 Data = dict[str, Any]
@@ -62,13 +63,13 @@ def column(size: tuple[float, float, float] = (1.0, 1.0, 1.0), press: float = 0.
     }
 
 
-def column_pressure(stretch: float, young: float = YOUNG, poisson: float = POISSON) -> float:
+def column_pressure(stretch: float, poisson: float = POISSON) -> float:
     """Force per reference area of a column at an axial stretch: the lateral traction (theory 8.3) is zero.
 
     With ``e = ln J`` that traction is ``bulk e + shear exp(-2e/3) (exp(e)/stretch - stretch^2) / 3 = 0``, well conditioned where the body
     is nearly incompressible.
     """
-    bulk, shear = young / (3.0 * (1.0 - 2.0 * poisson)), young / (2.0 * (1.0 + poisson))
+    bulk, shear = YOUNG / (3.0 * (1.0 - 2.0 * poisson)), YOUNG / (2.0 * (1.0 + poisson))
     ratio = bulk / shear
 
     def lateral(e: float) -> float:
@@ -78,9 +79,9 @@ def column_pressure(stretch: float, young: float = YOUNG, poisson: float = POISS
     return float(-shear * np.exp(-2.0 * e / 3.0) * (stretch**2 - np.exp(e) / stretch) / stretch)
 
 
-def confined_pressure(compression: float, young: float = YOUNG, poisson: float = POISSON) -> float:
+def confined_pressure(compression: float) -> float:
     """Force per area of a column that can not widen, shortened by a share of its height, however small."""
-    bulk, shear = young / (3.0 * (1.0 - 2.0 * poisson)), young / (2.0 * (1.0 + poisson))
+    bulk, shear = YOUNG / (3.0 * (1.0 - 2.0 * POISSON)), YOUNG / (2.0 * (1.0 + POISSON))
     stretch = 1.0 - compression
     deviator = 2.0 / 3.0 * compression * (compression - 2.0) * stretch ** (-2.0 / 3.0)
     return float(-(bulk * np.log1p(-compression) + shear * deviator) / stretch)
@@ -109,7 +110,7 @@ def stack(ratio: float, slave: int, master: int, press: float = 0.4) -> Data:
     }
 
 
-def stack_pressure(ratio: float, press: float = 0.4) -> float:
+def stack_pressure(ratio: float, press: float) -> float:
     """Force of `stack`: the two columns carry the same, and the stiffer one's share of the compression may be very small."""
     stiffer, softer = max(ratio, 1.0), min(ratio, 1.0)
 
@@ -121,9 +122,9 @@ def stack_pressure(ratio: float, press: float = 0.4) -> float:
     return softer * confined_pressure(press * (1.0 - share))
 
 
-def press_of(support: str = "top") -> Any:
-    """Downward forces that a support exerts on its body, by step: a measure for `digits`."""
-    return lambda done: -done.force(support)[:, 2]
+def press_of(done: Trial) -> FloatArray:
+    """Downward forces of the support `top` on its body, shape (steps,)."""
+    return -done.force("top")[:, 2]
 
 
 def worst(*kept: float) -> float:

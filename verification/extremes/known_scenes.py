@@ -82,17 +82,17 @@ def thin(done: Trial) -> float:
 def uniform(done: Trial) -> float:
     """Patch test: the closed form of a column, in the force and at every point of the pressure."""
     pressure = done.held["curves/contacts/f/pressure_field"]
-    return worst(digits(press_of()(done), _COLUMN), digits(pressure, np.stack([_COLUMN, _COLUMN], axis=1)))
+    return worst(digits(press_of(done), _COLUMN), digits(pressure, np.stack([_COLUMN, _COLUMN], axis=1)))
 
 
 def graded(done: Trial) -> float:
     """The same; of the pressure at a knot span of 1e-6 as many digits are lost as in `knot_spans`."""
-    return worst(digits(press_of()(done), _COLUMN), 3.0 + uniform(done))
+    return worst(digits(press_of(done), _COLUMN), 3.0 + uniform(done))
 
 
 def prescribed(done: Trial) -> float:
     """Every point is prescribed: the closed form of a column that can not widen."""
-    return digits(press_of()(done), [confined_pressure(0.1)])
+    return digits(press_of(done), [confined_pressure(0.1)])
 
 
 def _nothing(_: Trial) -> float:
@@ -100,12 +100,12 @@ def _nothing(_: Trial) -> float:
     return 0.0
 
 
-def _other_method(name: str, support: str = "top") -> Callable[[Trial], float]:
+def _other_method(name: str) -> Callable[[Trial], float]:
     """Augmentations to the end, which share no iteration with the monolithic loop."""
 
     def found(done: Trial) -> float:
         changes = {"solver.method": "uzawa", "solver.augmentation_tolerance": 1e-9, **_TIGHT}
-        return digits(done.force(support), ran(changed(loaded(name), changes)).force(support))
+        return digits(done.force("top"), ran(changed(loaded(name), changes)).force("top"))
 
     return found
 

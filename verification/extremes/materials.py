@@ -25,7 +25,7 @@ def poisson(poisson: float, order: int) -> dict[str, Any]:
     """Closed form: a column that is free to widen; every order holds its state."""
     data = changed(column(poisson=poisson), {"bodies.b.mesh.order": [order] * 3})
     right = [column_pressure(stretch, poisson=poisson) for stretch in (0.9, 0.8)]
-    return judge(ran(data), lambda done: digits(press_of()(done), right), needed=6.0, causes=["poisson", "lock", "round-off"])
+    return judge(ran(data), lambda done: digits(press_of(done), right), needed=6.0, causes=["poisson", "lock", "round-off"])
 
 
 @case(
@@ -43,7 +43,7 @@ def locking(poisson: float, order: int) -> dict[str, Any]:
     data = changed(data, {"bodies.b.mesh.elements": [2, 2, 2]})
     fine = ran(changed(data, {"bodies.b.mesh": {"order": [4, 4, 4], "elements": [4, 4, 4]}}), seconds=300)
     coarse = ran(changed(data, {"bodies.b.mesh.order": [order] * 3}))
-    return judge(coarse, lambda done: digits(press_of()(done), press_of()(fine)), needed=0.7, causes=["poisson", "lock"])
+    return judge(coarse, lambda done: digits(press_of(done), press_of(fine)), needed=0.7, causes=["poisson", "lock"])
 
 
 @case(
@@ -66,7 +66,7 @@ def stiffness(ratio: float, meshes: str) -> dict[str, Any]:
     right = [stack_pressure(ratio, press) for press in (0.2, 0.4)]
     needed = 2.0 if master > slave else float(min(15.0 - abs(np.log10(ratio)), 6.0))
     return judge(
-        run, lambda done: digits(press_of()(done), right), needed, causes=["times as stiff", "repeat each other", "quadrature points"]
+        run, lambda done: digits(press_of(done), right), needed, causes=["times as stiff", "repeat each other", "quadrature points"]
     )
 
 
@@ -96,4 +96,4 @@ def compression(stretch: float) -> dict[str, Any]:
     """Closed form: a column at the end of a press in ten load steps."""
     data = changed(column(press=1.0 - stretch), {"stages.0.steps": 10, "bodies.b.mesh.elements": [1, 1, 2], **_TIGHT})
     right = column_pressure(stretch) if stretch > 0.0 else np.nan
-    return judge(ran(data), lambda done: digits(press_of()(done)[-1:], [right]), needed=6.0, causes=["folded", "pressed flat"])
+    return judge(ran(data), lambda done: digits(press_of(done)[-1:], [right]), needed=6.0, causes=["folded", "pressed flat"])

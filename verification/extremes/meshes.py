@@ -24,7 +24,7 @@ def uniform(done: Trial) -> float:
 
 def uniform_force(done: Trial) -> float:
     """Digits of a column's force."""
-    return digits(press_of()(done), _PRESSURES)
+    return digits(press_of(done), _PRESSURES)
 
 
 def lost_in_span(span: float) -> float:

@@ -117,7 +117,7 @@ def grazing(approach: float) -> dict[str, Any]:
     size = force if approach > 1e-14 else 1e-14 * YOUNG
     needed = float(np.clip(14.0 + np.log10(max(approach, 1e-16)), 1.0, 3.0))
     causes = ["round-off", "graz", "close"]
-    return judge(run, lambda done: digits(press_of()(done)[-1:], [force], size=size), needed, causes)
+    return judge(run, lambda done: digits(press_of(done)[-1:], [force], size=size), needed, causes)
 
 
 @case(
@@ -132,4 +132,4 @@ def overlap(overlap: float) -> dict[str, Any]:
     right = column_pressure(1.0 - overlap) if overlap < 1.0 else np.nan
     needed = float(np.clip(13.0 + np.log10(overlap), 1.0, 6.0))
     causes = ["overlap", "penetrat", "fold", "J = "]
-    return judge(ran(data), lambda done: digits(press_of()(done)[-1:], [right]), needed, causes)
+    return judge(ran(data), lambda done: digits(press_of(done)[-1:], [right]), needed, causes)

@@ -160,7 +160,6 @@ def load_steps(steps: int) -> dict[str, Any]:
     """Invariant: the end of the press does not depend on the path."""
     data = changed(loaded("coarse-press"), {"contacts.floor.friction": 0.0, **_TIGHT})
     data["stages"] = data["stages"][:1]
-    measure = press_of()
-    right = measure(ran(changed(data, {"stages.0.steps": 4})))[-1]
+    right = press_of(ran(changed(data, {"stages.0.steps": 4})))[-1]
     run = ran(changed(data, {"stages.0.steps": steps}), seconds=300)
-    return judge(run, lambda done: digits([measure(done)[-1]], [right]), needed=8.0)
+    return judge(run, lambda done: digits([press_of(done)[-1]], [right]), needed=8.0)

@@ -41,11 +41,11 @@ def ripple(outcome: Outcome) -> float:
     return float(np.std(without_trend(outcome.curve[outcome.window])))
 
 
-def without_trend(values: ArrayLike, order: int = 3) -> FloatArray:
-    """Values at equal distances without the polynomial that fits them best."""
+def without_trend(values: ArrayLike) -> FloatArray:
+    """Values at equal distances without the cubic that fits them best."""
     v = np.asarray(values, float)
     x = np.linspace(-1.0, 1.0, len(v))
-    return v - np.polynomial.Polynomial.fit(x, v, min(order, len(v) - 1))(x)
+    return v - np.polynomial.Polynomial.fit(x, v, min(3, len(v) - 1))(x)
 
 
 def cycles(outcome: Outcome) -> int:
