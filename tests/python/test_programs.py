@@ -283,6 +283,8 @@ def test_what_getfem_answers_is_read() -> None:
     np.testing.assert_allclose(found.steps[0].works, told.stiffest * np.array([0.5, -0.25]))
     untold = getfem._outcome(told, Finished(End("measured", "", 0), line.replace(', "friction": 0.5, "spurious": -0.25', ""), "", 1.0))
     np.testing.assert_array_equal(untold.steps[0].works, [np.nan, np.nan])
+    killed = getfem._outcome(told, Finished(End("trouble", "killed", -9), line + line[:100], "", 1.0))
+    assert (killed.ending, len(killed.steps)) == ("trouble", 1)
 
 
 @pytest.mark.parametrize("works", [True, False])

@@ -136,12 +136,13 @@ def _by_direction(contact: Contact) -> list[int]:
 
 
 def _outcome(told: LagrangeProblem, finished: Finished) -> Outcome:
-    """From what the job printed: a line of JSON a load step."""
+    """From what the job printed: a line of JSON a load step; where it was killed the last one may be cut."""
     steps: list[LoadStep] = []
     solves = 0
     words = finished.last_words
     ending = finished.end.ending
-    for line in finished.output.splitlines():
+    whole = finished.output[: finished.output.rfind("\n") + 1]
+    for line in whole.splitlines():
         found = json.loads(line)
         solves += found["solves"]
         if not found["converged"]:
