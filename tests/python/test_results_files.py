@@ -218,12 +218,14 @@ def test_what_cannot_be_written_leaves_no_part_of_a_new_file_and_the_old_one_as_
         if before:
             path.write_text(before)
         with pytest.raises(ResultsError, match=f"{name} cannot be written: full"):
-            _write_a_part(path)
+            _write_a_part(path, OSError(28, "full"))
+        with pytest.raises(KeyboardInterrupt):
+            _write_a_part(path, KeyboardInterrupt())
         assert (path.read_text() if path.exists() else None) == before
 
 
-def _write_a_part(path: Path) -> None:
+def _write_a_part(path: Path, end: BaseException) -> None:
     with writing(path):
         if not path.exists():
             path.write_text("a part")
-        raise OSError(28, "full")
+        raise end

@@ -57,15 +57,20 @@ def _seal(digest: str) -> bytes:
 
 @contextmanager
 def writing(path: Path) -> Iterator[None]:
-    """What the system refuses while `path` is written becomes an error that names it; no part of a new file is left behind."""
+    """What the system refuses while `path` is written becomes an error that names it; no part of a new file is left behind.
+
+    Nor is it where the user ends it with Ctrl-C: half a film looks like a whole one.
+    """
     new = not path.exists()
     try:
         yield
-    except OSError as error:
+    except BaseException as error:
         if new:
             with suppress(OSError):
                 path.unlink()
-        raise ResultsError(f"{path} cannot be written: {error.strerror or error}") from error
+        if isinstance(error, OSError):
+            raise ResultsError(f"{path} cannot be written: {error.strerror or error}") from error
+        raise
 
 
 def make_folder(path: Path) -> None:
