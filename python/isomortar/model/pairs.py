@@ -35,6 +35,8 @@ class Pair:
         Control points of each slave element.
     master_reach : csr_array or None, shape (master elements, control points)
         Control points that a foot in each master element depends on, those that turn its normals too; None for a rigid plane.
+    master_elements : tuple of int
+        Numbers of the master's elements by direction; zeros of a rigid plane.
     master_boundaries : tuple of ndarray
         Bounds of the master's elements by direction; none of a rigid plane.
     master_face : ndarray of int
@@ -43,7 +45,7 @@ class Pair:
         Whether the master is a face of a rigid body.
     master_edges : list of (int, ndarray of int)
         For each edge of that face the surface coordinate that runs across it, and its control points.
-    neighbours : Pattern
+    neighbour_matrix, neighbours : csr_array, Pattern
         Test functions that share an element.
     pieces : ndarray of int
         Numbers of the pieces that its deformable bodies belong to.
