@@ -9,7 +9,7 @@ import pytest
 
 from isomortar.errors import IsomortarError
 from isomortar.scene import Scene
-from isomortar.trade import page
+from isomortar.trade import figures, page
 from isomortar.trade.knobs import KNOBS, Dial, Knob, Setting, dials_of
 from isomortar.trade.search import Search
 from isomortar.trade.want import wanted
@@ -173,6 +173,13 @@ def test_runs_that_do_not_tell_what_is_wanted_are_never_recommended(scene, wants
     few = dials[3].own
     with pytest.raises(IsomortarError, match=r"there is nothing to trade: not finite: gap\.floor"):
         searched(scene, 0.1, Silent(scene, dials), wants)
+
+
+def test_curves_are_drawn_of_every_answer(scene):
+    search, answer = searched(scene, 0.05)
+    answers = [replace(answer, target=number / 100) for number in range(9, 1, -1)]
+    drawn = figures.curves(search, search.yardsticks[0], answers)
+    assert [number for number in range(9, 1, -1) if f"within {number} %" not in drawn] == []
 
 
 def test_a_knob_is_one_entry(scene, tmp_path):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import cycle
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -97,7 +98,8 @@ def curves(search: Search, yardstick: Yardstick, answers: Sequence[Recommendatio
         places = np.linspace(0.0, 100.0, len(yardstick.truth))
         left.plot(places, yardstick.truth, color=style.BLACK, linewidth=2.4, label="over-refined")
         shown = [("as it is", search.own), *((f"within {percent(answer.target)}", answer.best) for answer in answers if answer.best)]
-        for (label, outcome), colour in zip(shown, (style.GREY, style.BLUE, style.GREEN, style.VERMILION, style.ORANGE), strict=False):
+        colours = cycle((style.GREY, style.BLUE, style.GREEN, style.VERMILION, style.ORANGE))
+        for (label, outcome), colour in zip(shown, colours, strict=False):
             values = yardstick.values(outcome)
             left.plot(places, values, color=colour, label=label)
             right.plot(places, 100 * (values - yardstick.truth) / np.abs(yardstick.truth).max(), color=colour, linewidth=1.0)
