@@ -179,27 +179,28 @@ def cells_over_an_oblique_mesh(turn: float) -> dict[str, float]:
 
 
 @case(
-    claim="Of two lines that a cell's edges meet the one nearer to its middle cuts it: cells are the same whichever way the slave's "
-    "coordinates run.",
-    grid={"turn": TURNS},
-    bounds=lambda turn: {
+    claim="Of two lines that a cell's edges meet the one nearer to its middle cuts it, both if they are as near: cells are the same "
+    "whichever way the slave's coordinates run.",
+    grid={"turn": TURNS, "stands": ("askew", "in the middle")},
+    bounds=lambda turn, **_: {
         "apart": Bound(
             at_most=2e-15 / np.tan(np.deg2rad(turn)), reason="round-off: of coordinates of size one, over the slope of the lines"
         ),
     },
 )
-def cells_either_way(turn: float) -> dict[str, float]:
+def cells_either_way(turn: float, stands: str) -> dict[str, float]:
     """Largest distance of bounds of cells, after two cuts, from those of a slave whose coordinates run the other way.
 
-    It stands askew on its master: where two lines are equally near, which one is taken does depend on that.
+    In the middle of its master, whose mesh is its own image there, lines come in pairs that are as near.
     """
     given = turned(2, turn)
     (contact,) = given.contacts
     slave = given.body(contact.slave.body)
-    points = slave.patch.control_points + np.array([0.0131, 0.0273, 0.0])
+    points = slave.patch.control_points + (np.array([0.0131, 0.0273, 0.0]) if stands == "askew" else 0.0)
     askew = tuple(replace(body, patch=replace(body.patch, control_points=points)) if body is slave else body for body in given.bodies)
     one = replace(given, bodies=askew)
     cells, other = (Subcells(SlaveFace(p.contacts[0], p, Numbering(p))) for p in (one, oriented(one, slave.name, (0, 1, 2), (0, 1))))
     found = np.column_stack([cells.low, cells.high]), np.column_stack([1.0 - other.high, 1.0 - other.low])
+    assert len(found[0]) == len(found[1]), "as many cells"
     ordered = [bounds[np.lexsort(np.round(bounds, 9).T)] for bounds in found]
     return {"apart": float(np.abs(ordered[0] - ordered[1]).max())}

@@ -62,22 +62,28 @@ class Subcells:
 
         Those that two margins fill are left: there is no place between them.
         """
-        at = np.full(len(self.low), np.nan)
+        places = np.full((2, len(self.low)), np.nan)
         wide = (self.high - self.low - 2.0 * self._margin)[:, axis] > 0.0
         for lines in constants.CELL_LINES:
-            left = wide & np.isnan(at)
+            left = wide & np.isnan(places[0])
             low, high = self.low[left] + self._margin[left], self.high[left] - self._margin[left]
             many = np.repeat(lines, len(low))[:, None]
             found = self._crossing(axis, np.tile(low, (len(lines), 1)), np.tile(high, (len(lines), 1)), many)
-            at[left] = _nearest(0.5 * (low + high)[:, axis], np.split(found, len(lines)))
-        here = ~np.isnan(at)
+            places[:, left] = _nearest(0.5 * (low + high)[:, axis], found.reshape(2 * len(lines), len(low)), self._margin[left, axis])
+        lowest, highest = places
+        self._split(axis, highest)
+        self._split(axis, np.where(lowest < highest, lowest, np.nan))
+
+    def _split(self, axis: int, at: FloatArray) -> None:
+        """Cut the first cells, as many as there are places, in two; NaN: not that one. What is above a place comes last."""
+        here = np.flatnonzero(~np.isnan(at))
         low, high = self.low[here].copy(), self.high.copy()
         low[:, axis] = high[here, axis] = at[here]
         self.low, self.high = np.concatenate([self.low, low]), np.concatenate([high, self.high[here]])
         self._margin = np.concatenate([self._margin, self._margin[here]])
 
     def _crossing(self, axis: int, low: FloatArray, high: FloatArray, line: FloatArray) -> FloatArray:
-        """Where what is below a line of each box changes next to its middle (theory 10.9), by halving; NaN where it does not.
+        """Where what is below a line of each box changes next to its middle on either side (theory 10.9), by halving; NaN: nowhere.
 
         `line`: where it lies across, shape (m, 1). A middle on a knot line, which others leave, is the place itself. Both sides are
         halved together: a search for feet costs what it learns of the master first, however few these are.
@@ -97,7 +103,7 @@ class Subcells:
             near[same], far[~same] = between[same], between[~same]
         sides = np.where(on_line, middle[:, axis], np.full((2, 1), np.nan))
         sides[changes] = 0.5 * (near + far)[:, axis]
-        return _nearest(middle[:, axis], list(sides))
+        return sides
 
     def _labels(self, coordinates: FloatArray) -> IntArray:
         """Twice the elements of the master below places of the face, one more on the line to the next, shape (m, 2); -1 beside it."""
@@ -118,9 +124,9 @@ class Subcells:
         return np.where(feet.found[:, None] != 0, np.stack(below, axis=1), -1)
 
 
-def _nearest(middle: FloatArray, places: list[FloatArray]) -> FloatArray:
-    """Of several lists of places, some of which are NaN, those that are nearest to the middles; the first of two as near."""
-    found = places[0]
-    for others in places[1:]:
-        found = np.where(~(np.abs(found - middle) <= np.abs(others - middle)) & ~np.isnan(others), others, found)
-    return found
+def _nearest(middle: FloatArray, places: FloatArray, margin: FloatArray) -> FloatArray:
+    """Of rows of places, some of which are NaN, the one that is nearest to the middles, twice, or two that are as near but for a margin."""
+    away = np.where(np.isnan(places), np.inf, np.abs(places - middle))
+    near = np.where(away <= away.min(axis=0) + margin, places, np.nan)
+    lowest, highest = np.fmin.reduce(near), np.fmax.reduce(near)
+    return np.where(highest - lowest > 2.0 * margin, [lowest, highest], 0.5 * (lowest + highest))
