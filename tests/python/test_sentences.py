@@ -81,19 +81,19 @@ def along_the_way(_: pytest.MonkeyPatch) -> Told:
     assert list(advice.after_step(1, measured, calm)) == []
     left = (replace(measured[0], excluded=7), measured[1])
     yield from zip(("left the master", "oscillates"), advice.after_step(2, left, wild), strict=True)
-    assert list(advice.after_step(3, left, wild)) == list(advice.at_the_end()) == []
+    assert list(advice.after_step(3, left, wild)) == list(advice.at_the_end({})) == []
     gone = (replace(measured[0], active=0, excluded=96), measured[1])
     (yield "beside", *advice.after_step(4, gone, calm))
     assert list(advice.after_step(5, gone, calm)) == []
-    (yield "opened", *advice.at_the_end())
+    (yield "opened", *advice.at_the_end({}))
     advice = StepAdvice(problem(), 0, calm)
     works = [(1.0, 0.1), (1.0, -0.07), (1.0, -0.2)]
     for step, (friction, spurious) in enumerate(works, 1):
         working = (measured[0], replace(measured[1], friction_work=friction, spurious_work=spurious))
         assert list(advice.after_step(step, working, calm)) == []
         if step == 2:
-            assert list(advice.at_the_end()) == []
-    (yield "spurious work", *advice.at_the_end())
+            assert list(advice.at_the_end({})) == []
+    (yield "spurious work", *advice.at_the_end({}))
     (yield "pushed in", *warnings(CORNER))
     heard, motion = Heard(), "[0.0, 0.0, -0.05]"
     list(
@@ -107,7 +107,8 @@ def along_the_way(_: pytest.MonkeyPatch) -> Told:
     (yield "sticks to both", *(re.sub(r"\d+ slave", "# slave", said) for said in heard.said))  # how many is left open, too
     yield "pulls", pulling._sentence(problem().contacts[0], 3)
     yield "pulls, plane", pulling._sentence(problem().contacts[1], 3)
-    (yield "never closed", *[list(StepAdvice(problem(), 0, nothing).at_the_end())[1]])
+    (yield "never closed", *[list(StepAdvice(problem(), 0, nothing).at_the_end({}))[1]])
+    (yield "never closed, though inside", *[list(StepAdvice(problem(), 0, nothing).at_the_end({"ground": 0.05}))[1]])
     text = PLATE.replace("THICKNESS", "1e-4").replace("TIP", '[supports.tip]\nface = "b.u1"\ncomponents = ["z"]')
     observer = Warned()
     list(Simulation(Scene.from_toml(text.replace("MOTION", "motions.tip.translate = [0, 0, 1e-7]")).problem(), observer).run())

@@ -67,7 +67,7 @@ def said(problem: Problem, start: tuple[ContactState, ...], step: StepResult, hi
     for number, given in enumerate(history, start=1):
         both = [made(*of) for of in zip(step.contacts, step.state.contacts, (CLOSED, given), strict=True)]
         heard += advice.after_step(number, [result for result, _ in both], [state for _, state in both])
-    heard += advice.at_the_end()
+    heard += advice.at_the_end({})
     return "; ".join(heard)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -133,12 +133,15 @@ class StepAdvice:
                 "nothing. Use a larger master, or look at the motions"
             )
 
-    def at_the_end(self) -> Iterator[str]:
-        """Warnings that the whole run gives rise to; what was closed before the step that it went on from is not known."""
+    def at_the_end(self, unseen: Mapping[str, float]) -> Iterator[str]:
+        """Warnings that the whole run gives rise to; what was closed before the step that it went on from is not known.
+
+        `unseen`: how deep slave points of contacts were inside the master without a constraint that saw it.
+        """
         for name in self._slaves:
             closed = self._closed.get(name)
             if closed is None and not self._begun:
-                yield f"contact {name!r} never closed: it was open at the end of every load step; check faces, places and motions"
+                yield f"contact {name!r} never closed: it was open at the end of every load step{_why_open(unseen.get(name))}"
             if closed is not None and self._last - closed > 1:
                 yield (
                     f"contact {name!r} opened in load step {closed + 1} and stayed open: all load steps after it computed bodies apart. "
@@ -156,3 +159,13 @@ class StepAdvice:
             return False
         self._given.add((name, kind))
         return True
+
+
+def _why_open(depth: float | None) -> str:
+    """What to look at of a contact that never closed; `depth` of its slave points inside the master, where they were."""
+    if depth is None:
+        return "; check faces, places and motions"
+    return (
+        f", although slave points were up to {depth:.2g} inside the master: its constraints are averages over elements that are too long "
+        "to see it. Refine the slave's face where it touches"
+    )

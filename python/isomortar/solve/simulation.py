@@ -27,6 +27,7 @@ from isomortar.solve.record import AugmentationRecord, ContactResult, LoadResult
 from isomortar.solve.sharing import Sharing
 from isomortar.solve.small_strains import SmallStrains
 from isomortar.solve.timing import Ledger
+from isomortar.solve.unseen import Unseen
 from isomortar.solve.uzawa import Uzawa
 
 _REASONS_TO_CUT = (ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError)
@@ -71,7 +72,7 @@ class Simulation:
         self._method = _METHODS[problem.settings.method](self.equilibrium, self._observer)
         self._extrapolates = problem.settings.method == "monolithic" and "extrapolation" in problem.settings.measures
         self._lost, self._pulling, self._sharing = LostDigits(self.equilibrium), Pulling(self.equilibrium), Sharing(self.equilibrium)
-        self._small_strains = SmallStrains(self.equilibrium)
+        self._small_strains, self._unseen = SmallStrains(self.equilibrium), Unseen(self.equilibrium)
         self._step = resume_from.step if resume_from else 0
         self._increment = resume_from.next_increment if resume_from else 1.0
         self.equilibrium.orderings = dict(resume_from.orderings) if resume_from else {}
@@ -94,7 +95,7 @@ class Simulation:
             self._observer.recorded(result)
             self._warn(advice.after_step(result.step, result.contacts, self.state.contacts))
             yield result
-        self._warn(advice.at_the_end())
+        self._warn(advice.at_the_end(self._unseen.depths))
 
     def doubts(self) -> Iterator[str]:
         """Warnings that are due before the next load step; the scene's geometry is looked at before the first one."""
@@ -136,6 +137,7 @@ class Simulation:
         self._warn(self._pulling.after_step(parts[-1].balance, step))
         self._warn(self._sharing.after_step(result))
         self._warn(self._small_strains.after_step(parts[-1].balance, step))
+        self._unseen.after_step(parts[-1].balance)
         return result
 
     def _advance(self, state: State, time: float, target: float, step: int) -> list[Increment]:

@@ -55,6 +55,22 @@ name = "move"
 steps = 1
 MOTION
 """
+#: A ball that is pressed onto a plane beside its poles, on elements of a quarter of its circumference.
+BALL = """
+format = 1
+[bodies.ball]
+geometry = { kind = "sphere", centre = [0, 0, 0.5], inner = 0.2, outer = 0.5, axis = "x" }
+mesh = { order = 2, elements = [4, 1, 4] }
+[contacts.floor]
+slave = "ball.v1"
+plane = {}
+[supports.core]
+face = "ball.v0"
+[[stages]]
+name = "press"
+steps = 2
+motions.core.translate = [0, 0, -0.05]
+"""
 #: Scene, and the contact's and words of the warnings of a run of it: none for sound ones.
 RUNS = {
     "pressed": (staged(PRESS, (2, DOWN, "0"), (2, STAY, "0")), []),
@@ -84,5 +100,7 @@ RUNS = {
     "small strains that are large": (LINEAR.replace("-0.1]", "-0.3]"), ["load step 1: its law, linear-elastic"]),
     "small strains, turned": (staged(LINEAR, (3, "[0, 0, 0.1]", "-9")), ["a strain of 0.0057 here", "never closed"]),
     "quadratic Lagrange elements pressed within": (DIE, []),
+    "pressed in between constraints": (BALL, ["never closed: it was open at the end of every load step, although slave points were up to"]),
+    "pressed in where constraints see it": (BALL.replace("[4, 1, 4]", "[12, 1, 8]"), []),
     "pressed within, averaged normals": (DIE.replace("friction", 'projection = "averaged"\nfriction'), []),
 }
