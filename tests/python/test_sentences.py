@@ -19,12 +19,14 @@ from told.wrong.runs import PLATE, RUNS
 from told.wrong.singular import CORNER
 
 from isomortar.errors import IsomortarError
+from isomortar.model.plates import rotation
 from isomortar.results.reader import Results
 from isomortar.results.writer import ResultsWriter
 from isomortar.scene import Scene
 from isomortar.solve import doubts, pulling
 from isomortar.solve.advice import StepAdvice
 from isomortar.solve.simulation import Simulation
+from isomortar.solve.snapping import Snapping
 from results_samples import problem, step_result
 from test_advice import Warned, _of_weights, rational, warnings
 from test_causes import scene
@@ -107,6 +109,15 @@ def along_the_way(_: pytest.MonkeyPatch) -> Told:
     (yield "sticks to both", *(re.sub(r"\d+ slave", "# slave", said) for said in heard.said))  # how many is left open, too
     yield "pulls", pulling._sentence(problem().contacts[0], 3)
     yield "pulls, plane", pulling._sentence(problem().contacts[1], 3)
+    text = PRESS.replace('face = "block.w1"', 'face = "block.w1"\nmoment = 0\naxis = [0, 1, 0]').replace(", rotate = 0", "")
+    tilting = Simulation(Scene.from_toml(text).problem()).equilibrium
+    snapping, here = Snapping(tilting), tilting.numbering.reference
+    turned = here @ rotation(np.array([0.0, 1.0, 0.0]), 1.0).T
+    yield "cut, as it snaps", refusal(partial(snapping.look, here, turned, 0.5))
+    assert list(snapping.after_step(2)) == []
+    snapping.look(here, turned, 0.125)
+    (yield "snaps", *snapping.after_step(3))
+    assert list(snapping.after_step(4)) == []
     (yield "never closed", *[list(StepAdvice(problem(), 0, nothing).at_the_end({}))[1]])
     (yield "never closed, though inside", *[list(StepAdvice(problem(), 0, nothing).at_the_end({"ground": 0.05}))[1]])
     text = PLATE.replace("THICKNESS", "1e-4").replace("TIP", '[supports.tip]\nface = "b.u1"\ncomponents = ["z"]')

@@ -132,3 +132,48 @@ def pendulum() -> dict[str, float]:
         force.append(np.linalg.norm(hinge.force + result.reactions[1].force + weight) / np.linalg.norm(weight))
         moment.append(abs(hinge.moment[1]) / np.linalg.norm(weight))
     return {"angle": float(max(angle)), "force": float(max(force)), "moment": float(max(moment)), "turned": -turned}
+
+
+#: Half of a rigid die that a force and a moment press, and that is dragged: beside where it stands it could lean on its rim.
+_DIE = """
+format = 1
+symmetry = {{ y = 0.0 }}
+bodies.die.geometry = {{ kind = "bowl", half_width = 0.3, bottom = 0, rise = 0.05, top = 0.3 }}
+bodies.die.mesh.elements = [2, 2, 1]
+bodies.die.rigid = true
+bodies.block.geometry = {{ kind = "box", lower = [-0.6, -0.6, -0.5], upper = [0.7, 0.6, 0] }}
+bodies.block.mesh = {{ family = ["L", "L", "N"], order = 1, elements = [5, 4, 1] }}
+contacts.c = {{ slave = "die.w0", master = "block.w1", subcells = 0, elastic_slip = 0.001 }}
+supports.base.face = "block.w0"
+[supports.die]
+face = "die.w1"
+force.z = -0.1
+moment = 0.002
+axis = [0, 1, 0]
+centre = [0, 0, 0.3]
+[[stages]]
+name = "press"
+steps = 2
+[[stages]]
+name = "drag"
+steps = {steps}
+loads.die = 1.25
+motions.die.translate = [0.025, 0, 0]
+"""
+
+
+@case(
+    claim="A body that a moment lets turn comes to the same equilibrium in one load step as in four, not to one half a right angle away.",
+    tier="gate",
+    bounds={
+        "apart": Bound(at_most=0.01, reason="discretisation: with friction longer load steps are another path"),
+        "turned": Bound(at_least=4.0, reason="definition: an angle that is not small"),
+    },
+)
+def leaning() -> dict[str, float]:
+    """Angle in degrees at the end of one load step off that at the end of four, which is the other number."""
+    one, four = (
+        [result.reactions[1].rotation for result in Simulation(Scene.from_toml(_DIE.format(steps=steps)).problem()).run()][-1]
+        for steps in (1, 4)
+    )
+    return {"apart": abs(one - four), "turned": four}

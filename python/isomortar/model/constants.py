@@ -17,6 +17,9 @@ NEAR_ORIGIN = 16.0
 #: Degrees that a support turns in one load increment at the most (theory 5.2): an increment knows where control points go, and of half a
 #: turn or more not which way; a tenth of a turn is far from that, and near enough for Newton's method.
 LARGEST_TURN = 36.0
+#: Share of the longest load increment down to which one is cut in which a moment lets its plate turn by more: a plate that comes far in
+#: a load step does so little by little, and an eighth of half a turn is less; one that snaps does so however short the increment.
+SHORT_OF_SNAPPING = 0.125
 
 #: Angle between the normals of both sides, in radians, above which a C0 line of a master is a kink: joints of arcs are as smooth as their
 #: digits, and where normals turn by less, those that are averaged differ from the own ones by next to nothing.

@@ -26,6 +26,7 @@ from isomortar.solve.pulling import Pulling
 from isomortar.solve.record import AugmentationRecord, ContactResult, LoadResult, Observer, Reaction, State, StepResult, history_bytes
 from isomortar.solve.sharing import Sharing
 from isomortar.solve.small_strains import SmallStrains
+from isomortar.solve.snapping import Snapping
 from isomortar.solve.timing import Ledger
 from isomortar.solve.unseen import Unseen
 from isomortar.solve.uzawa import Uzawa
@@ -73,6 +74,7 @@ class Simulation:
         self._extrapolates = problem.settings.method == "monolithic" and "extrapolation" in problem.settings.measures
         self._lost, self._pulling, self._sharing = LostDigits(self.equilibrium), Pulling(self.equilibrium), Sharing(self.equilibrium)
         self._small_strains, self._unseen = SmallStrains(self.equilibrium), Unseen(self.equilibrium)
+        self._snapping = Snapping(self.equilibrium)
         self._step = resume_from.step if resume_from else 0
         self._increment = resume_from.next_increment if resume_from else 1.0
         self.equilibrium.orderings = dict(resume_from.orderings) if resume_from else {}
@@ -121,6 +123,7 @@ class Simulation:
             target = float(step) if increment > step - time - constants.SAME_TIME else time + increment
             try:
                 parts = self._advance(state, time, target, step)
+                self._snapping.look(state.positions, parts[-1].balance.positions, increment / longest)
             except _REASONS_TO_CUT as error:
                 self._cut(step, state, target, increment, longest, error)
                 cuts += 1
@@ -137,6 +140,7 @@ class Simulation:
         self._warn(self._pulling.after_step(parts[-1].balance, step))
         self._warn(self._sharing.after_step(result))
         self._warn(self._small_strains.after_step(parts[-1].balance, step))
+        self._warn(self._snapping.after_step(step))
         self._unseen.after_step(parts[-1].balance)
         return result
 
