@@ -38,6 +38,7 @@ def of_causes() -> Iterator[tuple[str, str]]:
         "stiffness": {"HARD": 1e12},
         "penalty": {"METHOD": "uzawa", "PENALTY": 1e4},
         "points": {"SLAVE": 1, "MASTER": 8},
+        "short slip": {"SLIP": 1e-4},
     }
     yield from ((name, "\n".join(said(scene(**changed)))) for name, changed in changes.items())
     yield "thin, bent", "\n".join(said(scene(TOP=1.0004), SingularSystemError("")))

@@ -10,7 +10,8 @@ import numpy as np
 from isomortar.errors import SingularSystemError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.contrasts import element_lengths
-from isomortar.model.entities import Body, Problem
+from isomortar.model.entities import Body, Contact, Problem
+from isomortar.model.sheet import Sheet
 from isomortar.solve.advice import few_points
 from isomortar.solve.contact import PairMechanics
 from isomortar.solve.equilibrium import Equilibrium
@@ -27,6 +28,8 @@ LENGTHS_BENT = 1e3
 INCOMPRESSIBLE = 1e4
 #: Penalties of augmentations above this one make contact so stiff that Newton's method goes to and fro.
 PENALTY = 1e3
+#: Elastic slips below this share of the slave make friction so stiff that Newton's method goes to and fro: a press failed at 2e-4.
+SHORT_SLIP = 1e-3
 
 #: How an error says that a slave goes over its master's edge.
 BESIDE = "beside the master"
@@ -53,6 +56,7 @@ def causes(equilibrium: Equilibrium, state: State, error: Exception) -> Iterator
     yield from _penalties(problem)
     for contact in problem.contacts:
         yield from few_points(problem, contact)
+        yield from _short_slip(problem, contact)
     if BESIDE not in str(error):
         for pair in equilibrium.pairs:
             yield from _over_the_edge(pair, positions)
@@ -112,4 +116,13 @@ def _penalties(problem: Problem) -> Iterator[str]:
         yield (
             f"a penalty of {largest:g}, times the stiffness of the pair, makes contact so stiff that Newton's method goes to and fro: take "
             "solver.penalty_normal and penalty_tangential of 10 to 1000"
+        )
+
+
+def _short_slip(problem: Problem, contact: Contact) -> Iterator[str]:
+    size = Sheet.of(problem, contact.slave).size
+    if 0.0 < contact.elastic_slip < SHORT_SLIP * size:
+        yield (
+            f"contact {contact.name!r}: an elastic slip of {contact.elastic_slip:g}, where the slave is {size:.3g} large, makes friction "
+            "so stiff that Newton's method goes to and fro: take a longer one, or 0, Coulomb's law"
         )

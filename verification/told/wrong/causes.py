@@ -26,6 +26,7 @@ mesh = { order = [2, 2, 1], elements = [MASTER, MASTER, 1] }
 slave = "upper.w0"
 master = "lower.w1"
 quadrature = POINTS
+elastic_slip = SLIP
 [supports]
 top = { face = "upper.w1" }
 floor = { face = "lower.w0" }
@@ -39,7 +40,7 @@ motions.top.translate = [0, 0, -0.1]
 """
 SOUND: dict[str, Any] = {
     "SOFT": 10, "POISSON": 0.3, "HARD": 10, "TOP": 2, "SLAVE": 2, "MASTER": 2, "METHOD": "monolithic", "PENALTY": 100,
-    "POINTS": 6,
+    "POINTS": 6, "SLIP": 0,
 }  # fmt: skip
 
 
