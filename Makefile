@@ -9,7 +9,7 @@ BIN := .venv/bin
 READY := .venv/set-up
 
 help: ## print this list
-	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 16
+	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' $(MAKEFILE_LIST) | expand -t 20
 
 setup: $(READY) ## install what is missing, build, once
 
@@ -27,7 +27,7 @@ demo: $(READY) ## run the ironing scene; curve and picture go to results/
 verify: $(READY) ## run the verification cases of the gate; the report goes to results/verification/
 	$(BIN)/isomortar verify
 
-nightly: $(READY) ## nightly tier, extremes, orders, benchmarks: hours; one page, results/nightly/index.html, and one exit code
+nightly: $(READY) ## nightly tier, extremes, published, orders, benchmarks: hours; one page, results/nightly/index.html, and one exit code
 	$(BIN)/python tools/run_nightly.py
 
 manual: $(READY) ## run the blocks of the manual and build it; it goes to results/manual/html/index.html
