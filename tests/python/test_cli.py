@@ -262,6 +262,21 @@ def test_a_log_does_not_go_into_results(invoke: Invoke) -> None:
     assert Path("results/press.h5").read_bytes() == before
 
 
+def test_a_log_does_not_go_into_the_scene_or_where_results_will_be(invoke: Invoke) -> None:
+    scene = isomortar.Scene.load("press", SMALL).to_toml()
+    Path("mine.toml").write_text(scene)
+    for log, what in (("mine.toml", "scene file"), ("./mine.toml", "scene file"), ("mine.h5", "results file")):
+        code, _, err = invoke("run", "mine.toml", "--log", log, "--output", "mine.h5")
+        assert (code, f"log: {Path(log)} is the {what} of this run: name another one" in err) == (2, True)
+    assert Path("mine.toml").read_text() == scene
+    assert not Path("mine.h5").exists()
+
+
+def test_a_log_that_cannot_be_written_is_named(invoke: Invoke) -> None:
+    code, _, err = invoke("run", "press", *settings(SMALL), "--quiet", "--log", "/dev/full")
+    assert (code, "isomortar: /dev/full cannot be written: No space left on device" in err) == (1, True)
+
+
 def test_loud_and_quiet_at_once_is_refused(invoke: Invoke) -> None:
     code, _, err = invoke("run", "press", "--quiet", "--verbose")
     assert (code, "--log" in err) == (2, True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import random
 import signal
 import subprocess
@@ -129,3 +130,16 @@ def test_a_working_copy_that_may_not_be_built(tmp_path: Path) -> None:
         assert done.returncode == 1
         assert "Traceback" not in done.stderr
         assert all(word in done.stderr for word in words)
+
+
+def test_output_that_is_closed() -> None:
+    for words in (["scenes"], ["check", "press", "--set", "bodies.block.mesh.elements=[2,2,1]"]):
+        command = f'"{sys.executable}" -m isomortar {" ".join(words)} >&-'
+        done = subprocess.run(command, shell=True, stderr=subprocess.PIPE, text=True, check=False)
+        assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_figures_need_no_window_system_that_is_there() -> None:
+    program = "import isomortar.cli, matplotlib; print(matplotlib.get_backend())"
+    done = subprocess.run([sys.executable, "-c", program], env=os.environ | {"MPLBACKEND": "nonsense"}, capture_output=True, text=True)
+    assert (done.stdout, done.stderr) == ("agg\n", "")

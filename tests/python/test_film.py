@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 import isomortar
-from isomortar.errors import InputError
+from isomortar.errors import InputError, ResultsError
 from isomortar.results import ResultsWriter
 from isomortar.results.bodies import common_scale, draw_bodies
 from results_samples import problem
@@ -50,6 +50,15 @@ def test_a_film_for_players_of_films_has_the_pictures_too(results_path: Path, tm
             pictures.seek(number)
             right = np.asarray(pictures.convert("RGB"), float)[:height, :width]
             assert np.abs(frame.reshape(height, width, 3) - right).mean() < 3.0
+
+
+def test_a_film_goes_into_a_folder_that_is_made_and_never_over_results(results_path: Path, tmp_path: Path) -> None:
+    assert isomortar.film(results_path, tmp_path / "new" / "films" / "run.webp", rate=0.01).is_file()
+    results = results_path.rename(tmp_path / "run.gif")
+    before = results.read_bytes()
+    with pytest.raises(ResultsError, match=r"run\.gif is a results file, so it is not overwritten"):
+        isomortar.film(results, results)
+    assert results.read_bytes() == before
 
 
 def corners(figure: Figure, picture: int) -> np.ndarray:

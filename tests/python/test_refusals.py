@@ -108,6 +108,7 @@ def of_geometry(_: pytest.MonkeyPatch) -> Told:
     splinepy.io.json.export("flat.json", [flat, flat])
     yield "no volume", _of(_FILE.replace("bad", "flat"))
     yield "file", re.sub(r"format\): .*", "format): #", _of(_FILE))
+    yield "folder", _of(_FILE.replace("bad.json", "."))
 
 
 _FILE = """
@@ -197,12 +198,17 @@ def of_files(patch: pytest.MonkeyPatch) -> Told:
         yield "no pandas", refusal(lambda: Results("run.h5").to_dataframe())
         within.setitem(sys.modules, "xarray", None)
         yield "no xarray", refusal(lambda: Results("run.h5").to_xarray())
+    yield "component", refusal(lambda: Results("run.h5").curve("force", support="rim", component="xy"))  # type: ignore[arg-type]
+    Path("run.html").write_bytes(Path("run.h5").read_bytes())
+    yield "viewed: over results", refusal(lambda: view("run.h5", "run.html"))
+    yield "viewed: type", refusal(lambda: view("run.h5", "run.toml"))
     yield "filmed: one state", refusal(lambda: film("run.h5", "run.gif"))
     yield "filmed: type", refusal(lambda: film("run.h5", "run.avi"))
     with patch.context() as within:
         within.setitem(sys.modules, "imageio_ffmpeg", None)
         yield "filmed: no encoder", refusal(lambda: film("run.h5", "run.mp4"))
     yield "filmed: nothing", refusal(lambda: film("run.h5", "run.gif", every=0))
+    yield "filmed: without end", refusal(lambda: film("run.h5", "run.gif", rate=0.001))
     alone, step = without_contact(problem(), step_result(1))
     ResultsWriter("alone.h5", alone, "", "0").recorded(step)
     yield "filmed: no contact", refusal(lambda: film("alone.h5", "run.gif"))

@@ -31,6 +31,7 @@ from isomortar.results.pictures import plot
 from isomortar.results.rendering import Camera, Canvas
 from isomortar.results.stress import cauchy_stress, deformation_gradient, von_mises
 from isomortar.scene import Scene
+from isomortar.scene.schema import CurveTable
 from isomortar.solve.record import StepResult
 from results_samples import problem, step_result, without_contact
 
@@ -89,6 +90,17 @@ def test_what_is_drawn_may_be_chosen(results_path: Path, tmp_path: Path) -> None
         plot(results_path, tmp_path, formats=["png", "jpg"])
     with pytest.raises(ResultsError, match="load step 9 is not in"):
         plot(results_path, tmp_path, step=9)
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_curve_may_have_any_label(results_path: Path, tmp_path: Path) -> None:
+    """Files are called after it as far as they can be."""
+    labels = ["a/b", "..", "\0", "力", "n" * 300, "push x, [N]"]
+    curves = [CurveTable(name=label, support="rim") for label in labels]
+    paths = plot(results_path, tmp_path / "drawn", curves, only=["curves"], formats=["png"])
+    assert all(path.is_file() and path.parent == tmp_path / "drawn" for path in paths)
+    drawn = [path.name for path in paths if path.name.startswith("curve-")]
+    assert drawn == ["curve-a_b.png", "curve-...png", "curve-_.png", "curve-力.png", f"curve-{'n' * 94}.png", "curve-push x, _N_.png"]
 
 
 def test_fields_may_be_chosen(results_path: Path, tmp_path: Path) -> None:

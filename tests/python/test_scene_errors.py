@@ -153,3 +153,9 @@ def test_faults_of_a_geometry_file_name_the_file(tmp_path: Path) -> None:
         with pytest.raises(InputError, match=said) as error:
             Scene.from_toml(scene, tmp_path).problem()
         assert error.value.field == "bodies.lower.file"
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_size_that_no_number_holds_is_refused_without_a_warning_of_a_library() -> None:
+    with pytest.raises(InputError, match="not finite"):
+        Scene.load("press", ["bodies.block.geometry.top=1e308"]).problem()

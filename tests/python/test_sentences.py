@@ -53,8 +53,19 @@ def bad_words(_: pytest.MonkeyPatch) -> Told:
         "no stage": "stages.darg.steps=3",
         "no number": "stages.2.steps=3",
         "a single value": "name.first=3",
+        "no load": "loads.wnd.pressure=0.1",
+        "no table": "contacts.interface=3",
+        "no list": "supports.top.components=x",
+        "a truth value": "solver.max_cuts=true",
+        "a date": "title=2026-11-27",
+        "a text for a number": 'contacts.interface.subcells="1"',
+        "half a pair": 'glue=[["slave.u0"]]',
+        "a long number": f"solver.max_cuts={'9' * 5000}",
+        "nested without end": f"solver.max_cuts={'[' * 5000}",
     }.items():
-        yield name, refusal(partial(Scene.load, "iron", [override]))
+        yield name, re.sub(r"9{99,}|\[{99,}", "#", refusal(partial(Scene.load, "iron", [override])))
+    twice = 'record.curves=[{ name = "push", support = "top" }, { name = "push", support = "base" }]'
+    yield "a curve twice", refusal(lambda: Scene.load("iron", [twice]).problem())
     yield "no path", refusal(lambda: Scene.load("iron", {"solver max_cuts": 3}))
     yield "no value by path", refusal(lambda: Scene.load("iron", {"solver.max_cuts": None}))
     yield "no scene", refusal(lambda: Scene.load("irn"))

@@ -120,6 +120,8 @@ def run(
         return
     refuse_idle(problem.settings.engine)
     path = output or results_path(chosen)
+    if log:
+        _refuse_log(log, Path(scene), path)
     with progress(problem, quiet, verbose, log) as observer:
         try:
             results = compute(chosen, problem, path, observer, resume, overwrite)
@@ -216,7 +218,7 @@ def film(
     ] = None,
     contact: Annotated[str | None, typer.Option(help="Whose pressure is in colour.", show_default="the first one's")] = None,
     every: Annotated[int, typer.Option(min=1, help="Show one load step in so many, and the last one.")] = 1,
-    rate: Annotated[float, typer.Option(metavar="NUMBER", help="Pictures a second.")] = 8.0,
+    rate: Annotated[float, typer.Option(metavar="NUMBER", help="Pictures a second, 0.01 to 100.")] = 8.0,
 ) -> None:
     """Film the bodies and the contact pressure, load step after load step on one scale, and print where the film lies.
 
@@ -305,6 +307,14 @@ app.command(rich_help_panel=CHECKOUT)(paper)
 app.command(rich_help_panel=CHECKOUT)(bench)
 app.command(rich_help_panel=CHECKOUT)(mutants)
 app.command(rich_help_panel=SCENES)(doctor)
+
+
+def _refuse_log(log: Path, scene: Path, results: Path) -> None:
+    """Of all files that a run names a log is one of its own: lines at the end of a scene make it none."""
+    if log.is_file() and scene.is_file() and log.samefile(scene):
+        raise InputError(f"{log} is the scene file of this run: name another one", "log")
+    if log.absolute() == results.absolute():
+        raise InputError(f"{log} is the results file of this run: name another one", "log")
 
 
 def _beside(results: Path, kind: str) -> Path:

@@ -25,7 +25,8 @@ def told() -> Iterator[None]:
         try:
             yield
         finally:
-            sys.stdout.flush()  # here a full disk still has its sentence
+            if sys.stdout is not None:  # as it is where it was closed
+                sys.stdout.flush()  # here a full disk still has its sentence
     except Exception as error:
         code, sentence = _ending(error)
     except KeyboardInterrupt:

@@ -21,7 +21,7 @@ import numpy as np
 from isomortar.cli.words import many
 from isomortar.errors import InputError
 from isomortar.model.entities import Problem
-from isomortar.results.files import is_marked, make_folder
+from isomortar.results.files import is_marked, make_folder, writing
 from isomortar.solve.record import AugmentationRecord, IterationRecord, Observer, StepResult
 
 if TYPE_CHECKING:
@@ -257,6 +257,8 @@ def progress(problem: Problem, quiet: bool = False, verbose: bool = False, log: 
     ------
     InputError
         The log is a results file.
+    ResultsError
+        It cannot be written.
 
     Examples
     --------
@@ -294,10 +296,11 @@ def _kept(log: str | os.PathLike[str] | None) -> Iterator[Callable[[str], None] 
     if Path(log).is_file() and is_marked(Path(log)):
         raise InputError(f"{log} is a results file: name another one", "log")
     make_folder(Path(log).parent)
-    with Path(log).open("a", encoding="utf-8", buffering=1) as file:
+    with Path(log).open("ab", buffering=0) as file:
 
         def keep(line: str) -> None:
-            print(datetime.now().isoformat(" ", "milliseconds"), line, file=file)
+            with writing(Path(log)):
+                file.write(f"{datetime.now().isoformat(' ', 'milliseconds')} {line}\n".encode(errors="backslashreplace"))
 
         keep(f"isomortar {version('isomortar')}: {shlex.join(sys.argv)}")
         yield keep

@@ -26,8 +26,8 @@ WantOption = Annotated[
     list[str],
     typer.Option(
         metavar="WHAT",
-        help="What is wanted: force.SUPPORT.x, moment.SUPPORT.norm, area.CONTACT (curves; @STAGE of one stage, :end, :peak, "
-        ":roughness), pressure.CONTACT, traction.CONTACT, edge.CONTACT, gap.CONTACT (at the end); may be repeated.",
+        help="What is wanted: force.SUPPORT.x, moment.SUPPORT.norm, displacement.SUPPORT.z, area.CONTACT (curves; @STAGE of one stage, "
+        ":end, :peak, :roughness), pressure.CONTACT, traction.CONTACT, edge.CONTACT, gap.CONTACT (at the end); may be repeated.",
     ),
 ]
 WithinOption = Annotated[list[str], typer.Option(metavar="ERROR", help="Largest error, 1% or 0.01; may be repeated.")]

@@ -25,12 +25,13 @@ def elevated(direction: Direction, grid: FloatArray, axis: int) -> tuple[Directi
     raised = Direction("N", direction.order + 1, np.repeat(distinct, counts + 1))
     control = np.moveaxis(grid, axis, 0)
     found = np.empty((raised.count, *control.shape[1:]))
-    for i in range(raised.count):
-        window = raised.knots[i : i + raised.order + 2]
-        spans = np.flatnonzero(np.diff(window) > 0.0)
-        span = int(np.searchsorted(direction.knots, window[spans[len(spans) // 2]], side="right")) - 1
-        means = window[1:-1]
-        found[i] = sum(_blossom(direction, control, span, np.delete(means, j)) for j in range(len(means))) / len(means)
+    with np.errstate(over="ignore", invalid="ignore"):  # a patch refuses what is not finite
+        for i in range(raised.count):
+            window = raised.knots[i : i + raised.order + 2]
+            spans = np.flatnonzero(np.diff(window) > 0.0)
+            span = int(np.searchsorted(direction.knots, window[spans[len(spans) // 2]], side="right")) - 1
+            means = window[1:-1]
+            found[i] = sum(_blossom(direction, control, span, np.delete(means, j)) for j in range(len(means))) / len(means)
     return raised, np.moveaxis(found, 0, axis)
 
 

@@ -25,6 +25,8 @@ def read_spline(path: Path) -> Patch:
     InputError
         Unknown suffix, unreadable file, or a file without exactly one volume in space.
     """
+    if path.is_dir():
+        raise InputError(f"is the folder {path}; allowed: a file")
     if path.suffix not in SUFFIXES:
         raise InputError(f"suffix of {path.name} is {path.suffix!r}; splinepy reads volumes from " + ", ".join(SUFFIXES))
     if not path.is_file():

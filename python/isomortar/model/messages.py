@@ -6,6 +6,7 @@ import re
 import reprlib
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from datetime import date, time
 from typing import Any
 
 from pydantic import ValidationError
@@ -52,13 +53,35 @@ def _field(fault: ErrorDetails, data: Any) -> str:
         elif isinstance(data, Sequence) and not isinstance(data, str) and isinstance(key, int) and key < len(data):
             data = data[key]
             parts.append(str(data.get("name", key) if isinstance(data, dict) else key))
+        elif isinstance(data, Sequence) and fault["type"] == "missing":
+            parts.append(str(key))
         # What is left over are pydantic's own labels (a union's tag) and places in a value given once for all directions.
     return ".".join(parts)
 
 
+#: What Pydantic's types are called in a scene file.
+_KINDS = {
+    "dict_type": "a table",
+    "model_type": "a table",
+    "model_attributes_type": "a table",
+    "dataclass_type": "a table",
+    "tuple_type": "a list",
+    "list_type": "a list",
+}
+
+
+def _given(value: Any) -> str:
+    """A value as a scene file has it, not too much of it."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    return value.isoformat() if isinstance(value, date | time) else reprlib.repr(value)
+
+
 def _sentence(fault: ErrorDetails) -> str:
-    given, message = reprlib.repr(fault["input"]), fault["msg"]
+    given, message = _given(fault["input"]), fault["msg"]
     match fault["type"]:
+        case kind if kind in _KINDS:
+            return f"is {given}; allowed: {_KINDS[kind]}"
         case "missing" | "union_tag_not_found":
             return "is missing, but must be given"
         case "union_tag_invalid":

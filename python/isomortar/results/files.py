@@ -73,6 +73,19 @@ def writing(path: Path) -> Iterator[None]:
         raise
 
 
+def place_for(path: Path) -> None:
+    """See that a file can be made, in a folder that is made where it is not there: never in the place of a results file.
+
+    Raises
+    ------
+    ResultsError
+        There is a results file; or the folder cannot be made.
+    """
+    if path.is_file() and is_marked(path):
+        raise ResultsError(f"{path} is a results file, so it is not overwritten: name another file with --output")
+    make_folder(path.parent)
+
+
 def make_folder(path: Path) -> None:
     """Make a folder and those above it, where they are not there."""
     try:

@@ -12,7 +12,7 @@ from PIL import Image
 
 from isomortar.errors import InputError, ResultsError
 from isomortar.results.bodies import common_scale, draw_bodies
-from isomortar.results.files import writing
+from isomortar.results.files import place_for, writing
 from isomortar.results.optional import optional
 from isomortar.results.reader import Results
 from isomortar.results.style import style
@@ -20,6 +20,8 @@ from isomortar.solve.record import StepResult
 
 #: Types of films, and what Pillow calls them; films of type .mp4 are made by ffmpeg.
 FORMATS = {".gif": "GIF", ".webp": "WEBP", ".mp4": "MP4"}
+#: Fewest and most pictures a second: files hold how long each is shown, and not more than some minutes of it.
+RATES = (0.01, 100.0)
 #: Pixels per inch: 8.6 inches are as wide as most windows.
 DENSITY = 110
 
@@ -39,13 +41,13 @@ def film(
     ----------
     results_path : path-like
     output : path-like
-        A .gif, .webp or .mp4 file; the last of these needs imageio-ffmpeg (`isomortar[mp4]`).
+        A .gif, .webp or .mp4 file; the last of these needs imageio-ffmpeg (`isomortar[mp4]`). Its folder is made if it does not exist.
     contact : str, optional
         Whose pressure is in colour; default: the first one's.
     every : int
         Of the load steps one in so many is shown, the last one always.
     rate : float
-        Pictures per second.
+        Pictures per second, 0.01 to 100.
     tell : callable, optional
         Told how many pictures of how many are drawn.
 
@@ -57,19 +59,21 @@ def film(
     Raises
     ------
     InputError
-        There is no such contact, or no such type of film; `every` or `rate` is too small.
+        There is no such contact, or no such type of film; `every` is too small, or `rate` too small or too large.
     ResultsError
-        The results file is missing, damaged, or holds too few states; or the film cannot be written.
+        The results file is missing, damaged, or holds too few states; or there is a results file in the film's place, or it cannot be
+        written.
     """
     path = Path(output)
     if path.suffix not in FORMATS:
         raise InputError(f"is {path.name!r}; allowed: a name that ends in {' or '.join(FORMATS)}", "output")
     encoder = optional("imageio_ffmpeg", "output", "mp4") if path.suffix == ".mp4" else None
-    if every < 1 or not 0.0 < rate <= 100.0:
-        raise InputError(f"is {every} and {rate:g}; allowed: 1 and more, and up to 100 a second", "every, rate")
+    if every < 1 or not RATES[0] <= rate <= RATES[1]:
+        raise InputError(f"is {every} and {rate:g}; allowed: 1 and more, and {RATES[0]:g} to {RATES[1]:g} a second", "every, rate")
     with Results(results_path) as results, style():
         number = _number(results, contact)
         shown = _shown(results, every)
+        place_for(path)
         scale = common_scale(results.problem, _states(results, shown), number)
         pictures = []
         for step in _states(results, shown):

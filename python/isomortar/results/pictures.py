@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import re
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
@@ -107,7 +109,12 @@ def _among(field: str, names: Sequence[str], allowed: tuple[str, ...]) -> None:
 
 def _of_curves(results: Results, curves: Sequence[WantedCurve], over: Abscissa) -> Iterator[Named]:
     yield from ((f"reactions-{s.name}", partial(draw_reactions, results, s.name, over)) for s in moving_supports(results))
-    yield from ((f"curve-{curve.name}", partial(draw_curve, results, curve, over)) for curve in curves)
+    yield from ((_stem(f"curve-{curve.name}"), partial(draw_curve, results, curve, over)) for curve in curves)
+
+
+def _stem(label: str) -> str:
+    """What a file may be called after a label that says anything: letters, digits and signs of no meaning to the system, not too many."""
+    return re.sub(r"[^\w .,+=()-]", "_", label)[:100].rstrip()
 
 
 def _of_bodies(results: Results, step: StepResult, fields: Sequence[str]) -> Iterator[Named]:
@@ -134,6 +141,7 @@ def _map(problem: Problem, step: StepResult, number: int, field: str, before: St
 def _save(figure: Figure, stem: Path, formats: Sequence[str]) -> list[Path]:
     paths = [stem.with_name(f"{stem.name}.{kind}") for kind in formats]
     for path in paths:
-        with writing(path):
+        with writing(path), warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)  # of letters that the font does not have, labels wider than the figure
             figure.savefig(path, bbox_inches="tight", pad_inches=0.08)
     return paths

@@ -189,6 +189,8 @@ class Results:
             values = np.where(np.isnan(values), motion[quantity], values)
         if component is None:
             return values
+        if component not in ("x", "y", "z"):
+            raise ResultsError(f"component is {component!r}; allowed: 'x', 'y' or 'z', or none of them for all three")
         if values.ndim != 2 or values.shape[1] != 3:
             raise ResultsError(f"curve {quantity!r} has no components")
         return values[:, "xyz".index(component)]

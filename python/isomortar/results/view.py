@@ -17,14 +17,14 @@ import numpy as np
 from matplotlib.colors import Colormap, to_rgb
 from numpy.typing import NDArray
 
-from isomortar.errors import ResultsError
+from isomortar.errors import InputError, ResultsError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Face, Problem, RigidPlane, unit
 from isomortar.results import style
 from isomortar.results.bezier import bernstein, functions_at, rational
 from isomortar.results.bodies import plane_corners, towards
 from isomortar.results.fields import contact_surfaces
-from isomortar.results.files import writing
+from isomortar.results.files import place_for, writing
 from isomortar.results.paraview import states
 from isomortar.results.reader import Results
 from isomortar.results.vtu import BezierGrid
@@ -76,7 +76,7 @@ def view(results_path: str | os.PathLike[str], output: str | os.PathLike[str]) -
     ----------
     results_path : path-like
     output : path-like
-        The page, a .html file.
+        The page, a .html file; its folder is made if it does not exist.
 
     Returns
     -------
@@ -85,16 +85,22 @@ def view(results_path: str | os.PathLike[str], output: str | os.PathLike[str]) -
 
     Raises
     ------
+    InputError
+        The page is to have another name than one that ends in .html.
     ResultsError
-        The results file is missing, damaged, or holds no state; or the page cannot be written.
+        The results file is missing, damaged, or holds no state; or there is a results file in the page's place, or it cannot be written.
     """
+    path = Path(output)
+    if path.suffix != ".html":
+        raise InputError(f"is {path.name!r}; allowed: a name that ends in .html", "output")
     with Results(results_path) as results:
         if not len(results.kept_states):
             raise ResultsError(f"{results.path} holds no load step yet: nothing to look at")
+        place_for(path)
         text = _page(results)
-    with writing(Path(output)):
-        Path(output).write_text(text, encoding="utf-8")
-    return Path(output)
+    with writing(path):
+        path.write_text(text, encoding="utf-8")
+    return path
 
 
 def _page(results: Results) -> str:

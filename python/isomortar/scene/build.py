@@ -343,7 +343,10 @@ def _stages(scene: SceneTable) -> tuple[Stage, ...]:
 
 
 def _check_curves(scene: SceneTable) -> None:
-    for curve in scene.record.curves or ():
+    curves = scene.record.curves or ()
+    for number, curve in enumerate(curves):
+        if curve.name in [other.name for other in curves[:number]]:
+            raise InputError(f"{curve.name!r} is the name of two curves; allowed: a name for each", f"record.curves.{number}.name")
         if curve.support not in scene.supports:
             allowed = listed(curve.support, scene.supports)
             raise InputError(f"there is no support {curve.support!r}; allowed: {allowed}", f"record.curves.{curve.name}.support")

@@ -148,7 +148,7 @@ class ContactTable(Table):
     """What is constrained: averages of gap and slip ("mortar", "dual"), or values at Gauss points ("kts"), "knots", "greville", "demko"."""
     quadrature: PerSurfaceDirection[GaussPoints] | None = None
     """Gauss points per slave contact element, or cell; default: Table 1 of the paper (above order 5: order + 2), or what cells need."""
-    subcells: Annotated[int, Field(ge=0, le=5)] | None = None
+    subcells: Annotated[int, Field(strict=True, ge=0, le=5)] | None = None
     """How many times over slave elements are cut along the master's knot lines; default: as lines need, 0 where quadrature is given."""
     reference_area: Positive | None = None
     """Divides the penalties; default: area of the slave face in the reference configuration. The paper's numbers imply 1."""

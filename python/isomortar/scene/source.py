@@ -22,7 +22,9 @@ SceneChanges = Iterable[str] | Mapping[str, Any]
 _PATH = re.compile(r"[\w-]+(\.[\w-]+)*")
 
 #: Tables whose entries have names of their own: an override cannot add one.
-_NAMED = ("materials", "bodies", "contacts", "supports", "loads")
+_NAMED = ("materials", "bodies", "contacts", "supports")
+#: One whose entries an override can add whole, `loads.wind={ ... }`, but not key by key: a name by mistake would be a load of its own.
+_ADDED = "loads"
 
 
 def bundled_scenes() -> tuple[str, ...]:
@@ -50,9 +52,21 @@ def read_source(source: str | Path) -> tuple[str, str, Path]:
 def parse(text: str, name: str) -> dict[str, Any]:
     """TOML text as a dictionary; `name` says in errors what it is."""
     try:
-        return tomllib.loads(text)
+        return _read(text)
     except tomllib.TOMLDecodeError as error:
         raise InputError(f"{name} is not valid TOML: {error}") from error
+
+
+def _read(text: str) -> dict[str, Any]:
+    """TOML text as a dictionary; what the reader has no words of its own for is no TOML either."""
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError:
+        raise
+    except RecursionError as error:
+        raise tomllib.TOMLDecodeError("lists or tables within each other without end") from error
+    except ValueError as error:
+        raise tomllib.TOMLDecodeError("a number of more digits, or a date of others, than there are") from error
 
 
 def dump(data: dict[str, Any]) -> str:
@@ -113,7 +127,7 @@ def _value(text: str, override: str) -> Any:
     try:
         if "\n" in text:
             raise tomllib.TOMLDecodeError("more than one line")
-        return tomllib.loads(f"value = {text}")["value"]
+        return _read(f"value = {text}")["value"]
     except tomllib.TOMLDecodeError as error:
         if re.fullmatch(r"[A-Za-z][\w./-]*", text):
             return text
@@ -130,7 +144,7 @@ def _set(data: dict[str, Any], path: str, value: Any) -> None:
             key = _index(node, part, here)
         elif not isinstance(node, dict):
             raise InputError(f"cannot be set: {'.'.join(parts[:depth])} is the single value {node!r}", path)
-        elif depth == 1 and parts[0] in _NAMED and part not in node:
+        elif depth == 1 and part not in node and (parts[0] in _NAMED or (parts[0] == _ADDED and len(parts) > 2)):
             raise InputError(f"an override changes what the scene has; {parts[0]} there: {listed(part, node)}", here)
         elif part not in node:
             node[part] = {}

@@ -82,7 +82,7 @@ def wanted(text: str, problem: Problem) -> Want:
     """
     found = _PATTERN.fullmatch(text)
     if not found:
-        raise InputError(f"is {text!r}; it is of the form {_FORM}, e.g. force.top.x or pressure.floor@press", "want")
+        raise InputError(f"is {text!r}; it is of the form {_FORM}, e.g. force.top.x@press or pressure.floor", "want")
     quantity, where, part = found["quantity"], found["where"], found["part"] or "curve"
     _among(quantity, (*_CURVES, *_FIELDS), f"{text!r} has no such quantity")
     if quantity in _FIELDS:
