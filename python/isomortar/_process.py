@@ -24,11 +24,10 @@ def own_process() -> None:
 
     Ctrl-C that comes where Python drops what is raised (destructors, callbacks of weak references) comes again. NumPy's linear algebra is
     told what the kernel's is. And Pydantic does not look through all that is installed for plugins of its own, which would have nothing to
-    do here. Figures go into files: what the environment names for Matplotlib to show them by, be it there or not, has no part in them.
+    do here.
     """
     for variable, value in (LIBRARIES | {"PYDANTIC_DISABLE_PLUGINS": "__all__"}).items():
         os.environ.setdefault(variable, value)
-    os.environ["MPLBACKEND"] = "agg"
     sys.unraisablehook = _heard_again
 
 

@@ -140,6 +140,12 @@ def test_output_that_is_closed() -> None:
 
 
 def test_figures_need_no_window_system_that_is_there() -> None:
-    program = "import isomortar.cli, matplotlib; print(matplotlib.get_backend())"
-    done = subprocess.run([sys.executable, "-c", program], env=os.environ | {"MPLBACKEND": "nonsense"}, capture_output=True, text=True)
-    assert (done.stdout, done.stderr) == ("agg\n", "")
+    """Nor does a program of one's own lose the one that it has."""
+    shown = "import matplotlib; print(matplotlib.get_backend())"
+    command = (
+        f"import atexit, isomortar.cli, sys; atexit.register(lambda: exec({shown!r})); sys.argv = ['', '--version']; isomortar.cli.main()"
+    )
+    for program, backend, expected in ((command, "nonsense", "agg"), (f"import isomortar.cli.progress; {shown}", "svg", "svg")):
+        environment = os.environ | {"MPLBACKEND": backend}
+        done = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=False)
+        assert (done.stdout.splitlines()[-1], done.stderr) == (expected, "")

@@ -1,5 +1,7 @@
 """The command line ``isomortar``."""
 
+import os
+
 from isomortar._process import loading, own_process
 from isomortar.cli.endings import told
 
@@ -9,7 +11,11 @@ __all__ = ["main"]
 
 
 def main() -> None:
-    """Run the command line; whatever ends it early becomes one sentence and an exit code."""
+    """Run the command line; whatever ends it early becomes one sentence and an exit code.
+
+    Figures go into files: what the environment names for Matplotlib to show them by, be it there or not, has no part in them.
+    """
+    os.environ["MPLBACKEND"] = "agg"
     with told():
         with loading():
             from isomortar.cli.commands import app  # within: Ctrl-C may come meanwhile, or a library be missing
