@@ -198,6 +198,7 @@ def of_files(patch: pytest.MonkeyPatch) -> Told:
         yield "no pandas", refusal(lambda: Results("run.h5").to_dataframe())
         within.setitem(sys.modules, "xarray", None)
         yield "no xarray", refusal(lambda: Results("run.h5").to_xarray())
+    yield "of two", refusal(lambda: Results("run.h5").curve("force", support="rim", contact="tread"))
     yield "component", refusal(lambda: Results("run.h5").curve("force", support="rim", component="xy"))  # type: ignore[arg-type]
     Path("run.html").write_bytes(Path("run.h5").read_bytes())
     yield "viewed: over results", refusal(lambda: view("run.h5", "run.html"))

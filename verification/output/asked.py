@@ -31,6 +31,7 @@ def of_a_file(run: Path, results: Results) -> list[Asked]:
         (lambda: results.curve("force", contact="roof"), "there is no contact 'roof'; there are: under, over"),
         (lambda: results.curve("force", load="roof"), "there is no load 'roof'; there are: press, weight"),
         (lambda: results.contact("roof"), "there is no contact 'roof'; there are: under, over"),
+        (lambda: results.curve("force", support="rim", load="press"), "a curve is of one of support, load: name that alone"),
         (lambda: results.curve("time", component="x"), "curve 'time' has no components"),
         (lambda: results.curve("force", support="rim", component="xy"), "component is 'xy'; allowed: 'x', 'y' or 'z'"),
         (lambda: view(run, run), "output: is 'run.h5'; allowed: a name that ends in .html"),

@@ -12,6 +12,7 @@ import typer
 
 import isomortar
 from isomortar.cli.options import ResultsArgument
+from isomortar.cli.words import many
 
 if TYPE_CHECKING:
     from isomortar.solve.record import StepResult
@@ -153,8 +154,8 @@ def lines(found: Information, path: Path) -> Iterator[str]:
     yield f"{found.name}: {found.unknowns} unknowns, computed by isomortar {found.version}"
     parts = ", ".join(f"{name} {done} of {whole}" for name, (done, whole) in found.stages.items())
     yield (
-        f"{found.recorded} of {found.load_steps} load steps ({parts}), {found.kept_states} with their state; "
-        f"{found.cpu_seconds:.3g} CPU seconds, {found.cuts} cuts of increments"
+        f"{found.recorded} of {many(found.load_steps, 'load step')} ({parts}), {found.kept_states} with their state; "
+        f"{found.cpu_seconds:.3g} CPU seconds, {many(found.cuts, 'cut')} of increments"
     )
     for contact in found.contacts:
         low, high = contact.pressure

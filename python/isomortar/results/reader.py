@@ -172,6 +172,9 @@ class Results:
         -------
         ndarray, shape (steps,) or (steps, 3)
         """
+        named = [kind for kind, name in (("support", support), ("contact", contact), ("load", load)) if name is not None]
+        if len(named) > 1:
+            raise ResultsError(f"a curve is of one of {', '.join(named)}: name that alone")
         motion: dict[str, FloatArray] = {}
         if support is not None:
             known, place = layout.REACTION, f"supports/{_named(self.problem.supports, support, 'support').name}/"

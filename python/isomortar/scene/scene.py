@@ -117,7 +117,7 @@ class Scene:
         return self.tables.record
 
     def curves(self) -> tuple[CurveTable, ...]:
-        """The curves to draw: the scene's own, or force and moment of every support that moves."""
+        """The scene's own curves, else force and moment of every support that moves, and how far a force moves it, by component."""
         if self.record.curves is not None:
             return tuple(self.record.curves)
         stages, supports = self.tables.stages, self.tables.supports

@@ -291,7 +291,7 @@ class RecordTable(Table):
     states: Literal["every", "last"] = "every"
     """Positions and multipliers of every load step, or of the last one only."""
     curves: list[CurveTable] | None = None
-    """Curves to draw; default: force and moment of every support that moves, by component, and how far one with a force goes."""
+    """Curves that `isomortar plot` draws one by one, besides force and moment of every support that moves."""
 
 
 class SceneTable(Table):
