@@ -171,6 +171,14 @@ def test_a_full_disk_has_its_sentence_where_figures_are_written(results: Path, w
     assert not [path for path in results.parent.rglob("*") if path.is_file() and path.stat().st_size == 2000]
 
 
+def test_a_film_whose_encoder_fails_is_none(results: Path) -> None:
+    limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))  # noqa: E731
+    done = ended(results.parent, "film", "press.h5", "--output", "press.mp4", small=False, limit=limit)
+    assert done.returncode == 1
+    assert done.stderr == "isomortar: press.mp4 cannot be written: its encoder failed\n"
+    assert not results.with_name("press.mp4").exists()
+
+
 def test_reading_goes_on_while_a_run_writes(tmp_path: Path) -> None:
     slow = command("run", "iron", "--output", "run.h5", small=False)
     with subprocess.Popen(slow, cwd=tmp_path, stderr=subprocess.DEVNULL) as run:

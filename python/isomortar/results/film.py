@@ -91,13 +91,25 @@ def film(
 
 
 def _encode(encoder: Any, pictures: Sequence[Image.Image], path: Path, rate: float) -> None:
-    """As H.264, which wants even widths and heights: a line at the edge goes where they are odd."""
+    """As H.264, which wants even widths and heights: a line at the edge goes where they are odd.
+
+    Raises
+    ------
+    OSError
+        The film has not all pictures: the encoder, a program of its own, does not say where it failed.
+    """
     width, height = (2 * (side // 2) for side in pictures[0].size)
-    frames = encoder.write_frames(str(path), (width, height), fps=rate, macro_block_size=2, quality=8)
+    frames = encoder.write_frames(str(path), (width, height), fps=rate, macro_block_size=2, quality=8, ffmpeg_log_level="quiet")
     frames.send(None)
     for picture in pictures:
         frames.send(picture.crop((0, 0, width, height)).tobytes())
     frames.close()
+    try:
+        written, _ = encoder.count_frames_and_secs(str(path))
+    except RuntimeError:  # there is no film
+        written = 0
+    if written != len(pictures):
+        raise OSError("its encoder failed")
 
 
 def _number(results: Results, contact: str | None) -> int:
