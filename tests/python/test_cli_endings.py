@@ -139,6 +139,13 @@ def test_output_that_is_closed() -> None:
         assert (done.returncode, done.stderr) == (0, "")
 
 
+def test_a_terminal_that_lacks_letters() -> None:
+    environment = os.environ | {"PYTHONIOENCODING": "ascii"}
+    done = subprocess.run([sys.executable, "-m", "isomortar", "--help"], env=environment, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "isomortar scenes lists the scenes" in done.stdout
+
+
 def test_figures_need_no_window_system_that_is_there() -> None:
     """Nor does a program of one's own lose the one that it has."""
     shown = "import matplotlib; print(matplotlib.get_backend())"
