@@ -88,6 +88,11 @@ def test_selection(root):
     for tier, other, name in (("gate", "none", None), ("gate", None, "none")):
         with pytest.raises(InputError):
             select(cases, tier, other, name)
+    with pytest.raises(InputError, match=rf"of 3 cells of {family}/sine the nearest are {family}/sine\[order="):
+        select(cases, "gate", None, f"{family}/sine[order=9]")
+    with pytest.raises(InputError) as refused:
+        select(20 * cases, "gate", None, f"{family}/sin")
+    assert str(refused.value).count(", ") < 6, "not all of some hundreds"
     with pytest.raises(InputError):
         find(root, "none")
     with pytest.raises(InputError):

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, as_completed
 from contextlib import contextmanager
 from dataclasses import dataclass
+from difflib import get_close_matches
 from typing import Any
 
 from isomortar.errors import InputError
@@ -19,6 +20,8 @@ from isomortar.harness.worker import Worker, task_of
 
 #: Starts the measurement of a task.
 Submit = Callable[[dict[str, Any]], "Future[Measurement]"]
+#: Cases, or cells of one, that are told where the one that is asked for is not there.
+NEAREST = 6
 
 
 @dataclass(frozen=True)
@@ -49,7 +52,11 @@ def select(cases: Sequence[Case], tier: Tier, family: str | None = None, name: s
         raise InputError(f"there is no family {family!r}; there are {', '.join(sorted({c.family for c in cases}))}", "family")
     cells = [cell for c in chosen for cell in c.cells if name in (None, c.name, cell.name)]
     if not cells:
-        raise InputError(f"there is no case {name!r}; there are {', '.join(c.name for c in chosen)}", "case")
+        asked = str(name).partition("[")[0]
+        settings = [cell.name for c in chosen if c.name == asked for cell in c.cells]
+        near = get_close_matches(str(name), settings or [c.name for c in chosen], NEAREST, 0.0)
+        of = f"cells of {asked}" if settings else "cases"
+        raise InputError(f"there is no case {name!r}; of {len(settings) or len(chosen)} {of} the nearest are {', '.join(near)}", "case")
     within = [cell for cell in cells if TIERS.index(cell.tier) <= TIERS.index(tier)]
     if not within:
         raise InputError(f"no cell in tier {tier}; what was asked for is {', '.join(sorted({cell.tier for cell in cells}))}", "tier")
