@@ -33,7 +33,7 @@ def of_a_file(run: Path, results: Results) -> list[Asked]:
         (lambda: results.contact("roof"), "there is no contact 'roof'; there are: under, over"),
         (lambda: results.curve("force", support="rim", load="press"), "a curve is of one of support, load: name that alone"),
         (lambda: results.curve("time", component="x"), "curve 'time' has no components"),
-        (lambda: results.curve("force", support="rim", component="xy"), "component is 'xy'; allowed: 'x', 'y' or 'z'"),
+        (lambda: results.curve("force", support="rim", component="xy"), "component is 'xy'; allowed: 'x', 'y' or 'z'"),  # type: ignore[arg-type]
         (lambda: view(run, run), "output: is 'run.h5'; allowed: a name that ends in .html"),
         (lambda: results.curve("pressure_field", contact="under", component="x"), "curve 'pressure_field' has no components"),
         (lambda: plot(run, run.parent / "drawn", fields=["colour"]), "is 'colour'; allowed: pressure, traction, slip, gap, stress, J"),
