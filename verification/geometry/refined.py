@@ -95,6 +95,9 @@ def halved(family: str, axis: int) -> dict[str, float]:
         u, v, w = directions
         points, weights = body(random, (u, v, w))
         patch = _mirrored((u, v, w), points, weights, cut, axis, place, falls)
+        begun = 4.0 * (number // 6)  # where knots begin is nobody's business
+        u, v, w = (Direction(d.family, d.order, d.knots + begun) for d in patch.directions)
+        patch = replace(patch, directions=(u, v, w))
         half, face = upper_half(patch, axis, place)
         at = places(random, half.directions)
         ends = [shares(p.directions, p.weights, at) @ p.control_points for p in (patch, half)]

@@ -9,12 +9,15 @@ from isomortar.scene import Scene
 from isomortar.solve.extrapolation import multipliers_ahead
 from isomortar.solve.simulation import Simulation
 
-#: A pad that comes down onto a plane in the second of three load steps, is dragged, and lifted.
+#: A pad that comes down onto a plane in the second of three load steps, is dragged, and lifted; beside it one that stays above another.
 SCENE = """
 format = 1
 bodies.pad = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 0.5] }, mesh = { order = 2, elements = [2, 2, 1] } }
 contacts.floor = { slave = "pad.w0", plane = { point = [0, 0, -0.015] }, friction = 0.3 }
 supports.top.face = "pad.w1"
+bodies.other = { geometry = { kind = "box", lower = [2, 0, 0], upper = [3, 1, 0.5] }, mesh = { order = 1 } }
+contacts.none = { slave = "other.w0", plane = { point = [0, 0, -1] }, friction = 0.3 }
+supports.other.face = "other.w1"
 stages = [
     { name = "press", steps = 3, motions.top.translate = [0, 0, -0.03] },
     { name = "drag", steps = 3, motions.top.translate = [0.03, 0.01, 0] },
@@ -47,7 +50,7 @@ def kept() -> dict[str, float]:
         states.append(state)
         if rates is None:
             continue
-        (old,), (new,), (rate,) = before.contacts, state.contacts, rates.contacts
+        old, new, rate = before.contacts[0], state.contacts[0], rates.contacts[0]
         at_origin = before.positions + (simulation.equilibrium.origin if result.step == 1 else 0.0)
         for name, change in (
             ("positions", rates.positions - (state.positions - at_origin)),

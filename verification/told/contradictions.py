@@ -53,3 +53,38 @@ def contradicting() -> dict[str, float]:
     """How many of eight scenes in six orders each."""
     tried = [(order, *scene) for scene in CASES for order in permutations("abc")]
     return {"wrong": float(sum(named(order, *given) != pair for order, *given, pair in tried))}
+
+
+#: Angles, axes and centres of a and c where these turn, and whether they contradict each other: the end that they share is at the origin
+#: of the upper face.
+TURNED = (
+    ((30, "[0, 0, 1]", "[0, 0, 1]"), (30, "[0, 0, 1]", "[0, 0, 1]"), False),
+    ((30, "[0, 0, 1]", "[0, 0, 1]"), (30, "[0, 0, 1]", "[0.5, 0.5, 1]"), True),
+    ((30, "[0, 0, 1]", "[0, 0, 1]"), (30, "[0, 1, 0]", "[0, 0, 1]"), True),
+    ((30, "[0, 0, 1]", "[0, 0, 1]"), (20, "[0, 0, 1]", "[0, 0, 1]"), True),
+    ((30, "[0, 0, 1]", "[0, 0, 1]"), (0, "[0, 0, 1]", "[0, 0, 1]"), True),
+)
+
+
+@case(
+    claim="Of two supports that turn the same control points angle, axis and centre are to be the same; else they are refused.",
+    tier="gate",
+    bounds={"wrong": Bound(0.0, 0.0, "definition: scenes that are refused and should not be, or the other way round")},
+)
+def turning_together() -> dict[str, float]:
+    """How many of five scenes in both orders."""
+    wrong = 0
+    for *turns, contradict in TURNED:
+        for order in ("ac", "ca"):
+            given = dict(zip("ac", turns, strict=True))
+            text = SCENE.replace("MOTIONS", ", ".join(f"{name}.rotate = {given[name][0]}" for name in order))
+            for name in order:
+                _, axis, centre = given[name]
+                text += f'supports.{name} = {{ edge = "{EDGES[name]}", axis = {axis}, centre = {centre} }}\n'
+            try:
+                Scene.from_toml(text).problem()
+            except InputError as error:
+                wrong += not contradict or "moves differently" not in str(error)
+            else:
+                wrong += contradict
+    return {"wrong": float(wrong)}
