@@ -53,6 +53,7 @@ def _spread(numbers: NDArray[np.intp]) -> NDArray[np.intp]:
     bounds=lambda master, routine: {
         "lost": Bound(at_most=0.0, reason="definition: what belongs into a block that there is not must not be left out"),
         "changed": Bound(at_most=0.0, reason="round-off: the others are the same sums"),
+        "misnamed": Bound(at_most=0.0, reason="definition: refusals that name another row than that of the block"),
         "refused": Bound(
             at_least=float((master, routine) != ("plane", "contact_blocks, pattern")),
             reason="definition: calls of a run in contact fill blocks; a plane has no geometric tangent",
@@ -60,12 +61,12 @@ def _spread(numbers: NDArray[np.intp]) -> NDArray[np.intp]:
     },
 )
 def missing_blocks(master: str, routine: str) -> dict[str, float]:
-    """Blocks with something in them that were left out without a word; largest change of others; blocks whose want was refused."""
+    """Blocks with something in them that were left out without a word; largest change of others; wants refused, and misnamed."""
     routine, _, pattern = routine.partition(", ")
     name = ADDED[routine, pattern]
     arguments = sound(master)[routine][1]
     whole = added(master, routine, name, arguments)
-    lost, refused, changed = 0, 0, 0.0
+    lost, refused, misnamed, changed = 0, 0, 0, 0.0
     full = np.any(whole != 0.0, axis=(1, 2))
     for block in np.concatenate([_spread(np.flatnonzero(full)), _spread(np.flatnonzero(~full))]):
         given = arguments | {pattern: without(arguments[pattern], block)}
@@ -73,12 +74,14 @@ def missing_blocks(master: str, routine: str) -> dict[str, float]:
             given[name] = np.delete(whole, block, axis=0)
         try:
             left = added(master, routine, name, given)
-        except KernelError:
+        except KernelError as error:
             refused += 1
+            row = int(np.searchsorted(arguments[pattern].start, block, side="right")) - 1
+            misnamed += f"row {row} " not in str(error) and "row -1 " not in str(error)  # -1: rows of another length
             continue
         lost += int(full[block])
         changed = float(np.maximum(changed, np.abs(left - np.delete(whole, block, axis=0)).max(initial=0.0)))
-    return {"lost": lost, "changed": changed, "refused": refused}
+    return {"lost": lost, "changed": changed, "refused": refused, "misnamed": misnamed}
 
 
 def elsewhere(pattern: Pattern, block: int) -> Pattern | None:

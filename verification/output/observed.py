@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from isomortar.harness import Bound, case
+from isomortar.scene import Scene
 from isomortar.solve.newton import observed_order
 from isomortar.solve.record import IterationRecord
+from isomortar.solve.simulation import Simulation
 
 #: Residuals that fall by an order each: the first two, and so many after them.
 FIRST, SECOND, MORE = 1e-2, 1e-3, 2
@@ -62,3 +64,32 @@ def observed(order: float) -> dict[str, float]:
         "before": float(np.abs(np.array([observed_order(log, ROUND_OFF) for log in spoilt]) - order).max()),
         "untold": float(np.count_nonzero(np.isfinite(told))),
     }
+
+
+#: A pad that is pressed onto a plane, and a block beside it that nothing moves.
+PAD = """
+format = 1
+bodies.pad = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 0.5] }, mesh = { order = 2, elements = [2, 2, 1] } }
+contacts.floor = { slave = "pad.w0", plane = { point = [0, 0, -0.01] }, friction = 0.3 }
+supports.top.face = "pad.w1"
+solver.measures = ["forgiving", "halving"]
+stages = [{ name = "press", steps = 1, motions.top.translate = [0, 0, -0.05] }]
+"""
+RESTING = """
+bodies.block.geometry = { kind = "box", lower = [3, 0, 0], upper = [4, 1, 1] }
+supports.block.face = "block.w0"
+"""
+
+
+@case(
+    claim="A body at rest, whose forces are nothing but round-off, leaves the order that is told of a load step.",
+    tier="gate",
+    bounds={
+        "apart": Bound(at_most=0.05, reason="round-off: of the last of three residuals"),
+        "order": Bound(at_least=1.5, reason="theory: about 2, or nothing is told"),
+    },
+)
+def beside_one_at_rest() -> dict[str, float]:
+    """Difference of the orders with and without it; the order without."""
+    alone, beside = (next(Simulation(Scene.from_toml(text).problem()).run()).newton_order for text in (PAD, PAD + RESTING))
+    return {"apart": abs(beside - alone), "order": alone}

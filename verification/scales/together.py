@@ -42,8 +42,8 @@ solver = { method = "METHOD", newton_tolerance = 1e-12, complementarity_toleranc
 """
 
 
-def found(method: str, names: tuple[str, ...]) -> dict[str, list[FloatArray]]:
-    """Of each contact by its name what is recorded of it and of the support above it, load step by load step."""
+def found(method: str, names: tuple[str, ...]) -> tuple[dict[str, list[FloatArray]], int]:
+    """Of each contact by its name what is recorded of it and of the support above it, load step by load step; bytes of a state."""
     text = "".join(
         PAD.format(name=name, x=place, end=place + 1, mesh=mesh, says=says) + more
         for name, (place, mesh, says, more, _) in ((name, PARTS[name]) for name in names)
@@ -60,11 +60,13 @@ def found(method: str, names: tuple[str, ...]) -> dict[str, list[FloatArray]]:
             force = step.reactions[wanted[contact.name]].force
             numbers = [result.active, result.slip, result.friction_work]
             measured[contact.name].append(np.concatenate([state.pressure, result.traction_norm, force, result.force_slave, numbers]))
-    return measured
+    return measured, step.counters["history bytes"]
 
 
 #: What forces and pressures are measured by at the least: those of what is open are round-off.
 LEAST = 1e-3
+#: Bytes of the number of a load step.
+NUMBER = 8
 #: Augmentations take their time: of these alone.
 FEW = ("elastic", "sunk", "open")
 _LEFT = "theory: the systems are separate; what is left is what Newton's method leaves, or augmentations"
@@ -76,16 +78,22 @@ _LEFT = "theory: the systems are separate; what is left is what Newton's method 
     grid={"method": ("monolithic", "uzawa")},
     bounds=lambda method: {
         **dict.fromkeys(PARTS if method == "monolithic" else FEW, Bound(at_most=1e-8 if method == "monolithic" else 1e-4, reason=_LEFT)),
+        "bytes": Bound(0.0, 0.0, "definition: a state holds what those of each alone hold, and the number of its load step once"),
         "acts": Bound(at_least=2.0, reason="definition: all of them but the one that is open"),
     },
 )
 def together(method: str) -> dict[str, float]:
-    """Largest difference of what is recorded of each contact, over its largest value; contacts that bear."""
+    """Largest difference of what is recorded of each contact, over its largest value; bytes that differ; contacts that bear."""
     names = tuple(PARTS) if method == "monolithic" else FEW
-    alone = {name: found(method, (name,))[name] for name in names}
+    single = {name: found(method, (name,)) for name in names}
+    alone = {name: single[name][0][name] for name in names}
+    size = sum(own - NUMBER for _, own in single.values()) + NUMBER
     off: dict[str, float] = dict.fromkeys(names, 0.0)
+    size_off = 0
     for order in (names, names[::-1]):
-        for name, steps in found(method, order).items():
+        measured, taken = found(method, order)
+        size_off += abs(taken - size)
+        for name, steps in measured.items():
             apart = np.abs(np.array(steps) - np.array(alone[name])).max()
             off[name] = float(np.maximum(off[name], apart / np.maximum(np.abs(alone[name]).max(), LEAST)))
-    return {**off, "acts": float(sum(bool(steps[-1][-3]) for steps in alone.values()))}
+    return {**off, "bytes": float(size_off), "acts": float(sum(bool(steps[-1][-3]) for steps in alone.values()))}
