@@ -6,7 +6,9 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 
 from isomortar import _bindings
+from isomortar.geometry.patch import Direction
 from isomortar.geometry.primitives import box
+from isomortar.geometry.quadrature import load_points
 from isomortar.harness import Bound, case
 from isomortar.model.numbering import patch_arrays
 
@@ -41,3 +43,18 @@ def gauss_points(count: int) -> dict[str, float]:
         "points": float(np.abs(values @ corners - points).max()),
         "weights": float(np.abs(area / weights - 1).max()),
     }
+
+
+@case(
+    claim="A loaded face has one Gauss point more by direction than what is polynomial of a pressure's forces needs, of any order.",
+    tier="gate",
+    bounds={"wrong": Bound(0.0, 0.0, "theory: a function times the product of two tangents is of order 3 p - 1")},
+)
+def points_of_loads() -> dict[str, float]:
+    """Orders for which the rule has another number of points."""
+    wrong = 0
+    for order in range(1, 6):
+        direction = Direction("N", order, np.repeat([0.0, 1.0], order + 1))
+        exact = next(points for points in range(1, 20) if 2 * points - 1 >= 3 * order - 1)
+        wrong += load_points(direction) != exact + 1
+    return {"wrong": float(wrong)}

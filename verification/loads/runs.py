@@ -155,7 +155,7 @@ def balance(scene: str, method: str) -> dict[str, float]:
     bounds={"error": Bound(at_most=1e-14, reason="round-off: of a factor")},
 )
 def by_stages() -> dict[str, float]:
-    """Largest error of the factor of three loads over seven load steps."""
+    """Largest error of the factor of three loads over seven load steps; one of them also as a problem made in Python leaves it."""
     text = (
         _BAR.split("loads.pull")[0]
         + """
@@ -180,6 +180,8 @@ stages = [
         np.abs([result.loads[k].force.sum() / sizes[load.name] for result in results] - np.array(wanted[load.name])).max()
         for k, load in enumerate(found.loads)
     ]
+    bare = replace(found, loads=tuple(replace(load, factors=() if load.name == "b" else load.factors) for load in found.loads))
+    errors += [np.abs([result.loads[1].force.sum() / sizes["b"] for result in computed(bare)] - np.array(wanted["b"])).max()]
     return {"error": float(max(errors))}
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from isomortar.harness import Bound, case
 from isomortar.scene import Scene
-from isomortar.solve.extrapolation import multipliers_ahead
+from isomortar.solve.extrapolation import multipliers_ahead, positions_ahead
 from isomortar.solve.simulation import Simulation
 
 #: A pad that comes down onto a plane in the second of three load steps, is dragged, and lifted; beside it one that stays above another.
@@ -34,15 +34,16 @@ _EXACT = "round-off: differences of what is recorded"
     bounds={
         "steps": Bound(0.0, 0.0, "definition: load steps that keep rates and should not, or the other way round"),
         **dict.fromkeys(("positions", "pressures", "tractions"), Bound(at_most=1e-12, reason=_EXACT)),
+        "places": Bound(at_most=1e-14, reason="definition: straight on, and prescribed ones where supports put them; round-off"),
         "ahead": Bound(at_most=1e-14, reason="definition: straight on, and no pressure below zero; round-off"),
         "cut off": Bound(at_least=1.0, reason="definition: a pressure would come below zero, or that is not tried"),
     },
 )
 def kept() -> dict[str, float]:
-    """Largest differences of rates from those of recorded states, and of pressures a length ahead from straight lines."""
+    """Largest differences of rates from those of recorded states, and of places and pressures a length ahead from straight lines."""
     simulation = Simulation(Scene.from_toml(SCENE).problem())
     states = [simulation.state]
-    found = {"steps": 0.0, "positions": 0.0, "pressures": 0.0, "tractions": 0.0, "ahead": 0.0, "cut off": 0.0}
+    found = {"steps": 0.0, "positions": 0.0, "pressures": 0.0, "tractions": 0.0, "places": 0.0, "ahead": 0.0, "cut off": 0.0}
     for result in simulation.run():
         assert result.substeps == 1
         before, state, rates = states[-1], result.state, result.state.rates
@@ -58,6 +59,12 @@ def kept() -> dict[str, float]:
             ("tractions", rate.traction - (new.traction - old.traction)),
         ):
             found[name] = float(np.maximum(found[name], np.abs(change).max()))
+        supports = simulation.equilibrium.supports
+        for length in (0.5, 0.25, 2.0):
+            time = result.time + length
+            straight = np.where(supports.held, supports.place(time), state.positions + length * rates.positions)
+            off = float(np.abs(positions_ahead(state, rates, supports, time) - straight).max())
+            found["places"] = float(np.maximum(found["places"], off))
         for length in (0.5, -0.25, -1e3, 1e3):
             pressure, traction = multipliers_ahead(simulation.equilibrium.pairs[0], new, rate, length)
             straight = new.pressure + length * rate.pressure

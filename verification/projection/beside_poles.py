@@ -21,7 +21,7 @@ SCENE = """
 format = 1
 bodies.block.geometry = { kind = "box", lower = [-0.1, -0.1, 0.5], upper = [0.1, 0.1, 0.7] }
 bodies.ball.geometry = { kind = "sphere", inner = 0.2, outer = 0.5, latitudes = [-30, 90], angles = [0, 180] }
-bodies.ball.mesh = { order = 2, elements = [4, 1, 4] }
+bodies.ball.mesh = { order = 2, elements = [4, 1, 6] }
 contacts.c = { slave = "block.w0", master = "ball.v1", friction = 0 }
 supports = { top.face = "block.w1", hub.face = "ball.v0" }
 stages = [{ name = "one", steps = 1 }]

@@ -26,8 +26,8 @@ def distances(
 ) -> tuple[float, float]:
     """Equation 5.8 of pressures p and tractions t from q and s."""
     floor = 1e-4 * np.sum(np.minimum(friction * q, q) ** 2)
-    of_pressure = max(np.sum((p - q) ** 2) - noise[0] ** 2, 0.0) / np.sum(q**2)
-    of_traction = max(np.sum((t - s) ** 2) - noise[1] ** 2, 0.0) / max(np.sum(s**2), floor, noise[1] ** 2)
+    of_pressure = np.maximum(np.sum((p - q) ** 2) - noise[0] ** 2, 0.0) / np.sum(q**2)
+    of_traction = np.maximum(np.sum((t - s) ** 2) - noise[1] ** 2, 0.0) / np.max([np.sum(s**2), floor, noise[1] ** 2])
     return float(np.sqrt(of_pressure)), float(np.sqrt(of_traction))
 
 
@@ -48,7 +48,7 @@ def apart(friction: float) -> dict[str, float]:
             s, t = size * random.standard_normal((2, len(q), 2))
             found = pair.apart(control, (p, t), (q, s), noise)
             wanted = distances(p, t, q, s, friction, noise)
-            off = float(np.max([off, *(abs(a - b) / max(b, 1e-9) for a, b in zip(found, wanted, strict=True))]))
+            off = float(np.max([off, *(abs(a - b) / float(np.maximum(b, 1e-9)) for a, b in zip(found, wanted, strict=True))]))
     return {"apart": off}
 
 

@@ -1,0 +1,61 @@
+"""Feet that do not follow their points, or cannot slip: refused where contact acts, and nowhere else."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+
+from isomortar._codes import Status
+from isomortar.errors import LostProjectionError
+from isomortar.harness import Bound, case
+from isomortar.scene import Scene
+from isomortar.solve.equilibrium import Equilibrium
+from isomortar.solve.feet import Feet
+from isomortar.solve.timing import Ledger
+
+#: A slave of four elements in a row on a master.
+SCENE = """
+format = 1
+bodies.slave = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }, mesh = { order = 1, elements = [4, 1, 1] } }
+bodies.master.geometry = { kind = "box", lower = [-1, -1, -1], upper = [2, 2, 0] }
+contacts.c = { slave = "slave.w0", master = "master.w1", friction = FRICTION, projection = "closest" }
+supports = { top.face = "slave.w1", below.face = "master.w0" }
+stages = [{ name = "press", steps = 1, motions.top.translate = [0, 0, -0.1] }]
+"""
+#: Kinds of doubt that the projection tells, with words of what is said, and whether what does not rub may do with it.
+KINDS = (
+    (Status.LOST_PROJECTION, "does not settle", False),
+    (Status.DEGENERATE_SURFACE, "no direction to press in", False),
+    (Status.NO_SLIP, "slips have no measure there", True),
+)
+
+
+@case(
+    claim="A doubtful foot is refused by its point, in words of its doubt, where contact acts; one that cannot slip, with friction alone.",
+    tier="gate",
+    grid={"friction": (0.0, 0.3)},
+    bounds={"wrong": Bound(0.0, 0.0, "definition: feet that are refused for something else, or for nothing, or should not be")},
+)
+def doubted(friction: float) -> dict[str, float]:
+    """How many, of every point by every doubt, under contact in every element alone."""
+    equilibrium = Equilibrium(Scene.from_toml(SCENE.replace("FRICTION", str(friction))).problem(), Ledger())
+    positions, pair = equilibrium.numbering.reference, equilibrium.pairs[0]
+    found = pair.kinematics(positions, equilibrium.initial_state().contacts[0]).projections
+    feet, nodes, points = Feet(pair.pair, np.zeros(3)), pair.pair.slave.test.nodes, len(found.found)
+    wrong = 0
+    for status, words, without_slips in KINDS:
+        for q in range(points):
+            doubt = np.zeros(points, dtype=np.int32)
+            doubt[q] = status
+            for element in range(-1, len(nodes)):
+                state = np.isin(np.arange(pair.pair.slave.test.count), nodes[element] if element >= 0 else []).astype(np.int32)
+                acts = bool(state[nodes[q // pair.pair.slave.per_element]].any())
+                refused = acts and not (without_slips and friction == 0.0)
+                try:
+                    feet.check(positions, replace(found, doubt=doubt), SimpleNamespace(state=state))  # type: ignore[arg-type]
+                    wrong += refused
+                except LostProjectionError as error:
+                    wrong += not refused or error.place != q or words not in str(error)
+    return {"wrong": float(wrong)}
