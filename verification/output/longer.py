@@ -90,6 +90,34 @@ def goes_on(change: str) -> dict[str, float]:
     return {"wrong": float(is_longer(stored, given) != same)}
 
 
+def of_one_stage(problem: Problem, steps: int, share: float) -> Problem:
+    """Its first stage alone, of other load steps: motions and factors, which begin at rest and at zero, of so many times the size."""
+    supports = [
+        replace(
+            s, motions=(Motion(tuple(share * way for way in s.motions[0].translate), 0.0),), factors=tuple(share * f for f in s.factors[:1])
+        )  # type: ignore[arg-type]
+        for s in problem.supports
+    ]
+    loads = [replace(load, factors=(share * load.factors[0],)) for load in problem.loads]
+    stage = replace(problem.stages[0], steps=steps)
+    return replace(problem, stages=(stage,), supports=tuple(supports), loads=tuple(loads))
+
+
+@case(
+    claim="So is one of a single stage, whose motions and factors go from nothing to what they are at its end.",
+    tier="gate",
+    bounds={"wrong": Bound(at_most=0.0, reason="definition: what is said of the scene is what its motions and loads are")},
+)
+def goes_on_from_rest() -> dict[str, float]:
+    """Of how many scenes it is said wrongly."""
+    stored, wrong = of_one_stage(base(), 2, 1.0), 0
+    for steps, share in ((4, 2.0), (3, 1.5), (4, 1.0), (4, 1.5), (3, 2.0), (2, 1.0), (1, 0.5)):
+        given = of_one_stage(base(), steps, share)
+        same = steps > 2 and apart(stored, given, 2) < 1e-12
+        wrong += same != (steps > 2 and share == steps / 2) or is_longer(stored, given) != same
+    return {"wrong": float(wrong)}
+
+
 @case(
     claim="A scene with more load steps goes on at the rate of its last stage, from what it was.",
     tier="gate",
