@@ -47,7 +47,7 @@ def keys(way: str) -> dict[str, float]:
             (package / file).write_text(file)
         wrong += ["the same package"] * (package_key(package) != before)
         texts = {"same": ("import helper", "x = 1"), "other case": ("import helper ", "x = 1"), "other helper": ("import helper", "x = 2")}
-        found = {}
+        found: dict[str, str] = {}
         for what, (text, helper) in {"first": texts["same"], **texts}.items():
             root = Path(name).resolve() / what.replace(" ", "_")
             (root / "family").mkdir(parents=True)

@@ -13,7 +13,7 @@ from isomortar.harness.orders import estimate_order
 
 SIZES = 0.5 ** np.arange(1.0, 7.0)
 FALLING = SIZES**2
-ALONE = {"quadrature": 1e-14}
+ALONE: dict[str, Any] = {"quadrature": 1e-14}
 
 
 def bent(*factors: float) -> np.ndarray:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -69,14 +70,12 @@ def read_back(way: str) -> dict[str, float]:
             wrong += [f"own, {kind}"] * (own is None or own.kind != "self")
         wrong += ["none"] * (finder(folder)("none", ONE, "value") is not None)
         for field in FIELDS[:-1]:
-            wrong += [f"without {field}"] * (
-                not refused(lambda field=field: write_reference(folder / "bad", datasets, record(**{field: " "})))
-            )  # type: ignore[misc]
+            lacking = record(**{field: " "})
+            wrong += [f"without {field}"] * (not refused(partial(write_reference, folder / "bad", datasets, lacking)))
         wrong += ["class"] * (not refused(lambda: write_reference(folder / "bad", datasets, record(**{"class": "good"}))))
-        for values, worth in ((np.nan, 0.1), ([], 0.1), ([1.0, np.inf], 0.1), (1.0, np.nan), (1.0, -0.1), (1.0, np.inf), (1.0, [0.1, 0.1])):
-            bad = {"value": (np.asarray(values, float), worth)}
-            if not refused(lambda bad=bad: write_reference(folder / "bad", bad, record())):  # type: ignore[misc, arg-type]
-                wrong.append(f"{values} with {worth}")
+        for bad, unsure in ((np.nan, 0.1), ([], 0.1), ([1.0, np.inf], 0.1), (1.0, np.nan), (1.0, -0.1), (1.0, np.inf), (1.0, [0.1, 0.1])):
+            given: Any = {"value": (np.asarray(bad, float), unsure)}
+            wrong += [f"{bad} with {unsure}"] * (not refused(partial(write_reference, folder / "bad", given, record())))
         data = folder / "exact/data.h5"
         content = data.read_bytes()
         data.write_bytes(content[:-1] + bytes([content[-1] ^ 1]))
@@ -124,7 +123,7 @@ def blessed(way: str) -> dict[str, float]:
         (change, *_) = changes([result(ONE, [1.5, -3.0], 1e-2, folder)], finder(folder))
         wrong += [f"{change}"] * (change.difference != 0.5 or change.old_uncertainty != 1e-1 * 3.0 or change.measured != 1e-2)
         for why, kind, asked in ((" ", "self", 1e-3), ("so", "self", 0.0), ("so", "self", np.nan), ("so", "self", -1.0)):
-            wrong += [f"{why}, {asked}"] * (not refused(lambda w=why, k=kind, a=asked: bless(OF, [change], folder, w, k, a)))  # type: ignore[misc, arg-type]
+            wrong += [f"{why}, {asked}"] * (not refused(partial(bless, OF, [change], folder, why, kind, asked)))  # type: ignore[arg-type]
         (unknown,) = changes([result(ONE, [1.5, -3.0], 0.0, folder)], finder(folder))
         wrong += ["not measured"] * (not refused(lambda: bless(OF, [unknown], folder, "so", "over-refined", 1e-3)))
         for kind in ("exact", "other code"):

@@ -9,7 +9,7 @@ import numpy as np
 from judge.ways import BOUNDS, WAYS, told
 
 from isomortar.harness import case
-from isomortar.harness.statement import Judgement, NotMeasuredError, Statement, Values, Verdict
+from isomortar.harness.statement import Judgement, NotMeasuredError, Statement, StatementState, Values, Verdict
 from isomortar.harness.tangents import BOUND, LOADS, LOADS_BOUND, PARTS, SYMMETRY_BOUND, PartError, TangentReport, _part_error
 
 NAN, INF = np.nan, np.inf
@@ -57,12 +57,12 @@ def statements(way: str) -> dict[str, float]:
             expected = "partly measured" if without and state == "holds" else state
             found = stated.judged([Runs(values, without)])
             wrong += [f"{low} {values} {high} {without}: {found.state}"] * ((found.state, found.verdicts[0].state) != (expected, expected))
-    states = ("holds", "partly measured", "not measured", "does not hold")
+    states: tuple[StatementState, ...] = ("holds", "partly measured", "not measured", "does not hold")
     for count in (1, 2, 3):
         for of in product(states, repeat=count):
             expected = "does not hold" if "does not hold" in of else of[0] if len(set(of)) == 1 else "partly measured"
-            found = Judgement(Statement("1", "It holds.", (), measure, "1", "so"), tuple(Verdict("ours", state, {}) for state in of)).state
-            wrong += [f"{of}: {found}"] * (found != expected)
+            judged = Judgement(Statement("1", "It holds.", (), measure, "1", "so"), tuple(Verdict("ours", state, {}) for state in of)).state
+            wrong += [f"{of}: {judged}"] * (judged != expected)
     wrong += ["by none"] * (Judgement(Statement("1", "It holds.", (), measure, "1", "so"), ()).state != "not measured")
     return told(wrong, way)
 

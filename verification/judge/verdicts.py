@@ -11,7 +11,7 @@ from judge.ways import BOUNDS, WAYS, told
 from isomortar.errors import ConvergenceError, InputError
 from isomortar.harness import Bound, Convergence, Curve, Matches, Order, Shown, Words, case, skip
 from isomortar.harness.cases import Case, Cell, Claim
-from isomortar.harness.compare import CHECK_STATES, Expected, agree, judge, worst
+from isomortar.harness.compare import CHECK_STATES, CheckState, Expected, agree, judge, worst
 from isomortar.harness.measurement import Measurement, measure, stored
 
 NAN, INF = np.nan, np.inf
@@ -66,7 +66,17 @@ RAISED = {
     ValueError(): "crashed", AssertionError(): "crashed", KeyError(): "crashed", ZeroDivisionError(): "crashed",
 }  # fmt: skip
 #: What is no number, and what a case must not return.
-NO_NUMBERS = (True, "1.0", [True], np.ma.masked, np.ma.array([1.0, 2.0], mask=[0, 1]), 2**53 + 1, 1j, [1.0, [2.0]], np.array([1.0], object))
+NO_NUMBERS = (
+    True,
+    "1.0",
+    [True],
+    np.ma.masked,
+    np.ma.array([1.0, 2.0], mask=[False, True]),
+    2**53 + 1,
+    1j,
+    [1.0, [2.0]],
+    np.array([1.0], object),
+)
 
 
 def cell_of(**claims: Claim) -> Cell:
@@ -106,7 +116,8 @@ def numbers(way: str) -> dict[str, float]:
         wrong.append("a number without a bound")
     ten, no_tolerance = np.array([10.0, 20.0]), (NAN, INF, -1.0, True, [1.0], [[1.0, 1.0]], [1.0, NAN])
     wrong += [f"tolerance {tolerance}" for tolerance in no_tolerance if agree(ten, ten, tolerance).agrees]
-    wrong += [f"both {value}" for value in (NAN, INF, -INF, None, "1") if agree(value, value, 1.0).agrees]
+    bad: tuple[Any, ...] = (NAN, INF, -INF, None, "1")
+    wrong += [f"both {value}" for value in bad if agree(value, value, 1.0).agrees]
     return told(wrong, way)
 
 
@@ -121,15 +132,15 @@ def endings(way: str) -> dict[str, float]:
     both = cell_of(one=SMALL, other=SHOWN)
     wrong = []
     for ending, state in ENDINGS.items():
-        found = [check.state for check in judge(both, Measurement(ending, {"one": 0.5, "other": 0.5}), lambda *_: None)]  # type: ignore[arg-type]
-        wrong += [f"{ending}: {found}"] * (found != [state, state])
+        states = [check.state for check in judge(both, Measurement(ending, {"one": 0.5, "other": 0.5}), lambda *_: None)]  # type: ignore[arg-type]
+        wrong += [f"{ending}: {states}"] * (states != [state, state])
     wrong += [f"{error!r}: {found}" for error, ending in RAISED.items() if (found := measured(error).ending) != ending]
     wrong += [f"{value!r:.40}: {found}" for value in NO_NUMBERS if (found := measured({"value": value}).ending) != "crashed"]
     wrong += [f"{value!r:.40}: {found}" for value in (None, 1.0, [1.0], {1: 1.0}) if (found := measured(value).ending) != "crashed"]
     wrong += [found for found in [measured("skip").ending] if found != "skipped"]
     kept = {ending for ending in (*ENDINGS, "measured") if Measurement(ending).lasts}  # type: ignore[arg-type]
     wrong += [f"kept: {kept}"] * (kept != {"measured", "not converged"})
-    order = ("passed", "missing reference", "not measured", "skipped", "failed", "crashed", "timed out")
+    order: tuple[CheckState, ...] = ("passed", "missing reference", "not measured", "skipped", "failed", "crashed", "timed out")
     wrong += ["states"] * (order != CHECK_STATES)
     pairs = [
         (one, other)

@@ -92,11 +92,11 @@ def goes_on(change: str) -> dict[str, float]:
 
 def of_one_stage(problem: Problem, steps: int, share: float) -> Problem:
     """Its first stage alone, of other load steps: motions and factors, which begin at rest and at zero, of so many times the size."""
+    ways = [s.motions[0].translate for s in problem.supports]
+    motions = [(Motion((share * x, share * y, share * z), 0.0),) for x, y, z in ways]
     supports = [
-        replace(
-            s, motions=(Motion(tuple(share * way for way in s.motions[0].translate), 0.0),), factors=tuple(share * f for f in s.factors[:1])
-        )  # type: ignore[arg-type]
-        for s in problem.supports
+        replace(s, motions=of, factors=tuple(share * factor for factor in s.factors[:1]))
+        for s, of in zip(problem.supports, motions, strict=True)
     ]
     loads = [replace(load, factors=(share * load.factors[0],)) for load in problem.loads]
     stage = replace(problem.stages[0], steps=steps)

@@ -10,11 +10,12 @@ import numpy as np
 
 from isomortar.geometry.patch import FACES, FloatArray
 from isomortar.harness import Bound, case
-from isomortar.model.entities import Problem
+from isomortar.model.entities import Face, Problem
 from isomortar.model.numbering import Numbering
 from isomortar.program.calculix import LAWS, deck
 from isomortar.program.declaration import LoadStep, ended, load_step
 from isomortar.program.lagrange import LagrangeProblem
+from isomortar.program.process import Ending
 from isomortar.scene import Scene
 
 #: Two blocks, each long, wide and high in its own way, one of them on the other.
@@ -86,11 +87,9 @@ def told(order: int) -> dict[str, float]:
     for body in given.bodies:
         points = of.nodes[of.elements(body)]
         corners = body.patch.control_points
-        for face in given.contacts[0].slave.faces[:1] if body.name == "upper" else given.contacts[0].master.faces[:1]:
-            for name in FACES:
-                place = type(face)(body.name, name)
-                there = {k for k, nodes in enumerate(points) if on_face(nodes, name, corners).any()}
-                wrong += set(of.touching(place).tolist()) != there
+        for name in FACES:
+            there = {k for k, nodes in enumerate(points) if on_face(nodes, name, corners).any()}
+            wrong += set(of.touching(Face(body.name, name)).tolist()) != there
     ways = np.array([[0.05, 0.0, -0.2], [0.1, 0.0, -0.4], [0.4, 0.2, -0.4]]), np.array([[0.0, 0, 0], [0, 0, 0], [0, 0, 0.1]])
     exact = np.zeros((3, *of.nodes.shape))
     for body, name, way in ((given.bodies[1], "w1", ways[0]), (given.bodies[0], "w0", ways[1])):
@@ -131,7 +130,8 @@ def decks(law: str, order: int) -> dict[str, float]:
     ((_, rows),) = words(lines, "*NODE, ")
     nodes = {int(number): np.array(place, float) for number, *place in (row.split(",") for row in rows)}
     off = {"nodes": max_of(np.abs(place - of.nodes[number - 1]).max() for number, place in nodes.items())}
-    wrong, elements = 0, {}
+    elements: dict[int, list[int]] = {}
+    wrong = 0
     for _, rows in words(lines, "*ELEMENT"):
         elements |= {int(number): [int(n) for n in named] for number, *named in (row.split(",") for row in rows)}
     wrong += sorted(elements) != list(range(1, 13)) or {len(named) for named in elements.values()} != {8 if order == 1 else 20}
@@ -217,11 +217,11 @@ def reactions() -> dict[str, float]:
             turning = sum(np.cross(positions[k] - centre, forces[k]) for k in there)
             worst += [np.abs(reaction.force - forces[there].sum(axis=0)).max() / np.abs(reaction.force).max()]
             worst += [np.abs(reaction.moment - turning).max() / np.abs(turning).max(), np.abs(reaction.centre - centre).max()]
-    step = LoadStep(1, numbering.reference, ())
-    endings = ("measured", "not converged", "crashed", "timed out")
-    whole = sum(ended([step] * 3, given, ending, "so") != ("measured", "") for ending in endings)  # type: ignore[arg-type]
+    one = LoadStep(1, numbering.reference, ())
+    endings: tuple[Ending, ...] = ("measured", "not converged", "crashed", "timed out")
+    whole = sum(ended([one] * 3, given, ending, "so") != ("measured", "") for ending in endings)
     part = sum(
-        ended([step] * count, given, ending, "so") != ("crashed" if ending == "measured" else ending, "so")  # type: ignore[arg-type]
+        ended([one] * count, given, ending, "so") != ("crashed" if ending == "measured" else ending, "so")
         for ending in endings
         for count in (0, 2)
     )

@@ -91,7 +91,7 @@ def factors() -> dict[str, float]:
     """How many have others."""
     with mock.patch.object(building, "held_on_planes", lambda problem, _: problem):
         problem = Scene.from_toml(DRIVEN).whole()
-    found = {one.name: tuple(one.factors) for one in (*problem.supports, *problem.loads)}
+    found = {support.name: support.factors for support in problem.supports} | {load.name: load.factors for load in problem.loads}
     held = {support.name: support.stages for support in problem.supports}
     wrong = sum(found[name] != expected for name, expected in FACTORS.items()) + (found.keys() != FACTORS.keys())
     wrong += held != {"floor": None, "pulled": None, "turned": None, "both": (0, 2), "moved": (0, 2)}
