@@ -8,7 +8,7 @@ import numpy as np
 from scipy.interpolate import BSpline
 
 from isomortar.accuracy.discretisations import discretisation, overrides, refined, sweep_of
-from isomortar.accuracy.measures import curve_error, reference_uncertainty, relative_error, roughness
+from isomortar.accuracy.measures import curve_error, expected_order, reference_uncertainty, relative_error, roughness
 from isomortar.accuracy.sampling import Grid, body_grid, face_grid, values_at
 from isomortar.geometry.primitives import box, ring
 from isomortar.geometry.refinement import mesh
@@ -143,3 +143,46 @@ def _unlike(scene: Scene, kind: str, factor: float) -> int:
     share = factor / (order if family == "L" else 1)
     wanted = [(family, order, round(12 * share)), (family, order, round(6 * share))]
     return sum(one != other for one, other in zip(found[:2], wanted, strict=True)) + (found[2][2] != 2)
+
+
+#: Best orders by measure and whether the slave is refined, of orders 1 to 5: those of smooth solutions as far as free boundaries of contact
+#: (slave) or the load's piecewise polynomials (master) let them.
+BEST = {
+    ("pressure", True): (1.0, 1.0, 1.0, 1.0, 1.0), ("displacement", True): (2.0, 2.5, 2.5, 2.5, 2.5),
+    ("force", True): (2.0, 3.0, 3.0, 3.0, 3.0), ("moment", True): (2.0, 3.0, 3.0, 3.0, 3.0),
+    ("pressure", False): (2.0, 3.0, 4.0, 4.0, 4.0), ("displacement", False): (2.0, 3.0, 4.0, 4.0, 4.0),
+    ("force", False): (2.0, 4.0, 6.0, 6.0, 6.0), ("moment", False): (2.0, 4.0, 6.0, 6.0, 6.0),
+}  # fmt: skip
+#: A ring, whose geometry has four knot spans round its axis and one across.
+RING = """
+format = 1
+bodies.ring.geometry = { kind = "ring", inner = 0.5, outer = 1, width = 1 }
+bodies.ring.mesh = { order = [2, 2, 1], elements = [24, 2, 3] }
+contacts.floor = { slave = "ring.v1", plane = { point = [0, 0, -2], normal = [0, 0, 1] } }
+supports.bore.face = "ring.v0"
+stages = [{ name = "press", steps = 1 }]
+"""
+
+
+@case(
+    claim="Elements are as many as are asked for, to the nearest multiple of the geometry's knot spans, one at least; and the best orders "
+    "are those of theory, by measure and side.",
+    tier="gate",
+    bounds={
+        "elements": Bound(0.0, 0.0, "definition: numbers of elements that are not the nearest that the geometry can have"),
+        "orders": Bound(0.0, 0.0, "theory: smoothness of the solution at free boundaries, and of the load on a master"),
+    },
+)
+def nearest() -> dict[str, float]:
+    """How many are others."""
+    scene, wrong = Scene.from_toml(RING), 0
+    sweep = sweep_of(scene)
+    for kind, share in (("N2", 1.0), ("N3", 1.0), ("L2", 0.5), ("L3", 1.0 / 3.0)):
+        for factor in np.linspace(0.03, 2.9, 23):
+            multiples = [spans * np.arange(1, 100) for spans in (4, 1)]
+            wanted = factor * share * np.array([24.0, 3.0])
+            expected = [int(of[np.argmin(np.abs(of - number))]) for of, number in zip(multiples, wanted, strict=True)]
+            u, v, w = discretisation(scene, sweep, kind, float(factor)).elements
+            wrong += [u, w] != expected or v != 2
+    orders = sum(expected_order(name, k, side) != best for (name, side), of in BEST.items() for k, best in enumerate(of, 1))
+    return {"elements": float(wrong), "orders": float(orders)}

@@ -28,10 +28,8 @@ _SINGLE = ("--set", "solver.max_cuts=0", "--set", "stages.pull.steps=1", "--set"
 #: Words of commands, one after the other in a folder; the exit code, and what is said.
 ONE_BY_ONE: tuple[tuple[tuple[str, ...], int, str], ...] = (
     (("--version",), 0, "isomortar"),
-    (("nothing",), 2, "No such command"),
     (("check", "bar.toml"), 0, "nothing computed"),
     (("check", "none.toml"), 2, "no scene file"),
-    (("run", "bar.toml", "--dry-run"), 0, "nothing computed"),
     (("info", "bar.h5"), 1, "does not exist"),
     (("run", "bar.toml", "--output", "bad.h5", *_SINGLE), 1, "stopped with 0 of 1 load step done"),
     (("run", "bar.toml", "--output", "bar.h5"), 0, "2 load steps done, 0 warnings"),
@@ -42,8 +40,6 @@ ONE_BY_ONE: tuple[tuple[tuple[str, ...], int, str], ...] = (
     (("run", "bar.toml", "--output", "bar.toml", "--overwrite"), 1, "no results file"),
     (("run", "bar.toml", "--output", "bar.h5", "--resume", "--steps", "1"), 0, "2 of 3 load steps are there, going on"),
     (("info", "bar.h5"), 0, "3 of 3 load steps"),
-    (("run", "bar.toml", "--output", "bar.h5", "--resume"), 1, "has stages that the scene does not have"),
-    (("run", "bar.toml", "--output", "bar.h5", "--overwrite", "--cost"), 0, "history bytes"),
     (("info", "bar.toml"), 1, "no results file"),
     (("export", "none.h5"), 1, "does not exist"),
     (("view", "none.h5"), 1, "does not exist"),
@@ -51,7 +47,6 @@ ONE_BY_ONE: tuple[tuple[tuple[str, ...], int, str], ...] = (
     (("check-tangent", "bar.toml"), 0, "passes"),
     (("check-tangent", "bar.toml", "--step", "3"), 2, "does not exist"),
     (("check-tangent", "apart.toml"), 1, "NOT MEASURED"),
-    (("trade", "bar.toml", "--want", "force.right.x", "--within", "100%"), 2, "within"),
     (("verify", "--cases", "none"), 2, "no folder none"),
     (("bless", "a/b", "--reason", "so", "--class", "exact"), 2, "class"),
 )
@@ -63,7 +58,6 @@ MET: tuple[tuple[BaseException, int, str], ...] = (
     (OSError(28, "No space left on device", "bar.h5"), 1, "No space left on device: bar.h5"),
     (ImportError("no module"), 1, "the installation is not complete: no module"),
     (ZeroDivisionError("by zero"), 3, "ZeroDivisionError: by zero"),
-    (KeyError("name"), 3, "fault of the program"),
     (KeyboardInterrupt(), 130, "to go on"),
 )
 

@@ -29,8 +29,8 @@ def value() -> dict[str, float]:
     return {}
 
 
-OF = Case(value, "It is as it was.", {"value": _KEPT, MEASURED: _SMALL}, "gate", {}, None, ())
-ONE, TWO = Cell(OF, {"kind": "a/b"}), Cell(OF, {"kind": "c"})
+ONE = Cell(Case(value, "It is as it was.", {"value": _KEPT, MEASURED: _SMALL}, "gate", {}, None, ()), {"kind": "a/b"})
+TWO = Cell(ONE.case, {"kind": "c"})
 
 
 def record(**changes: str) -> dict[str, str]:
@@ -59,13 +59,13 @@ def read_back(way: str) -> dict[str, float]:
         datasets = {"a|b": (np.array([1.0, -3.0]), 0.5), "kind=a|b/value": (np.array([1.0, 2.0]), 0.1), "value": (np.array(7.0), 0.2)}
         for kind in KINDS:
             write_reference(folder / kind, datasets, record(**{"class": kind}))
-            for at, made in (("value", Cell(OF, {})), ("kind=a|b/value", ONE)):
+            for at, made in (("value", Cell(ONE.case, {})), ("kind=a|b/value", ONE)):
                 found = finder(folder)(kind, made, "value")
                 values, worth = datasets[at]
                 if not (found and np.array_equal(found.values, values) and found.uncertainty == worth and found.kind == kind):
                     wrong.append(f"{kind}, {at}: {found}")
             wrong += [f"{kind}, {cell.label}" for cell in (TWO,) if finder(folder)(kind, cell, "value") is not None]
-            write_reference(folder / "own", datasets, record(**{"class": kind, "made": made_by(OF)}))
+            write_reference(folder / "own", datasets, record(**{"class": kind, "made": made_by(ONE.case)}))
             own = finder(folder)("own", ONE, "value")
             wrong += [f"own, {kind}"] * (own is None or own.kind != "self")
         wrong += ["none"] * (finder(folder)("none", ONE, "value") is not None)
@@ -114,21 +114,21 @@ def blessed(way: str) -> dict[str, float]:
         ):
             results = [result(ONE, [1.0, -3.0], 1e-2, folder), result(TWO, [2.0, 4.0], 1e-4, folder)]
             found = changes(results, finder(folder))
-            bless(OF, found, folder, "they are right", kind, asked)  # type: ignore[arg-type]
+            bless(ONE.case, found, folder, "they are right", kind, asked)  # type: ignore[arg-type]
             for cell, values, share in ((ONE, [1.0, -3.0], worth[0]), (TWO, [2.0, 4.0], worth[1])):
                 kept = Reference(folder / "kept").dataset(f"{cell.label.replace('/', '|')}/value")
                 off = kept is None or not np.array_equal(kept.values, values) or kept.uncertainty != share * np.abs(values).max()
                 wrong += [f"{kind} {asked}, {cell.label}: {kept}"] * bool(off or (kept and kept.kind != kind))
-            wrong += ["made"] * (Reference(folder / "kept").record["made"] != made_by(OF))
+            wrong += ["made"] * (Reference(folder / "kept").record["made"] != made_by(ONE.case))
         (change, *_) = changes([result(ONE, [1.5, -3.0], 1e-2, folder)], finder(folder))
         wrong += [f"{change}"] * (change.difference != 0.5 or change.old_uncertainty != 1e-1 * 3.0 or change.measured != 1e-2)
         for why, kind, asked in ((" ", "self", 1e-3), ("so", "self", 0.0), ("so", "self", np.nan), ("so", "self", -1.0)):
-            wrong += [f"{why}, {asked}"] * (not refused(partial(bless, OF, [change], folder, why, kind, asked)))  # type: ignore[arg-type]
+            wrong += [f"{why}, {asked}"] * (not refused(partial(bless, ONE.case, [change], folder, why, kind, asked)))  # type: ignore[arg-type]
         (unknown,) = changes([result(ONE, [1.5, -3.0], 0.0, folder)], finder(folder))
-        wrong += ["not measured"] * (not refused(lambda: bless(OF, [unknown], folder, "so", "over-refined", 1e-3)))
+        wrong += ["not measured"] * (not refused(lambda: bless(ONE.case, [unknown], folder, "so", "over-refined", 1e-3)))
         for kind in ("exact", "other code"):
             write_reference(folder / "kept", {"value": (np.array(7.0), 0.2)}, record(**{"class": kind}))
-            wrong += [kind] * (not refused(lambda: bless(OF, [change], folder, "so", "self", 1e-3)))
+            wrong += [kind] * (not refused(lambda: bless(ONE.case, [change], folder, "so", "self", 1e-3)))
         for values, uncertainty in (([], 1e-2), ([np.nan], 1e-2), ([1.0], 2.0), ([1.0], -1.0)):
             bad = result(ONE, values, uncertainty, folder)
             wrong += [f"{values}, {uncertainty}"] * (not refused(lambda bad=bad: changes([bad], finder(folder))))  # type: ignore[misc]
