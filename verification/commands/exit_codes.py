@@ -40,6 +40,7 @@ ONE_BY_ONE: tuple[tuple[tuple[str, ...], int, str], ...] = (
     (("run", "bar.toml", "--output", "bar.toml", "--overwrite"), 1, "no results file"),
     (("run", "bar.toml", "--output", "bar.h5", "--resume", "--steps", "1"), 0, "2 of 3 load steps are there, going on"),
     (("info", "bar.h5"), 0, "3 of 3 load steps"),
+    (("run", "bar.toml", "--output", "link.h5", "--overwrite"), 1, "symbolic link"),
     (("info", "bar.toml"), 1, "no results file"),
     (("export", "none.h5"), 1, "does not exist"),
     (("view", "none.h5"), 1, "does not exist"),
@@ -89,6 +90,7 @@ def exit_codes() -> dict[str, float]:
         folder = Path(name)
         (folder / "bar.toml").write_text(SCENE)
         (folder / "apart.toml").write_text(APART)
+        (folder / "link.h5").symlink_to("bar.h5")
         for asked, code, part in ONE_BY_ONE:
             found, said = program(*asked, folder=folder)
             codes += found != code

@@ -16,6 +16,7 @@ import numpy as np
 import typer
 from output.records import SCENE, load_steps, recorded
 
+from isomortar.cli import progress as progress_module
 from isomortar.cli import trade
 from isomortar.cli.check import lines as lines_of_outlook
 from isomortar.cli.cost import totals
@@ -249,6 +250,12 @@ def of_a_run() -> dict[str, float]:
         watched.progress.warned("it pulls")
         watched.progress.recorded(replace(step, augmentations=(AugmentationRecord(1, 1.0, 1.0, 0.0, 0.0, (iteration,)),)))
         wrong += len(watched.told) != count or len(watched.log) != 7
+    with mock.patch.object(progress_module, "monotonic", iter((100.0, 130.0, 160.0)).__next__):
+        watched = Watched()
+        watched.progress.started(5, 3)
+        for step in watched.steps[2:4]:
+            watched.progress.recorded(replace(step, augmentations=(AugmentationRecord(1, 1.0, 1.0, 0.0, 0.0, (iteration,)),)))
+    wrong += [line.partition("; elapsed ")[2] for line in watched.told[1:]] != ["0:30, left about 1:00", "1:00, left about 0:30"]
     clocks = {0.0: "0:00", 7.4: "0:07", 59.6: "1:00", 754.0: "12:34", 3723.0: "1:02:03"}
     return {"wrong": float(wrong + sum(_minutes(seconds) != words for seconds, words in clocks.items()))}
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 from unittest import mock
 
@@ -46,8 +47,14 @@ def keys(way: str) -> dict[str, float]:
             wrong += [file] * ((package_key(package) != before) != counts)
             (package / file).write_text(file)
         wrong += ["the same package"] * (package_key(package) != before)
+        with mock.patch.multiple(store, kernel_hash=lambda: "one kernel", package_hash=lambda: "one package"):
+            same = store.program_hash.__wrapped__()
+            for part in ("kernel_hash", "package_hash"):
+                with mock.patch.object(store, part, return_value="another"):
+                    wrong += [part] * (store.program_hash.__wrapped__() == same)
         texts = {"same": ("import helper", "x = 1"), "other case": ("import helper ", "x = 1"), "other helper": ("import helper", "x = 2")}
         found: dict[str, str] = {}
+        binaries: list[str] = []
         for what, (text, helper) in {"first": texts["same"], **texts}.items():
             root = Path(name).resolve() / what.replace(" ", "_")
             (root / "family").mkdir(parents=True)
@@ -55,9 +62,14 @@ def keys(way: str) -> dict[str, float]:
             (root / "helper.py").write_text(helper)
             of = Case(dict, "It holds.", {}, "gate", {}, None, ())
             vars(of)["path"], vars(of)["name"] = root / "family/some.py", "family/some"
+            (root / "kernel.so").write_text(what)
+            beside = replace(of, files=(root / "kernel.so",))
+            vars(beside).update(vars(of) | {"files": beside.files})
+            binaries.append(store.cell_key(Cell(beside, {}), "program"))
             cells = {"": Cell(of, {}), " with k=1": Cell(of, {"k": 1}), " with k=2": Cell(of, {"k": 2}), " with l=1": Cell(of, {"l": 1})}
             found |= {f"{what}{also}": store.cell_key(cell, "program") for also, cell in cells.items()}
             found[f"{what} by another program"] = store.cell_key(cells[""], "another")
         wrong += [what for what, key in found.items() if what.startswith("same") and key != found[f"first{what[4:]}"]]
+        wrong += ["files beside"] * (len({*binaries, *found.values()}) != len(binaries) + len(found) * 3 // 4)
         wrong += ["keys that are alike"] * (len(set(found.values())) != len(found) * 3 // 4)
     return told(wrong, way)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -129,6 +130,13 @@ def blessed(way: str) -> dict[str, float]:
         for kind in ("exact", "other code"):
             write_reference(folder / "kept", {"value": (np.array(7.0), 0.2)}, record(**{"class": kind}))
             wrong += [kind] * (not refused(lambda: bless(ONE.case, [change], folder, "so", "self", 1e-3)))
+        for ending in ("crashed", "not converged", "skipped"):
+            lost = replace(result(ONE, [1.0], 1e-2, folder), measurement=Measurement(ending), checks=())
+            lost = replace(lost, checks=tuple(judge(ONE, lost.measurement, finder(folder))))
+            wrong += [ending] * (not refused(partial(changes, [lost], finder(folder))))
+        half = Measurement("measured", {"value": [1.0]})
+        part = Result(ONE, half, tuple(judge(ONE, half, finder(folder))), True)
+        wrong += ["a number that is not there"] * (not refused(partial(changes, [part], finder(folder))))
         for values, uncertainty in (([], 1e-2), ([np.nan], 1e-2), ([1.0], 2.0), ([1.0], -1.0)):
             bad = result(ONE, values, uncertainty, folder)
             wrong += [f"{values}, {uncertainty}"] * (not refused(lambda bad=bad: changes([bad], finder(folder))))  # type: ignore[misc]

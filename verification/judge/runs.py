@@ -26,6 +26,7 @@ from isomortar.harness.collection import collect
 from isomortar.harness.journal import Journal
 from isomortar.harness.measurement import Measurement, measure
 from isomortar.harness.references import finder, write_reference
+from isomortar.harness.worker import task_of
 
 #: Cases that end in all ways; those of higher tiers do not end well.
 FAMILY = "of_the_judge"
@@ -176,6 +177,8 @@ def selected(way: str) -> dict[str, float]:
         for tier, cells in (("gate", set(STATES)), ("nightly", {*STATES, *nights}), ("weekly", {*STATES, *nights, "later[k=2]"})):
             found = [short(cell) for cell in runner.select(cases, tier)]  # type: ignore[arg-type]
             wrong += [f"{tier}: {found}"] * (sorted(found) != sorted(cells))
+        seconds = [task_of(cell)["seconds"] for cell in runner.select(cases, "weekly", FAMILY, f"{FAMILY}/later")]
+        wrong += [f"seconds: {seconds}"] * (seconds != [120.0, 1800.0, 14400.0])
         for name, cells in (("right", {"right[k=1]", "right[k=2]"}), ("right[k=2]", {"right[k=2]"}), ("wrong", {"wrong"})):
             found = [short(cell) for cell in runner.select(cases, "gate", FAMILY, f"{FAMILY}/{name}")]
             wrong += [f"{name}: {found}"] * (sorted(found) != sorted(cells))
@@ -222,6 +225,14 @@ def reported(way: str) -> dict[str, float]:
         states = {name.partition("/")[2]: of["state"] for name, of in entries[-1].cells.items()} if entries else {}
         wrong += [f"{len(entries)} runs, {states}"] * (len(entries) != 3 or states != STATES)
         wrong += ["values"] * (history.values_of(entries, f"{FAMILY}/wrong", "other") != [1.5] * 3)
+        lost = history.values_of(entries, f"{FAMILY}/wrong", "none") + history.values_of(entries, f"{FAMILY}/none", "error")
+        wrong += ["values that are not there"] * (not np.isnan(lost).all() or len(lost) != 6)
+        others = {name: of | {"state": "skipped"} for name, of in entries[0].cells.items()}
+        for before, news in (([others], len(STATES)), ([others, entries[0].cells], 0), ([entries[0].cells, others], len(STATES)), ([], 0)):
+            runs_before = [history.Entry("", "", cells) for cells in (*before, entries[0].cells)]
+            told_news = report._news(results, report.Context("gate", "", 1.0, datetime.now(UTC), runs_before))
+            changed = sum(line.count("skipped →") for _, lines in told_news for line in lines)
+            wrong += [f"news: {told_news}"] * (changed != (news and news - 1))  # one of them is skipped anyway
         report.write(page, results, report.Context("gate", "", 1.0, datetime.now(UTC), entries))
         data = json.loads(page.with_suffix(".json").read_text())
         told_states = {cell["name"].partition("/")[2]: cell["state"] for cell in data["cells"]}

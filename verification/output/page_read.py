@@ -121,6 +121,8 @@ def page_read() -> dict[str, float]:
         if described["contact"] is not None:
             wrong += described["name"] != names[described["contact"]]
             _compare(problem, steps, described, rows[1:], marks[1:], fields, worst)
+    at_rest = [marks[0][3] for described, (_, marks) in zip(data["surfaces"], surfaces, strict=True) if described["contact"] is not None]
+    wrong += len(at_rest) != len(names) or any(states.any() for states in at_rest)
     bodies = [rows for described, (rows, _) in zip(data["surfaces"], surfaces, strict=True) if described["contact"] is None]
     way = np.max([np.linalg.norm(row[:3] - rows[0][:3], axis=0).max() for rows in bodies for row in rows])
     low, high = fields["displacement"]["range"]

@@ -110,6 +110,30 @@ def plane_of(normal: np.ndarray, tangent: np.ndarray | None) -> RigidPlane:
 
 
 @case(
+    claim="A scene without a name has that of its file, with _ for what names cannot have; supports prescribe components in the order x, "
+    "y, z, however they are given.",
+    tier="gate",
+    bounds={"wrong": WRONG},
+)
+def names() -> dict[str, float]:
+    """How many have others."""
+    wrong = 0
+    with tempfile.TemporaryDirectory() as folder:
+        for file, name in (
+            ("my-scene.toml", "my-scene"),
+            ("a_1.toml", "a_1"),
+            ("my scene.v2.toml", "my_scene_v2"),
+            ("größe.toml", "gr__e"),
+        ):
+            (Path(folder) / file).write_text(box())
+            wrong += Scene.load(Path(folder) / file).name != name
+    for given, components in (("zyx", (0, 1, 2)), ("yx", (0, 1)), ("zx", (0, 2)), ("y", (1,))):
+        support = Scene.from_toml(box(), overrides=[f"supports.top.components={list(given)}"]).whole().supports[0]
+        wrong += support.components != components
+    return {"wrong": float(wrong)}
+
+
+@case(
     claim="A rigid plane has a normal of length one along the given one, and a tangent across it: the part of the given one, of x, or of "
     "y where x is nearly normal, in the plane.",
     tier="gate",
