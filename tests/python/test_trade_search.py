@@ -170,6 +170,7 @@ def test_runs_that_do_not_tell_what_is_wanted_are_never_recommended(scene, wants
     search, answer = searched(scene, 0.1, Silent(scene, dials), wants)
     assert few < answer.best.choice[3]
     assert all(math.isinf(search.error(outcome)) == (outcome.choice[3] == few) for outcome in search.laboratory.outcomes.values())
+    assert not figures.pareto(search, [outcome for outcome in search.laboratory.outcomes.values() if outcome.choice[3] == few])
     few = dials[3].own
     with pytest.raises(IsomortarError, match=r"there is nothing to trade: not finite: gap\.floor"):
         searched(scene, 0.1, Silent(scene, dials), wants)

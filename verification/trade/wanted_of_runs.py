@@ -180,7 +180,7 @@ def of_short_runs(steps: int) -> dict[str, float]:
     """How many, of a run with so many load steps in its first stage."""
     problem = problem_of(4)
     truth, run = (Tried((), "", numbers, "", 0.0, 0.0) for numbers in (run_of(1, (12, 18)), run_of(2, (steps, 6))))
-    none = {text for text in wishes(problem) if math.isnan(Yardstick(wanted(text, problem), truth, truth).error(run))}
+    none = {text for text in wishes(problem) if not math.isfinite(Yardstick(wanted(text, problem), truth, truth).error(run))}
     rough = {text for text in wishes(problem) if text.endswith(":roughness")}
     return {"wrong": float(len(none ^ (rough if steps < 3 else set())))}
 

@@ -51,7 +51,7 @@ def precision(search: Search, answers: Sequence[Recommendation]) -> str:
 def pareto(search: Search, runs: Sequence[Tried]) -> list[Tried]:
     """The runs of which no other is cheaper and nearer, cheapest first."""
     front: list[Tried] = []
-    for outcome in sorted((o for o in runs if not o.failure), key=lambda o: (o.cost, search.error(o))):
+    for outcome in sorted((o for o in runs if math.isfinite(search.error(o))), key=lambda o: (o.cost, search.error(o))):
         if not front or search.error(outcome) < search.error(front[-1]):
             front.append(outcome)
     return front
