@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from isomortar import _bindings
 from isomortar.model import constants
 from isomortar.solve.contact import PutOff
 from isomortar.solve.equilibrium import Balance, Equilibrium
-from isomortar.solve.feet import point_by_point
+from isomortar.solve.feet import gaps
 
 
 class Unseen:
@@ -30,9 +29,6 @@ class Unseen:
             kinematics = balance.kinematics[number]
             if isinstance(kinematics, PutOff) or np.any(balance.responses[number].state):
                 continue
-            pair = self._equilibrium.pairs[number].pair
-            slave, everywhere = point_by_point(pair, balance.positions)
-            gaps = _bindings.control_quantities(slave, pair.master, everywhere, kinematics.projections).gap
-            depth = float(np.max(gaps, where=kinematics.projections.found > 0, initial=0.0))
+            depth = float(gaps(self._equilibrium.pairs[number].pair, balance.positions, kinematics.projections).max(initial=0.0))
             if depth > constants.CLEAR * float(np.abs(balance.positions).max()):
                 self.depths[contact.name] = max(depth, self.depths.get(contact.name, 0.0))
