@@ -98,6 +98,19 @@ def test_ctrl_c_is_heard_where_python_drops_it(lost: str) -> None:
     assert process.returncode == 130
 
 
+def test_ctrl_c_is_told_of_where_an_extension_makes_another_error_of_it(capsys: pytest.CaptureFixture[str]) -> None:
+    def loads() -> None:
+        try:
+            signal.raise_signal(signal.SIGINT)
+        except KeyboardInterrupt:
+            raise ImportError("initialization failed") from None
+
+    with pytest.raises(SystemExit) as ended, told():
+        loads()
+    assert (ended.value.code, capsys.readouterr().err) == (130, "isomortar: interrupted\n")
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
 def test_a_name_longer_than_any_path_is_shortened_in_its_sentence(tmp_path: Path) -> None:
     scene = tmp_path / "scene.toml"
     scene.write_text(f'format = 1\nname = "{"a" * 100_000}"\n"{"b" * 100_000}" = 1\n')

@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import re
+import signal
 import sys
 import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from threading import current_thread, main_thread
+from types import FrameType
 
 from isomortar.errors import InputError, IsomortarError
 
 #: Exit codes; 130 is what shells expect of a program that Ctrl-C ended.
 FAILED, BAD_INPUT, OWN_FAULT, INTERRUPTED = 1, 2, 3, 130
+
+_INTERRUPTED = INTERRUPTED, "interrupted"
 
 #: Letters that are left of a longer word.
 LONGEST_WORD = 600
@@ -22,22 +27,42 @@ LONGEST_WORD = 600
 def told() -> Iterator[None]:
     """End the process with a sentence, where the block does not end by itself."""
     try:
-        try:
-            yield
-        finally:
-            if sys.stdout is not None:  # as it is where it was closed
-                sys.stdout.flush()  # here a full disk still has its sentence
+        with _heard() as interrupts:
+            try:
+                yield
+            finally:
+                if sys.stdout is not None:  # as it is where it was closed
+                    sys.stdout.flush()  # here a full disk still has its sentence
     except Exception as error:
-        code, sentence = _ending(error)
+        code, sentence = _ending(error, interrupted=bool(interrupts))
     except KeyboardInterrupt:
-        code, sentence = INTERRUPTED, "interrupted"
+        code, sentence = _INTERRUPTED
     else:
         return
     print(f"isomortar: {_readable(sentence)}", file=sys.stderr)
     sys.exit(code)
 
 
-def _ending(error: Exception) -> tuple[int, str]:
+@contextmanager
+def _heard() -> Iterator[list[int]]:
+    """The interrupts that came, also where they are raised as something else: extensions that are loading make an ImportError of them."""
+    interrupts: list[int] = []
+
+    def note(number: int, frame: FrameType | None) -> None:
+        interrupts.append(number)
+        signal.default_int_handler(number, frame)
+
+    ours = signal.getsignal(signal.SIGINT) is signal.default_int_handler and current_thread() is main_thread()
+    if ours:
+        signal.signal(signal.SIGINT, note)
+    try:
+        yield interrupts
+    finally:
+        if ours:
+            signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def _ending(error: Exception, *, interrupted: bool) -> tuple[int, str]:
     """Exit code and sentence."""
     match error:
         case InputError():
@@ -48,6 +73,8 @@ def _ending(error: Exception) -> tuple[int, str]:
             return FAILED, "memory ran out: take fewer elements or a lower order, or a machine with more memory"
         case OSError():
             return FAILED, _of_the_system(error)
+        case _ if interrupted:
+            return _INTERRUPTED
         case ImportError():
             return FAILED, f"the installation is not complete: {error}"
     return OWN_FAULT, f"{_place(error)}. This is a fault of the program, not of your input: please report it with the scene and the command"
