@@ -14,7 +14,7 @@ from isomortar._sparse import SparseLU
 from isomortar.errors import ConvergenceError, IsomortarError
 from isomortar.geometry.patch import FloatArray
 from isomortar.scene import Scene
-from isomortar.solve.contact import largest, ratio
+from isomortar.solve.distances import apart, largest, ratio
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.monolithic import _BorderedIterate
 from isomortar.solve.simulation import Simulation
@@ -153,10 +153,10 @@ def test_tractions_count_for_no_less_than_a_hundredth_of_what_friction_bears() -
     control = replace(control, square=np.ones_like(control.square), metric=np.tile([1.0, 0.0, 1.0], (len(control.square), 1)))
     pressure = np.linspace(1.0, 2.0, len(control.weight))
     traction = np.column_stack([pressure, -pressure])
-    assert pair.apart(control, (pressure, 3.0 * traction), (pressure, traction)) == pytest.approx((0.0, 2.0))
-    assert pair.apart(control, (1.5 * pressure, traction), (pressure, traction)) == pytest.approx((0.5, 0.0))
+    assert apart(pair, control, (pressure, 3.0 * traction), (pressure, traction)) == pytest.approx((0.0, 2.0))
+    assert apart(pair, control, (1.5 * pressure, traction), (pressure, traction)) == pytest.approx((0.5, 0.0))
     small = 1e-6 * traction  # friction bears half of the pressures: a hundredth of that counts
-    assert pair.apart(control, (pressure, 3.0 * small), (pressure, small))[1] == pytest.approx(2e-6 * 2.0**0.5 / 0.005)
+    assert apart(pair, control, (pressure, 3.0 * small), (pressure, small))[1] == pytest.approx(2e-6 * 2.0**0.5 / 0.005)
 
 
 @pytest.mark.parametrize(("pressure", "traction"), [(np.nan, 1.0), (1.0, np.nan)])

@@ -6,6 +6,7 @@ import numpy as np
 
 from isomortar.harness import Bound, case
 from isomortar.scene import Scene
+from isomortar.solve import distances as computed
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.timing import Ledger
 
@@ -46,7 +47,7 @@ def apart(friction: float) -> dict[str, float]:
         for noise in ((0.0, 0.0), (0.3, 0.1 * size), (1e3, 1e3)):
             q, p = random.uniform(0.5, 1.0, (2, len(control.weight)))
             s, t = size * random.standard_normal((2, len(q), 2))
-            found = pair.apart(control, (p, t), (q, s), noise)
+            found = computed.apart(pair, control, (p, t), (q, s), noise)
             wanted = distances(p, t, q, s, friction, noise)
             off = float(np.max([off, *(abs(a - b) / float(np.maximum(b, 1e-9)) for a, b in zip(found, wanted, strict=True))]))
     return {"apart": off}
@@ -71,7 +72,7 @@ def off_conditions() -> dict[str, float]:
         pressure = size * np.linspace(0.5, 1.0, len(gap))
         law = pair.law(np.ones(2), pressure, np.zeros((len(gap), 2)))
         response = pair.respond(kinematics, law)
-        found, _ = pair.off_conditions(state.positions, kinematics, law, response, scales, 0.0)
+        found, _ = computed.off_conditions(pair, state.positions, kinematics, law, response, scales, 0.0)
         target = np.maximum(response.pressure + penalty * gap, 0.0)
         wanted = float(np.linalg.norm(target - response.pressure) / np.linalg.norm(response.pressure))
         off = float(np.maximum(off, abs(found / wanted - 1.0)))

@@ -9,6 +9,7 @@ import numpy as np
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness.visits import PairVisit
 from isomortar.solve.contact import Kinematics, PairMechanics
+from isomortar.solve.metric import traction_norms
 
 
 def placed(pair: PairMechanics, positions: FloatArray, visit: PairVisit, pressure: FloatArray, length: FloatArray) -> PairVisit:
@@ -33,16 +34,16 @@ def placed(pair: PairMechanics, positions: FloatArray, visit: PairVisit, pressur
     law = replace(visit.law, pressure=pressure - visit.law.penalties[0] * kinematics.control.gap / weight)
     if pair.friction.acts and not law.elastic:
         trial = pair.respond(kinematics, replace(law, held=np.ones_like(law.held))).traction  # of what sticks that is the traction
-        law = replace(law, traction=law.traction + _scaled(pair, kinematics, trial, pair.radius(pressure) * length) - trial)
+        law = replace(law, traction=law.traction + _scaled(kinematics, trial, pair.radius(pressure) * length) - trial)
     if law.stretch is not None:  # by Coulomb's law its trial is the same
         plain = replace(law, penalties=law.factors, traction=law.stretch, stretch=None, held=np.ones_like(law.held))
         trial = pair.respond(kinematics, plain).traction
-        law = replace(law, stretch=law.stretch + _scaled(pair, kinematics, trial, length) - trial)
+        law = replace(law, stretch=law.stretch + _scaled(kinematics, trial, length) - trial)
     return PairVisit(visit.start, law)
 
 
-def _scaled(pair: PairMechanics, kinematics: Kinematics, traction: FloatArray, length: FloatArray) -> FloatArray:
+def _scaled(kinematics: Kinematics, traction: FloatArray, length: FloatArray) -> FloatArray:
     """Tractions of given metric norms; along the first coordinate where there is no direction; zero where the pressure is."""
-    unit = np.where(pair.traction_norms(kinematics.control, traction)[:, None] > 0, traction, [1.0, 0.0])
-    norm = pair.traction_norms(kinematics.control, unit)
+    unit = np.where(traction_norms(kinematics.control, traction)[:, None] > 0, traction, [1.0, 0.0])
+    norm = traction_norms(kinematics.control, unit)
     return np.ascontiguousarray(unit * (np.where(length > 0, length, 0.0) / np.where(norm > 0, norm, 1.0))[:, None])

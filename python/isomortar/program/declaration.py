@@ -10,11 +10,11 @@ from typing import Protocol
 from isomortar.errors import IsomortarError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Problem
+from isomortar.model.moments import moment
 from isomortar.model.numbering import Numbering
 from isomortar.model.supports import Supports
 from isomortar.model.symmetry import of_whole
 from isomortar.program.process import Ending
-from isomortar.solve.contact import moment
 from isomortar.solve.record import Reaction
 
 

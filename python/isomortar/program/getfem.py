@@ -67,7 +67,8 @@ class GetFEM:
             raise NotInstalledError("GetFEM is not installed: apt-get install python3-getfem")
         with TemporaryDirectory() as folder:
             path = Path(folder) / "problem.json"
-            path.write_text(json.dumps({**description(told), "works": self._works}))
+            cuts = 0 if self._works else problem.settings.max_cuts  # works are those of a whole load step
+            path.write_text(json.dumps({**description(told), "works": self._works, "cuts": cuts}))
             finished = run([self._python, "-I", str(Path(__file__).with_name("getfem_job.py")), str(path)])
         return _outcome(told, finished)
 

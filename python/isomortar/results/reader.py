@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -16,34 +16,20 @@ from numpy.typing import NDArray
 
 from isomortar.errors import ResultsError
 from isomortar.geometry.patch import FloatArray, IntArray
-from isomortar.model.entities import Contact, Problem, Support
-from isomortar.model.numbering import Numbering
+from isomortar.model.entities import Contact, Problem
 from isomortar.model.supports import moved_by, progress
 from isomortar.results import layout
 from isomortar.results.definition import read_problem
 from isomortar.results.files import is_marked, is_whole
+from isomortar.results.recorded import column, step_result
 from isomortar.results.table import data_frame, data_set
-from isomortar.solve.record import (
-    AugmentationRecord,
-    ContactRates,
-    ContactResult,
-    ContactState,
-    IterationRecord,
-    LoadResult,
-    Rates,
-    Reaction,
-    State,
-    StepResult,
-)
+from isomortar.solve.record import StepResult
 
 if TYPE_CHECKING:
     import pandas
     import xarray
 
 Value = TypeVar("Value")
-
-#: Of a body's extents the smallest by the largest, below which it has no volume: round-off of its control points.
-_FLAT = 1e-14
 
 
 @dataclass(frozen=True)
@@ -187,7 +173,7 @@ class Results:
             known, place = {name: kind for name, kind in layout.STEP.items() if name != "stage"}, ""
         if quantity not in known:
             raise ResultsError(f"there is no curve {quantity!r} here; there are: {', '.join(known)}")
-        values: NDArray[Any] = self._read(lambda file: _column(file, f"curves/{place}{quantity}", known[quantity])[()])
+        values: NDArray[Any] = self._read(lambda file: column(file, f"curves/{place}{quantity}", known[quantity])[()])
         if quantity in motion:
             values = np.where(np.isnan(values), motion[quantity], values)
         if component is None:
@@ -241,7 +227,7 @@ class Results:
             raise ResultsError(f"{self.path} holds no load step yet")
         known = {**layout.CONTACT_STATE, **layout.CONTACT_VALUES}
         names = ("pressure", "traction", "traction_norm", "status", "gap")
-        values = self._read(lambda file: {n: _column(file, f"states/contacts/{name}/{n}", known[n])[()] for n in names})
+        values = self._read(lambda file: {n: column(file, f"states/contacts/{name}/{n}", known[n])[()] for n in names})
         return ContactHistory(contact=contact, steps=self.kept_states, **values)
 
     def last_step(self) -> StepResult | None:
@@ -262,7 +248,7 @@ class Results:
             raise ResultsError(f"{self.path} kept no state of load step {number} (states = 'last'); it has the curves of all steps")
         row = int(np.flatnonzero(self.steps == number)[0])
         kept = int(np.flatnonzero(self.kept_states == number)[0])
-        return self._read(lambda file: _step_result(file, self.problem, number, row, kept))
+        return self._read(lambda file: step_result(file, self.problem, number, row, kept))
 
     def _rows(self, path: str) -> NDArray[Any]:
         return self._read(lambda file: file[path][()])
@@ -304,104 +290,6 @@ class Results:
             f"{self.path} cannot be read ({error}), though no byte of it has changed since it was written: another version may have "
             "written it. Run the scene again"
         )
-
-
-def _step_result(file: h5py.File, problem: Problem, number: int, row: int, kept: int) -> StepResult:
-    states = [f"states/contacts/{contact.name}" for contact in problem.contacts]
-    curves = [f"curves/contacts/{contact.name}" for contact in problem.contacts]
-    values = _get(file, "curves", layout.STEP, row)
-    values["stage"] = values["stage"].decode()
-    state = State(
-        positions=file["states/positions"][kept],
-        contacts=tuple(ContactState(**_get(file, state, layout.CONTACT_STATE, kept)) for state in states),
-        rates=_rates(file, problem, kept),
-    )
-    _check_state(problem, state)
-    return StepResult(
-        **values,
-        state=state,
-        reactions=tuple(_reaction(file, problem, support, row) for support in problem.supports),
-        contacts=tuple(
-            ContactResult(**_get(file, curve, layout.CONTACT, row), **_get(file, state, layout.CONTACT_VALUES, kept))
-            for curve, state in zip(curves, states, strict=True)
-        ),
-        augmentations=_augmentations(file, number),
-        timings={name: float(data[row]) for name, data in file["timings"].items() if not np.isnan(data[row])},
-        counters={name: int(data[row]) for name, data in file["counters"].items() if data[row] >= 0},
-        orderings={int(matrices): data.asstr()[row] for matrices, data in file["orderings"].items() if data[row]},
-        loads=tuple(LoadResult(**_get(file, f"curves/loads/{load.name}", layout.LOAD, row)) for load in problem.loads),
-    )
-
-
-def _check_state(problem: Problem, state: State) -> None:
-    """What no computation comes to, and nobody can draw or go on from."""
-    numbering = Numbering(problem)
-    for body in problem.bodies:
-        points = numbering.of_patch(body.name, state.positions)
-        extents = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
-        if not extents[2] > _FLAT * extents[0]:
-            raise ValueError(f"body {body.name!r} has no volume")
-    for contact, values in zip(problem.contacts, state.contacts, strict=True):
-        if not (np.isfinite(values.pressure).all() and np.isfinite(values.traction).all()):
-            raise ValueError(f"pressures of contact {contact.name!r} are not finite")
-
-
-def _rates(file: h5py.File, problem: Problem, kept: int) -> Rates | None:
-    """Rates of a kept state; None where it has none, as in a file from before there were any."""
-    values = _get(file, "rates", layout.RATES, kept)
-    if np.isnan(values["time"]):
-        return None
-    of_contacts = (_get(file, f"rates/contacts/{contact.name}", layout.CONTACT_RATES, kept) for contact in problem.contacts)
-    return Rates(**values, contacts=tuple(ContactRates(**of_contact) for of_contact in of_contacts))
-
-
-def _reaction(file: h5py.File, problem: Problem, support: Support, row: int) -> Reaction:
-    """What a support bears; how far it has gone is that of its motions in what format 3 recorded."""
-    values = _get(file, f"curves/supports/{support.name}", layout.REACTION, row)
-    way, angle = moved_by(support, progress(problem.stages, float(file["curves/time"][row])))
-    if np.isnan(values["displacement"]).all():
-        values["displacement"] = way
-    if np.isnan(values["rotation"]):
-        values["rotation"] = angle
-    return Reaction(**values)
-
-
-def _get(file: h5py.File, group: str, quantities: Mapping[str, layout.Quantity], row: int) -> dict[str, Any]:
-    """Row `row` of every quantity; single numbers as Python's own."""
-    rows = {name: _column(file, f"{group}/{name}", quantity)[row] for name, quantity in quantities.items()}
-    return {name: value.item() if isinstance(value, np.generic) else value for name, value in rows.items()}
-
-
-def _column(file: h5py.File, path: str, quantity: layout.Quantity) -> Any:
-    """A dataset; of a quantity that the file is too old for, what stands for it at every recorded load step; of none, zeros."""
-    if quantity.missing is not None and path not in file:
-        return np.full((len(file["curves/step"]), *quantity.row), quantity.missing)
-    if quantity.frictional and path not in file:
-        return np.zeros((*file[f"{path.rpartition('/')[0]}/pressure"].shape, *quantity.row))
-    return quantity.signed(file[path][()], layout.version_of(file)) if quantity.turned else file[path]
-
-
-def _augmentations(file: h5py.File, step: int) -> tuple[AugmentationRecord, ...]:
-    rows = file["log/augmentations"][()]
-    iterations = iter(_iterations(file, step))
-    records = [_numbers(row) for row in rows[rows["step"] == step]]
-    return tuple(AugmentationRecord(**r | {"iterations": tuple(next(iterations) for _ in range(r["iterations"]))}) for r in records)
-
-
-def _iterations(file: h5py.File, step: int) -> list[IterationRecord]:
-    rows = file["log/iterations"][()]
-    mine = np.flatnonzero(rows["step"] == step)
-    if not len(mine):
-        return []
-    begin, end = rows["notes"][: mine[0]].sum(), rows["notes"][: mine[-1] + 1].sum()
-    notes = iter(file["log/notes"].asstr()[begin:end])
-    records = [_numbers(row) for row in rows[mine]]
-    return [IterationRecord(**r | {"notes": tuple(next(notes) for _ in range(r["notes"]))}) for r in records]
-
-
-def _numbers(row: np.void) -> dict[str, Any]:
-    """A row of the log by name, without the load step."""
-    return {name: row[name].item() for name in row.dtype.names or () if name != "step"}
 
 
 def _named(entries: tuple[Any, ...], name: str, kind: str) -> Any:

@@ -18,8 +18,9 @@ from isomortar._bindings import Law, Response
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model import constants
 from isomortar.model.supports import BoolArray
-from isomortar.solve.contact import Blocks, PairMechanics, median, pressure_share
+from isomortar.solve.contact import Blocks, PairMechanics, pressure_share
 from isomortar.solve.equilibrium import Balance, Equilibrium
+from isomortar.solve.metric import median, tangent_lengths
 from isomortar.solve.singular import PairConditions
 from isomortar.solve.system import Source, add_product, block_product
 
@@ -153,7 +154,7 @@ def _border(equilibrium: Equilibrium, k: int, balance: Balance, law: Law, target
     count = int(np.count_nonzero(reached)) * components
     equation[reached, :components] = first + np.arange(count, dtype=np.int32).reshape(-1, components)
     control = balance.kinematics[k].control
-    lengths = np.concatenate([[1.0], pair.tangent_lengths(control)])
+    lengths = np.concatenate([[1.0], tangent_lengths(control) if pair.friction.acts else np.ones(2)])
     present = control.weight > 0
     weight = np.where(present, control.weight, median(control.weight[present]))
     loose = pair.loose(balance.kinematics[k].projections.found)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import Any
 
 import numpy as np
 
@@ -17,10 +16,12 @@ from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model import constants
 from isomortar.model.entities import SolverSettings
 from isomortar.model.held import held_by, nothing_held
+from isomortar.model.moments import moment
 from isomortar.model.pairs import Pair
 from isomortar.model.supports import BoolArray, Supports
 from isomortar.solve.apart import Separation
 from isomortar.solve.feet import Feet
+from isomortar.solve.metric import median, traction_norms
 from isomortar.solve.reach import ContactPatterns, Reach
 from isomortar.solve.record import ContactResult, ContactState
 from isomortar.solve.scales import Scales
@@ -69,33 +70,8 @@ class Blocks:
     geometric: FloatArray
 
 
-def median(values: FloatArray) -> Any:
-    """Median over the first axis of one finite number or more; NumPy's own takes twenty times as long for a few hundred."""
-    ordered = np.sort(values, axis=0)
-    return 0.5 * (ordered[(len(ordered) - 1) // 2] + ordered[len(ordered) // 2])
-
-
-def moment(arms: FloatArray, forces: FloatArray) -> FloatArray:
-    """Sum of arms x forces (theory 8.1), shape (3,); NumPy's `cross` takes eight times as long."""
-    products = arms.T @ forces
-    return np.array([products[1, 2] - products[2, 1], products[2, 0] - products[0, 2], products[0, 1] - products[1, 0]])
-
-
 #: Pressures, shape (n,), and tractions, shape (n, 2), of the constraints of a pair.
 Multipliers = tuple[FloatArray, FloatArray]
-
-
-def ratio(change: float, size: float) -> float:
-    """Square root of a ratio of squares; 0 where nothing changes, infinite where there was nothing before (theory 5.8)."""
-    if change == 0.0:
-        return 0.0
-    return float(np.sqrt(change / size)) if size > 0.0 else float("inf")
-
-
-def largest(distances: Iterable[tuple[float, float]]) -> tuple[float, float]:
-    """The largest of each of two, not a number where one is not; zeros of none."""
-    first, second = np.max([(0.0, 0.0), *distances], axis=0)
-    return float(first), float(second)
 
 
 def pressure_share(control: Control, law: Law, response: Response) -> FloatArray:
@@ -149,7 +125,7 @@ class PairMechanics:
         """Stretches that make the tractions of a converged state, shape (n, 2) (theory 4.16)."""
         borne = self.radius(begun.pressure)
         borne = np.where(borne > 0.0, borne, 1.0)  # open ones have no traction
-        left = np.maximum(1.0 - self.traction_norms(control, begun.traction) / borne, 0.0)
+        left = np.maximum(1.0 - traction_norms(control, begun.traction) / borne, 0.0)
         return np.ascontiguousarray(begun.traction / (borne * (1.0 + np.sqrt(left)))[:, None])
 
     def initial(self, positions: FloatArray) -> ContactState:
@@ -231,7 +207,7 @@ class PairMechanics:
         still = self.held.still > 0
         if self.elastic or not still.any():
             return traction
-        length, borne = self.traction_norms(kinematics.control, start.traction), self.radius(pressure)
+        length, borne = traction_norms(kinematics.control, start.traction), self.radius(pressure)
         share = np.divide(borne, length, out=np.ones_like(length), where=length > borne)
         return np.where(still[:, None], share[:, None] * start.traction, traction)
 
@@ -316,83 +292,6 @@ class PairMechanics:
             )
         return blocks.patterns.tangent, tangent
 
-    def contravariant(self, control: Control, traction: FloatArray) -> FloatArray:
-        """Contravariant components of control tractions in the discrete metric, shape (..., constraints, 2) (theory 4.2)."""
-        m11, m12, m22 = (control.metric / np.where(control.square > 0, control.square, 1.0)[:, None]).T
-        determinant = m11 * m22 - m12**2
-        scale = 1.0 / np.where(determinant > 0, determinant, 1.0)
-        first, second = traction[..., 0], traction[..., 1]
-        raised = np.empty_like(traction)
-        raised[..., 0] = (m22 * first - m12 * second) * scale
-        raised[..., 1] = (m11 * second - m12 * first) * scale
-        return raised
-
-    def tangent_lengths(self, control: Control) -> FloatArray:
-        """Typical lengths of the master's tangent vectors a_1, a_2 where the slave projects, shape (2,) (theory 6.4)."""
-        present = control.square > 0
-        squared = control.metric[present][:, [0, 2]] / control.square[present, None]
-        return np.sqrt(median(squared)) if np.any(present) and self.friction.acts else np.ones(2)
-
-    def traction_squares(self, control: Control, traction: FloatArray) -> FloatArray:
-        """Squared metric norm of control tractions, shape (..., constraints) (theory 4.2)."""
-        return np.maximum(np.einsum("...a,...a->...", self.contravariant(control, traction), traction), 0.0)
-
-    def traction_norms(self, control: Control, traction: FloatArray) -> FloatArray:
-        """Metric norm of control tractions, shape (..., constraints)."""
-        return np.sqrt(self.traction_squares(control, traction))
-
-    def apart(
-        self, control: Control, some: Multipliers, others: Multipliers, round_off: tuple[float, float] = (0.0, 0.0)
-    ) -> tuple[float, float]:
-        """Distance of some control pressures and tractions from others, over the norms of these; round-off is none (theory 5.8).
-
-        Tractions count for no less than a hundredth of what friction bears, or of the pressures where that is more: where nothing pulls
-        they are round-off.
-        """
-        (p, t), (q, s) = some, others
-        size = float(q @ q)
-        squares = self.traction_squares(control, np.stack([t - s, s])).sum(axis=1)
-        noise = np.square(round_off)
-        changes = np.maximum(np.array([(p - q) @ (p - q), squares[0]]) - noise, 0.0)
-        cone = constants.LEAST_TRACTION * np.minimum(self.radius(q), q)
-        least = np.maximum(cone @ cone, noise[1])
-        return ratio(float(changes[0]), size), ratio(float(changes[1]), float(np.maximum(squares[1], least)))
-
-    def round_off(self, positions: FloatArray, law: Law, response: Response, unbalanced: float = 0.0) -> tuple[float, float]:
-        """Norms of what the last bits of positions make of pressures and tractions where gap and slip are nothing (theory 5.8).
-
-        No iteration can remove them: where nothing pulls, friction is next to none or the bodies just touch, all is round-off. Nor are
-        they known better than to `unbalanced`, what forces that are not quite in balance leave open.
-        """
-        last_bit = float(np.spacing(np.abs(positions[self.pair.slave.point]).max()))
-        stiffness = law.penalties.copy()
-        if law.elastic:  # the largest slope of a traction by its slip
-            stiffness[1] = 2.0 * float(self.radius(response.pressure).max()) / law.elastic_slip
-        normal, tangential = stiffness * last_bit * np.sqrt(np.count_nonzero(response.state))
-        return max(float(normal), unbalanced), max(float(tangential), unbalanced)
-
-    def off_conditions(
-        self, positions: FloatArray, kinematics: Kinematics, law: Law, response: Response, scales: Scales, unbalanced: float
-    ) -> tuple[float, float]:
-        """Relative distance of a response's pressures and tractions from what the contact conditions make of them (theory 7.4).
-
-        Gap and slip count here with the stiffness of the whole face, traction per length, for they leave forces off by as much: small
-        penalties change multipliers little, whatever the gap.
-        """
-        present = kinematics.control.weight[kinematics.control.weight > 0]
-        if not present.size:
-            return 0.0, 0.0
-        whole = self.stiffness(scales) / np.sqrt(median(present) * self.pair.area)
-        again = replace(law, penalties=np.array([whole, whole]), pressure=response.pressure, traction=response.traction)
-        with self._ledger.phase("contact"):
-            target = _bindings.augmented_multipliers(self.pair.slave, kinematics.control, again)
-        return self.apart(
-            kinematics.control,
-            (target.pressure, target.traction),
-            (response.pressure, response.traction),
-            self.round_off(positions, again, response, unbalanced),
-        )
-
     def work(self, start: FloatArray, begun: ContactState, positions: FloatArray, kinematics: Kinematics, response: Response) -> FloatArray:
         """What friction, and pressures along averaged normals, took up within a load increment, shape (2,) (theory 3.31).
 
@@ -428,7 +327,7 @@ class PairMechanics:
             moment_master=moment(positions, master_forces),
             active=int(np.count_nonzero(response.state)),
             slip=int(np.count_nonzero(response.state == PointState.SLIP)),
-            traction_norm=self.traction_norms(control, response.traction),
+            traction_norm=traction_norms(control, response.traction),
             status=response.state,
             gap=np.where(present, control.gap, 0.0) / np.where(present, control.weight, 1.0),
             pressure_field=np.array([field.min(), field.max()]) if field.size else np.zeros(2),

@@ -14,10 +14,12 @@ from isomortar.errors import ConvergenceError, FoldedElementError, LostProjectio
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
 from isomortar.solve.bordered import Border, Correction, solve_bordered, solve_with_kept_factors
-from isomortar.solve.contact import Kinematics, Multipliers, largest
+from isomortar.solve.contact import Kinematics, Multipliers
+from isomortar.solve.distances import apart, largest, round_off
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.extrapolation import multipliers_ahead, positions_ahead
 from isomortar.solve.method import Increment, Method, augmentation_record
+from isomortar.solve.metric import contravariant
 from isomortar.solve.newton import Converged, Iterate, Newton
 from isomortar.solve.record import IterationRecord, State
 from isomortar.solve.scales import Scales
@@ -148,7 +150,7 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
         """Relative distance of pressures and tractions from the contact conditions, of the pair where it is largest (theory 6.6)."""
         pairs = zip(self._equilibrium.pairs, balance.kinematics, balance.responses, laws, targets, strict=True)
         return largest(
-            pair.apart(k.control, (now.pressure, now.traction), (to.pressure, to.traction), pair.round_off(balance.positions, law, to))
+            apart(pair, k.control, (now.pressure, now.traction), (to.pressure, to.traction), round_off(pair, balance.positions, law, to))
             for pair, k, now, law, to in pairs
             if not pair.rests(k, law.pressure, law.traction)
         )
@@ -199,7 +201,7 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
             return np.zeros(len(target.state), dtype=bool)
         elastic = self._equilibrium.pairs[k].elastic
         change = border.trial_change(correction.positions) + (0.0 if elastic else correction.tractions[k])
-        raised = self._equilibrium.pairs[k].contravariant(iterate.balance.kinematics[k].control, iterate.laws[k].traction)
+        raised = contravariant(iterate.balance.kinematics[k].control, iterate.laws[k].traction)
         slipping = target.state > 0 if elastic else target.state == PointState.SLIP
         return slipping & (np.einsum("ia,ia->i", raised, change) < 0.0)
 

@@ -12,10 +12,11 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
 from isomortar.model.checks import check
 from isomortar.model.entities import Problem
+from isomortar.model.moments import moment
 from isomortar.model.symmetry import of_whole
 from isomortar.solve.advice import StepAdvice, advice_on_problem
 from isomortar.solve.causes import causes
-from isomortar.solve.contact import largest, moment
+from isomortar.solve.distances import apart, largest
 from isomortar.solve.doubts import doubts
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.extrapolation import with_rates
@@ -166,7 +167,7 @@ class Simulation:
     def _distance(self, whole: Balance, halves: Balance) -> float:
         """Largest relative distance between the pressures, or the tractions, of two solutions of an increment (theory 5.9)."""
         pairs = zip(self.equilibrium.pairs, halves.kinematics, whole.responses, halves.responses, strict=True)
-        return float(np.max(largest(pair.apart(k.control, (a.pressure, a.traction), (b.pressure, b.traction)) for pair, k, a, b in pairs)))
+        return float(np.max(largest(apart(pair, k.control, (a.pressure, a.traction), (b.pressure, b.traction)) for pair, k, a, b in pairs)))
 
     def _grow(self, increment: float, parts: Sequence[Increment]) -> None:
         """The next load increment, a share of the longest: longer after few linear solves, shorter after many tangents."""

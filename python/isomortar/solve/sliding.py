@@ -12,6 +12,7 @@ from isomortar.model.entities import Face
 from isomortar.model.glue import named
 from isomortar.solve.contact import PairMechanics
 from isomortar.solve.equilibrium import Equilibrium
+from isomortar.solve.metric import traction_norms
 from isomortar.solve.record import ContactState, State
 
 #: Share of what friction can bear above which a body is about to slide: what the last load increment before adds is less than the rest.
@@ -54,7 +55,7 @@ def _bodies(pair: PairMechanics) -> set[str]:
 def _share(pair: PairMechanics, positions: FloatArray, state: ContactState) -> tuple[float, float]:
     """Sums of the sizes of a pair's tractions, and of what these can be: forces."""
     control = pair.kinematics(positions, state).control
-    norms = pair.traction_norms(control, state.traction)
+    norms = traction_norms(control, state.traction)
     return float(control.weight @ norms), float(control.weight @ pair.radius(state.pressure))
 
 

@@ -12,9 +12,11 @@ from isomortar._bindings import Law, Response
 from isomortar.errors import ConvergenceError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
-from isomortar.solve.contact import Kinematics, PairMechanics, largest, median, ratio
+from isomortar.solve.contact import Kinematics, PairMechanics
+from isomortar.solve.distances import apart, largest, off_conditions, ratio, round_off
 from isomortar.solve.equilibrium import Balance
 from isomortar.solve.method import Increment, Method, augmentation_record
+from isomortar.solve.metric import median
 from isomortar.solve.newton import Iterate, Newton
 from isomortar.solve.record import State
 from isomortar.solve.scales import Scales
@@ -133,11 +135,12 @@ class Uzawa(Method):
                 changes.append((mixed, mixed))
             else:
                 changes.append(
-                    pair.apart(
+                    apart(
+                        pair,
                         kinematics.control,
                         (response.pressure, response.traction),
                         (law.pressure, law.traction),
-                        pair.round_off(balance.positions, law, response, self._unbalanced(pair, kinematics, balance)),
+                        round_off(pair, balance.positions, law, response, self._unbalanced(pair, kinematics, balance)),
                     )
                 )
         return largest(changes)
@@ -146,7 +149,7 @@ class Uzawa(Method):
         """Relative distance of pressures and tractions from the contact conditions, of the pair where it is largest (theory 7.4)."""
         pairs = zip(self._equilibrium.pairs, laws, balance.kinematics, balance.responses, strict=True)
         return largest(
-            pair.off_conditions(balance.positions, kinematics, law, response, scales, self._unbalanced(pair, kinematics, balance))
+            off_conditions(pair, balance.positions, kinematics, law, response, scales, self._unbalanced(pair, kinematics, balance))
             for pair, law, kinematics, response in pairs
             if not pair.rests(kinematics, law.pressure, law.traction)
         )
