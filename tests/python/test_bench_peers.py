@@ -5,10 +5,8 @@ from __future__ import annotations
 import json
 import re
 import runpy
-import sys
 from dataclasses import dataclass
 from pathlib import Path
-from types import ModuleType, SimpleNamespace
 
 import numpy as np
 import pytest
@@ -61,50 +59,6 @@ def test_getfem_is_not_charged_with_works_that_it_integrates_for_us(monkeypatch:
     assert asked == [False, False], "the run, and its start-up"
     GetFEM().run(Scene.load("block", block["COARSE"]).problem())
     assert asked[-1], "studies do show them"
-
-
-class Spring:
-    """Stands for GetFEM's model: it has come to its end where it is no further than `reach` from what is wanted."""
-
-    def __init__(self, reach: float) -> None:
-        self.reach, self.wanted, self.variables, self.befores = reach, 0.0, {"u_0": 0.0}, [0.0]
-
-    def nbdof(self) -> int:
-        return 1
-
-    def from_variables(self) -> dict[str, float]:
-        return dict(self.variables)
-
-    def to_variables(self, kept: dict[str, float]) -> None:
-        self.variables = dict(kept)
-
-    def variable(self, name: str) -> float:
-        return self.variables[name]
-
-    def set_variable(self, name: str, value: float) -> None:
-        if name == "u_0_before":
-            self.befores.append(value)
-
-    def put(self, wanted: float) -> None:
-        self.wanted = wanted
-
-    def solve(self, *_: object) -> tuple[int, bool]:
-        converged = abs(self.wanted - self.variables["u_0"]) <= self.reach
-        self.variables["u_0"] = self.wanted if converged else 1e3  # where Newton's method gives up it is anywhere
-        return 7, converged
-
-
-@pytest.mark.parametrize(("reach", "cuts", "ways"), [(1.0, 0, 1), (0.5, 1, 3), (0.3, 2, 7), (0.3, 1, 2), (0.5, 0, 1)])
-def test_getfem_halves_an_increment_that_does_not_converge(monkeypatch: pytest.MonkeyPatch, reach: float, cuts: int, ways: int) -> None:
-    monkeypatch.setitem(sys.modules, "getfem", ModuleType("getfem"))
-    job = runpy.run_path(getfem.__file__.replace("getfem.py", "getfem_job.py"))
-    model = Spring(reach)
-    increments = job["Increments"](model, [SimpleNamespace(variable="u_0")], [model], [], {"tolerance": 1e-9, "iterations": 60})
-    solves, converged = increments.solve((0.0, np.zeros(0)), (1.0, np.zeros(0)), cuts)
-    assert (solves, converged) == (7 * ways, reach * 2**cuts >= 1.0)
-    if converged:
-        assert model.variables["u_0"] == 1.0
-        assert model.befores[-1] == 1.0 - 0.5**cuts, "slip counts from where the last increment ended"
 
 
 def test_time_is_compared_only_where_both_came_to_the_end() -> None:

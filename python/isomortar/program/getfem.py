@@ -28,7 +28,7 @@ ENERGIES = {
     "neo-hookean-j": "A1_{b}/2*sqr(Det(Id(3)+{g})-1) + " + _ISOCHORIC,
     "linear-elastic": "(A1_{b}/2-A2_{b}/3)*sqr(Trace({g})) + A2_{b}*Norm_sqr(Sym({g}))",
 }
-#: Newton iterations after which a load step has failed.
+#: Newton iterations after which a load step has failed, if nothing else is said: those of increments that GetFEM cuts count, too.
 MOST_ITERATIONS = 60
 
 
@@ -45,12 +45,14 @@ class GetFEM:
         An interpreter that finds the module getfem.
     works : bool
         Whether its load steps tell their works, which are integrated for us: not where it is timed.
+    iterations : int
+        Newton iterations after which a load step has failed.
     """
 
     name = "GetFEM"
 
-    def __init__(self, python: str = DEBIAN_PYTHON, works: bool = True) -> None:
-        self._python, self._works = python, works
+    def __init__(self, python: str = DEBIAN_PYTHON, works: bool = True, iterations: int = MOST_ITERATIONS) -> None:
+        self._python, self._works, self._iterations = python, works, iterations
 
     def run(self, problem: Problem) -> Outcome:
         """Compute all load steps, or as many as converge.
@@ -67,10 +69,9 @@ class GetFEM:
             raise NotInstalledError("GetFEM is not installed: apt-get install python3-getfem")
         with TemporaryDirectory() as folder:
             path = Path(folder) / "problem.json"
-            cuts = 0 if self._works else problem.settings.max_cuts  # works are those of a whole load step
-            path.write_text(json.dumps({**description(told), "works": self._works, "cuts": cuts}))
+            path.write_text(json.dumps({**description(told), "works": self._works, "iterations": self._iterations}))
             finished = run([self._python, "-I", str(Path(__file__).with_name("getfem_job.py")), str(path)])
-        return _outcome(told, finished)
+        return _outcome(told, finished, self._iterations)
 
 
 def has_module(python: str, module: str) -> bool:
@@ -125,7 +126,6 @@ def description(told: LagrangeProblem) -> dict[str, Any]:
         "augmentation": 0.5 / told.thinnest,
         "release": 0.6 * told.thinnest,
         "tolerance": problem.settings.newton_tolerance,
-        "iterations": MOST_ITERATIONS,
     }
 
 
@@ -136,7 +136,7 @@ def _by_direction(contact: Contact) -> list[int]:
     return points
 
 
-def _outcome(told: LagrangeProblem, finished: Finished) -> Outcome:
+def _outcome(told: LagrangeProblem, finished: Finished, iterations: int) -> Outcome:
     """From what the job printed: a line of JSON a load step; where it was killed the last one may be cut."""
     steps: list[LoadStep] = []
     solves = 0
@@ -147,7 +147,7 @@ def _outcome(told: LagrangeProblem, finished: Finished) -> Outcome:
         found = json.loads(line)
         solves += found["solves"]
         if not found["converged"]:
-            ending, words = "not converged", f"Newton's method did not converge in {MOST_ITERATIONS} iterations"
+            ending, words = "not converged", f"Newton's method did not converge in {iterations} iterations"
             break
         forces = np.zeros(told.nodes.size)
         forces[told.prescribed] = told.stiffest * np.array(found["forces"])

@@ -184,46 +184,6 @@ class PressedFace:
         self.model.set_variable(self.size, size)
 
 
-class Increments:
-    """What is solved, increment by increment."""
-
-    def __init__(
-        self, model: Any, bodies: list[MeshedBody], held: list[HeldUnknowns], loads: list[PressedFace], told: dict[str, Any]
-    ) -> None:
-        self.model, self.bodies, self.held, self.loads, self.told = model, bodies, held, loads, told
-        self.solver = "dense_lu" if model.nbdof() < SMALL else "mumps"
-
-    def solve(self, start: tuple[Any, Any], end: tuple[Any, Any], cuts: int) -> tuple[int, bool]:
-        """Solve at an end, displacements and pressures, from the solution at a start; linear solves, and whether it converged.
-
-        Where it does not, halves are tried, and their halves, so many times.
-        """
-        kept = self.model.from_variables()
-        solves, converged = self._solve(end)
-        if converged or cuts == 0:
-            return solves, converged
-        self.model.to_variables(kept)
-        middle = (start[0] + end[0]) / 2, (start[1] + end[1]) / 2
-        for one, other in ((start, middle), (middle, end)):
-            more, converged = self.solve(one, other, cuts - 1)
-            solves += more
-            if not converged:
-                break
-        return solves, converged
-
-    def _solve(self, end: tuple[Any, Any]) -> tuple[int, bool]:
-        """Newton's method, from what the variables are."""
-        displacements, pressures = end
-        for body, support in zip(self.bodies, self.held, strict=True):
-            support.put(displacements)
-            self.model.set_variable(f"{body.variable}_before", self.model.variable(body.variable))
-        for load, size in zip(self.loads, pressures, strict=True):
-            load.put(size)
-        told = self.told
-        solves, converged = self.model.solve("max_res", told["tolerance"], "max_iter", told["iterations"], "lsolver", self.solver)
-        return int(solves), bool(converged)
-
-
 def main(path: str) -> None:
     """Read, compute, print."""
     told = json.loads(Path(path).read_text())
@@ -234,21 +194,24 @@ def main(path: str) -> None:
     held = [HeldUnknowns(model, body, prescribed) for body in bodies]
     contacts = [TouchingFaces(model, number, told, contact, bodies) for number, contact in enumerate(told["contacts"])]
     loads = [PressedFace(model, number, load, bodies) for number, load in enumerate(told["loads"])]
-    increments = Increments(model, bodies, held, loads, told)
-    start = np.zeros(len(prescribed)), np.zeros(len(loads))
-    for step, end in enumerate(zip(np.array(told["displacements"]), np.array(told["pressures"]), strict=True)):
+    solver = "dense_lu" if model.nbdof() < SMALL else "mumps"
+    for step, (wanted, sizes) in enumerate(zip(np.array(told["displacements"]), told["pressures"], strict=True)):
+        for body, support in zip(bodies, held, strict=True):
+            support.put(wanted)
+            model.set_variable(f"{body.variable}_before", model.variable(body.variable))
         for contact in contacts:
             contact.begin()
             if step == 0 and loads:
                 contact.press(TOUCH * told["augmentation"] * told["release"])
-        solves, converged = increments.solve(start, end, told["cuts"])
+        for load, size in zip(loads, sizes, strict=True):
+            load.put(size)
+        solves, converged = model.solve("max_res", told["tolerance"], "max_iter", told["iterations"], "lsolver", solver)
         found = _found(model, bodies, held, nodes) if converged else {}
         if converged and told["works"]:
             found |= _works(contacts)
-        print(json.dumps({"solves": solves, "converged": converged, **found}))
+        print(json.dumps({"solves": int(solves), "converged": bool(converged), **found}))
         if not converged:
             break
-        start = end
 
 
 def _found(model: Any, bodies: list[MeshedBody], held: list[HeldUnknowns], nodes: Any) -> dict[str, Any]:
