@@ -255,8 +255,8 @@ BENCHMARKS = (
             {"settled": Bound(at_least=-1.31, at_most=-1.24, reason="reference: -1.2703 and -1.3026; a fortieth for coarse elements")},
             ("L1",),
             {
-                "L1 GetFEM": "stops in load step 4 or 5 of 8 after 300 iterations, or comes through by chance: it cuts increments by itself, "
-                "and no run of it is like another"
+                "L1 GetFEM": "stops in load step 4 or 5 of 8 after up to 300 iterations, or comes through by chance: where it cuts "
+                "increments no run is like another"
             },
         ),
     ),

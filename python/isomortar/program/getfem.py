@@ -71,7 +71,7 @@ class GetFEM:
             path = Path(folder) / "problem.json"
             path.write_text(json.dumps({**description(told), "works": self._works, "iterations": self._iterations}))
             finished = run([self._python, "-I", str(Path(__file__).with_name("getfem_job.py")), str(path)])
-        return _outcome(told, finished, self._iterations)
+        return _outcome(told, finished)
 
 
 def has_module(python: str, module: str) -> bool:
@@ -136,7 +136,7 @@ def _by_direction(contact: Contact) -> list[int]:
     return points
 
 
-def _outcome(told: LagrangeProblem, finished: Finished, iterations: int) -> Outcome:
+def _outcome(told: LagrangeProblem, finished: Finished) -> Outcome:
     """From what the job printed: a line of JSON a load step; where it was killed the last one may be cut."""
     steps: list[LoadStep] = []
     solves = 0
@@ -147,7 +147,7 @@ def _outcome(told: LagrangeProblem, finished: Finished, iterations: int) -> Outc
         found = json.loads(line)
         solves += found["solves"]
         if not found["converged"]:
-            ending, words = "not converged", f"Newton's method did not converge in {iterations} iterations"
+            ending, words = "not converged", f"Newton's method did not converge in {found['solves']} iterations"
             break
         forces = np.zeros(told.nodes.size)
         forces[told.prescribed] = told.stiffest * np.array(found["forces"])
