@@ -142,6 +142,7 @@ def test_the_page_has_programs_beside_each_other_and_says_what_is_missing(tmp_pa
     assert text.count("CalculiX is not installed: apt-get install calculix-ccx") == 3, "at the top, and at both kinds"
     assert len(re.findall(r"-0\.143 <span class=\"soft\">\+10\.00 %", text)) == 2
     assert text.count("Lagrange elements: with facets in the place of circles") == 1
+    assert "nan" not in re.sub(r"<style>.*?</style>", "", text, flags=re.DOTALL), "what was not measured is a dash"
 
 
 def test_the_study_runs_all_of_it() -> None:
