@@ -60,9 +60,10 @@ _PRESSED, _TURN = 10, 2
 
 
 def scene(mesh: str) -> Scene:
-    """The scene by a kind of the block's elements, and a mesh: ``N2 fine``. The hemisphere has order 3, so that curvature does not jump."""
+    """The scene by a kind of elements, and a mesh: ``N2 fine``. On its face the hemisphere has order 3, so that curvature does not jump."""
     kind, name = mesh.split()
-    bodies = zip(("ball", "block"), ([3, 2, 3], [int(kind[1:])] * 3), MESHES[name], strict=True)
+    order = int(kind[1:])
+    bodies = zip(("ball", "block"), ([3, order, 3], [order] * 3), MESHES[name], strict=True)
     return Scene.from_toml(
         _SCENE, overrides=[f"bodies.{body}.mesh={{order={orders},elements={list(elements)}}}" for body, orders, elements in bodies]
     )
