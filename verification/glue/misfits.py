@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 
@@ -96,3 +97,36 @@ def misfits() -> dict[str, float]:
             found = refused(patches, faces)
             wrong += word not in found if word else bool(found)
     return {"wrong": float(wrong)}
+
+
+#: Faces of the first block at y and z, whatever its directions are called, and what its neighbour has otherwise along y.
+CALLED = ("uvw", "vwu", "wuv", "vuw", "uwv", "wvu")
+ALONG = {"order": (block(1.0, order=3), "order 2", "order 3"), "elements": (block(1.0, elements=(2, 4, 2)), "3 elements", "4 elements")}
+
+
+def called(patch: Patch, letters: str) -> Patch:
+    """The same body, whose directions along x, y and z are called otherwise; turned inside out by some, which gluing does not mind."""
+    order = ["xyz"[letters.index(letter)] for letter in "uvw"]
+    axes = ["xyz".index(axis) for axis in order]
+    numbers = np.arange(len(patch.weights)).reshape(patch.shape, order="F").transpose(axes).ravel(order="F")
+    u, v, w = (patch.directions[axis] for axis in axes)
+    return Patch((u, v, w), patch.control_points[numbers], patch.weights[numbers])
+
+
+@case(
+    claim="Of faces that are refused it is said along which direction of either body they differ, by the names that these have there.",
+    tier="gate",
+    bounds={
+        "wrong": Bound(0.0, 0.0, "definition: sentences with another body, number or direction"),
+        "tried": Bound(72.0, 72.0, "definition: two differences, six names of the directions of each body"),
+    },
+)
+def named() -> dict[str, float]:
+    """How many of how many."""
+    wrong = tried = 0
+    for other, here, there in ALONG.values():
+        for first, second in product(CALLED, repeat=2):
+            found = refused((called(block(0.0), first), called(other, second)), (first[0] + "1", second[0] + "0"))
+            wrong += found != f"a has {here} along {first[1]}, b {there} along {second[1]}"
+            tried += 1
+    return {"wrong": float(wrong), "tried": float(tried)}

@@ -6,8 +6,10 @@ import re
 
 import numpy as np
 
+from isomortar.errors import ConvergenceError
 from isomortar.harness import Bound, case
 from isomortar.scene import Scene
+from isomortar.solve.causes import BESIDE, causes
 from isomortar.solve.outlook import outlook
 from isomortar.solve.record import Observer
 from isomortar.solve.simulation import Simulation
@@ -70,3 +72,37 @@ def told_of_points(start: float) -> dict[str, float]:
         "left": float(sum(numbers) - (beyond(start + way) - beyond(start))),
         "apart": abs(contact.apart + 0.001),
     }
+
+
+#: Where the block begins, and whether it is then over the edge: with whole elements beside its master it is not, with all of them it is.
+STARTS = (
+    (-0.85, False),
+    (-0.8, False),
+    (-0.78, True),
+    (-0.7, False),
+    (-0.65, True),
+    (-0.1, False),
+    (-0.01, True),
+    (0.05, True),
+    (0.0, True),
+)
+OVER = re.compile(
+    r"contact 'between': the slave goes over an edge of its master; (\d+) of its (\d+) quadrature points are beside the master"
+)
+
+
+@case(
+    claim="Of a load step that is given up it is said that the slave goes over an edge where a part of an element, or all of the slave, is "
+    "beside its master, with the numbers of points that are; and nothing of it where that was said before.",
+    tier="gate",
+    bounds={"wrong": Bound(0.0, 0.0, "definition: places of the block of which something else is said")},
+)
+def over_an_edge() -> dict[str, float]:
+    """How many of nine."""
+    wrong = 0
+    for start, over in STARTS:
+        simulation = Simulation(Scene.from_toml(SCENE.format(low=start, high=start + LENGTH, way=0.1)).problem())
+        said, again = ("\n".join(causes(simulation.equilibrium, simulation.state, ConvergenceError(why))) for why in ("", BESIDE))
+        told = [(int(beside), int(points)) for beside, points in OVER.findall(said)]
+        wrong += told != [(beyond(start), ELEMENTS * 3 * 2 * 2)] * over or "over an edge" in again
+    return {"wrong": float(wrong)}

@@ -1,0 +1,142 @@
+"""What is said of bodies whose forces are lost in round-off: how much is out of balance, and what supports, loads and contacts bear."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from isomortar.geometry.patch import FloatArray
+from isomortar.harness import Bound, case
+from isomortar.scene import Scene
+from isomortar.solve.equilibrium import Balance
+from isomortar.solve.lost import LOST, LostDigits
+from isomortar.solve.record import StepResult
+from isomortar.solve.simulation import Simulation
+
+#: A block between a rigid plane and another block, of size 2, on whose upper side a load is.
+SCENE = """
+format = 1
+bodies.low.geometry = { kind = "box", lower = [-1, -1, 0], upper = [1, 1, 0.5] }
+bodies.low.mesh = { family = "L", order = 1, elements = [2, 2, 1] }
+bodies.high.geometry = { kind = "box", lower = [-1, -1, 0.5], upper = [1, 1, 1] }
+bodies.high.mesh = { family = "L", order = 1, elements = [2, 2, 1] }
+contacts.floor = { slave = "low.w0", plane = {}, friction = 0 }
+contacts.between = { slave = "high.w0", master = "low.w1", friction = 0 }
+supports.side = { edge = "low.u0.w1", components = ["x", "y"] }
+supports.top.face = "high.w1"
+loads.wind = { face = "low.u1", pressure = 0.001 }
+loads.gale = { face = "high.u1", pressure = 0.001 }
+stages = [{ name = "press", steps = 1, motions.top.translate = [0, 0, -0.02] }]
+"""
+SIZE = 2.0
+#: A plane of symmetry doubles what is out of balance.
+SYMMETRIES = ("", "symmetry = { y = 0.0 }\n")
+#: A force whose components are not alike, and its length.
+FORCE, LENGTH = np.array([2.0, -3.0, 6.0]), 7.0
+SAID = re.compile(r"body '(\w+)', load step 1: its forces are lost in round-off: (\S+) is out of balance where .* bear (\S+?)\. It is")
+
+
+def nothing(result: StepResult) -> StepResult:
+    """The result, of which nothing bears anything."""
+    zero = np.zeros(3)
+    return replace(
+        result,
+        reactions=tuple(replace(reaction, force=zero, moment=zero) for reaction in result.reactions),
+        loads=tuple(replace(load, force=zero, moment=zero) for load in result.loads),
+        contacts=tuple(replace(contact, force_slave=zero, force_master=zero) for contact in result.contacts),
+    )
+
+
+def by_support(name: int, by_moment: bool) -> Callable[[StepResult, FloatArray], StepResult]:
+    """What a support bears; a moment counts by the size of the body."""
+
+    def bears(result: StepResult, force: FloatArray) -> StepResult:
+        reactions = list(result.reactions)
+        change = {"moment": SIZE * force} if by_moment else {"force": force}
+        reactions[name] = replace(reactions[name], **change)  # type: ignore[arg-type]
+        return replace(result, reactions=tuple(reactions))
+
+    return bears
+
+
+def by_load(name: int) -> Callable[[StepResult, FloatArray], StepResult]:
+    """What a load is."""
+
+    def bears(result: StepResult, force: FloatArray) -> StepResult:
+        loads = list(result.loads)
+        loads[name] = replace(loads[name], force=force)
+        return replace(result, loads=tuple(loads))
+
+    return bears
+
+
+def by_contact(name: int) -> Callable[[StepResult, FloatArray], StepResult]:
+    """What a contact bears, on both of its sides."""
+
+    def bears(result: StepResult, force: FloatArray) -> StepResult:
+        contacts = list(result.contacts)
+        contacts[name] = replace(contacts[name], force_slave=force, force_master=-force)
+        return replace(result, contacts=tuple(contacts))
+
+    return bears
+
+
+#: What bears something, and which of the two bodies that counts for.
+BEARING = (
+    (by_support(0, by_moment=False), {"low"}),
+    (by_support(0, by_moment=True), {"low"}),
+    (by_support(1, by_moment=False), {"high"}),
+    (by_support(1, by_moment=True), {"high"}),
+    (by_load(0), {"low"}),
+    (by_load(1), {"high"}),
+    (by_contact(0), {"low"}),
+    (by_contact(1), {"low", "high"}),
+)
+
+
+def left_over(simulation: Simulation) -> Balance:
+    """A deformed state that leaves a known force on each body, on free unknowns; on those that are held it does not count."""
+    equilibrium = simulation.equilibrium
+    positions, held = equilibrium.numbering.reference.copy(), equilibrium.supports.held
+    positions[:, 2] *= 1.0 + 0.1 * positions[:, 0]
+    forces = np.where(held, 1e3, 0.0)
+    for piece in range(2):
+        own = equilibrium.numbering.piece_points(piece)
+        free = own.start + np.flatnonzero(~held[own].any(axis=1))
+        forces[free[0]], forces[free[1]] = 0.25 * FORCE, 0.75 * FORCE
+    internal = equilibrium.solid.forces(positions)
+    return Balance(positions, internal, internal, forces, (), ())
+
+
+@case(
+    claim="Of a body it is said that its forces are lost in round-off where what is left of them, of the whole, is more than a share of "
+    "the largest force of a support, load or contact on it, or of a support's moment over its size.",
+    tier="gate",
+    grid={"symmetry": SYMMETRIES},
+    bounds={
+        "wrong": Bound(0.0, 0.0, "definition: bodies of which it is said, or not, wrongly"),
+        "left": Bound(0.0, 0.0, "definition: sentences with another force that is out of balance than the one of the whole"),
+    },
+)
+def lost(symmetry: str) -> dict[str, float]:
+    """How many, of what bears just enough, just not enough, and of many that each bear not enough."""
+    simulation = Simulation(Scene.from_toml(SCENE.replace("stages", symmetry + "stages")).problem())
+    images = 2 if symmetry else 1
+    balance, result = left_over(simulation), nothing(next(iter(simulation.run())))
+    enough = images * FORCE / LOST
+    cases = [(bears(result, 1.01 * enough), bodies) for bears, bodies in BEARING]
+    cases += [(bears(result, 0.99 * enough), set[str]()) for bears, _ in BEARING]
+    together = result
+    for bears, _ in BEARING:
+        together = bears(together, 0.6 * enough)
+    wrong = others = 0
+    for given, bodies in [*cases, (together, set[str]())]:
+        told = [
+            found.groups() for sentence in LostDigits(simulation.equilibrium).after_step(balance, given) if (found := SAID.search(sentence))
+        ]
+        wrong += len({body for body, *_ in told} ^ ({"low", "high"} - bodies))
+        others += sum(float(left) != images * LENGTH for _, left, _ in told)
+    return {"wrong": float(wrong), "left": float(others)}
