@@ -17,7 +17,7 @@ from isomortar.solve.sharing import Sharing
 from isomortar.solve.simulation import Simulation
 
 TOLD = re.compile(r"contacts 'floor' and 'wall', load step 1: (\d+) slave control points at the edge between them bear on both and stick")
-OPEN, STICK, SLIP = 0, 1, 2
+STATES = OPEN, STICK, SLIP = 0, 1, 2
 #: What a load step converges with whose contacts are then given other states.
 SLIPPERY = ("contacts.floor.friction=0.0", "contacts.wall.friction=0.0")
 #: States of a shared point in the one contact and in the other of which something is said.
@@ -26,7 +26,8 @@ SHARED = {(STICK, STICK), (STICK, SLIP), (SLIP, STICK)}
 
 def with_states(equilibrium: Equilibrium, result: StepResult, floor: int, wall: int, count: int) -> StepResult:
     """The result with so many of the shared points in some states, all others of the floor sticking and those of the wall open."""
-    edge, mine, theirs = np.intersect1d(*(pair.pair.slave.point for pair in equilibrium.pairs), return_indices=True)
+    one, other = equilibrium.pairs
+    edge, mine, theirs = np.intersect1d(one.pair.slave.point, other.pair.slave.point, return_indices=True)
     assert count < len(edge)
     contacts = []
     for found, shared, state, others in zip(result.contacts, (mine, theirs), (floor, wall), (STICK, OPEN), strict=True):
@@ -49,7 +50,7 @@ def shared(floor: float, wall: float) -> dict[str, float]:
     friction = (f"contacts.floor.friction={floor}", f"contacts.wall.friction={wall}")
     equilibrium = Simulation(Scene.from_toml(CORNER, overrides=friction).problem()).equilibrium
     result, wrong = next(iter(Simulation(Scene.from_toml(CORNER, overrides=SLIPPERY).problem()).run())), 0
-    for count, states in enumerate(product((OPEN, STICK, SLIP), repeat=2)):
+    for count, states in enumerate(product(STATES, STATES)):
         sharing, given = Sharing(equilibrium), with_states(equilibrium, result, *states, 1 + count % 3)
         said = [*sharing.after_step(given), *sharing.after_step(given)]
         numbers = [int(found[1]) if (found := TOLD.match(sentence)) else 0 for sentence in said]
