@@ -44,6 +44,18 @@ def test_a_page_of_a_part_says_so(family):
     assert "<h1>All 3 cells pass</h1>" in Path("out/report.html").read_text()
 
 
+def test_all_families_and_cases_that_are_named_are_run(family):
+    (Path("cases") / "beside").mkdir()
+    (Path("cases/beside/also.py")).write_text(CASE)
+    assert verify("--family", family, "--family", "beside").output.strip().startswith("6 passed")
+    assert json.loads(Path("out/report.json").read_text())["only"] == f"family {family}, family beside"
+    first, second = f"{family}/widely[order=1]", "beside/widely"
+    assert verify("--case", first, "--case", second, "--case", first).output.strip().startswith("4 passed")
+    assert verify("--family", "beside", "--case", second).output.strip().startswith("3 passed")
+    with pytest.raises(InputError, match="there is no family 'nowhere'"):
+        verify("--family", family, "--family", "nowhere")
+
+
 def test_cells_of_a_case_that_a_run_leaves_out_are_counted(family):
     """A claim on all settings is measured at some of them only: a page of green cells must not pass for all of it."""
     path = Path("cases") / family / "widely.py"

@@ -42,8 +42,10 @@ CASES, REFERENCES, RESULTS = Path("verification"), Path("reference_data"), Path(
 
 def verify(
     tier: TierOption = "gate",
-    family: Annotated[str | None, typer.Option(help="Only this family.", autocompletion=completion.families)] = None,
-    case: Annotated[str | None, typer.Option(help="Only this case, FAMILY/NAME, or one cell of it, FAMILY/NAME[SETTINGS].")] = None,
+    family: Annotated[list[str] | None, typer.Option(help="Only this family; may be repeated.", autocompletion=completion.families)] = None,
+    case: Annotated[
+        list[str] | None, typer.Option(help="Only this case, FAMILY/NAME, or one cell of it, FAMILY/NAME[SETTINGS]; may be repeated.")
+    ] = None,
     jobs: JobsOption = CORES,
     fresh: Annotated[bool, typer.Option("--fresh", help="Measure again what did not change since it was measured.")] = False,
     report: Annotated[
@@ -80,8 +82,10 @@ def verify(
     page = report or results / "report.html"
     if page.suffix != ".html":
         raise InputError(f"is {page}; the page is an .html file, with .xml and .json beside it", "report")
-    cells = select(collect(cases), tier_of(tier), family, case)
-    only = ", ".join(f"{what} {name}" for what, name in (("family", family), ("case", case)) if name)
+    found, families, names = collect(cases), family or (None,), case or (None,)
+    asked = [cell for one in families for name in names for cell in select(found, tier_of(tier), one, name)]
+    cells = list({cell.name: cell for cell in asked}.values())
+    only = ", ".join(f"{what} {name}" for what, names in (("family", family), ("case", case)) for name in names or [])
     started, clock, lookup = datetime.now().astimezone(), time.perf_counter(), finder(references)
     # A run that is killed must not leave the green page of the one before.
     reports.write(page, not_measured(cells, lookup), reports.Context(tier, only, 0.0, started, []))
