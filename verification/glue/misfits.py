@@ -99,18 +99,19 @@ def misfits() -> dict[str, float]:
     return {"wrong": float(wrong)}
 
 
-#: Faces of the first block at y and z, whatever its directions are called, and what its neighbour has otherwise along y.
+#: What directions along x, y and z can be called; and what a neighbour has otherwise along y, in words of either block.
 CALLED = ("uvw", "vwu", "wuv", "vuw", "uwv", "wvu")
 ALONG = {"order": (block(1.0, order=3), "order 2", "order 3"), "elements": (block(1.0, elements=(2, 4, 2)), "3 elements", "4 elements")}
 
 
-def called(patch: Patch, letters: str) -> Patch:
-    """The same body, whose directions along x, y and z are called otherwise; turned inside out by some, which gluing does not mind."""
-    order = ["xyz"[letters.index(letter)] for letter in "uvw"]
-    axes = ["xyz".index(axis) for axis in order]
-    numbers = np.arange(len(patch.weights)).reshape(patch.shape, order="F").transpose(axes).ravel(order="F")
-    u, v, w = (patch.directions[axis] for axis in axes)
-    return Patch((u, v, w), patch.control_points[numbers], patch.weights[numbers])
+def called(patch: Patch, letters: str, backwards: bool) -> Patch:
+    """The same body, whose directions along x, y and z are called otherwise, that along z backwards or not; gluing minds no handedness."""
+    axes = [letters.index(letter) for letter in "uvw"]
+    numbers = np.arange(len(patch.weights)).reshape(patch.shape, order="F")
+    order = (numbers[:, :, ::-1] if backwards else numbers).transpose(axes).ravel(order="F")
+    x, y, z = patch.directions
+    u, v, w = ((x, y, z.reversed() if backwards else z)[axis] for axis in axes)
+    return Patch((u, v, w), patch.control_points[order], patch.weights[order])
 
 
 @case(
@@ -118,15 +119,15 @@ def called(patch: Patch, letters: str) -> Patch:
     tier="gate",
     bounds={
         "wrong": Bound(0.0, 0.0, "definition: sentences with another body, number or direction"),
-        "tried": Bound(72.0, 72.0, "definition: two differences, six names of the directions of each body"),
+        "tried": Bound(144.0, 144.0, "definition: two differences, six names of the directions of each body, one of them either way"),
     },
 )
 def named() -> dict[str, float]:
     """How many of how many."""
     wrong = tried = 0
     for other, here, there in ALONG.values():
-        for first, second in product(CALLED, repeat=2):
-            found = refused((called(block(0.0), first), called(other, second)), (first[0] + "1", second[0] + "0"))
+        for first, second, backwards in product(CALLED, CALLED, (False, True)):
+            found = refused((called(block(0.0), first, False), called(other, second, backwards)), (first[0] + "1", second[0] + "0"))
             wrong += found != f"a has {here} along {first[1]}, b {there} along {second[1]}"
             tried += 1
     return {"wrong": float(wrong), "tried": float(tried)}
