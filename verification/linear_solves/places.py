@@ -65,3 +65,30 @@ def places(transposed: bool) -> dict[str, float]:
             except KernelError:
                 pass
     return {"error": error, "unnoticed": float(unnoticed)}
+
+
+@case(
+    claim="A system that lacks any one entry of a source is refused, whatever the rows before it hold.",
+    tier="gate",
+    grid={"transposed": (False, True), "dropped": (0, 1, 2)},
+    bounds={
+        "unnoticed": Bound(0.0, 0.0, "definition: entries that may be left out without a word"),
+        "whole": Bound(0.0, 0.0, "definition: whether the system that lacks none is refused"),
+    },
+)
+def each_entry(transposed: bool, dropped: int) -> dict[str, float]:
+    """How many, of those of a full system of two block rows and two block columns, of which so many unknowns are dropped."""
+    pattern = Pattern(np.array([0, 2, 4], dtype=np.int32), np.array([0, 1, 0, 1], dtype=np.int32))
+    number = np.concatenate([np.full(dropped, -1), np.arange(6 - dropped)]).astype(np.int32)
+    count = 6 - dropped
+
+    def refused(gone: int) -> bool:
+        kept = np.arange(count**2) != gone
+        start = np.append(0, np.cumsum(kept.reshape(count, count).sum(axis=1))).astype(np.int64)
+        try:
+            _bindings.find_places(pattern, number, number, transposed, start, np.tile(np.arange(count), count)[kept].astype(np.int64))
+        except KernelError:
+            return True
+        return False
+
+    return {"unnoticed": float(sum(not refused(gone) for gone in range(count**2))), "whole": float(refused(-1))}

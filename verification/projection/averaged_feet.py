@@ -53,6 +53,8 @@ stages = [{{ name = "down", steps = 1, motions.top.translate = [0, -0.02, 0] }}]
 """
 #: Half the width of a trough z = x^2, its elements along x, and how high above it the slave is: from there one foot is on either side.
 HALF, ELEMENTS, HEIGHT = 1.0, 24, 0.9
+#: How high a small block is above a flat element.
+HOVER = 0.05
 
 
 def trough() -> Problem:
@@ -165,3 +167,71 @@ def on_the_side_of_a_ring() -> dict[str, float]:
         *_, last = Simulation(Scene.from_toml(_ON_ITS_SIDE.format(projection=projection)).problem()).run()
         forces.append(last.reactions[1].force)
     return {"force": float(np.linalg.norm(forces[1] - forces[0]) / np.linalg.norm(forces[0]))}
+
+
+@case(
+    claim="A foot along averaged normals is the same wherever its search began: in the foot before a motion, or nowhere.",
+    grid={"kind": ("L2", "N2"), "shift": (0.003, 0.03)},
+    bounds={
+        "missing": Bound(0.0, 0.0, "definition: the ring is all round"),
+        "foot": Bound(at_most=1e-11, reason="round-off: Newton's method ends below it on coordinates of size one"),
+        "gap": Bound(at_most=1e-12, reason="round-off: as above, of lengths of a tenth"),
+        "moved": Bound(at_least=1e-3, reason="definition: or both began at the foot"),
+    },
+)
+def from_anywhere(kind: str, shift: float) -> dict[str, float]:
+    """Points without a foot; largest differences of feet and mean gaps, and how far feet went, of a block that goes over a ring."""
+    text = _OVER_THE_SEAM.replace("FAMILY", kind[0]).replace("ORDER", kind[1])
+    equilibrium = Equilibrium(Scene.from_toml(text).problem(), Ledger())
+    pair, begun = equilibrium.pairs[0], equilibrium.initial_state()
+    nothing = replace(begun.contacts[0], projected=np.zeros_like(begun.contacts[0].projected))
+    positions = begun.positions.copy()
+    positions[equilibrium.numbering.points["block"]] += [shift, 0.3 * shift, 0.1 * shift]
+    followed, found = (pair.kinematics(positions, start) for start in (begun.contacts[0], nothing))
+    gaps = [kinematics.control.gap / kinematics.control.weight for kinematics in (followed, found)]
+    return {
+        "missing": float(np.count_nonzero(followed.projections.found == 0) + np.count_nonzero(found.projections.found == 0)),
+        "foot": float(np.abs(followed.projections.xi - found.projections.xi).max()),
+        "gap": float(np.abs(gaps[0] - gaps[1]).max()),
+        "moved": float(np.abs(followed.projections.xi - begun.contacts[0].projection).max()),
+    }
+
+
+def kite(corner: int) -> Problem:
+    """A small block above a far corner of a flat element, by the number of that corner; all else of the element is near its middle."""
+    line = Direction("L", 1, np.array([0.0, 1.0]))
+    ends = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]])
+    way = 2.0 * ends[corner] - 1.0
+    plan, (x, y) = ends + 2.0 * way * (np.arange(4) == corner)[:, None], ends[corner] + 1.4 * way
+    points = np.vstack([np.column_stack([plan, np.full(4, z)]) for z in (-1.0, 0.0)])
+    small = np.vstack([np.column_stack([[x, y] + 0.2 * (ends - 0.5), np.full(4, z)]) for z in (HOVER, HOVER + 0.2)])
+    bodies = tuple(
+        Body(name, Patch((line,) * 3, at, np.ones(8)), Material(), (2, 2, 2)) for name, at in (("small", small), ("kite", points))
+    )
+    contact = Contact("interface", Face("small", "w0"), Face("kite", "w1"), 0.0, (3, 3), projection="averaged")
+    return Problem("kite", bodies, (contact,), (), ())
+
+
+@case(
+    claim="Feet are found in all of an element, though one of its corners is far from the others, whichever it is.",
+    grid={"corner": (0, 1, 2, 3)},
+    bounds={
+        "missing": Bound(0.0, 0.0, "definition: the element is below all of the block"),
+        "gap": Bound(at_most=1e-13, reason="round-off: the element is flat, its normals are parallel"),
+        "foot": Bound(at_most=1e-13, reason="round-off: of the element's bilinear functions at the foot"),
+    },
+)
+def far_corner(corner: int) -> dict[str, float]:
+    """Points without a foot; largest errors of gaps, and of where feet are."""
+    equilibrium = Equilibrium(kite(corner), Ledger())
+    pair, start = equilibrium.pairs[0], equilibrium.initial_state()
+    nothing = replace(start.contacts[0], projected=np.zeros_like(start.contacts[0].projected))
+    kinematics = pair.kinematics(start.positions, nothing)
+    u, v = kinematics.projections.xi.T
+    functions = np.column_stack([(1.0 - u) * (1.0 - v), u * (1.0 - v), (1.0 - u) * v, u * v])
+    feet = functions @ equilibrium.problem.body("kite").patch.control_points[4:]
+    return {
+        "missing": float(np.count_nonzero(kinematics.projections.found == 0)),
+        "gap": float(np.abs(kinematics.control.gap / kinematics.control.weight + HOVER).max()),
+        "foot": float(np.abs(feet[:, :2] - places(pair, start.positions)[:, :2]).max()),
+    }

@@ -214,19 +214,22 @@ def rigid_motion(kind: str, law: str) -> dict[str, float]:
 
 
 @case(
-    claim="Far from the origin, along any axis, a body has the same forces to the last digit.",
+    claim="Far from the origin, and far from where it was, along any axis, a body has the same forces to the last digit.",
     grid={"kind": ["N2", "L2"], "axis": [0, 1, 2]},
-    bounds={"change": Bound(0.0, 0.0, "definition: of places whose digits all fit the shift too, only differences count")},
+    bounds=dict.fromkeys(
+        ("change", "moved"), Bound(0.0, 0.0, "definition: of places whose digits all fit the shift too, only differences count")
+    ),
 )
 def far_away(kind: str, axis: int) -> dict[str, float]:
-    """Largest change of the forces by a shift of both configurations by 2^20, of control points that are multiples of 2^-20."""
+    """Largest change of the forces by a shift of both configurations, or of the present one, by 2^20; places are multiples of 2^-20."""
     patch = curved_element(kind)
     here = np.round(patch.control_points * 2.0**20) / 2.0**20
     strained = np.round(here @ random_gradients(1.0)[0].T * 2.0**20) / 2.0**20
     shift = 2.0**20 * np.eye(3)[axis]
     points = int(kind[1:]) + 1
-    near, far = (forces(replace(patch, control_points=here + off), strained + off, points) for off in (0.0, shift))
-    return {"change": float(np.abs(far - near).max())}
+    places = ((here, strained), (here + shift, strained + shift), (here, strained + shift))
+    near, far, moved = (forces(replace(patch, control_points=before), now, points) for before, now in places)
+    return {"change": float(np.abs(far - near).max()), "moved": float(np.abs(moved - near).max())}
 
 
 def many_digits(f: mpmath.matrix, material: Material) -> mpmath.matrix:
