@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from told.word_by_word import SENTENCES
 
 import isomortar
 import test_refusals
@@ -54,7 +55,7 @@ def _of_layers() -> dict[Path, list[list[str]]]:
 
 
 def _heard() -> dict[str, dict[str, str]]:
-    return tomllib.loads((Path(__file__).parent / "sentences.toml").read_text(encoding="utf-8"))
+    return tomllib.loads(SENTENCES.read_text(encoding="utf-8"))
 
 
 @pytest.mark.parametrize(("path", "found"), _of_layers().items(), ids=lambda value: value.stem if isinstance(value, Path) else "")

@@ -365,6 +365,19 @@ def held():
 """
 
 
+def test_cells_read_nothing_beside_the_cases_which_a_campaign_copies_alone():
+    """What keeps fronts, builds with sanitizers and runs other programs is no cell that a campaign asks."""
+    assert _looking_beside() == ["keep_front.py", "performance/peers/programs.py", "sanitizers/tools.py"]
+
+
+def _looking_beside() -> list[str]:
+    """Modules of cases that go further up than to the folder of all."""
+    cases = ROOT / "verification"
+    names = {path: path.relative_to(cases) for path in sorted(cases.rglob("*.py"))}
+    ups = {path: re.findall(r"__file__\)[.\w()]*\.parents\[(\d)\]", path.read_text(encoding="utf-8")) for path in names}
+    return [str(name) for path, name in names.items() if any(int(up) >= len(name.parts) for up in ups[path])]
+
+
 def test_one_fault_after_the_other_is_laid_over_the_package_and_taken_away(tmp_path):
     family = tmp_path / "cases" / "mutants_laid"
     family.mkdir(parents=True)

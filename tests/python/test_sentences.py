@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from told.given_up import all_told, without_digits
 from told.word_by_word import KINDS as OF_SCENES
+from told.word_by_word import SENTENCES
 from told.wrong.contacts import PRESS
 from told.wrong.runs import PLATE, RUNS
 from told.wrong.singular import CORNER
@@ -32,7 +33,7 @@ from test_advice import Warned, _of_weights, rational, warnings
 from test_causes import scene
 from test_singular import STICKING, Heard
 
-SENTENCES: dict[str, dict[str, str]] = tomllib.loads((Path(__file__).parent / "sentences.toml").read_text(encoding="utf-8"))
+HEARD: dict[str, dict[str, str]] = tomllib.loads(SENTENCES.read_text(encoding="utf-8"))
 
 #: Name and sentence of each case of a kind.
 Told = Iterator[tuple[str, str]]
@@ -204,13 +205,13 @@ KINDS = (
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.__name__)
 def test_every_word(kind: Callable[[pytest.MonkeyPatch], Told], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    assert dict(kind(monkeypatch)) == SENTENCES[kind.__name__]
+    assert dict(kind(monkeypatch)) == HEARD[kind.__name__]
 
 
 @pytest.mark.parametrize("kind", OF_SCENES)
 def test_every_word_of_scenes(kind: str) -> None:
-    assert dict(OF_SCENES[kind]()) == SENTENCES[kind]
+    assert dict(OF_SCENES[kind]()) == HEARD[kind]
 
 
 def test_every_word_of_load_steps_that_are_given_up() -> None:
-    assert all_told() == SENTENCES["given_up"]
+    assert all_told() == HEARD["given_up"]

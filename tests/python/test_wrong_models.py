@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TypedDict
 
 import pytest
+from told.mistakes import MISTAKES
 
 from isomortar.errors import IsomortarError
 from isomortar.scene import Scene
@@ -25,7 +25,7 @@ class Mistake(TypedDict):
     words: str
 
 
-MISTAKES: dict[str, Mistake] = tomllib.loads((Path(__file__).parent / "wrong_models.toml").read_text(encoding="utf-8"))
+WRONG: dict[str, Mistake] = tomllib.loads(MISTAKES.read_text(encoding="utf-8"))
 
 
 def refused(mistake: Mistake) -> Sequence[str]:
@@ -53,15 +53,15 @@ def computed(mistake: Mistake) -> Sequence[str]:
 NOTICED = {"refused": refused, "check": checked, "run": computed}
 
 
-@pytest.mark.parametrize("name", MISTAKES)
+@pytest.mark.parametrize("name", WRONG)
 def test_no_wrong_model_passes_in_silence(name: str) -> None:
-    mistake = MISTAKES[name]
+    mistake = WRONG[name]
     said = NOTICED[mistake["said"]](mistake)
     assert any(mistake["words"] in sentence for sentence in said), said
 
 
 def test_there_are_thirty_of_kinds_that_no_other_is_of() -> None:
     """No two are noticed by the same words in the same scene."""
-    kinds = {(mistake["scene"], mistake["words"]) for mistake in MISTAKES.values()}
-    assert len(MISTAKES) >= 30
-    assert len(kinds) >= len(MISTAKES) - 2, "places and units are both why a contact cannot close, and which way a plane looks"
+    kinds = {(mistake["scene"], mistake["words"]) for mistake in WRONG.values()}
+    assert len(WRONG) >= 30
+    assert len(kinds) >= len(WRONG) - 2, "places and units are both why a contact cannot close, and which way a plane looks"

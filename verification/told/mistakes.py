@@ -12,7 +12,7 @@ from isomortar.scene import Scene
 from isomortar.solve.outlook import outlook
 
 #: A scene that comes with the program, what is changed in it, where it is noticed, and words of what is said.
-MISTAKES = Path(__file__).parents[2] / "tests" / "python" / "wrong_models.toml"
+MISTAKES = Path(__file__).parent / "wrong_models.toml"
 
 
 def told(scene: str, changes: Sequence[str]) -> tuple[str, list[str]]:

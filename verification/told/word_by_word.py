@@ -14,7 +14,7 @@ from isomortar.scene import Scene
 from isomortar.solve import doubts as told_of
 from isomortar.solve.simulation import Simulation
 
-SENTENCES = Path(__file__).parents[2] / "tests" / "python" / "sentences.toml"
+SENTENCES = Path(__file__).parent / "sentences.toml"
 
 #: Name and sentence of each scene of a kind.
 Told = Iterator[tuple[str, str]]
