@@ -65,8 +65,8 @@ def toggling(seen: Sequence[bytes], visited: Sequence[IntArray], by_poles: np.nd
         opening = points[cohesive[points] & np.any(states[:, points] == PointState.OPEN, axis=0)]
         if opening.size:
             hint += (
-                f" (at constraints {_first_few(opening)} contact opens and closes, where what a cohesion bears drops to zero in a jump: there "
-                "may be no solution between. Take a lower cohesion, or none)"
+                f" (at constraints {_first_few(opening)} contact opens and closes, where what a cohesion bears drops to zero in a jump: "
+                "there may be no solution between. Take a lower cohesion, or none)"
             )
         return f"; constraints {_first_few(points)} change their states from iteration to iteration{hint}"
     elements = np.array(visited)
