@@ -169,3 +169,75 @@ def shared(method: str) -> dict[str, float]:
         "shape": float(np.abs(apart[2] - apart[1]).max()),
         "bent": float(np.abs(apart[1] - apart[0]).max()),
     }
+
+
+#: A pad that a force and a moment press and turn on a plane, then its own weight alone.
+_PLATE = """
+format = 1
+bodies.pad = { geometry = { kind = "box", lower = [-0.5, -0.5, 0], upper = [0.5, 0.5, 0.4] }, mesh = { elements = [2, 2, 1] } }
+contacts.floor = { slave = "pad.w0", plane = {}, friction = 0.3 }
+loads.own = { body = "pad", weight = [0, 0, -0.5] }
+
+[supports.plate]
+face = "pad.w1"
+components = ["x"]
+force = { y = 0.02, z = -0.3 }
+moment = 0.02
+axis = [0, 1, 0]
+centre = [0, 0, 0.4]
+stages = ["pressed"]
+
+[[stages]]
+name = "pressed"
+steps = 2
+motions.plate.translate = [0.02, 0, 0]
+
+[[stages]]
+name = "let-go"
+steps = 2
+
+[[stages]]
+name = "free"
+steps = 1
+"""
+
+
+@case(
+    claim="A support by force and moment that is released is recorded as staying where it was, in a run that goes on from any step too.",
+    tier="gate",
+    bounds={
+        "way": Bound(0.0, 0.0, "definition: displacement and centre of what does not hold any more do not change"),
+        "angle": Bound(0.0, 0.0, "definition: nor does its rotation"),
+        "gone": Bound(at_least=1e-3, reason="definition: or it has not gone anywhere by its force"),
+        "turned": Bound(at_least=0.1, reason="definition: nor turned by its moment, in degrees"),
+        "resumed": Bound(0.0, 0.0, "definition: the bits of the whole run"),
+    },
+)
+def stays() -> dict[str, float]:
+    """Displacement, centre and rotation after the release off those before; how far and by how much it went; the same of resumed runs."""
+    found = problem(_PLATE, "monolithic")
+    results = list(Simulation(found).run())
+    (held, *left) = (result.reactions[0] for result in results[1:])
+    resumed = [
+        (one, other) for k, start in enumerate(results[:-1]) for one, other in zip(results[k + 1 :], _resumed(found, start), strict=True)
+    ]
+    off = [np.abs(_place(one) - _place(other)).max() for one, other in resumed]
+    ways = [np.abs(np.subtract([r.displacement, r.centre], [held.displacement, held.centre])).max() for r in left]
+    return {
+        "way": float(np.max(ways)),
+        "angle": float(np.max([abs(r.rotation - held.rotation) for r in left])),
+        "gone": float(abs(held.displacement[2])),
+        "turned": float(abs(held.rotation)),
+        "resumed": float(np.max(off)),
+    }
+
+
+def _resumed(found: Problem, start: StepResult) -> list[StepResult]:
+    """The load steps after one, by a simulation that begins there."""
+    return list(Simulation(found, resume_from=start).run())
+
+
+def _place(result: StepResult) -> np.ndarray:
+    """All that is recorded of the first support, in one array."""
+    reaction = result.reactions[0]
+    return np.concatenate([reaction.force, reaction.moment, reaction.centre, reaction.displacement, [reaction.rotation]])

@@ -24,6 +24,20 @@ from isomortar.solve.singular import explain
 from isomortar.solve.timing import Ledger
 from isomortar.solve.trail import toggling
 
+#: A block that a cohesion holds as it is dragged: its rear edge opens.
+COHESIVE = """
+format = 1
+bodies.block = { geometry = { kind = "box", lower = [0, 0, 0], upper = [0.5, 0.6, 0.4] }, mesh.elements = [2, 1, 1] }
+bodies.base.geometry = { kind = "box", lower = [-0.2, -0.2, -0.4], upper = [1.5, 0.9, 0] }
+bodies.base.mesh = { order = [2, 2, 1], elements = [3, 2, 1] }
+contacts.free = { slave = "block.u0", plane = { point = [-1, 0, 0], normal = [1, 0, 0] } }
+contacts.sole = { slave = "block.w0", master = "base.w1", friction = 0.3, cohesion = 0.02 }
+supports.base.face = "base.w0"
+supports.top = { face = "block.w1", components = ["x", "y"], force = { z = -0.1 } }
+stages = [{ name = "press", steps = 1 }, { name = "drag", steps = 1, motions.top.translate = [0.04, 0, 0] }]
+solver.max_cuts = 0
+"""
+
 
 def without_digits(sentence: str) -> str:
     """Numbers with an exponent, which are round-off, in short."""
@@ -70,11 +84,16 @@ def of_iterations() -> Iterator[tuple[str, str]]:
     states = [np.array(s, dtype=np.int32).tobytes() for s in ([0, 1, 2, 1], [0, 1, 2, 2])]
     places = [np.zeros((2, 4), dtype=np.int32), np.array([[0, 0, 0, 0], [1, 0, 0, 0]], dtype=np.int32)]
     away, near = np.zeros(2, dtype=bool), np.ones(2, dtype=bool)
-    yield "changing states", toggling(states, places, away, summed=False)
-    yield "changing states, paper's sum", toggling(states, places, away, summed=True)
-    yield "knot lines", toggling(states[:1] * 2, places, away, summed=True)
-    yield "poles", toggling(states[:1] * 2, places, near, summed=True)
-    yield "nothing changes", toggling(states[:1] * 2, places[:1] * 2, near, summed=True)
+    none, opening = np.zeros(4, dtype=bool), [np.array(s, dtype=np.int32).tobytes() for s in ([0, 1, 0, 1], [2, 1, 1, 2])]
+    yield "changing states", toggling(states, places, away, summed=False, cohesive=~none)
+    yield "changing states, paper's sum", toggling(states, places, away, summed=True, cohesive=none)
+    yield "opening without a cohesion", toggling(opening, places, away, summed=False, cohesive=none)
+    yield "opening with a cohesion", toggling(opening, places, away, summed=False, cohesive=np.array([True, True, False, True]))
+    yield "opens where dragged", without_digits(error(COHESIVE))
+    yield "opens without a cohesion", without_digits(error(COHESIVE, "contacts.sole.cohesion=0", "solver.max_iterations=3"))
+    yield "knot lines", toggling(states[:1] * 2, places, away, summed=True, cohesive=none)
+    yield "poles", toggling(states[:1] * 2, places, near, summed=True, cohesive=none)
+    yield "nothing changes", toggling(states[:1] * 2, places[:1] * 2, near, summed=True, cohesive=none)
     few = ("solver.method=uzawa", "solver.max_augmentations=2", "solver.max_cuts=0")
     yield "augmentations", without_digits(error(PRESS, *few))
 

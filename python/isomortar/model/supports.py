@@ -166,8 +166,12 @@ class Supports:
 
     def released(self, bodies: Collection[str]) -> list[str]:
         """Names of the supports on some bodies that held before, and do not now."""
-        before = {k for stage in range(self.stage) for k in self._holding(stage)} - {*self.present}
-        return [self._problem.supports[k].name for k in sorted(before) if self._problem.supports[k].place.body in bodies]
+        supports = self._problem.supports
+        return [support.name for k, support in enumerate(supports) if self.left(k) and support.place.body in bodies]
+
+    def left(self, k: int) -> bool:
+        """Whether the support of a number held in a stage before, and does not now: it stays where it was (theory 8.1)."""
+        return k not in self.present and any(map(self._problem.supports[k].holds, range(self.stage)))
 
     def release(self, left: FloatArray, time: float) -> None:
         """Let what is `unbalanced` at a load time go linearly to zero by the end of the stage (theory 5.23)."""

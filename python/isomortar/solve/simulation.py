@@ -79,6 +79,7 @@ class Simulation:
         self._step = resume_from.step if resume_from else 0
         self._increment = resume_from.next_increment if resume_from else 1.0
         self.equilibrium.orderings = dict(resume_from.orderings) if resume_from else {}
+        self._stood: tuple[Reaction, ...] = resume_from.reactions if resume_from else ()
         self.state = self._from_record(resume_from) if resume_from else self.equilibrium.initial_state()
 
     def run(self) -> Iterator[StepResult]:
@@ -94,7 +95,7 @@ class Simulation:
         advice = StepAdvice(self.problem, self._step, self.state.contacts)
         while self._step < self.problem.total_steps:
             result = self._advance_step(self._step + 1)
-            self._step, self.state = result.step, self._from_record(result)
+            self._step, self.state, self._stood = result.step, self._from_record(result), result.reactions
             self._observer.recorded(result)
             self._warn(advice.after_step(result.step, result.contacts, self.state.contacts))
             yield result
@@ -211,13 +212,16 @@ class Simulation:
     def _reactions(self, time: float, positions: FloatArray, total: FloatArray) -> tuple[Reaction, ...]:
         """Forces that the supports exert: their shares of the residual at the components that they prescribe (theory 8.1)."""
         reactions = []
-        supports = self.equilibrium.supports
-        for support, points, share in zip(self.equilibrium.problem.supports, supports.points, supports.shares, strict=True):
-            centre, forces = supports.centre(support, time, positions), share * total[points]
-            force, turning, way = forces.sum(axis=0), moment(positions[points] - centre, forces), supports.way(support, time, positions)
-            centre = centre + self.equilibrium.origin
-            angle = supports.angle(support, time, positions)
-            reactions.append(Reaction(*of_whole(self.problem, force, turning, centre), centre, way, angle))
+        supports, origin = self.equilibrium.supports, self.equilibrium.origin
+        for k, (support, points) in enumerate(zip(self.equilibrium.problem.supports, supports.points, strict=True)):
+            if supports.left(k):
+                centre, way, angle = self._stood[k].centre - origin, self._stood[k].displacement, self._stood[k].rotation
+            else:
+                way, angle = supports.way(support, time, positions), supports.angle(support, time, positions)
+                centre = supports.centre(support, time, positions)
+            forces = supports.shares[k] * total[points]
+            force, turning = forces.sum(axis=0), moment(positions[points] - centre, forces)
+            reactions.append(Reaction(*of_whole(self.problem, force, turning, centre + origin), centre + origin, way, angle))
         return tuple(reactions)
 
     def _loads(self, time: float, positions: FloatArray) -> tuple[LoadResult, ...]:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from isomortar._codes import PointState
 from isomortar.geometry.patch import IntArray
 from isomortar.solve.contact import Kinematics, PairMechanics
 from isomortar.solve.equilibrium import Balance
@@ -39,25 +40,34 @@ class Trail:
     def __init__(self) -> None:
         self.states: list[bytes] = []
         self._last: deque[tuple[Kinematics, ...]] = deque(maxlen=RECENT)
+        self._sizes: list[int] = []
 
     def add(self, balance: Balance) -> None:
         """Note an iterate."""
         self.states.append(states(balance))
         self._last.append(balance.kinematics)
+        self._sizes = [response.state.size for response in balance.responses]
 
     def toggling(self, pairs: Sequence[PairMechanics]) -> str:
         """What changed to and fro in the last iterations, as a part of a sentence."""
         poles = [beside_poles(pair.pair, k.projections) for pair, k in zip(pairs, self._last[-1], strict=True)]
         by_poles = np.concatenate(poles or [np.zeros(0, dtype=np.bool_)])
-        return toggling(self.states[-RECENT:], [_elements(k) for k in self._last], by_poles, any(pair.summed for pair in pairs))
+        cohesive = np.repeat([pair.pair.contact.cohesion > 0.0 for pair in pairs], self._sizes)
+        return toggling(self.states[-RECENT:], [_elements(k) for k in self._last], by_poles, any(pair.summed for pair in pairs), cohesive)
 
 
-def toggling(seen: Sequence[bytes], visited: Sequence[IntArray], by_poles: np.ndarray, summed: bool) -> str:
-    """What changed to and fro in some iterations, as a part of a sentence."""
+def toggling(seen: Sequence[bytes], visited: Sequence[IntArray], by_poles: np.ndarray, summed: bool, cohesive: np.ndarray) -> str:
+    """What changed to and fro in some iterations, as a part of a sentence; `cohesive`: constraints of contacts with a cohesion."""
     states = np.array([np.frombuffer(s, dtype=np.int32) for s in seen])
     points = np.flatnonzero(np.any(states != states[0], axis=0))
     if points.size:
         hint = ' (solver.slip_sum = "local" has no jump where a neighbour becomes active)' if summed else ""
+        opening = points[cohesive[points] & np.any(states[:, points] == PointState.OPEN, axis=0)]
+        if opening.size:
+            hint += (
+                f" (at constraints {_first_few(opening)} contact opens and closes, where what a cohesion bears drops to zero in a jump: "
+                "there may be no solution between. Take a lower cohesion, or none)"
+            )
         return f"; constraints {_first_few(points)} change their states from iteration to iteration{hint}"
     elements = np.array(visited)
     crossing = np.flatnonzero(np.any(elements != elements[0], axis=(0, 2)))
