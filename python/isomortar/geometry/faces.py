@@ -5,12 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from isomortar.geometry.patch import FloatArray, Patch, opposite
 from isomortar.geometry.splines import Spline
 
 #: Cells in a direction, at least: round a ring they then are off it by a five-hundredth of its radius.
 CELLS = 48
+#: Share of a face's size that an edge is longer than, unless it is a pole.
+POINT = 1e-9
 
 
 @dataclass(frozen=True)
@@ -24,23 +27,42 @@ class Cells:
     areas : ndarray, shape (n,)
     thickness : ndarray, shape (n,)
         Distance of each centre from that of its counterpart on the opposite face.
+    shape : tuple of int
+        Number of cells by direction.
     """
 
     centres: FloatArray
     normals: FloatArray
     areas: FloatArray
     thickness: FloatArray
+    shape: tuple[int, int]
+
+    def outermost(self, closed: tuple[bool, bool]) -> NDArray[np.bool_]:
+        """Which cells are at an edge of the face, which may be closed along a direction; shape (n,)."""
+        inner = [np.full(count, whole) for count, whole in zip(self.shape, closed, strict=True)]
+        for line in inner:
+            line[1:-1] = True
+        return ~np.logical_and.outer(*inner).ravel()
 
 
 def cells(patch: Patch, face: str) -> Cells:
     """The cells of a face. Its coordinates say which way is out, not where the opposite face is: bodies may be bent round."""
     grid, other = _grid(patch, face), _grid(patch, opposite(face))
-    across = np.cross(grid[1:, 1:] - grid[:-1, :-1], grid[1:, :-1] - grid[:-1, 1:]).reshape(-1, 3)
+    across = np.cross(grid[1:, 1:] - grid[:-1, :-1], grid[1:, :-1] - grid[:-1, 1:])
     if face[1] == "1":
         across = -across
-    length = np.linalg.norm(across, axis=1)
-    normals = across / np.where(length > 0.0, length, 1.0)[:, None]
-    return Cells(_centres(grid), normals, 0.5 * length, np.linalg.norm(_centres(other) - _centres(grid), axis=1))
+    length = np.linalg.norm(across, axis=-1).ravel()
+    normals = across.reshape(-1, 3) / np.where(length > 0.0, length, 1.0)[:, None]
+    return Cells(_centres(grid), normals, 0.5 * length, np.linalg.norm(_centres(other) - _centres(grid), axis=1), across.shape[:2])
+
+
+def edges(patch: Patch, face: str, closed: tuple[bool, bool]) -> FloatArray:
+    """Points along the edges of a face, shape (n, 3): none along directions that are closed, and of poles, which are one point."""
+    grid = _grid(patch, face)
+    lines = [] if closed[0] else [grid[0], grid[-1]]
+    lines += [] if closed[1] else [grid[:, 0], grid[:, -1]]
+    size = np.ptp(grid.reshape(-1, 3), axis=0).max()
+    return np.concatenate([np.zeros((0, 3)), *(line for line in lines if np.ptp(line, axis=0).max() > POINT * size)])
 
 
 def _centres(grid: FloatArray) -> FloatArray:

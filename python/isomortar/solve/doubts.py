@@ -20,6 +20,7 @@ from isomortar.model.numbering import Numbering, ends_apart
 from isomortar.model.pairs import Pair
 from isomortar.model.rational import QUADRATURE_TOLD, quadrature_error, too_few_points
 from isomortar.model.stance import FACING, Stance, stance
+from isomortar.solve.doubtful_edges import of_edges
 from isomortar.solve.doubtful_faces import of_faces
 from isomortar.solve.doubtful_meshes import of_meshes
 from isomortar.solve.doubtful_motions import FLAT, approach, between, in_far_steps, nearest_approach, of_motions
@@ -78,6 +79,7 @@ def doubts(problem: Problem, state: State) -> Iterator[str]:
         too_deep = _too_deep(problem, contact, state.positions, feet) if found.depth > 0.0 else 0
         yield from _of_stance(contact, found, travel, too_deep, beside=not np.any(feet))
         yield from _of_ways(problem, contact, found, beside=not np.any(feet))
+        yield from of_edges(problem, contact, feet, found.gap)
         yield from _of_contact(contact)
         yield from of_rolling(problem, contact, found.towards)
         yield from doubts_at_poles(problem, contact, travel)

@@ -110,6 +110,12 @@ DOUBTFUL = {
         "-0.35], upper = [0.4, 0.4, 30]",
         "inside their master",
     ),
+    "slave around its master": (
+        PAIR,
+        'slave = "upper.w0"\nmaster = "lower.w1"',
+        'slave = "lower.w1"\nmaster = "upper.w0"',
+        "Exchange the two: upper.w0 ends within lower.w1",
+    ),
     "wholly beside": (*UNUSUAL["slave beside its master"], "upper.w0 is wholly beside its master"),
     "cannot close": (PRESS, "point = [0, 0, 0]", "point = [0, 0, -0.5]", "0.5 apart at the start, and all supports together travel 0.1"),
     "bodies cannot close": (PAIR, "-0.4, 0.0], upper = [0.4, 0.4, 0.6]", "-0.4, 0.9], upper = [0.4, 0.4, 1.6]", "it cannot close"),

@@ -1,0 +1,54 @@
+"""What is doubtful of the edges of a master: that they bear within the slave's face, where its own could be the slave as well."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from isomortar.geometry.faces import cells, edges
+from isomortar.geometry.patch import IntArray
+from isomortar.model.entities import Contact, Face, Problem
+from isomortar.model.sheet import Sheet
+from isomortar.model.stance import nearest
+
+#: Edges bear where they are nearer to the other side than the two are anywhere and this share of its size: there faces lie on each other.
+NEAR = 0.01
+
+
+def of_edges(problem: Problem, contact: Contact, feet: IntArray, apart: float) -> Iterator[str]:
+    """Sentences on a slave that goes on beyond edges of its master which bear on it, where neither would if each were the other.
+
+    Parameters
+    ----------
+    problem : Problem
+    contact : Contact
+    feet : ndarray of int
+        0 of slave quadrature points without a foot.
+    apart : float
+        Distance of the sides where they are nearest.
+    """
+    if feet.all() or not isinstance(contact.master, Face):
+        return
+    slave, master = (Sheet.of(problem, place) for place in (contact.slave, contact.master))
+    twice = any((other.slave, other.master) == (contact.master, contact.slave) for other in problem.contacts)
+    if master.rigid or twice or not _bear_within(master, slave, apart) or _bear_within(slave, master, apart):
+        return
+    yield (
+        f"contact {contact.name!r}: the slave goes on beyond edges of its master that bear on it, and {np.count_nonzero(feet == 0)} of its "
+        f"{feet.size} quadrature points are beside these. As an edge moves points come and go, and load steps may be cut, or given up. "
+        f"Exchange the two: {contact.master.words} ends within {contact.slave.words}"
+    )
+
+
+def _bear_within(one: Sheet, other: Sheet, apart: float) -> bool:
+    """Whether an edge of one side is near the other one away from the edges of that."""
+    faces, points = cells(other.patch, other.face), edges(one.patch, one.face, one.closed)
+    if not len(points):
+        return False
+    found = nearest(points, faces.centres)
+    arms, normals = points - faces.centres[found], faces.normals[found]
+    heights = np.einsum("ij,ij->i", arms, normals)
+    beside = np.linalg.norm(arms - heights[:, None] * normals, axis=1) > np.sqrt(2.0 * faces.areas[found])
+    bears = np.abs(heights) <= apart + NEAR * np.sqrt(faces.areas.sum())
+    return bool(np.any(bears & ~beside & ~faces.outermost(other.closed)[found]))
