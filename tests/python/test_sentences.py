@@ -13,6 +13,7 @@ import h5py
 import numpy as np
 import pytest
 from told.given_up import all_told, without_digits
+from told.passing import SCENE as BENT
 from told.word_by_word import KINDS as OF_SCENES
 from told.word_by_word import SENTENCES
 from told.wrong.contacts import PRESS
@@ -139,6 +140,9 @@ def along_the_way(_: pytest.MonkeyPatch) -> Told:
     observer = Warned()
     list(Simulation(Scene.from_toml(RUNS["small strains, turned"][0]).problem(), observer).run())
     yield "small strains", observer.said[0]
+    observer = Warned()
+    list(Simulation(Scene.from_toml(BENT.replace("LEVEL", "0")).problem(), observer).run())
+    yield "in each other", observer.said[-1]
 
 
 def _before_the_first_step(simulation: Simulation, number: int = 0) -> str:

@@ -15,6 +15,8 @@ from isomortar.model.sheet import Sheet
 SLENDER = 20.0
 #: Elements at a face in contact longer than those at the opposite face by this factor were to be the finer ones, most likely.
 GRADED = 3.0
+#: Bending stiffness over the right one above which a body of order 1 hardly bends.
+BENDS = 2.0
 #: Shares that solvers may leave open: more shows in the second digit of forces, and is told.
 LOOSE = {"newton_tolerance": 1e-4, "augmentation_tolerance": 0.01}
 #: Settings that one method alone looks at.
@@ -32,6 +34,7 @@ def of_meshes(problem: Problem) -> Iterator[str]:
     for body in problem.deformable:
         yield from _slender(body)
         yield from _few_points(body)
+        yield from _hardly_bends(problem, body)
     touching = {face for contact in problem.contacts for side in (contact.slave, contact.master) for face in getattr(side, "faces", ())}
     for face in sorted(touching, key=lambda face: face.words):
         if Face(face.body, opposite(face.face)) not in touching:
@@ -76,6 +79,30 @@ def _few_points(body: Body) -> Iterator[str]:
         yield (
             f"body {body.name!r}: {' x '.join(map(str, body.quadrature))} Gauss points an element do not see all ways in which it can "
             f"deform: what they miss costs nothing, and grows. Take bodies.{body.name}.mesh.quadrature = {needed} or more, or none"
+        )
+
+
+def _hardly_bends(problem: Problem, body: Body) -> Iterator[str]:
+    """A thin body that is of order 1 along its sheet, whose shear strains bear what bending should.
+
+    An element of length h keeps its sides straight, and is sheared by kappa x where the curvature is kappa: a sheet of thickness t is
+    1 + h^2 / (2 (1 + nu) t^2) times as stiff as it should be.
+    """
+    lengths = element_lengths(body.patch)
+    across = int(np.argmin([along.sum() for along in lengths]))
+    letter, thickness = "uvw"[across], float(lengths[across].sum())
+    held = any(s.place in (Face(body.name, f"{letter}0"), Face(body.name, f"{letter}1")) and len(s.carried) == 3 for s in problem.supports)
+    glued = any(face.body == body.name for joint in problem.glue for face in joint)
+    straight = [
+        1.0 + (float(lengths[k].max()) / thickness) ** 2 / (2.0 * (1.0 + body.material.poisson)) if direction.order == 1 else 1.0
+        for k, direction in enumerate(body.patch.directions)
+        if k != across
+    ]
+    if min(straight) > BENDS and not held and not glued:
+        yield (
+            f"body {body.name!r} is {thickness:.3g} thick along {letter}, and its elements of order 1 are so long that it is about "
+            f"{min(straight):.2g} times too stiff in bending: they shear instead (locking). Take bodies.{body.name}.mesh.order = 2 or "
+            "more, or elements shorter than it is thick"
         )
 
 

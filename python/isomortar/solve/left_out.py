@@ -7,20 +7,16 @@ from itertools import combinations
 
 import numpy as np
 
-from isomortar.geometry.faces import cells
 from isomortar.geometry.patch import FloatArray, Patch
-from isomortar.model.constants import NO_PART, SAME_POINT
+from isomortar.model.constants import SAME_POINT
 from isomortar.model.entities import Body, Face, Problem
 from isomortar.model.glue import pieces
-from isomortar.model.stance import FACING, nearest
-
-#: Cells of a body's outside that are compared with those of another one.
-SOME = 1500
+from isomortar.solve.meeting import meet
 
 
 def of_what_is_left_out(problem: Problem) -> Iterator[str]:
     """Sentences on what a problem may lack."""
-    through = _without_contact(problem)
+    through = without_contact(problem)
     for one, other in through:
         yield (
             f"bodies {one!r} and {other!r} meet, and no contact is between them: nothing keeps them apart. Give them a table "
@@ -41,17 +37,22 @@ def _in_contact(problem: Problem) -> list[set[str]]:
     return [{face.body for faces in both for face in faces} for both in sides]
 
 
-def _without_contact(problem: Problem) -> list[tuple[str, str]]:
+def without_contact(problem: Problem) -> list[tuple[str, str]]:
     """Bodies that are at or in each other, or come to be by their supports, and neither in contact nor glued."""
-    contacts, whole = _in_contact(problem), _pieces(problem)
-    found = []
-    for one, other in combinations(problem.bodies, 2):
-        if any({one.name, other.name} <= names for names in (*contacts, *whole)):
-            continue
+    whole, found = _pieces(problem), []
+    for one, other in unrelated(problem):
         ways = [np.zeros(3), *(a - b for a, b in zip(_ways(problem, one, whole), _ways(problem, other, whole), strict=True))]
-        if any(_meet(one, other, way) for way in np.unique(ways, axis=0)):
+        if any(meet(one, other, way) for way in np.unique(ways, axis=0)):
             found.append((one.name, other.name))
     return found
+
+
+def unrelated(problem: Problem) -> Iterator[tuple[Body, Body]]:
+    """Pairs of bodies that are neither in contact nor glued."""
+    together = (*_in_contact(problem), *_pieces(problem))
+    for one, other in combinations(problem.bodies, 2):
+        if not any({one.name, other.name} <= names for names in together):
+            yield one, other
 
 
 def _ways(problem: Problem, body: Body, whole: list[set[str]]) -> FloatArray:
@@ -63,37 +64,6 @@ def _ways(problem: Problem, body: Body, whole: list[set[str]]) -> FloatArray:
         if s.place.body in names
     ]
     return max(ways, key=np.linalg.norm, default=np.zeros((len(problem.stages), 3)))
-
-
-def _meet(one: Body, other: Body, way: FloatArray) -> bool:
-    """Whether a body that has gone some way and another one are within or at each other, by cells of their faces."""
-    first, second = one.patch.control_points + way, other.patch.control_points
-    size = float(np.ptp(np.concatenate([first, second]), axis=0).max())
-    low, high = np.maximum(first.min(axis=0), second.min(axis=0)), np.minimum(first.max(axis=0), second.max(axis=0))
-    if np.any(high < low - SAME_POINT * size):
-        return False
-    return _reaches(one, other, way, size) or _reaches(other, one, -way, size)  # of two the smaller may be wholly inside
-
-
-def _reaches(one: Body, other: Body, way: FloatArray, size: float) -> bool:
-    """Whether a part of the outside of a body that has gone some way is within or at another one."""
-    centres, normals, _ = _outside(one)
-    step = max(1, len(centres) // SOME)
-    points, normals = centres[::step] + way, normals[::step]
-    theirs, out, areas = _outside(other)
-    found = nearest(points, theirs)
-    arms = points - theirs[found]
-    heights = np.einsum("ij,ij->i", arms, out[found])
-    beside = np.linalg.norm(arms - heights[:, None] * out[found], axis=1) > np.sqrt(areas[found])
-    facing = np.einsum("ij,ij->i", normals, out[found]) < FACING
-    return bool(np.any(~beside & ((heights < -NO_PART * size) | (facing & (heights < NO_PART * size)))))
-
-
-def _outside(body: Body) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Centres, normals and areas of the cells of all faces of a body."""
-    sides = [cells(body.patch, face) for face in body.outer]
-    centres, normals, areas = (np.concatenate([getattr(side, name) for side in sides]) for name in ("centres", "normals", "areas"))
-    return centres, normals, areas
 
 
 def _idle_bodies(problem: Problem, told: set[str]) -> Iterator[str]:

@@ -23,6 +23,7 @@ from isomortar.solve.extrapolation import with_rates
 from isomortar.solve.lost import LostDigits
 from isomortar.solve.method import Increment, Method
 from isomortar.solve.monolithic import Monolithic
+from isomortar.solve.passing import Passing
 from isomortar.solve.pulling import Pulling
 from isomortar.solve.record import AugmentationRecord, ContactResult, LoadResult, Observer, Reaction, State, StepResult, history_bytes
 from isomortar.solve.sharing import Sharing
@@ -75,7 +76,7 @@ class Simulation:
         self._extrapolates = problem.settings.method == "monolithic" and "extrapolation" in problem.settings.measures
         self._lost, self._pulling, self._sharing = LostDigits(self.equilibrium), Pulling(self.equilibrium), Sharing(self.equilibrium)
         self._small_strains, self._unseen = SmallStrains(self.equilibrium), Unseen(self.equilibrium)
-        self._snapping = Snapping(self.equilibrium)
+        self._snapping, self._passing = Snapping(self.equilibrium), Passing(self.equilibrium)
         self._step = resume_from.step if resume_from else 0
         self._increment = resume_from.next_increment if resume_from else 1.0
         self.equilibrium.orderings = dict(resume_from.orderings) if resume_from else {}
@@ -144,6 +145,8 @@ class Simulation:
         self._warn(self._small_strains.after_step(parts[-1].balance, step))
         self._warn(self._snapping.after_step(step))
         self._unseen.after_step(parts[-1].balance)
+        if self._ends_stage(step):
+            self._warn(self._passing.after_stage(parts[-1].balance, self._stage_of(step)))
         return result
 
     def _advance(self, state: State, time: float, target: float, step: int) -> list[Increment]:

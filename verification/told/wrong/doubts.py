@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from told.bending import LOAD, scene
 from told.wrong.contacts import PAIR, PRESS, TYRE, UNUSUAL
 
 from isomortar.scene import Scene
@@ -63,6 +64,8 @@ bodies.a.patch.control_points = [[0, 0, 0], [1e-9, 0, 0], [1, 0, 0], [0, 1, 0], 
 supports = { top.face = "a.w1", base.face = "a.w0" }
 stages = [{ name = "pull", steps = 1, motions.top.translate = [0, 0, 0.1] }]
 """
+#: A thin sheet of order 1.
+SHEET = scene(0.3, 0.3, 1) + LOAD
 #: Nearly incompressible.
 _RUBBER = PRESS.replace("[bodies.block]", "[materials.rubber]\npoisson = POISSON\n[bodies.block]")
 _RUBBER = _RUBBER.replace("elements = [2, 2, 1]", "order = 3, elements = [2, 2, 1]")
@@ -283,6 +286,7 @@ DOUBTFUL = {
         "nothing holds them there",
     ),
     "spans": (_GRADED, "", "", "lost in round-off"),
+    "locks in bending": (SHEET, "", "", "times too stiff in bending"),
     "locks": (_RUBBER.replace("POISSON", "0.4999"), "", "", "Take order 4 or more"),
     "locks at any order": (_RUBBER.replace("POISSON", "0.4999999999999"), "", "", "Take a Poisson's ratio that is lower"),
 }

@@ -1,0 +1,72 @@
+"""Whether bodies are at or in each other, by cells of their outsides."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from isomortar.geometry.faces import cells
+from isomortar.geometry.patch import FloatArray
+from isomortar.model.constants import NO_PART, SAME_POINT
+from isomortar.model.entities import Body
+from isomortar.model.stance import FACING, nearest
+from isomortar.model.supports import BoolArray
+
+#: Cells of a body's outside that are compared with those of another one.
+SOME = 1500
+
+
+@dataclass(frozen=True)
+class _Heights:
+    """Of some cells of a body's outside: how high they are above another body, whether beside its nearest cell, and facing it."""
+
+    above: FloatArray
+    beside: BoolArray
+    facing: BoolArray
+
+
+def meet(one: Body, other: Body, way: FloatArray) -> bool:
+    """Whether a body that has gone some way and another one are within or at each other."""
+    size = _common_size(one, other, way)
+    return size > 0.0 and any(  # of two the smaller may be wholly inside
+        bool(np.any(~h.beside & ((h.above < -NO_PART * size) | (h.facing & (h.above < NO_PART * size)))))
+        for h in (_heights(one, other, way), _heights(other, one, -way))
+    )
+
+
+def depth(one: Body, other: Body) -> float:
+    """By how much parts of the outside of one body are inside another one at most, or the other way round; 0 where they are not."""
+    still = np.zeros(3)
+    if not _common_size(one, other, still):
+        return 0.0
+    found = (_heights(one, other, still), _heights(other, one, still))
+    return float(np.max([np.max(-h.above[~h.beside], initial=0.0) for h in found]))
+
+
+def _common_size(one: Body, other: Body, way: FloatArray) -> float:
+    """Size of the box around both, of which one has gone some way; 0 where their own boxes are apart."""
+    first, second = one.patch.control_points + way, other.patch.control_points
+    size = float(np.ptp(np.concatenate([first, second]), axis=0).max())
+    low, high = np.maximum(first.min(axis=0), second.min(axis=0)), np.minimum(first.max(axis=0), second.max(axis=0))
+    return 0.0 if np.any(high < low - SAME_POINT * size) else size
+
+
+def _heights(one: Body, other: Body, way: FloatArray) -> _Heights:
+    """Of some cells of the outside of a body that has gone some way."""
+    centres, normals, _ = _outside(one)
+    step = max(1, len(centres) // SOME)
+    points, normals = centres[::step] + way, normals[::step]
+    theirs, out, areas = _outside(other)
+    found = nearest(points, theirs)
+    arms = points - theirs[found]
+    above = np.einsum("ij,ij->i", arms, out[found])
+    beside = np.linalg.norm(arms - above[:, None] * out[found], axis=1) > np.sqrt(areas[found])
+    return _Heights(above, beside, np.einsum("ij,ij->i", normals, out[found]) < FACING)
+
+
+def _outside(body: Body) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Centres, normals and areas of the cells of all faces of a body."""
+    sides = [cells(body.patch, face) for face in body.outer]
+    centres, normals, areas = (np.concatenate([getattr(side, name) for side in sides]) for name in ("centres", "normals", "areas"))
+    return centres, normals, areas
