@@ -12,6 +12,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from told.behind import DOWN
+from told.behind import SCENE as FLOOR
 from told.given_up import all_told, without_digits
 from told.passing import SCENE as BENT
 from told.word_by_word import KINDS as OF_SCENES
@@ -143,6 +145,9 @@ def along_the_way(_: pytest.MonkeyPatch) -> Told:
     observer = Warned()
     list(Simulation(Scene.from_toml(BENT.replace("LEVEL", "0")).problem(), observer).run())
     yield "in each other", observer.said[-1]
+    observer = Warned()
+    list(Simulation(Scene.from_toml(FLOOR, overrides=[DOWN]).problem(), observer).run())
+    yield "behind", observer.said[-1]
 
 
 def _before_the_first_step(simulation: Simulation, number: int = 0) -> str:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from isomortar._bindings import PatchArrays
@@ -91,6 +93,11 @@ class Numbering:
         if body in self.rows:
             return np.ascontiguousarray(self.rows[body].into @ field[self.own[body]])
         return field[self.points[body]]
+
+    def deformed(self, positions: FloatArray) -> list[Body]:
+        """The bodies with positions of all control points as those of their patches."""
+        bodies = [body for piece in self.pieces for body in piece]
+        return [replace(b, patch=replace(b.patch, control_points=self.of_patch(b.name, positions))) for b in bodies]
 
     def add_of_patch(self, body: str, forces: FloatArray, total: FloatArray) -> None:
         """Add forces on the control points of a body's patch to those on all control points, shape (count, 3)."""

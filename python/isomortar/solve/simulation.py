@@ -15,6 +15,7 @@ from isomortar.model.entities import Problem
 from isomortar.model.moments import moment
 from isomortar.model.symmetry import of_whole
 from isomortar.solve.advice import StepAdvice, advice_on_problem
+from isomortar.solve.behind import Behind
 from isomortar.solve.causes import causes
 from isomortar.solve.distances import apart, largest
 from isomortar.solve.doubts import doubts
@@ -76,7 +77,8 @@ class Simulation:
         self._extrapolates = problem.settings.method == "monolithic" and "extrapolation" in problem.settings.measures
         self._lost, self._pulling, self._sharing = LostDigits(self.equilibrium), Pulling(self.equilibrium), Sharing(self.equilibrium)
         self._small_strains, self._unseen = SmallStrains(self.equilibrium), Unseen(self.equilibrium)
-        self._snapping, self._passing = Snapping(self.equilibrium), Passing(self.equilibrium)
+        self._snapping = Snapping(self.equilibrium)
+        self._of_stages = Passing(self.equilibrium.problem), Behind(self.equilibrium.problem)
         self._step = resume_from.step if resume_from else 0
         self._increment = resume_from.next_increment if resume_from else 1.0
         self.equilibrium.orderings = dict(resume_from.orderings) if resume_from else {}
@@ -146,7 +148,9 @@ class Simulation:
         self._warn(self._snapping.after_step(step))
         self._unseen.after_step(parts[-1].balance)
         if self._ends_stage(step):
-            self._warn(self._passing.after_stage(parts[-1].balance, self._stage_of(step)))
+            deformed = self.equilibrium.numbering.deformed(state.positions)
+            for watch in self._of_stages:
+                self._warn(watch.after_stage(deformed, self._stage_of(step)))
         return result
 
     def _advance(self, state: State, time: float, target: float, step: int) -> list[Increment]:

@@ -87,7 +87,10 @@ RUNS = {
     ),
     "slid off in one load step": (staged(PAIR, (1, DOWN, "0"), (1, "[0, 2.5, 0]", "0")), ["wholly beside"]),
     "beside from the first load step on": (staged(PAIR, (1, "[0, 2.5, 0]", "0")), ["wholly beside", "never closed"]),
-    "turned over and pushed through": (staged(PRESS, (1, "[0, 0, 1]", "0"), (4, STAY, "180"), (4, "[0, 0, -2.7]", "0")), ["it pulls"]),
+    "turned over and pushed through": (
+        staged(PRESS, (1, "[0, 0, 1]", "0"), (4, STAY, "180"), (4, "[0, 0, -2.7]", "0")),
+        ["it pulls", "is behind the plane of contact 'floor'"],
+    ),
     "turned over and pressed": (staged(OTHER_FACE, (4, "[0, 0, 0.5]", "180"), (2, "[0, 0, -1.35]", "0")), []),
     "far side of the master": (WRONG_FACE.replace("-0.1]\n", "-0.7]\nmotions.top.rotate = 1\n"), ["it pulls"]),
     "far side of the master, by Uzawa": (
