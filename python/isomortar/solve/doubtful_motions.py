@@ -32,7 +32,7 @@ def of_motions(problem: Problem) -> Iterator[str]:
 def approach(problem: Problem, contact: Contact, towards: FloatArray) -> float | None:
     """By how much motions bring the sides of a contact nearer to each other at most, at an end of a stage, along a unit vector.
 
-    `towards`, shape (3,), is from slave to master. None: something turns, a side is not held along it, or there is no stage: nobody knows.
+    `towards`, shape (3,), is from slave to master. None: something turns about another line, a side is not held along it, or there is no stage: nobody knows.
     """
     slave = _ways(problem, contact.slave, towards)
     master = [np.zeros(len(problem.stages))] if isinstance(contact.master, RigidPlane) else _ways(problem, contact.master, towards)
@@ -57,7 +57,8 @@ def _ways(problem: Problem, place: Face, towards: FloatArray) -> list[FloatArray
     """How far each support of a side's bodies has gone along a vector at the end of each stage; none: nobody knows."""
     names = {body.name for body in piece_of(problem, place)}
     supports = [support for support in problem.supports if support.place.body in names]
-    if any(support.turns or support.is_plate for support in supports) or any(load.body in names for load in problem.loads):
+    tilted = any(support.turns and np.linalg.norm(np.cross(unit(support.axis), towards)) > NO_PART for support in supports)
+    if tilted or any(support.is_plate for support in supports) or any(load.body in names for load in problem.loads):
         return []
     if not supports and problem.body(place.body).rigid:
         return [np.zeros(len(problem.stages))]
