@@ -32,7 +32,8 @@ def of_motions(problem: Problem) -> Iterator[str]:
 def approach(problem: Problem, contact: Contact, towards: FloatArray) -> float | None:
     """By how much motions bring the sides of a contact nearer to each other at most, at an end of a stage, along a unit vector.
 
-    `towards`, shape (3,), is from slave to master. None: something turns about another line, a side is not held along it, or there is no stage: nobody knows.
+    `towards`, shape (3,), is from slave to master. None: something turns about another line, a side is not held along it, or there is no
+    stage: nobody knows.
     """
     slave = _ways(problem, contact.slave, towards)
     master = [np.zeros(len(problem.stages))] if isinstance(contact.master, RigidPlane) else _ways(problem, contact.master, towards)

@@ -150,7 +150,12 @@ DOUBTFUL = {
         "the slave upper.v1 has a pole",
     ),
     "across": (PAIR, 'slave = "upper.w0"', 'slave = "upper.u0"', "no part of upper.u0 looks at its master"),
-    "away, turning about the way": (PRESS, "[0, 0, -0.1]", "[0, 0, 0.1]\nmotions.top.rotate = 20", "motions take its sides away from each other"),
+    "away, turning about the way": (
+        PRESS,
+        "[0, 0, -0.1], rotate = 0",
+        "[0, 0, 0.1], rotate = 20",
+        "motions take its sides away from each other",
+    ),
     "away": (PRESS, "[0, 0, -0.1]", "[0, 0, 0.1]", "motions take its sides away from each other"),
     "not near enough": (
         PRESS.replace("point = [0, 0, 0]", "point = [0, 0, -0.15]"),
