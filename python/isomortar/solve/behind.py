@@ -17,10 +17,17 @@ PASSED = 0.01
 
 
 class Behind:
-    """Warnings of bodies that nothing keeps from a plane which they were in front of; each is told of once."""
+    """Warnings of bodies that nothing keeps from a plane which they were in front of; each is told of once.
+
+    Attributes
+    ----------
+    needed : bool
+        Whether there are planes.
+    """
 
     def __init__(self, problem: Problem) -> None:
         self._planes = _planes(problem)
+        self.needed = bool(self._planes)
         self._told = set[tuple[str, str]]()
 
     def after_stage(self, deformed: Sequence[Body], stage: str) -> Iterator[str]:

@@ -14,11 +14,18 @@ PASSED = 0.01
 
 
 class Passing:
-    """Warnings of bodies that nothing keeps apart; each pair is told of once, and not if a first look has told of it."""
+    """Warnings of bodies that nothing keeps apart; each pair is told of once, and not if a first look has told of it.
+
+    Attributes
+    ----------
+    needed : bool
+        Whether there are such.
+    """
 
     def __init__(self, problem: Problem) -> None:
         self._problem = problem
         self._pairs = [(one.name, other.name) for one, other in unrelated(problem)]
+        self.needed = bool(self._pairs)
         self._told = set[tuple[str, str]]()
 
     @cached_property

@@ -78,7 +78,7 @@ class Simulation:
         self._lost, self._pulling, self._sharing = LostDigits(self.equilibrium), Pulling(self.equilibrium), Sharing(self.equilibrium)
         self._small_strains, self._unseen = SmallStrains(self.equilibrium), Unseen(self.equilibrium)
         self._snapping = Snapping(self.equilibrium)
-        self._of_stages = Passing(self.equilibrium.problem), Behind(self.equilibrium.problem)
+        self._of_stages = [watch for watch in (Passing(self.equilibrium.problem), Behind(self.equilibrium.problem)) if watch.needed]
         self._step = resume_from.step if resume_from else 0
         self._increment = resume_from.next_increment if resume_from else 1.0
         self.equilibrium.orderings = dict(resume_from.orderings) if resume_from else {}
@@ -147,7 +147,7 @@ class Simulation:
         self._warn(self._small_strains.after_step(parts[-1].balance, step))
         self._warn(self._snapping.after_step(step))
         self._unseen.after_step(parts[-1].balance)
-        if self._ends_stage(step):
+        if self._of_stages and self._ends_stage(step):
             deformed = self.equilibrium.numbering.deformed(state.positions)
             for watch in self._of_stages:
                 self._warn(watch.after_stage(deformed, self._stage_of(step)))
