@@ -52,7 +52,7 @@ from test_advice import warnings
 from test_causes import pushed
 from test_feet import cone, loaded, on_the_axis, ridge
 from test_poles import drawn_together
-from test_sentences import SENTENCES, Told, refusal, without_digits
+from test_sentences import HEARD, Told, refusal, without_digits
 from test_singular import FROM_BESIDE
 
 
@@ -317,4 +317,4 @@ KINDS = (of_geometry, of_problems, of_files, on_the_way, of_causes, on_figures)
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.__name__)
 def test_every_word(kind: Callable[[pytest.MonkeyPatch], Told], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    assert dict(kind(monkeypatch)) == SENTENCES[kind.__name__]
+    assert dict(kind(monkeypatch)) == HEARD[kind.__name__]
