@@ -484,6 +484,26 @@ def test_public_names_are_there_and_import_alone_is_light() -> None:
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 
+RUN_AND_LOOK = """
+import sys
+from isomortar.cli import main
+try:
+    main()
+except SystemExit as end:
+    assert not end.code, end
+import numpy
+print(sorted({"numpy.f2py", "numpy.testing", "unittest"} & set(sys.modules)))
+print("f2py" in dir(numpy), "f2py" in numpy.__all__, numpy.random.default_rng(1).integers(1))
+"""
+
+
+def test_run_loads_nothing_of_numpy_that_it_does_not_use_and_leaves_it_whole(tmp_path: Path) -> None:
+    settings = ["--set", "stages.press.steps=1", "--set", "stages.press.motions.top.translate=[0,0,-0.05]"]
+    command = ["run", "press", "--quiet", "--output", str(tmp_path / "press.h5"), *settings]
+    ended = subprocess.run([sys.executable, "-c", RUN_AND_LOOK, *command], check=True, capture_output=True, text=True)
+    assert ended.stdout.splitlines()[1:] == ["[]", "True True 0"]
+
+
 def test_first_example_of_the_readme(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     example = re.search(r"```python\n(.*?)```", README.read_text(encoding="utf-8"), re.DOTALL)
     assert example is not None

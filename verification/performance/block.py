@@ -39,9 +39,10 @@ CALCULIX_NOTE = "another volumetric energy, A1/2 (J - 1)^2; contact by a penalty
 #: All that isomortar does before its first load step: imports, reading the scene, setting the system up.
 START_UP = """
 import sys
-from isomortar._process import loading
+from isomortar._process import loading, numpy_as_loaded
 with loading():
-    import isomortar.cli.commands, isomortar.driver
+    with numpy_as_loaded():
+        import isomortar.cli.commands, isomortar.driver
     from isomortar.scene import Scene
     from isomortar.solve.simulation import Simulation
     problem = Scene.load("block", sys.argv[1:]).problem()

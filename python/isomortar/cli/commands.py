@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 import isomortar
-from isomortar._process import loading
+from isomortar._process import loading, numpy_as_loaded
 from isomortar.cli.bench import bench
 from isomortar.cli.check import check, show
 from isomortar.cli.doctor import doctor
@@ -109,9 +109,10 @@ def run(
     if quiet and verbose:
         raise InputError("--quiet and --verbose exclude each other; with --quiet, --log FILE keeps what --verbose tells")
     with loading():
-        from isomortar._distributed import dismiss, refuse_idle
-        from isomortar.cli.progress import progress
-        from isomortar.driver import compute, results_path
+        with numpy_as_loaded():
+            from isomortar._distributed import dismiss, refuse_idle
+            from isomortar.cli.progress import progress
+            from isomortar.driver import compute, results_path
 
         chosen = isomortar.Scene.load(scene, overrides or ()).with_more_steps(*(steps or ()))
         problem = chosen.problem()
