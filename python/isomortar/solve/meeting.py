@@ -31,7 +31,7 @@ def meet(one: Body, other: Body, way: FloatArray) -> bool:
     size = _common_size(one, other, way)
     return size > 0.0 and any(  # of two the smaller may be wholly inside
         bool(np.any(~h.beside & ((h.above < -NO_PART * size) | (h.facing & (h.above < NO_PART * size)))))
-        for h in (_heights(one, other, way), _heights(other, one, -way))
+        for h in (_heights(*seen) for seen in ((one, other, way), (other, one, -way)))
     )
 
 
