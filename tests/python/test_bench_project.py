@@ -67,6 +67,15 @@ def test_one_rank_and_two_give_the_force_of_none() -> None:
             assert float(row["force off"]) < 1e-10
 
 
+def test_multigrid_solves_where_it_is_there_and_else_says_how_to_get_it() -> None:
+    answer = tried("multigrid")
+    assert not answer.failed, answer.cost.message
+    for row in answer.rows:
+        assert "note" not in row or "pip install pyamg" in str(row["note"])
+        assert "left" not in row or float(row["left"]) < 1e-9  # until 1e-10 is left, by the solver's own count
+        assert "iterations" not in row or 1 < int(row["iterations"]) < 40
+
+
 def test_phases_add_up() -> None:
     (row,) = tried("iteration_phases").rows
     parts = [float(row[phase]) for phase in ("solid", "projection", "contact", "factor", "solve", "other")]

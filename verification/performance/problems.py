@@ -80,7 +80,7 @@ def solid_block(order: int, elements: tuple[int, int, int]) -> Equilibrium:
 def deformed(equilibrium: Equilibrium) -> FloatArray:
     """Positions of control points with a smooth deformation, shape (control points, 3)."""
     x = equilibrium.numbering.reference
-    return x + STRAIN * np.sin(3.0 * x[:, [1, 2, 0]])
+    return np.add(x, STRAIN * np.sin(3.0 * x[:, [1, 2, 0]]), order="C")  # NumPy would reuse what is in another order
 
 
 def solid_system(order: int, elements: tuple[int, int, int]) -> System:
