@@ -62,7 +62,7 @@ def by_multigrid(library: Any, system: System) -> dict[str, float]:
     near_null = rigid_motions(deformed(system.equilibrium))[system.equilibrium.supports.free]
 
     def set_up() -> Any:
-        return library.smoothed_aggregation_solver(blocks, B=near_null, strength=("symmetric", {"theta": 0.08}), max_coarse=300)
+        return library.smoothed_aggregation_solver(blocks, B=near_null, strength=("symmetric", {"theta": 0.08}), max_coarse=100)
 
     levels = set_up()
 
