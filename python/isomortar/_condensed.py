@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import sparse
 
 from isomortar import _arguments as check
 from isomortar._codes import Status
@@ -39,11 +40,11 @@ class SymmetricPattern:
 
     def __post_init__(self) -> None:
         check_pattern(self.indptr, self.indices)
-        rows = np.repeat(np.arange(len(self)), np.diff(self.indptr))
-        mirrored = np.argsort(self.indices, kind="stable")  # by columns, and by rows within each
-        if not (np.array_equal(rows[mirrored], self.indices) and np.array_equal(self.indices[mirrored], rows)):
+        pattern = sparse.csr_array((np.ones(len(self.indices), dtype=bool), self.indices, self.indptr), shape=(len(self),) * 2)
+        mirrored = pattern.tocsc()
+        if not (np.array_equal(mirrored.indptr, self.indptr) and np.array_equal(mirrored.indices, self.indices)):
             raise InputError("is not symmetric: an entry has no mirror image", "indices")
-        if np.count_nonzero(rows == self.indices) != len(self):
+        if not pattern.diagonal().all():
             raise InputError("has no entry on the diagonal in some row", "indices")
 
     def __len__(self) -> int:
