@@ -57,7 +57,7 @@ static cholmod_sparse *lower(int64_t rows, int64_t entries, cholmod_common *comm
 static void begin(cholesky *self, int64_t rows, const int64_t *start, const int64_t *column) {
   cholmod_common *common = &self->common;
   /* Columns are joined more freely than CHOLMOD does by itself, which has scalar unknowns in mind: ours come by three a node. Factors of
-     some hundred nodes take two thirds of the time, those of ten thousand nine tenths. */
+     some hundred nodes take two thirds of the time, those of some thousand nine tenths. */
   const size_t widths[] = {32, 96, 256};
   const double zeros[] = {0.9, 0.2, 0.05};
   cholmod_l_start(common);
