@@ -25,7 +25,7 @@ class Page:
         ValueError
             It has no place for them.
         """
-        place = f"(?s){re.escape(self.begin)}.*{re.escape(self.end)}"
+        place = f"(?s){re.escape(self.begin)}.*?{re.escape(self.end)}"
         made, places = re.subn(place, lambda _: f"{self.begin}\n{self.tables()}\n{self.end}", text)
         if places != 1:
             raise ValueError(
