@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import h5py
@@ -54,6 +55,18 @@ def test_steps_come_back_bit_for_bit(tmp_path: Path) -> None:
         for number in range(1, 6):
             assert same(results.step(number), step_result(number))
         assert same(results.last_step(), step_result(5))
+
+
+@pytest.mark.parametrize("harm", [Path.unlink, lambda path: path.write_bytes(b"not it")], ids=["removed", "written over"])
+def test_what_becomes_of_the_file_meanwhile_the_next_step_mends(tmp_path: Path, harm: Callable[[Path], object]) -> None:
+    """All of it is held until the run ends."""
+    path = tmp_path / "run.h5"
+    writer = ResultsWriter(path, problem(), SCENE, "0.1")
+    writer.recorded(step_result(1))
+    harm(path)
+    writer.recorded(step_result(2))
+    with Results(path) as results:
+        assert [same(results.step(number), step_result(number)) for number in (1, 2)] == [True, True]
 
 
 def test_a_changed_bit_is_seen_by_the_comparison() -> None:

@@ -7,9 +7,10 @@ import sys
 from pathlib import Path
 
 import pytest
+from typer.main import get_command
 from typer.testing import CliRunner
 
-from isomortar.cli.commands import app
+from isomortar.cli.commands import app, asked
 from isomortar.scene import scene
 from isomortar.scene.build import build
 
@@ -78,6 +79,16 @@ def test_what_is_loaded_is_not_looked_through_for_garbage(tmp_path: Path) -> Non
     enabled, frozen = (tmp_path / "found").read_text().split()
     assert enabled == "True"
     assert int(frozen) > 50_000
+
+
+def test_a_command_that_is_asked_for_is_set_up_alone() -> None:
+    """It has the name that the whole list has; where the first word names none, an option or a mistake, all of them are there."""
+    every = get_command(app).commands  # type: ignore[attr-defined]
+    alone = {name: list(get_command(asked([name, "--help"])).commands) for name in every}  # type: ignore[attr-defined]
+    assert len(every) > 15
+    assert alone == {name: [name] if name != "report" else list(every) for name in every}
+    for words in ([], ["--help"], ["rum"], ["report", "orders"]):
+        assert asked(words) is app
 
 
 def test_a_quiet_run_loads_nothing_for_progress(tmp_path: Path) -> None:

@@ -23,6 +23,6 @@ def main() -> None:
         sys.stdout.reconfigure(errors="backslashreplace")
     with told():
         with loading():
-            from isomortar.cli.commands import app  # within: Ctrl-C may come meanwhile, or a library be missing
+            from isomortar.cli.commands import asked  # within: Ctrl-C may come meanwhile, or a library be missing
 
-        app()
+        asked(sys.argv[1:])()
