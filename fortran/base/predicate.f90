@@ -51,12 +51,12 @@ contains
   !> Whether each of 0 .. n - 1 is once among `numbers` (n).
   pure logical function is_permutation(numbers) result(is)
     integer(int64), intent(in) :: numbers(:)
-    logical :: met(0:size(numbers) - 1)
+    logical, allocatable :: met(:)
     integer :: k
 
-    met = .false.
     is = all(numbers >= 0 .and. numbers < size(numbers))
     if (.not. is) return
+    allocate (met(0:size(numbers) - 1), source=.false.)
     do k = 1, size(numbers)
       met(numbers(k)) = .true.
     end do

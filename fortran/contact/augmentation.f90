@@ -67,11 +67,12 @@ contains
     logical, intent(in) :: summed
     type(response_t), intent(out) :: response
     real(wp), intent(out) :: field_slip(:, :)
-    real(wp) :: slips(2, slave%test%count), totals(2, slave%test%count), present(1, size(slave%area)), whole(1, slave%test%count)
+    real(wp), allocatable :: slips(:, :), totals(:, :), present(:, :), whole(:, :)
 
     associate (n => slave%test%count)
       allocate (response%multipliers%pressure(n), response%multipliers%traction(2, n), response%multipliers%active(n), &
         response%state(n), response%pressure_slope(n), response%traction_slope(2, 6, n))
+      allocate (slips(2, n), totals(2, n), whole(1, n), present(1, size(slave%area)))
     end associate
     if (contracts) call require(size(control%weight) == slave%test%count, "respond: control quantities are the slave's")
     if (contracts) call require(size(law%bears) == slave%test%count, "respond: the law is one of its control points")
@@ -305,10 +306,11 @@ contains
     type(pattern_t), intent(in) :: neighbours
     real(wp), intent(out) :: metric(:, :)
     integer, intent(out) :: lacking
-    integer :: a, b, columns(slave%test%count), e, q
+    integer, allocatable :: columns(:)
+    integer :: a, b, e, q
 
     metric = 0.0_wp
-    columns = 0
+    allocate (columns(slave%test%count), source=0)
     do e = 1, size(slave%test%nodes, 2)
       do a = 1, size(slave%test%nodes, 1)
         lacking = slave%test%nodes(a, e)

@@ -172,9 +172,10 @@ contains
   !> Rows of a batch, summed over its quadrature points: (control point, component, slave control point, kind).
   pure function sum_rows(batch) result(sums)
     type(batch_t), intent(in) :: batch
-    real(wp) :: sums(size(batch%rows, 1), 3, size(batch%weight, 1), size(batch%rows, 4))
+    real(wp), allocatable :: sums(:, :, :, :)
     integer :: kind
 
+    allocate (sums(size(batch%rows, 1), 3, size(batch%weight, 1), size(batch%rows, 4)))
     associate (points => size(sums, 1), nodes => size(sums, 3))
       do kind = 1, size(sums, 4)
         if (kind >= row_metric .and. kind < row_metric + 3) then
@@ -189,8 +190,9 @@ contains
   !> Geometric tangent of a batch: (right control point, left component, right component, left control point).
   pure function sum_second(batch) result(sums)
     type(batch_t), intent(in) :: batch
-    real(wp) :: sums(size(batch%second, 1), 3, 3, size(batch%second, 1))
+    real(wp), allocatable :: sums(:, :, :, :)
 
+    allocate (sums(size(batch%second, 1), 3, 3, size(batch%second, 1)))
     associate (points => size(sums, 1))
       call sum_points(9 * points, size(batch%coefficients, 2) * batch%count, points, batch%second, batch%coefficients, sums)
     end associate

@@ -110,8 +110,7 @@ contains
     logical :: pending(slave%per_element), together(slave%per_element)
     type(normals_t) :: normals
     real(wp), allocatable :: extended(:, :), forces(:, :), on_normals(:, :)
-    integer, allocatable :: stencils(:, :)
-    integer :: columns(size(positions, 2))
+    integer, allocatable :: columns(:), stencils(:, :)
     integer :: before, e, k, wanted
 
     if (contracts) call require(is_compressed(row_pattern%start, size(rows, 3)), "integrate_blocks: rows are those of a pattern")
@@ -120,7 +119,7 @@ contains
     if (contracts) call require(size(pattern%start) == size(positions, 2) + 1, "integrate_blocks: each control point has a row")
     status = status_pattern
     place = 0
-    columns = 0
+    allocate (columns(size(positions, 2)), source=0)
     call map%extend(positions, normals, extended, work)
     stencils = map%stencils(projections)
     wanted = merge(for_tangent, for_forces, with_friction)

@@ -229,7 +229,7 @@ contains
     real(wp), intent(in) :: x(3), distance
     integer, intent(inout) :: list(:)
     integer, intent(out) :: count
-    logical :: near(size(hulls%radius))
+    logical, allocatable :: near(:)
     integer :: e
 
     near = (x(1) - hulls%centre(:, 1))**2 + (x(2) - hulls%centre(:, 2))**2 + (x(3) - hulls%centre(:, 3))**2 &

@@ -62,9 +62,11 @@ contains
     type(work_t), intent(inout) :: work
     type(search_t) :: there
     real(wp) :: square
-    integer :: count, k, near(size(list))
+    integer, allocatable :: near(:)
+    integer :: count, k
 
     if (contracts) call require(all(is_index(list, surface_element_count(surface))), "look_round: there are such elements")
+    allocate (near(size(list)))
     count = 0
     do k = 1, size(list)
       if (is_settled(surface, hulls, list(k), x, here)) cycle

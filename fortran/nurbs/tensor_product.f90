@@ -34,9 +34,10 @@ contains
     integer, intent(in) :: fields
     real(wp), intent(in) :: coefficients(fields * size(u%values, 1) * size(v%values, 1) * size(w%values, 1))
     real(wp), intent(out) :: values(fields * size(u%weight) * size(v%weight) * size(w%weight), 4)
-    real(wp) :: one(fields * size(u%weight) * size(v%values, 1) * size(w%values, 1), 2)
-    real(wp) :: two(fields * size(u%weight) * size(v%weight) * size(w%values, 1), 3)
+    real(wp), allocatable :: one(:, :), two(:, :)
 
+    allocate (one(fields * size(u%weight) * size(v%values, 1) * size(w%values, 1), 2))
+    allocate (two(fields * size(u%weight) * size(v%weight) * size(w%values, 1), 3))
     call spread_line(u, 1, fields, size(v%values, 1) * size(w%values, 1), coefficients, one)
     call spread_line(v, 2, fields * size(u%weight), size(w%values, 1), one, two)
     call spread_line(w, 3, fields * size(u%weight) * size(v%weight), 1, two, values)
@@ -85,9 +86,10 @@ contains
     integer, intent(in) :: fields
     real(wp), intent(in) :: densities(fields * size(u%weight) * size(v%weight) * size(w%weight), 4)
     real(wp), intent(out) :: sums(fields * size(u%values, 1) * size(v%values, 1) * size(w%values, 1))
-    real(wp) :: two(fields * size(u%weight) * size(v%weight) * size(w%values, 1), 3)
-    real(wp) :: one(fields * size(u%weight) * size(v%values, 1) * size(w%values, 1), 2)
+    real(wp), allocatable :: one(:, :), two(:, :)
 
+    allocate (two(fields * size(u%weight) * size(v%weight) * size(w%values, 1), 3))
+    allocate (one(fields * size(u%weight) * size(v%values, 1) * size(w%values, 1), 2))
     call gather_line(w, 3, fields * size(u%weight) * size(v%weight), 1, densities, two)
     call gather_line(v, 2, fields * size(u%weight), size(w%values, 1), two, one)
     call gather_line(u, 1, fields, size(v%values, 1) * size(w%values, 1), one, sums)
@@ -162,9 +164,10 @@ contains
     integer, intent(in) :: fields
     real(wp), intent(in) :: densities(size(u%values, 1) * size(v%values, 1) * size(w%values, 1) * fields, 4, 4)
     real(wp), intent(out) :: sums(fields * size(u%values, 2) * size(v%values, 2) * size(w%values, 2))
-    real(wp) :: one(size(v%values, 1) * size(w%values, 1) * fields * size(u%values, 2), 3, 3)
-    real(wp) :: two(size(w%values, 1) * fields * size(u%values, 2) * size(v%values, 2), 2, 2)
+    real(wp), allocatable :: one(:, :, :), two(:, :, :)
 
+    allocate (one(size(v%values, 1) * size(w%values, 1) * fields * size(u%values, 2), 3, 3))
+    allocate (two(size(w%values, 1) * fields * size(u%values, 2) * size(v%values, 2), 2, 2))
     call gather_pairs(u, 4, size(one, 1) / size(u%values, 2), densities, one)
     call gather_pairs(v, 3, size(two, 1) / size(v%values, 2), one, two)
     call gather_pairs(w, 2, size(sums) / size(w%values, 2), two, sums)
@@ -176,9 +179,10 @@ contains
     integer, intent(in) :: kinds, rest
     real(wp), intent(in) :: source(size(line%values, 1), rest, kinds, kinds)
     real(wp), intent(out) :: target(rest, size(line%values, 2), kinds - 1, kinds - 1)
-    real(wp) :: beside(rest, 2 * size(line%values, 1)), both(rest, 4 * size(line%values, 1))
+    real(wp), allocatable :: beside(:, :), both(:, :)
     integer :: d, e, m
 
+    allocate (beside(rest, 2 * size(line%values, 1)), both(rest, 4 * size(line%values, 1)))
     m = size(line%values, 1) ! few: copies run down the rest, one short copy for each of which costs more than the products
     both(:, :m) = transpose(source(:, :, 1, 1))
     both(:, m + 1:2 * m) = transpose(source(:, :, 2, 1))
@@ -193,7 +197,8 @@ contains
       beside(:, m + 1:) = transpose(source(:, :, d + 1, 2))
       target(:, :, d, 1) = matmul(beside, line%second)
       do e = 2, kinds - 1
-        target(:, :, e, d) = matmul(transpose(source(:, :, e + 1, d + 1)), line%values)
+        beside(:, :m) = transpose(source(:, :, e + 1, d + 1))
+        target(:, :, e, d) = matmul(beside(:, :m), line%values)
       end do
     end do
   end subroutine gather_pairs

@@ -40,14 +40,15 @@ contains
     real(wp), intent(in) :: weight(:), positions(:, :), references(:, :)
     type(samples_t), intent(inout) :: samples
     integer, intent(out) :: status
-    real(wp), dimension(size(u%weight) * size(v%weight) * size(w%weight), 3, 3) :: cofactor, grown, gradient, map
-    real(wp) :: denominator(size(map, 1), 4), reference(size(map, 1), 3, 4), displacement(size(map, 1), 3, 4)
-    real(wp) :: det(size(map, 1)), scale(size(map, 1))
+    real(wp), dimension(:, :, :), allocatable :: cofactor, displacement, gradient, grown, map, reference
+    real(wp), allocatable :: denominator(:, :), det(:), scale(:)
     integer :: i, j, k, m
 
     if (contracts) call require(all(shape(references) == shape(positions)), "sample_element: references are those of the positions")
     if (contracts) call require(all(shape(positions) == [3, size(weight)]), "sample_element: positions are those of the element")
-    m = size(map, 1)
+    m = size(u%weight) * size(v%weight) * size(w%weight)
+    allocate (cofactor(m, 3, 3), gradient(m, 3, 3), grown(m, 3, 3), map(m, 3, 3))
+    allocate (displacement(m, 3, 4), reference(m, 3, 4), denominator(m, 4), det(m), scale(m))
     call reserve(samples, m)
     call fields_at_points(u, v, w, weight, positions, references, denominator, reference, displacement)
     call quotients(m, denominator, reference, map)
@@ -99,9 +100,10 @@ contains
     type(line_rule_t), intent(in) :: u, v, w
     real(wp), intent(in) :: weight(:), positions(:, :), references(:, :)
     real(wp), intent(out) :: denominator(:, :), reference(:, :, :), displacement(:, :, :)
-    real(wp) :: coefficients(7, size(weight)), values(7, size(denominator, 1), 4)
+    real(wp), allocatable :: coefficients(:, :), values(:, :, :)
     integer :: a, i, kind
 
+    allocate (coefficients(7, size(weight)), values(7, size(denominator, 1), 4))
     do a = 1, size(weight) ! from the first control point, so that a rigid translation costs no digits
       coefficients(1, a) = weight(a)
       coefficients(2:4, a) = weight(a) * (references(:, a) - references(:, 1))
@@ -151,9 +153,11 @@ contains
     type(samples_t), intent(in) :: samples
     class(material_t), intent(in) :: material
     real(wp), intent(out) :: residual(:, :)
-    real(wp) :: densities(3, size(samples%volume), 4), stress(size(samples%volume), 3, 3), sums(3, size(weight))
-    integer :: a, d, i
+    real(wp), allocatable :: densities(:, :, :), stress(:, :, :), sums(:, :)
+    integer :: a, d, i, m
 
+    m = size(samples%volume)
+    allocate (densities(3, m, 4), stress(m, 3, 3), sums(3, size(weight)))
     call material%stress(samples%state, stress)
     associate (g => samples%gradient)
       do i = 1, 3

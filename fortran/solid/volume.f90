@@ -59,11 +59,13 @@ contains
     real(wp), intent(in) :: weight(:), references(:, :)
     real(wp), intent(out) :: shares(:)
     integer, intent(out) :: status
-    real(wp) :: coefficients(4, size(weight)), values(4, size(u%weight) * size(v%weight) * size(w%weight), 4)
-    real(wp), dimension(size(values, 2)) :: det, volume
-    real(wp) :: denominator(size(det), 4), densities(size(det), 4), map(size(det), 3, 3), reference(size(det), 3, 4)
-    integer :: a, i, j, k, kind
+    real(wp), allocatable :: coefficients(:, :), denominator(:, :), densities(:, :), det(:), volume(:)
+    real(wp), allocatable :: map(:, :, :), reference(:, :, :), values(:, :, :)
+    integer :: a, i, j, k, kind, m
 
+    m = size(u%weight) * size(v%weight) * size(w%weight)
+    allocate (coefficients(4, size(weight)), denominator(m, 4), densities(m, 4), det(m), volume(m))
+    allocate (map(m, 3, 3), reference(m, 3, 4), values(4, m, 4))
     do a = 1, size(weight) ! from the first control point, so that a rigid translation costs no digits
       coefficients(1, a) = weight(a)
       coefficients(2:4, a) = weight(a) * (references(:, a) - references(:, 1))
@@ -73,8 +75,8 @@ contains
       denominator(:, kind) = values(1, :, kind)
       reference(:, :, kind) = transpose(values(2:4, :, kind))
     end do
-    call quotients(size(det), denominator, reference, map)
-    call determinants(size(det), map, det)
+    call quotients(m, denominator, reference, map)
+    call determinants(m, map, det)
     status = merge(status_ok, status_folded_initially, all(det > 0.0_wp))
     if (status /= status_ok) return
     volume = [(((u%weight(i) * v%weight(j) * w%weight(k), i=1, size(u%weight)), j=1, size(v%weight)), k=1, size(w%weight))] * det

@@ -84,7 +84,8 @@ contains
     real(c_double), contiguous, intent(in) :: values(:), added(:, :)
     real(c_double), intent(out) :: rcond
     integer(c_int), intent(out) :: code
-    real(c_double) :: shift(self%faces), least
+    real(c_double), allocatable :: shift(:)
+    real(c_double) :: least
     integer(c_int) :: failure, n
 
     if (contracts) call require(size(added, 1) == size(added, 2), "eliminate_condensed: the trailing block is square")
@@ -95,7 +96,7 @@ contains
     code = cholesky_out_of_memory
     allocate (self%corner(self%faces, self%faces), stat=failure)
     if (failure == 0) allocate (self%complement(n, n), stat=failure)
-    if (failure == 0) allocate (self%pivot(n), stat=failure)
+    if (failure == 0) allocate (self%pivot(n), shift(self%faces), stat=failure)
     if (failure == 0) code = cholesky_factorise(self%body, values, face_share, self%corner, shift, least)
     if (code /= cholesky_done) then
       call forget_numbers(self)
@@ -142,10 +143,14 @@ contains
     real(c_double), contiguous, intent(in) :: b(:)
     real(c_double), contiguous, intent(out) :: x(:)
     integer(c_int), intent(out) :: code
-    real(c_double) :: within(self%unknowns), trailing(size(self%pivot), 1)
+    real(c_double), allocatable :: within(:), trailing(:, :)
+    integer :: failure
 
     if (contracts) call require(size(b) == self%unknowns - self%faces + size(self%pivot), "substitute_condensed: all unknowns")
     if (contracts) call require(size(x) == size(b), "substitute_condensed: and a place for each")
+    code = cholesky_out_of_memory
+    allocate (within(self%unknowns), trailing(size(self%pivot), 1), stat=failure)
+    if (failure /= 0) return
     code = cholesky_forth(self%body, b, within)
     if (code /= cholesky_done) return
     associate (faces => within(self%unknowns - self%faces + 1:))

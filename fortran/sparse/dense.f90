@@ -55,10 +55,13 @@ contains
   pure recursive function pivots_apart(lu) result(ratio)
     real(c_double), intent(in) :: lu(:, :)
     real(c_double) :: ratio
-    real(c_double) :: pivots(size(lu, 1))
+    real(c_double), allocatable :: pivots(:)
     integer :: k
 
-    pivots = [(abs(lu(k, k)), k=1, size(pivots))]
+    allocate (pivots(size(lu, 1)))
+    do k = 1, size(pivots)
+      pivots(k) = abs(lu(k, k))
+    end do
     ratio = 1
     if (maxval(pivots) > 0) ratio = minval(pivots) / maxval(pivots)
     if (any(.not. (pivots > 0 .and. pivots <= huge(pivots)))) ratio = 0

@@ -136,11 +136,14 @@ contains
     real(c_double), contiguous, intent(in) :: values(:)
     integer(c_int64_t) :: unknown
 
-    real(c_double) :: b(lu%unknowns), x(lu%unknowns)
+    real(c_double), allocatable :: b(:), x(:)
     integer(c_int64_t) :: code
     integer :: i
 
-    b = [(1.0_c_double + modulo(i * 0.618_c_double, 1.0_c_double), i=1, size(b))]
+    allocate (b(lu%unknowns), x(lu%unknowns))
+    do i = 1, size(b)
+      b(i) = 1.0_c_double + modulo(i * 0.618_c_double, 1.0_c_double)
+    end do
     call substitute(lu, values, b, 0, x, code)
     if (code == umfpack_ok .and. all(abs(x) <= huge(x))) then
       unknown = maxloc(abs(x), dim=1) - 1

@@ -54,14 +54,18 @@ contains
     real(wp), intent(in) :: positions(:, :)
     type(scope_t) :: self
     integer :: a, e, elements, nodes(product(surface%direction%order + 1)), normals
-    real(wp) :: size_of_master
+    real(wp) :: high(3), low(3), size_of_master
 
     elements = surface_element_count(surface)
     normals = size(positions, 2) - size(surface%point)
     allocate (self%centre(3, elements), self%radius(elements), self%mean(3, elements), self%spread(elements))
-    associate (points => positions(:, surface%point))
-      size_of_master = norm2(maxval(points, 2) - minval(points, 2))
-    end associate
+    high = -huge(high)
+    low = huge(low)
+    do a = 1, size(surface%point)
+      high = max(high, positions(:, surface%point(a)))
+      low = min(low, positions(:, surface%point(a)))
+    end do
+    size_of_master = norm2(high - low)
     self%deepest = deep_share * size_of_master
     self%widest = open_share * size_of_master
     do e = 1, elements

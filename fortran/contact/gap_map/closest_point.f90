@@ -93,7 +93,8 @@ contains
     type(search_t) :: here(slave%per_element)
     real(wp) :: x(3, size(here)), middle(3), reach
     type(contact_point_t) :: point
-    integer :: doubt, list(size(hulls%radius)), near, points(self%bearing()), q
+    integer, allocatable :: list(:)
+    integer :: doubt, near, points(self%bearing()), q
     real(wp) :: coefficients(size(points), self%vectors(for_forces))
     logical :: deep
 
@@ -108,6 +109,7 @@ contains
     end do
     middle = sum(x, 2) / size(here)
     reach = maxval(norm2(x - spread(middle, 2, size(here)), 1) + sqrt(2.0_wp * here%distance))
+    allocate (list(size(hulls%radius)))
     call within_reach(hulls, middle, reach, list, near)
     do q = 1, size(here)
       call look_round(self%surface, hulls, positions, x(:, q), list(:near), here(q), work)

@@ -326,10 +326,10 @@ contains
   pure function carry_rows(reached, forms) result(carried)
     type(reached_t), intent(in) :: reached
     real(wp), intent(in) :: forms(:, :, :, :)
-    real(wp) :: carried(size(reached%point), 3, size(forms, 3), size(forms, 4))
+    real(wp), allocatable :: carried(:, :, :, :)
     integer :: a, i, k, kind, row
 
-    carried = 0.0_wp
+    allocate (carried(size(reached%point), 3, size(forms, 3), size(forms, 4)), source=0.0_wp)
     do kind = 1, size(forms, 4)
       do row = 1, size(forms, 3)
         do a = 1, size(forms, 1)
@@ -351,11 +351,12 @@ contains
   pure function carry_form(reached, form) result(carried)
     type(reached_t), intent(in) :: reached
     real(wp), intent(in) :: form(:, :, :, :)
-    real(wp) :: carried(size(reached%point), 3, 3, size(reached%point)), left(size(form, 1), 3, 3, size(reached%point))
+    real(wp), allocatable :: carried(:, :, :, :), left(:, :, :, :)
     integer :: a, b, i, j, k
 
-    left = 0.0_wp
-    carried = 0.0_wp
+    associate (points => size(reached%point))
+      allocate (carried(points, 3, 3, points), left(size(form, 1), 3, 3, points), source=0.0_wp)
+    end associate
     do a = 1, size(form, 4)
       do k = reached%start(a - 1) + 1, reached%start(a)
         associate (g => reached%at(k))
