@@ -13,7 +13,7 @@ module isomortar_nurbs_tensor_product
   implicit none
   private
 
-  public :: integrate, integrate_pairs, interpolate, line_pairs
+  public :: integrate, integrate_pairs, interpolate, line_pairs, room_for_lines
 
   !> Products of two functions of one direction at its points, for integrals of pairs; point and derivatives run fastest.
   type, public :: line_pairs_t
@@ -27,20 +27,28 @@ module isomortar_nurbs_tensor_product
 
 contains
 
+  !> How many numbers `interpolate` and `integrate` need for so many fields on the way.
+  pure integer function room_for_lines(u, v, w, fields) result(numbers)
+    type(line_rule_t), intent(in) :: u, v, w
+    integer, intent(in) :: fields
+
+    numbers = fields * size(u%weight) * size(w%values, 1) * (2 * size(v%values, 1) + 3 * size(v%weight))
+  end function room_for_lines
+
   !> Fields and their derivatives at all points: from `coefficients` (field, u, v, w) of the control points to `values` (field,
-  !> points, kind).
-  pure subroutine interpolate(u, v, w, fields, coefficients, values)
+  !> points, kind). `room` (at least `room_for_lines`) is for what is on the way.
+  pure subroutine interpolate(u, v, w, fields, coefficients, values, room)
     type(line_rule_t), intent(in) :: u, v, w
     integer, intent(in) :: fields
     real(wp), intent(in) :: coefficients(fields * size(u%values, 1) * size(v%values, 1) * size(w%values, 1))
     real(wp), intent(out) :: values(fields * size(u%weight) * size(v%weight) * size(w%weight), 4)
-    real(wp), allocatable :: one(:, :), two(:, :)
+    real(wp), contiguous, intent(inout) :: room(:)
 
-    allocate (one(fields * size(u%weight) * size(v%values, 1) * size(w%values, 1), 2))
-    allocate (two(fields * size(u%weight) * size(v%weight) * size(w%values, 1), 3))
-    call spread_line(u, 1, fields, size(v%values, 1) * size(w%values, 1), coefficients, one)
-    call spread_line(v, 2, fields * size(u%weight), size(w%values, 1), one, two)
-    call spread_line(w, 3, fields * size(u%weight) * size(v%weight), 1, two, values)
+    associate (two => 1 + 2 * fields * size(u%weight) * size(v%values, 1) * size(w%values, 1))
+      call spread_line(u, 1, fields, size(v%values, 1) * size(w%values, 1), coefficients, room)
+      call spread_line(v, 2, fields * size(u%weight), size(w%values, 1), room, room(two:))
+      call spread_line(w, 3, fields * size(u%weight) * size(v%weight), 1, room(two:), values)
+    end associate
   end subroutine interpolate
 
   !> One direction of `interpolate`: every kind with the line's values, the value also with its derivatives, which come last.
@@ -80,19 +88,19 @@ contains
   end subroutine add_columns
 
   !> Sum over points and kinds of `densities` times functions: from (field, points, kind) to `sums` (field, u, v, w) of the
-  !> control points.
-  pure subroutine integrate(u, v, w, fields, densities, sums)
+  !> control points. `room` as above.
+  pure subroutine integrate(u, v, w, fields, densities, sums, room)
     type(line_rule_t), intent(in) :: u, v, w
     integer, intent(in) :: fields
     real(wp), intent(in) :: densities(fields * size(u%weight) * size(v%weight) * size(w%weight), 4)
     real(wp), intent(out) :: sums(fields * size(u%values, 1) * size(v%values, 1) * size(w%values, 1))
-    real(wp), allocatable :: one(:, :), two(:, :)
+    real(wp), contiguous, intent(inout) :: room(:)
 
-    allocate (two(fields * size(u%weight) * size(v%weight) * size(w%values, 1), 3))
-    allocate (one(fields * size(u%weight) * size(v%values, 1) * size(w%values, 1), 2))
-    call gather_line(w, 3, fields * size(u%weight) * size(v%weight), 1, densities, two)
-    call gather_line(v, 2, fields * size(u%weight), size(w%values, 1), two, one)
-    call gather_line(u, 1, fields, size(v%values, 1) * size(w%values, 1), one, sums)
+    associate (two => 1 + 2 * fields * size(u%weight) * size(v%values, 1) * size(w%values, 1))
+      call gather_line(w, 3, fields * size(u%weight) * size(v%weight), 1, densities, room(two:))
+      call gather_line(v, 2, fields * size(u%weight), size(w%values, 1), room(two:), room)
+      call gather_line(u, 1, fields, size(v%values, 1) * size(w%values, 1), room, sums)
+    end associate
   end subroutine integrate
 
   !> One direction of `integrate`, the transpose of `spread_line`.

@@ -9,7 +9,7 @@ module isomortar_solid_assembly
   use isomortar_base_status, only: status_ok, status_pattern
   use isomortar_nurbs_patch, only: element_count, element_nodes, element_of, line_rule, line_rule_t, patch_t
   use isomortar_nurbs_tensor_product, only: line_pairs, line_pairs_t
-  use isomortar_solid_element, only: element_residual, element_tangent, sample_element, samples_t
+  use isomortar_solid_element, only: element_residual, element_tangent, room_t, sample_element, samples_t
   use isomortar_solid_material_law, only: component_pairs, material_t
   use isomortar_sparse_blocks, only: lacks, mark_row, pattern_t
 !$ use omp_lib, only: omp_get_max_threads
@@ -26,7 +26,8 @@ module isomortar_solid_assembly
   type :: element_t
     integer, allocatable :: local(:), nodes(:)
     real(wp), allocatable :: weight(:), forces(:, :), block(:)
-    type(samples_t) :: samples
+    !> Smallest J over its points, and whether it is folded (isomortar_base_status).
+    real(wp) :: smallest_jacobian
     integer :: status
   end type element_t
 
@@ -55,6 +56,8 @@ contains
     type(line_rule_t), allocatable :: u(:), v(:), w(:)
     type(line_pairs_t), allocatable :: uu(:), vv(:), ww(:)
     type(element_t), allocatable :: batch(:)
+    type(room_t) :: room
+    type(samples_t) :: samples
     integer :: at(3), first, k, many
 
     if (contracts) call require(all(shape(positions) == shape(references)), "add_body: the body is the reference's")
@@ -74,18 +77,18 @@ contains
     smallest_jacobian = huge(1.0_wp)
     do first = 0, element_count(patch) - 1, size(batch)
       many = min(size(batch), element_count(patch) - first)
-      !$omp parallel do default(none) private(at) shared(batch, first, many, material, patch, positions, references, tangent) &
-      !$omp shared(u, uu, v, vv, w, ww) schedule(dynamic)
+      !$omp parallel do default(none) private(at, room, samples) shared(batch, first, many, material, patch, positions) &
+      !$omp shared(references, tangent, u, uu, v, vv, w, ww) schedule(dynamic)
       do k = 1, many
         at = element_of(patch, first + k)
-        call take_element(patch, at, u(at(1)), v(at(2)), w(at(3)), material, positions, references, batch(k))
+        call take_element(patch, at, u(at(1)), v(at(2)), w(at(3)), material, positions, references, room, samples, batch(k))
         if (present(tangent) .and. batch(k)%status == status_ok) then
-          call element_tangent(uu(at(1)), vv(at(2)), ww(at(3)), batch(k)%samples, material, batch(k)%block)
+          call element_tangent(uu(at(1)), vv(at(2)), ww(at(3)), samples, material, batch(k)%block)
         end if
       end do
       !$omp end parallel do
       do k = 1, many
-        smallest_jacobian = min(smallest_jacobian, batch(k)%samples%smallest_jacobian)
+        smallest_jacobian = min(smallest_jacobian, batch(k)%smallest_jacobian)
         status = batch(k)%status
         place = first + k
         if (status /= status_ok) return
@@ -116,21 +119,24 @@ contains
   end subroutine reserve
 
   !> Sample one element and compute its forces.
-  pure subroutine take_element(patch, at, u, v, w, material, positions, references, element)
+  pure subroutine take_element(patch, at, u, v, w, material, positions, references, room, samples, element)
     type(patch_t), intent(in) :: patch
     integer, intent(in) :: at(3)
     type(line_rule_t), intent(in) :: u, v, w
     class(material_t), intent(in) :: material
     real(wp), intent(in) :: positions(:, :), references(:, :)
+    type(room_t), intent(inout) :: room
+    type(samples_t), intent(inout) :: samples
     type(element_t), intent(inout) :: element
 
     call element_nodes(patch, at, element%local)
     element%nodes(:) = patch%point(element%local)
     element%weight(:) = patch%weight(element%local)
-    call sample_element(u, v, w, element%weight, positions(:, element%nodes), references(:, element%nodes), element%samples, &
-      element%status)
+    call sample_element(u, v, w, element%weight, positions(:, element%nodes), references(:, element%nodes), room, &
+      samples, element%status)
+    element%smallest_jacobian = samples%smallest_jacobian
     if (element%status /= status_ok) return
-    call element_residual(u, v, w, element%weight, element%samples, material, element%forces)
+    call element_residual(u, v, w, element%weight, samples, material, room, element%forces)
   end subroutine take_element
 
   !> Add the forces of an element; a control point may stand twice in an element of a closed ring.

@@ -2,14 +2,14 @@
 !>
 !> - `u`, `v`, `w`: functions of the three directions in the element, or their pairs, at its Gauss points.
 !> - `weight` (control points): weights of its control points.
-!> - `samples`: everything at its Gauss points. `material`: its law.
+!> - `samples`: everything at its Gauss points. `material`: its law. `room`: for what is on the way.
 module isomortar_solid_element
   use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
   use isomortar_base_predicate, only: is_balanced, is_symmetric
   use isomortar_base_status, only: status_folded, status_folded_initially, status_ok
   use isomortar_nurbs_patch, only: line_rule_t
-  use isomortar_nurbs_tensor_product, only: integrate, integrate_pairs, interpolate, line_pairs_t
+  use isomortar_nurbs_tensor_product, only: integrate, integrate_pairs, interpolate, line_pairs_t, room_for_lines
   use isomortar_solid_material_law, only: component_pairs, material_t, stretch, stretch_t
   use isomortar_solid_points, only: cofactors, quotients
   implicit none
@@ -29,51 +29,78 @@ module isomortar_solid_element
     real(wp) :: smallest_jacobian
   end type samples_t
 
+  !> What is computed on the way to samples and forces, of control points or of quadrature points. A thread keeps it from element to
+  !> element: to ask for memory anew each time takes a tenth as long as the forces.
+  type, public :: room_t
+    real(wp), dimension(:, :, :), allocatable :: cofactor, densities, displacement, gradient, grown, map, reference, stress, values
+    real(wp), dimension(:, :), allocatable :: coefficients, denominator, sums
+    real(wp), dimension(:), allocatable :: det, lines, scale
+  end type room_t
+
 contains
 
   !> Evaluate an element at all its quadrature points (theory 1.3, 2.6, 2.8).
   !>
   !> - `positions` (3, control points), `references` (3, control points): its own, now and in the reference configuration, L.
   !> - `status`: whether it is folded (isomortar_base_status).
-  pure subroutine sample_element(u, v, w, weight, positions, references, samples, status)
+  pure subroutine sample_element(u, v, w, weight, positions, references, room, samples, status)
     type(line_rule_t), intent(in) :: u, v, w
     real(wp), intent(in) :: weight(:), positions(:, :), references(:, :)
+    type(room_t), intent(inout) :: room
     type(samples_t), intent(inout) :: samples
     integer, intent(out) :: status
-    real(wp), dimension(:, :, :), allocatable :: cofactor, displacement, gradient, grown, map, reference
-    real(wp), allocatable :: denominator(:, :), det(:), scale(:)
     integer :: i, j, k, m
 
     if (contracts) call require(all(shape(references) == shape(positions)), "sample_element: references are those of the positions")
     if (contracts) call require(all(shape(positions) == [3, size(weight)]), "sample_element: positions are those of the element")
     m = size(u%weight) * size(v%weight) * size(w%weight)
-    allocate (cofactor(m, 3, 3), gradient(m, 3, 3), grown(m, 3, 3), map(m, 3, 3))
-    allocate (displacement(m, 3, 4), reference(m, 3, 4), denominator(m, 4), det(m), scale(m))
     call reserve(samples, m)
-    call fields_at_points(u, v, w, weight, positions, references, denominator, reference, displacement)
-    call quotients(m, denominator, reference, map)
-    call cofactors(m, map, cofactor, det)
-    samples%smallest_jacobian = least(det)
+    call make_room(u, v, w, room)
+    call fields_at_points(u, v, w, weight, positions, references, room)
+    call quotients(m, room%denominator, room%reference, room%map)
+    call cofactors(m, room%map, room%cofactor, room%det)
+    samples%smallest_jacobian = least(room%det)
     status = merge(status_ok, status_folded_initially, samples%smallest_jacobian > 0.0_wp)
     if (status /= status_ok) return
     samples%volume(:) = [(((u%weight(i) * v%weight(j) * w%weight(k), i=1, size(u%weight)), j=1, size(v%weight)), &
-      k=1, size(w%weight))] * det
-    call quotients(m, denominator, displacement, grown)
-    scale = 1.0_wp / det
-    do j = 1, 3
-      do i = 1, 3
-        gradient(:, i, j) = (grown(:, i, 1) * cofactor(:, j, 1) + grown(:, i, 2) * cofactor(:, j, 2) &
-          + grown(:, i, 3) * cofactor(:, j, 3)) * scale
+      k=1, size(w%weight))] * room%det
+    call quotients(m, room%denominator, room%displacement, room%grown)
+    room%scale(:) = 1.0_wp / room%det
+    associate (cofactor => room%cofactor, grown => room%grown)
+      do j = 1, 3
+        do i = 1, 3
+          room%gradient(:, i, j) = (grown(:, i, 1) * cofactor(:, j, 1) + grown(:, i, 2) * cofactor(:, j, 2) &
+            + grown(:, i, 3) * cofactor(:, j, 3)) * room%scale
+        end do
       end do
-    end do
-    call stretch(gradient, samples%state)
+    end associate
+    call stretch(room%gradient, samples%state)
     samples%smallest_jacobian = least(samples%state%jacobian)
     status = merge(status_ok, status_folded, samples%smallest_jacobian > 0.0_wp)
     if (status /= status_ok) return
-    map = map + grown
-    call cofactors(m, map, cofactor, det)
-    call spatial_gradients(m, cofactor, det, denominator, samples%gradient)
+    room%map(:, :, :) = room%map + room%grown
+    call cofactors(m, room%map, room%cofactor, room%det)
+    call spatial_gradients(m, room%cofactor, room%det, room%denominator, samples%gradient)
   end subroutine sample_element
+
+  !> Make room for an element, unless there is that of one with as many control points and quadrature points in each direction.
+  pure subroutine make_room(u, v, w, room)
+    type(line_rule_t), intent(in) :: u, v, w
+    type(room_t), intent(inout) :: room
+    integer :: m, n
+
+    m = size(u%weight) * size(v%weight) * size(w%weight)
+    n = size(u%values, 1) * size(v%values, 1) * size(w%values, 1)
+    if (allocated(room%det)) then
+      if (all([size(room%det), size(room%sums, 2), size(room%lines)] == [m, n, room_for_lines(u, v, w, 7)])) return
+      deallocate (room%cofactor, room%densities, room%displacement, room%gradient, room%grown, room%map, room%reference)
+      deallocate (room%stress, room%values, room%coefficients, room%denominator, room%sums, room%det, room%lines, room%scale)
+    end if
+    allocate (room%cofactor(m, 3, 3), room%gradient(m, 3, 3), room%grown(m, 3, 3), room%map(m, 3, 3), room%stress(m, 3, 3))
+    allocate (room%displacement(m, 3, 4), room%reference(m, 3, 4), room%densities(3, m, 4), room%values(7, m, 4))
+    allocate (room%coefficients(7, n), room%denominator(m, 4), room%sums(3, n))
+    allocate (room%det(m), room%lines(room_for_lines(u, v, w, 7)), room%scale(m))
+  end subroutine make_room
 
   !> `gradient` of samples_t, from `cofactor` and determinant, `det`, of the current map (theory 2.8).
   pure subroutine spatial_gradients(m, cofactor, det, denominator, gradient)
@@ -95,26 +122,24 @@ contains
   end subroutine spatial_gradients
 
   !> Weight, and weight times reference position and displacement, at the points, values and derivatives by the parameters:
-  !> `denominator` (point, 4), `reference` (point, 3, 4), `displacement` (point, 3, 4).
-  pure subroutine fields_at_points(u, v, w, weight, positions, references, denominator, reference, displacement)
+  !> `denominator` (point, 4), `reference` (point, 3, 4), `displacement` (point, 3, 4) of the room.
+  pure subroutine fields_at_points(u, v, w, weight, positions, references, room)
     type(line_rule_t), intent(in) :: u, v, w
     real(wp), intent(in) :: weight(:), positions(:, :), references(:, :)
-    real(wp), intent(out) :: denominator(:, :), reference(:, :, :), displacement(:, :, :)
-    real(wp), allocatable :: coefficients(:, :), values(:, :, :)
+    type(room_t), intent(inout) :: room
     integer :: a, i, kind
 
-    allocate (coefficients(7, size(weight)), values(7, size(denominator, 1), 4))
     do a = 1, size(weight) ! from the first control point, so that a rigid translation costs no digits
-      coefficients(1, a) = weight(a)
-      coefficients(2:4, a) = weight(a) * (references(:, a) - references(:, 1))
-      coefficients(5:7, a) = weight(a) * ((positions(:, a) - references(:, a)) - (positions(:, 1) - references(:, 1)))
+      room%coefficients(1, a) = weight(a)
+      room%coefficients(2:4, a) = weight(a) * (references(:, a) - references(:, 1))
+      room%coefficients(5:7, a) = weight(a) * ((positions(:, a) - references(:, a)) - (positions(:, 1) - references(:, 1)))
     end do
-    call interpolate(u, v, w, 7, coefficients, values)
+    call interpolate(u, v, w, 7, room%coefficients, room%values, room%lines)
     do kind = 1, 4
-      denominator(:, kind) = values(1, :, kind)
+      room%denominator(:, kind) = room%values(1, :, kind)
       do i = 1, 3
-        reference(:, i, kind) = values(1 + i, :, kind)
-        displacement(:, i, kind) = values(4 + i, :, kind)
+        room%reference(:, i, kind) = room%values(1 + i, :, kind)
+        room%displacement(:, i, kind) = room%values(4 + i, :, kind)
       end do
     end do
   end subroutine fields_at_points
@@ -146,30 +171,28 @@ contains
     allocate (samples%gradient(m, 3, 4), samples%volume(m))
   end subroutine reserve
 
-  !> Internal forces `residual` (3, control points), F (theory 1.7).
-  pure subroutine element_residual(u, v, w, weight, samples, material, residual)
+  !> Internal forces `residual` (3, control points), F (theory 1.7), in the room that the samples were made in.
+  pure subroutine element_residual(u, v, w, weight, samples, material, room, residual)
     type(line_rule_t), intent(in) :: u, v, w
     real(wp), intent(in) :: weight(:)
     type(samples_t), intent(in) :: samples
     class(material_t), intent(in) :: material
+    type(room_t), intent(inout) :: room
     real(wp), intent(out) :: residual(:, :)
-    real(wp), allocatable :: densities(:, :, :), stress(:, :, :), sums(:, :)
-    integer :: a, d, i, m
+    integer :: a, d, i
 
-    m = size(samples%volume)
-    allocate (densities(3, m, 4), stress(m, 3, 3), sums(3, size(weight)))
-    call material%stress(samples%state, stress)
-    associate (g => samples%gradient)
+    call material%stress(samples%state, room%stress)
+    associate (g => samples%gradient, stress => room%stress)
       do i = 1, 3
         do d = 1, 4
-          densities(i, :, d) = samples%volume * (stress(:, i, 1) * g(:, 1, d) + stress(:, i, 2) * g(:, 2, d) &
+          room%densities(i, :, d) = samples%volume * (stress(:, i, 1) * g(:, 1, d) + stress(:, i, 2) * g(:, 2, d) &
             + stress(:, i, 3) * g(:, 3, d))
         end do
       end do
     end associate
-    call integrate(u, v, w, 3, densities, sums)
+    call integrate(u, v, w, 3, room%densities, room%sums, room%lines)
     do a = 1, size(weight)
-      residual(:, a) = weight(a) * sums(:, a)
+      residual(:, a) = weight(a) * room%sums(:, a)
     end do
     if (contracts) call require(is_balanced(residual), "element_residual: forces are in balance")
   end subroutine element_residual

@@ -5,7 +5,7 @@ module isomortar_solid_volume
   use isomortar_base_predicate, only: is_index, sums_to
   use isomortar_base_status, only: status_folded_initially, status_ok
   use isomortar_nurbs_patch, only: element_count, element_nodes, element_of, line_rule, line_rule_t, patch_t
-  use isomortar_nurbs_tensor_product, only: integrate, interpolate
+  use isomortar_nurbs_tensor_product, only: integrate, interpolate, room_for_lines
   use isomortar_solid_points, only: determinants, quotients
   implicit none
   private
@@ -59,18 +59,18 @@ contains
     real(wp), intent(in) :: weight(:), references(:, :)
     real(wp), intent(out) :: shares(:)
     integer, intent(out) :: status
-    real(wp), allocatable :: coefficients(:, :), denominator(:, :), densities(:, :), det(:), volume(:)
+    real(wp), allocatable :: coefficients(:, :), denominator(:, :), densities(:, :), det(:), room(:), volume(:)
     real(wp), allocatable :: map(:, :, :), reference(:, :, :), values(:, :, :)
     integer :: a, i, j, k, kind, m
 
     m = size(u%weight) * size(v%weight) * size(w%weight)
     allocate (coefficients(4, size(weight)), denominator(m, 4), densities(m, 4), det(m), volume(m))
-    allocate (map(m, 3, 3), reference(m, 3, 4), values(4, m, 4))
+    allocate (map(m, 3, 3), reference(m, 3, 4), values(4, m, 4), room(room_for_lines(u, v, w, 4)))
     do a = 1, size(weight) ! from the first control point, so that a rigid translation costs no digits
       coefficients(1, a) = weight(a)
       coefficients(2:4, a) = weight(a) * (references(:, a) - references(:, 1))
     end do
-    call interpolate(u, v, w, 4, coefficients, values)
+    call interpolate(u, v, w, 4, coefficients, values, room)
     do kind = 1, 4
       denominator(:, kind) = values(1, :, kind)
       reference(:, :, kind) = transpose(values(2:4, :, kind))
@@ -82,7 +82,7 @@ contains
     volume = [(((u%weight(i) * v%weight(j) * w%weight(k), i=1, size(u%weight)), j=1, size(v%weight)), k=1, size(w%weight))] * det
     densities = 0.0_wp
     densities(:, 1) = volume / denominator(:, 1)
-    call integrate(u, v, w, 1, densities, shares)
+    call integrate(u, v, w, 1, densities, shares, room)
     shares = weight * shares
     if (contracts) call require(sums_to(shares, sum(volume)), "element_volumes: they sum to the element's volume")
   end subroutine element_volumes
