@@ -1,4 +1,4 @@
-"""Write what ``isomortar bench`` measured into the documentation's tables: ``python tools/document_benchmarks.py results/bench/bench.json``."""
+"""Write what ``isomortar bench`` measured into tables of docs/: ``python tools/document_benchmarks.py results/bench/bench.json``."""
 
 from __future__ import annotations
 

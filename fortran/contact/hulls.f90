@@ -232,7 +232,8 @@ contains
     logical, allocatable :: near(:)
     integer :: e
 
-    near = (x(1) - hulls%centre(:, 1))**2 + (x(2) - hulls%centre(:, 2))**2 + (x(3) - hulls%centre(:, 3))**2 &
+    allocate (near(size(hulls%radius)))
+    near(:) = (x(1) - hulls%centre(:, 1))**2 + (x(2) - hulls%centre(:, 2))**2 + (x(3) - hulls%centre(:, 3))**2 &
       <= (distance + hulls%radius)**2
     count = 0
     do e = 1, size(near)

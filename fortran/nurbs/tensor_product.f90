@@ -7,6 +7,7 @@
 !> direction that is next.
 !>
 !> - `u`, `v`, `w`: functions of the three directions in an element, or their pairs, at its points. `fields`: how many fields.
+!> - `room` (numbers): `room_for_lines` of them at least, for what is on the way.
 module isomortar_nurbs_tensor_product
   use isomortar_base_kinds, only: wp
   use isomortar_nurbs_patch, only: line_rule_t
@@ -36,7 +37,7 @@ contains
   end function room_for_lines
 
   !> Fields and their derivatives at all points: from `coefficients` (field, u, v, w) of the control points to `values` (field,
-  !> points, kind). `room` (at least `room_for_lines`) is for what is on the way.
+  !> points, kind).
   pure subroutine interpolate(u, v, w, fields, coefficients, values, room)
     type(line_rule_t), intent(in) :: u, v, w
     integer, intent(in) :: fields
@@ -88,7 +89,7 @@ contains
   end subroutine add_columns
 
   !> Sum over points and kinds of `densities` times functions: from (field, points, kind) to `sums` (field, u, v, w) of the
-  !> control points. `room` as above.
+  !> control points.
   pure subroutine integrate(u, v, w, fields, densities, sums, room)
     type(line_rule_t), intent(in) :: u, v, w
     integer, intent(in) :: fields

@@ -83,19 +83,15 @@ contains
     call spatial_gradients(m, room%cofactor, room%det, room%denominator, samples%gradient)
   end subroutine sample_element
 
-  !> Make room for an element, unless there is that of one with as many control points and quadrature points in each direction.
+  !> Make room for the first element of a body: the others are like it.
   pure subroutine make_room(u, v, w, room)
     type(line_rule_t), intent(in) :: u, v, w
     type(room_t), intent(inout) :: room
     integer :: m, n
 
+    if (allocated(room%det)) return
     m = size(u%weight) * size(v%weight) * size(w%weight)
     n = size(u%values, 1) * size(v%values, 1) * size(w%values, 1)
-    if (allocated(room%det)) then
-      if (all([size(room%det), size(room%sums, 2), size(room%lines)] == [m, n, room_for_lines(u, v, w, 7)])) return
-      deallocate (room%cofactor, room%densities, room%displacement, room%gradient, room%grown, room%map, room%reference)
-      deallocate (room%stress, room%values, room%coefficients, room%denominator, room%sums, room%det, room%lines, room%scale)
-    end if
     allocate (room%cofactor(m, 3, 3), room%gradient(m, 3, 3), room%grown(m, 3, 3), room%map(m, 3, 3), room%stress(m, 3, 3))
     allocate (room%displacement(m, 3, 4), room%reference(m, 3, 4), room%densities(3, m, 4), room%values(7, m, 4))
     allocate (room%coefficients(7, n), room%denominator(m, 4), room%sums(3, n))

@@ -96,7 +96,8 @@ contains
     code = cholesky_out_of_memory
     allocate (self%corner(self%faces, self%faces), stat=failure)
     if (failure == 0) allocate (self%complement(n, n), stat=failure)
-    if (failure == 0) allocate (self%pivot(n), shift(self%faces), stat=failure)
+    if (failure == 0) allocate (self%pivot(n), stat=failure)
+    if (failure == 0) allocate (shift(self%faces), stat=failure)
     if (failure == 0) code = cholesky_factorise(self%body, values, face_share, self%corner, shift, least)
     if (code /= cholesky_done) then
       call forget_numbers(self)
@@ -149,7 +150,8 @@ contains
     if (contracts) call require(size(b) == self%unknowns - self%faces + size(self%pivot), "substitute_condensed: all unknowns")
     if (contracts) call require(size(x) == size(b), "substitute_condensed: and a place for each")
     code = cholesky_out_of_memory
-    allocate (within(self%unknowns), trailing(size(self%pivot), 1), stat=failure)
+    allocate (within(self%unknowns), stat=failure)
+    if (failure == 0) allocate (trailing(size(self%pivot), 1), stat=failure)
     if (failure /= 0) return
     code = cholesky_forth(self%body, b, within)
     if (code /= cholesky_done) return

@@ -1,4 +1,4 @@
-"""Tables of benchmarks in the documentation: each is of a benchmark that there is, with its columns, and is written from what was measured."""
+"""Tables of benchmarks in the documentation: each is of one that there is, with its columns, and is written from what was measured."""
 
 from __future__ import annotations
 

@@ -13,10 +13,10 @@ import numpy as np
 from isomortar.errors import ResultsError
 from isomortar.model.entities import Contact, Problem
 from isomortar.results import layout
+from isomortar.results.datasets import Datasets
 from isomortar.results.definition import differences, is_longer, write_problem, write_stages
 from isomortar.results.files import SEAL_SIZE, read, replace, sealed
 from isomortar.results.reader import Results
-from isomortar.results.rows import Rows
 from isomortar.solve.record import AugmentationRecord, ContactRates, Observer, Rates, State, StepResult
 
 #: HDF5 1.10's format: its metadata carry checksums (the data get theirs from the filter), so damage is seen, not read.
@@ -89,7 +89,7 @@ class ResultsWriter(Observer):
         self._store()
 
     def _hold(self, file: h5py.File) -> None:
-        self._file, self._rows = file, Rows(file)
+        self._file, self._datasets = file, Datasets(file)
 
     def _store(self) -> None:
         """Put the file as it is in memory in the place of that on the disk."""
@@ -97,7 +97,7 @@ class ResultsWriter(Observer):
         replace(self.path, sealed(bytes(SEAL_SIZE) + self._file.id.get_file_image()))
 
     def _begin(self, scene_text: str, version: str) -> None:
-        file, make = self._file, self._rows.make
+        file, make = self._file, self._datasets.make
         file.attrs["format"] = layout.FORMAT
         file.attrs["format_version"] = layout.FORMAT_VERSION
         file.attrs["program_version"] = version
@@ -157,27 +157,27 @@ class ResultsWriter(Observer):
         self._file.attrs["format_version"] = layout.FORMAT_VERSION
 
     def _append(self, result: StepResult) -> None:
-        rows, steps = self._rows, self._file["curves/step"]
+        datasets, steps = self._datasets, self._file["curves/step"]
         row = len(steps)
         if row and result.step <= steps[-1]:
             raise ResultsError(
                 f"{self.path} holds load step {result.step} already: resume from its last step, or name another results file"
             )
-        rows.put("curves", layout.STEP, result, row)
+        datasets.put("curves", layout.STEP, result, row)
         for support, reaction in zip(self._problem.supports, result.reactions, strict=True):
-            rows.put(f"curves/supports/{support.name}", layout.REACTION, reaction, row)
+            datasets.put(f"curves/supports/{support.name}", layout.REACTION, reaction, row)
         for contact, measured in zip(self._problem.contacts, result.contacts, strict=True):
-            rows.put(f"curves/contacts/{contact.name}", layout.CONTACT, measured, row)
+            datasets.put(f"curves/contacts/{contact.name}", layout.CONTACT, measured, row)
         for load, acting in zip(self._problem.loads, result.loads, strict=True):
-            rows.put(f"curves/loads/{load.name}", layout.LOAD, acting, row)
-        rows.put_named("timings", layout.TIMING, result.timings, row)
-        rows.put_named("counters", layout.COUNTER, result.counters, row)
-        rows.put_named("orderings", layout.ORDERING, {str(matrices): name for matrices, name in result.orderings.items()}, row)
+            datasets.put(f"curves/loads/{load.name}", layout.LOAD, acting, row)
+        datasets.put_named("timings", layout.TIMING, result.timings, row)
+        datasets.put_named("counters", layout.COUNTER, result.counters, row)
+        datasets.put_named("orderings", layout.ORDERING, {str(matrices): name for matrices, name in result.orderings.items()}, row)
         self._put_log(result.step, result.augmentations)
         self._put_state(result)
 
     def _put_log(self, step: int, augmentations: tuple[AugmentationRecord, ...]) -> None:
-        extend, iterations = self._rows.extend, [i for a in augmentations for i in a.iterations]
+        extend, iterations = self._datasets.extend, [i for a in augmentations for i in a.iterations]
         extend(
             "log/augmentations",
             [
@@ -192,17 +192,17 @@ class ResultsWriter(Observer):
         kept = len(self._file["states/step"])
         if self._states == "last":
             kept = max(kept - 1, 0)
-        self._rows.put_row("states/step", layout.STATE_STEP, result.step, kept)
-        self._rows.put_row("states/positions", layout.POSITIONS, result.state.positions, kept)
+        self._datasets.put_row("states/step", layout.STATE_STEP, result.step, kept)
+        self._datasets.put_row("states/positions", layout.POSITIONS, result.state.positions, kept)
         for contact, state, measured in zip(self._problem.contacts, result.state.contacts, result.contacts, strict=True):
             for quantities, source in ((layout.CONTACT_STATE, state), (layout.CONTACT_VALUES, measured)):
-                self._rows.put(f"states/contacts/{contact.name}", _wanted(contact, quantities), source, kept)
+                self._datasets.put(f"states/contacts/{contact.name}", _wanted(contact, quantities), source, kept)
         self._put_rates(result.state.rates or _unknown(result.state), kept)
 
     def _put_rates(self, rates: Rates, kept: int) -> None:
-        self._rows.put("rates", layout.RATES, rates, kept)
+        self._datasets.put("rates", layout.RATES, rates, kept)
         for contact, of_contact in zip(self._problem.contacts, rates.contacts, strict=True):
-            self._rows.put(f"rates/contacts/{contact.name}", _wanted(contact, layout.CONTACT_RATES), of_contact, kept)
+            self._datasets.put(f"rates/contacts/{contact.name}", _wanted(contact, layout.CONTACT_RATES), of_contact, kept)
 
 
 def _put_scene(file: h5py.File, text: str) -> None:

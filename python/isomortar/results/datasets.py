@@ -11,7 +11,7 @@ import numpy as np
 from isomortar.results import layout
 
 
-class Rows:
+class Datasets:
     """The datasets of a file that is being written.
 
     Parameters
