@@ -14,7 +14,7 @@ module isomortar_contact_batch
   implicit none
   private
 
-  public :: add_sample, reserve, scatter
+  public :: add_sample, reserve, scatter, sum_up
 
   !> Quadrature points of a slave element that project on the same master element. They share their control points, so that the sums
   !> over them are products of matrices.
@@ -31,6 +31,15 @@ module isomortar_contact_batch
     !> (right control point, left component, right component, left vector, quadrature points).
     real(wp), allocatable :: second(:, :, :, :, :)
   end type batch_t
+
+  !> What a batch adds, by the control points that it reaches.
+  type, public :: sums_t
+    integer, allocatable :: points(:)
+    !> Constraint rows, (control point, component, slave control point, kind).
+    real(wp), allocatable :: rows(:, :, :, :)
+    !> Geometric tangent, (right control point, left component, right component, left control point); of maps that bend.
+    real(wp), allocatable :: second(:, :, :, :)
+  end type sums_t
 
 contains
 
@@ -138,35 +147,47 @@ contains
     by_point = matmul(coefficients, by_vector)
   end subroutine to_points
 
-  !> Add the sums of a batch, in which control points bear and normals of nodes, to what these depend on.
+  !> The `sums` of a batch, in which control points bear and normals of nodes, by the control points that these depend on.
   !>
-  !> - `normals`: normals of nodes. `points` (bearing): what bears, normals counted on from the control points.
+  !> - `normals`: normals of nodes. `n`: number of control points. `points` (bearing): what bears, normals counted on from these.
+  pure subroutine sum_up(normals, n, points, batch, sums)
+    type(normals_t), intent(in) :: normals
+    integer, intent(in) :: n, points(:)
+    type(batch_t), intent(in) :: batch
+    type(sums_t), intent(inout) :: sums
+    type(reached_t) :: reached
+
+    if (normals%count > 0) then
+      call reach(normals, n, points, reached)
+      sums%points = reached%point
+      sums%rows = carry_rows(reached, sum_rows(batch))
+      if (allocated(batch%second)) sums%second = carry_form(reached, sum_second(batch))
+    else
+      sums%points = points
+      sums%rows = sum_rows(batch)
+      if (allocated(batch%second)) sums%second = sum_second(batch)
+    end if
+  end subroutine sum_up
+
+  !> Add sums to constraint rows and tangent.
+  !>
   !> - `nodes` (functions of an element), `active` (test functions): test functions of the element; which of all act.
   !> - `row_pattern`, `rows` (component, kind, blocks): pattern of the constraint rows, and these (isomortar_contact_rows).
   !> - `pattern`, `tangent` (column component, row component, blocks): pattern of the tangent, and this, F/L.
   !> - `columns` (control points): to mark places of blocks in (isomortar_sparse_blocks), zero at first.
   !> - `lacking`: a row of a pattern without one of the blocks, 0: none.
-  pure subroutine scatter(normals, nodes, active, batch, points, row_pattern, pattern, columns, rows, tangent, lacking)
-    type(normals_t), intent(in) :: normals
-    integer, intent(in) :: nodes(:), points(:)
+  pure subroutine scatter(nodes, active, sums, row_pattern, pattern, columns, rows, tangent, lacking)
+    integer, intent(in) :: nodes(:)
     logical, intent(in) :: active(:)
-    type(batch_t), intent(in) :: batch
+    type(sums_t), intent(in) :: sums
     type(pattern_t), intent(in) :: row_pattern, pattern
     integer, intent(inout) :: columns(:)
     real(wp), intent(inout) :: rows(:, :, :), tangent(:, :, :)
     integer, intent(out) :: lacking
-    type(reached_t) :: reached
 
-    if (normals%count > 0) then
-      call reach(normals, size(columns), points, reached)
-      call scatter_rows(nodes, active, carry_rows(reached, sum_rows(batch)), reached%point, row_pattern, columns, rows, lacking)
-      if (lacking > 0) return
-      call scatter_tangent(carry_form(reached, sum_second(batch)), reached%point, pattern, columns, tangent, lacking)
-    else
-      call scatter_rows(nodes, active, sum_rows(batch), points, row_pattern, columns, rows, lacking)
-      if (lacking > 0 .or. .not. allocated(batch%second)) return
-      call scatter_tangent(sum_second(batch), points, pattern, columns, tangent, lacking)
-    end if
+    call scatter_rows(nodes, active, sums%rows, sums%points, row_pattern, columns, rows, lacking)
+    if (lacking > 0 .or. .not. allocated(sums%second)) return
+    call scatter_tangent(sums%second, sums%points, pattern, columns, tangent, lacking)
   end subroutine scatter
 
   !> Rows of a batch, summed over its quadrature points: (control point, component, slave control point, kind).

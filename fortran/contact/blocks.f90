@@ -10,13 +10,13 @@ module isomortar_contact_blocks
   use isomortar_base_kinds, only: wp
   use isomortar_base_predicate, only: is_compressed
   use isomortar_base_status, only: status_ok, status_pattern
-  use isomortar_contact_batch, only: add_sample, batch_t, reserve, scatter
+  use isomortar_contact_batch, only: add_sample, batch_t, reserve, scatter, sum_up, sums_t
   use isomortar_contact_gap_map_map, only: all_components, for_forces, for_gap, for_tangent, gap_map_t, projections_t
   use isomortar_contact_gap_map_nodal_normals, only: add_turning, carry, normals_t
   use isomortar_contact_rows, only: row_metric
   use isomortar_contact_sample, only: fields_at, multipliers_t, sample_t, take_sample
   use isomortar_contact_slave, only: slave_t, slave_tangents
-  use isomortar_contact_work, only: work_t
+  use isomortar_contact_work, only: gather_work, work_t
   use isomortar_sparse_blocks, only: lacks, mark_row, pattern_t
   implicit none
   private
@@ -56,34 +56,88 @@ contains
     real(wp), intent(inout) :: forces(:, :), on_normals(:, :)
     type(work_t), intent(inout) :: work
     type(sample_t) :: sample
-    real(wp) :: field(3), force(3), row(all_components)
-    integer :: a, e, k, n, q
+    type(work_t), allocatable :: works(:)
+    real(wp), allocatable :: parts(:, :, :)
+    integer, allocatable :: points(:, :)
+    integer :: e
 
-    n = size(forces, 2)
-    do e = 1, size(slave%test%nodes, 2)
-      if (.not. any(multipliers%active(slave%test%nodes(:, e)))) cycle
-      do q = (e - 1) * slave%per_element + 1, e * slave%per_element
-        if (.not. projections%found(q)) cycle
-        call take_sample(slave, map, positions, projections, e, q, merge(for_forces, for_gap, with_friction), sample, work)
-        field = fields_at(slave, multipliers, e, q)
-        associate (components => 3 * size(sample%coefficients, 2), slip => sample%variations%slip)
-          row(:components) = slave%area(q) * (field(1) * sample%variations%pressure_work(:components) &
-            + field(2) * slip(:components, 1) + field(3) * slip(:components, 2))
-        end associate
-        do a = 1, size(sample%points)
-          force = 0.0_wp
-          do k = 1, size(sample%coefficients, 2)
-            force = force + sample%coefficients(a, k) * row(3 * k - 2:3 * k)
-          end do
-          if (sample%points(a) <= n) then
-            forces(:, sample%points(a)) = forces(:, sample%points(a)) + force
-          else
-            on_normals(:, sample%points(a) - n) = on_normals(:, sample%points(a) - n) + force
-          end if
+    allocate (works(size(slave%test%nodes, 2)))
+    !$omp parallel default(none) private(sample, parts, points) shared(slave, map, positions, projections, with_friction) &
+    !$omp shared(multipliers, forces, on_normals, works)
+    !$omp do ordered schedule(dynamic)
+    do e = 1, size(works)
+      call forces_of_element(slave, map, positions, projections, with_friction, multipliers, e, sample, points, parts, works(e))
+      !$omp ordered
+      call add_parts(points, parts, forces, on_normals)
+      !$omp end ordered
+    end do
+    !$omp end do
+    !$omp end parallel
+    call gather_work(works, work)
+  end subroutine integrate_each
+
+  !> Forces `parts` (3, bearing, points of an element) of the quadrature points of slave element `e` on what bears there, `points`
+  !> (bearing, points of an element): 0 at a point without.
+  pure subroutine forces_of_element(slave, map, positions, projections, with_friction, multipliers, e, sample, points, parts, work)
+    type(slave_t), intent(in) :: slave
+    class(gap_map_t), intent(in) :: map
+    real(wp), intent(in) :: positions(:, :)
+    type(projections_t), intent(in) :: projections
+    logical, intent(in) :: with_friction
+    type(multipliers_t), intent(in) :: multipliers
+    integer, intent(in) :: e
+    type(sample_t), intent(inout) :: sample
+    integer, allocatable, intent(inout) :: points(:, :)
+    real(wp), allocatable, intent(inout) :: parts(:, :, :)
+    type(work_t), intent(inout) :: work
+    real(wp) :: field(3), row(all_components)
+    integer :: a, i, k, q
+
+    if (.not. allocated(points)) then
+      associate (n => size(slave%shape%nodes, 1) + map%bearing())
+        allocate (points(n, slave%per_element), parts(3, n, slave%per_element))
+      end associate
+    end if
+    points = 0
+    if (.not. any(multipliers%active(slave%test%nodes(:, e)))) return
+    do i = 1, slave%per_element
+      q = (e - 1) * slave%per_element + i
+      if (.not. projections%found(q)) cycle
+      call take_sample(slave, map, positions, projections, e, q, merge(for_forces, for_gap, with_friction), sample, work)
+      field = fields_at(slave, multipliers, e, q)
+      associate (components => 3 * size(sample%coefficients, 2), slip => sample%variations%slip)
+        row(:components) = slave%area(q) * (field(1) * sample%variations%pressure_work(:components) &
+          + field(2) * slip(:components, 1) + field(3) * slip(:components, 2))
+      end associate
+      points(:, i) = sample%points
+      do a = 1, size(sample%points)
+        parts(:, a, i) = 0.0_wp
+        do k = 1, size(sample%coefficients, 2)
+          parts(:, a, i) = parts(:, a, i) + sample%coefficients(a, k) * row(3 * k - 2:3 * k)
         end do
       end do
     end do
-  end subroutine integrate_each
+  end subroutine forces_of_element
+
+  !> Add the forces of an element's points to those on control points and on normals, which are counted on from these.
+  pure subroutine add_parts(points, parts, forces, on_normals)
+    integer, intent(in) :: points(:, :)
+    real(wp), intent(in) :: parts(:, :, :)
+    real(wp), intent(inout) :: forces(:, :), on_normals(:, :)
+    integer :: a, i, n
+
+    n = size(forces, 2)
+    do i = 1, size(points, 2)
+      if (points(1, i) == 0) cycle
+      do a = 1, size(points, 1)
+        if (points(a, i) <= n) then
+          forces(:, points(a, i)) = forces(:, points(a, i)) + parts(:, a, i)
+        else
+          on_normals(:, points(a, i) - n) = on_normals(:, points(a, i) - n) + parts(:, a, i)
+        end if
+      end do
+    end do
+  end subroutine add_parts
 
   !> Add constraint rows and the geometric tangent <p Ddg> + <t_a Ddxi^a> (theory 4.8).
   !>
@@ -107,11 +161,12 @@ contains
     type(work_t), intent(inout) :: work
     type(sample_t) :: sample
     type(batch_t) :: batch
-    logical :: pending(slave%per_element), together(slave%per_element)
+    type(sums_t) :: sums
     type(normals_t) :: normals
+    type(work_t), allocatable :: works(:)
     real(wp), allocatable :: extended(:, :), forces(:, :), on_normals(:, :)
-    integer, allocatable :: columns(:), stencils(:, :)
-    integer :: before, e, k, wanted
+    integer, allocatable :: columns(:), element(:), group(:)
+    integer :: g, wanted
 
     if (contracts) call require(is_compressed(row_pattern%start, size(rows, 3)), "integrate_blocks: rows are those of a pattern")
     if (contracts) call require(size(row_pattern%start) == slave%test%count + 1, "integrate_blocks: each test function has a row")
@@ -121,29 +176,26 @@ contains
     place = 0
     allocate (columns(size(positions, 2)), source=0)
     call map%extend(positions, normals, extended, work)
-    stencils = map%stencils(projections)
+    call number_groups(slave, multipliers%active, projections%found, map%stencils(projections), group, element)
     wanted = merge(for_tangent, for_forces, with_friction)
-    call reserve(slave, map, size(pending), map%vectors(wanted), size(rows, 2), batch)
-    do e = 1, size(slave%test%nodes, 2)
-      if (.not. any(multipliers%active(slave%test%nodes(:, e)))) cycle
-      before = (e - 1) * size(pending)
-      pending = projections%found(before + 1:before + size(pending))
-      do while (any(pending))
-        k = findloc(pending, .true., dim=1)
-        together = pending .and. same_stencil(stencils(:, before + 1:before + size(pending)), k)
-        pending = pending .and. .not. together
-        batch%count = 0
-        do k = 1, size(together)
-          if (.not. together(k)) cycle
-          call take_sample(slave, map, extended, projections, e, before + k, wanted, sample, work)
-          call add_sample(slave, map, before + k, projections%slips(before + k), sample, field_slip(:, before + k), &
-            fields_at(slave, multipliers, e, before + k), batch)
-        end do
-        call scatter(normals, slave%test%nodes(:, e), multipliers%active, batch, sample%points, row_pattern, pattern, columns, &
-          rows, tangent, place)
-        if (place > 0) return
-      end do
+    allocate (works(size(element)))
+    !$omp parallel default(none) private(sample, batch, sums) shared(slave, map, extended, projections, multipliers, field_slip) &
+    !$omp shared(wanted, element, group, normals, row_pattern, pattern, columns, rows, tangent, place, works)
+    call reserve(slave, map, slave%per_element, map%vectors(wanted), size(rows, 2), batch)
+    !$omp do ordered schedule(dynamic)
+    do g = 1, size(works)
+      call take_group(slave, map, extended, projections, multipliers, field_slip, wanted, element(g), &
+        group((element(g) - 1) * slave%per_element + 1:element(g) * slave%per_element) == g, sample, batch, works(g))
+      call sum_up(normals, size(columns), sample%points, batch, sums)
+      !$omp ordered
+      if (place == 0) call scatter(slave%test%nodes(:, element(g)), multipliers%active, sums, row_pattern, pattern, columns, rows, &
+        tangent, place)
+      !$omp end ordered
     end do
+    !$omp end do
+    !$omp end parallel
+    call gather_work(works, work)
+    if (place > 0) return
     if (map%counts_all_points .and. with_friction) then
       call add_metric_rows(slave, positions, projections, multipliers%active, row_pattern, columns, rows, place)
       if (place > 0) return
@@ -157,17 +209,55 @@ contains
     status = status_ok
   end subroutine integrate_blocks
 
-  !> Which columns are the same as column k.
-  pure function same_stencil(stencils, k) result(same)
-    integer, intent(in) :: stencils(:, :), k
-    logical :: same(size(stencils, 2))
-    integer :: a
+  !> Number the quadrature points that bear on the same control points, of each active slave element: `group` (points), 0 where there
+  !> is nothing to add; `element` (groups) of each. `stencils` (any, points) says what a point bears on.
+  pure subroutine number_groups(slave, active, found, stencils, group, element)
+    type(slave_t), intent(in) :: slave
+    logical, intent(in) :: active(:), found(:)
+    integer, intent(in) :: stencils(:, :)
+    integer, allocatable, intent(out) :: group(:), element(:)
+    integer, allocatable :: owner(:)
+    integer :: e, groups, k, q
 
-    same = .true.
-    do a = 1, size(stencils, 1)
-      same = same .and. stencils(a, :) == stencils(a, k)
+    allocate (group(size(found)), source=0)
+    allocate (owner(size(found)))
+    groups = 0
+    do e = 1, size(slave%test%nodes, 2)
+      if (.not. any(active(slave%test%nodes(:, e)))) cycle
+      do q = (e - 1) * slave%per_element + 1, e * slave%per_element
+        if (.not. found(q) .or. group(q) > 0) cycle
+        groups = groups + 1
+        owner(groups) = e
+        do k = q, e * slave%per_element
+          if (found(k) .and. group(k) == 0 .and. all(stencils(:, k) == stencils(:, q))) group(k) = groups
+        end do
+      end do
     end do
-  end function same_stencil
+    element = owner(:groups)
+  end subroutine number_groups
+
+  !> Put the quadrature points of a group, of slave element `e`, into a batch: those that are `in_group` (points of the element).
+  pure subroutine take_group(slave, map, positions, projections, multipliers, field_slip, wanted, e, in_group, sample, batch, work)
+    type(slave_t), intent(in) :: slave
+    class(gap_map_t), intent(in) :: map
+    real(wp), intent(in) :: positions(:, :), field_slip(:, :)
+    type(projections_t), intent(in) :: projections
+    type(multipliers_t), intent(in) :: multipliers
+    integer, intent(in) :: wanted, e
+    logical, intent(in) :: in_group(:)
+    type(sample_t), intent(inout) :: sample
+    type(batch_t), intent(inout) :: batch
+    type(work_t), intent(inout) :: work
+    integer :: k, q
+
+    batch%count = 0
+    do k = 1, size(in_group)
+      if (.not. in_group(k)) cycle
+      q = (e - 1) * slave%per_element + k
+      call take_sample(slave, map, positions, projections, e, q, wanted, sample, work)
+      call add_sample(slave, map, q, projections%slips(q), sample, field_slip(:, q), fields_at(slave, multipliers, e, q), batch)
+    end do
+  end subroutine take_group
 
   !> Add <R^I R^I da_ab> over the points without a foot, of the slave's own metric; `lacking` as above (theory 3.30).
   pure subroutine add_metric_rows(slave, positions, projections, active, pattern, columns, rows, lacking)

@@ -12,7 +12,7 @@ module isomortar_contact_control
   use isomortar_contact_gap_map_map, only: contact_point_t, for_gap, gap_map_t, projections_t
   use isomortar_contact_gap_map_nodal_normals, only: normals_t
   use isomortar_contact_slave, only: integrate_functions, slave_t, slave_tangents
-  use isomortar_contact_work, only: count_points, work_t
+  use isomortar_contact_work, only: count_points, gather_work, work_t
   implicit none
   private
 
@@ -53,6 +53,7 @@ contains
     integer, intent(out) :: status, place
     type(work_t), intent(inout) :: work
     type(normals_t) :: normals
+    type(work_t), allocatable :: works(:)
     real(wp), allocatable :: extended(:, :)
     integer :: q
 
@@ -68,9 +69,13 @@ contains
     projections%slips = projections%found .and. had
     projections%slip = 0.0_wp
     if (.not. with_friction) return
-    do q = 1, size(slave%area)
-      if (projections%slips(q)) call map%slip(slave, extended, projections, q, projections%slip(:, q), work)
+    allocate (works(size(slave%area)))
+    !$omp parallel do default(none) shared(slave, map, extended, projections, works) schedule(dynamic, 16)
+    do q = 1, size(works)
+      if (projections%slips(q)) call map%slip(slave, extended, projections, q, projections%slip(:, q), works(q))
     end do
+    !$omp end parallel do
+    call gather_work(works, work)
   end subroutine project_points
 
   !> How far the foot of every slave quadrature point has climbed since the last converged load step, `climbs` (points), L; zero
@@ -94,7 +99,7 @@ contains
 
   !> Integrate the control quantities. Points without a projection take no part in any of them (theory 4.1), but in those that need
   !> none where the map is of that kind (theory 3.30).
-  pure subroutine control_quantities(slave, map, positions, projections, with_friction, control, work)
+  subroutine control_quantities(slave, map, positions, projections, with_friction, control, work)
     type(slave_t), intent(in) :: slave
     class(gap_map_t), intent(in) :: map
     real(wp), intent(in) :: positions(:, :)
@@ -102,11 +107,10 @@ contains
     logical, intent(in) :: with_friction
     type(control_t), intent(inout) :: control
     type(work_t), intent(inout) :: work
-    type(contact_point_t) :: point
     type(normals_t) :: normals
-    real(wp), allocatable :: extended(:, :), coefficients(:, :), fields(:, :), totals(:, :)
-    real(wp) :: tangents(3, 2)
-    integer :: points(map%bearing()), q
+    type(work_t), allocatable :: works(:)
+    real(wp), allocatable :: extended(:, :), fields(:, :), totals(:, :)
+    integer :: e
 
     if (contracts) call require(size(projections%found) == size(slave%area), "control_quantities: points are the slave's")
     if (contracts) call require(size(control%weight) == slave%test%count, "control_quantities: functions are the slave's")
@@ -114,22 +118,16 @@ contains
     associate (wanted => merge(5, 4, map%counts_all_points))
       allocate (fields(wanted, size(slave%area)), totals(wanted, slave%test%count))
     end associate
-    allocate (coefficients(map%bearing(), map%vectors(for_gap)))
     fields = 0.0_wp
     control%point_metric = 0.0_wp
-    do q = 1, size(slave%area)
-      if (map%counts_all_points .and. .not. projections%found(q)) fields(1, q) = 1.0_wp
-      if (with_friction .and. map%counts_all_points .and. .not. projections%found(q)) then
-        tangents = slave_tangents(slave, positions, q)
-        control%point_metric(:, q) = [sum(tangents(:, 1)**2), dot_product(tangents(:, 1), tangents(:, 2)), sum(tangents(:, 2)**2)]
-      end if
-      if (.not. projections%found(q)) cycle
-      call count_points(1, work)
-      call map%at(slave, extended, projections, q, for_gap, point, points, coefficients, work)
-      fields(:4, q) = [1.0_wp, point%gap, projections%slip(:, q)]
-      if (map%counts_all_points) fields(5, q) = 1.0_wp
-      if (with_friction) control%point_metric(:, q) = [point%metric(1, 1), point%metric(1, 2), point%metric(2, 2)]
+    allocate (works(size(slave%area) / slave%per_element))
+    !$omp parallel do default(none) shared(slave, map, extended, projections, with_friction, fields, control, works) &
+    !$omp schedule(dynamic)
+    do e = 1, size(works)
+      call quantities_at_points(slave, map, extended, projections, with_friction, e, fields, control%point_metric, works(e))
     end do
+    !$omp end parallel do
+    call gather_work(works, work)
     call integrate_functions(slave, fields, totals)
     control%weight(:) = totals(1, :)
     if (map%counts_all_points) where (totals(5, :) <= least_weight * totals(1, :)) control%weight = 0.0_wp
@@ -139,6 +137,35 @@ contains
     control%metric = 0.0_wp
     if (with_friction) call integrate_squares(slave, fields(1, :), control)
   end subroutine control_quantities
+
+  !> What is integrated, `fields` (field, points), at the quadrature points of slave element `e`, with `point_metric` (3, points).
+  pure subroutine quantities_at_points(slave, map, positions, projections, with_friction, e, fields, point_metric, work)
+    type(slave_t), intent(in) :: slave
+    class(gap_map_t), intent(in) :: map
+    real(wp), intent(in) :: positions(:, :)
+    type(projections_t), intent(in) :: projections
+    logical, intent(in) :: with_friction
+    integer, intent(in) :: e
+    real(wp), intent(inout) :: fields(:, :), point_metric(:, :)
+    type(work_t), intent(inout) :: work
+    type(contact_point_t) :: point
+    real(wp) :: coefficients(map%bearing(), map%vectors(for_gap)), tangents(3, 2)
+    integer :: points(map%bearing()), q
+
+    do q = (e - 1) * slave%per_element + 1, e * slave%per_element
+      if (map%counts_all_points .and. .not. projections%found(q)) fields(1, q) = 1.0_wp
+      if (with_friction .and. map%counts_all_points .and. .not. projections%found(q)) then
+        tangents = slave_tangents(slave, positions, q)
+        point_metric(:, q) = [sum(tangents(:, 1)**2), dot_product(tangents(:, 1), tangents(:, 2)), sum(tangents(:, 2)**2)]
+      end if
+      if (.not. projections%found(q)) cycle
+      call count_points(1, work)
+      call map%at(slave, positions, projections, q, for_gap, point, points, coefficients, work)
+      fields(:4, q) = [1.0_wp, point%gap, projections%slip(:, q)]
+      if (map%counts_all_points) fields(5, q) = 1.0_wp
+      if (with_friction) point_metric(:, q) = [point%metric(1, 1), point%metric(1, 2), point%metric(2, 2)]
+    end do
+  end subroutine quantities_at_points
 
   !> <R^I R^I> and <R^I R^I a_ab> over the points whose `present` is 1 (theory 4.2).
   pure subroutine integrate_squares(slave, present, control)

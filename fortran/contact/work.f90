@@ -4,7 +4,7 @@ module isomortar_contact_work
   implicit none
   private
 
-  public :: add_work, count_points, evaluate
+  public :: add_work, count_points, evaluate, gather_work
 
   !> Numbers of counts, by what they count: an array of them has one of each.
   integer, parameter, public :: work_warm = 1, work_cold = 2, work_elements = 3, work_points = 4, work_order = 5, work_counts = 8
@@ -38,6 +38,21 @@ contains
 
     work%points = work%points + points
   end subroutine count_points
+
+  !> Add the counts of `parts` (any) of a pass, which threads have made each for itself, to those of all, `work`.
+  pure subroutine gather_work(parts, work)
+    type(work_t), intent(in) :: parts(:)
+    type(work_t), intent(inout) :: work
+    integer :: k
+
+    work%warm = work%warm + sum(parts%warm)
+    work%cold = work%cold + sum(parts%cold)
+    work%elements = work%elements + sum(parts%elements)
+    work%points = work%points + sum(parts%points)
+    do k = 1, size(parts)
+      work%evaluations = work%evaluations + parts(k)%evaluations
+    end do
+  end subroutine gather_work
 
   !> Add the counts of a call, `work`, to `counts` (work_counts).
   pure subroutine add_work(work, counts)

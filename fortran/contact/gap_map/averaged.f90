@@ -16,7 +16,7 @@ module isomortar_contact_gap_map_averaged
   use isomortar_contact_gap_map_nodal_normals, only: average, normals_t
   use isomortar_contact_projection, only: shallow_depth, square_depth
   use isomortar_contact_slave, only: slave_normal, slave_position, slave_t, slave_tangents
-  use isomortar_contact_work, only: count_points, evaluate, work_t
+  use isomortar_contact_work, only: count_points, evaluate, gather_work, work_t
   use isomortar_nurbs_direction, only: element_at
   use isomortar_nurbs_surface, only: surface_basis, surface_nodes, surface_t
   implicit none
@@ -107,7 +107,8 @@ contains
     vectors = merge(way_back, slave_along, wanted == for_tangent)
   end function vectors
 
-  !> Find the feet of all points: from where they were, else anywhere (theory 3.30); none behind the body (theory 3.19).
+  !> Find the feet of all points, all threads: from where they were, else anywhere (theory 3.30); none behind the body (theory
+  !> 3.19). Where several fail the first point is told.
   subroutine locate(self, slave, positions, started, had, projections, status, place, work)
     class(averaged_t), intent(in) :: self
     type(slave_t), intent(in) :: slave
@@ -117,9 +118,9 @@ contains
     integer, intent(out) :: status, place
     type(work_t), intent(inout) :: work
     type(scope_t) :: scope
-    type(foot_t) :: foot
-    real(wp) :: across(3), shallow, square, x(3)
-    logical :: behind, cold, deep
+    type(work_t), allocatable :: works(:)
+    logical, allocatable :: passed(:)
+    real(wp) :: shallow
     integer :: q
 
     place = first_not_finite(positions, self%surface%point)
@@ -127,36 +128,58 @@ contains
     if (status /= status_ok) return
     scope = scope_of(self%surface, positions)
     shallow = shallow_depth(self%surface, self%opposite, positions)
-    call count_points(size(slave%area), work)
-    do q = 1, size(slave%area)
-      x = slave_position(slave, positions, q)
-      across = slave_normal(slave, positions, q)
-      foot%found = .false.
-      if (started(q)) call follow(self%surface, positions, x, projections%xi(:, q), foot, work)
-      deep = foot%found .and. had(q)
-      if (deep) deep = foot%gap > scope%deepest
-      cold = .not. accept(scope, foot, across)
-      work%warm = work%warm + merge(0, 1, cold)
-      work%cold = work%cold + merge(1, 0, cold)
-      if (cold) call find_foot(self%surface, scope, positions, x, across, foot, work)
-      behind = foot%found .and. foot%gap > shallow
-      if (behind) then
-        call square_depth(self%surface, self%opposite, positions, foot%place, foot%xi, square, work)
-        behind = foot%gap**2 > square
-      end if
-      if ((deep .and. .not. foot%found) .or. (behind .and. had(q))) then
-        status = status_passed_through
-        place = q
-        return
-      end if
-      projections%found(q) = foot%found .and. .not. behind
-      if (.not. projections%found(q)) cycle
-      projections%xi(:, q) = foot%xi
-      projections%place(:, q) = foot%place
+    allocate (passed(size(slave%area)), works(size(slave%area)))
+    !$omp parallel do default(none) shared(self, slave, scope, positions, shallow, started, had, projections, passed, works) &
+    !$omp schedule(dynamic, 16)
+    do q = 1, size(works)
+      call locate_point(self, slave, scope, positions, shallow, started(q), had(q), q, projections, passed(q), works(q))
     end do
+    !$omp end parallel do
+    call gather_work(works, work)
+    place = findloc(passed, .true., dim=1)
+    status = merge(status_passed_through, status_ok, place > 0)
     projections%fixed = .false.
     projections%doubt = status_ok
   end subroutine locate
+
+  !> Find the foot of quadrature point `q`; `passed`: it has passed through the master.
+  pure subroutine locate_point(self, slave, scope, positions, shallow, started, had, q, projections, passed, work)
+    class(averaged_t), intent(in) :: self
+    type(slave_t), intent(in) :: slave
+    type(scope_t), intent(in) :: scope
+    real(wp), intent(in) :: positions(:, :), shallow
+    logical, intent(in) :: started, had
+    integer, intent(in) :: q
+    type(projections_t), intent(inout) :: projections
+    logical, intent(out) :: passed
+    type(work_t), intent(inout) :: work
+    type(foot_t) :: foot
+    real(wp) :: across(3), square, x(3)
+    logical :: behind, cold, deep
+
+    call count_points(1, work)
+    x = slave_position(slave, positions, q)
+    across = slave_normal(slave, positions, q)
+    foot%found = .false.
+    if (started) call follow(self%surface, positions, x, projections%xi(:, q), foot, work)
+    deep = foot%found .and. had
+    if (deep) deep = foot%gap > scope%deepest
+    cold = .not. accept(scope, foot, across)
+    work%warm = work%warm + merge(0, 1, cold)
+    work%cold = work%cold + merge(1, 0, cold)
+    if (cold) call find_foot(self%surface, scope, positions, x, across, foot, work)
+    behind = foot%found .and. foot%gap > shallow
+    if (behind) then
+      call square_depth(self%surface, self%opposite, positions, foot%place, foot%xi, square, work)
+      behind = foot%gap**2 > square
+    end if
+    passed = (deep .and. .not. foot%found) .or. (behind .and. had)
+    if (passed) return
+    projections%found(q) = foot%found .and. .not. behind
+    if (.not. projections%found(q)) return
+    projections%xi(:, q) = foot%xi
+    projections%place(:, q) = foot%place
+  end subroutine locate_point
 
   !> Components, in the slave's basis, of the way from the last foot to that now (theory 3.25).
   pure subroutine find_slip(self, slave, positions, projections, q, slip, work)

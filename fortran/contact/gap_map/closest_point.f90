@@ -16,7 +16,7 @@ module isomortar_contact_gap_map_closest_point
   use isomortar_contact_search, only: descend, is_isolated, projection_degenerate, projection_inside, projection_lost, &
     projection_outside, search_t, start_at
   use isomortar_contact_slave, only: slave_position, slave_t
-  use isomortar_contact_work, only: count_points, evaluate, work_t
+  use isomortar_contact_work, only: count_points, evaluate, gather_work, work_t
   use isomortar_nurbs_surface, only: derivative_columns, shortest_way, surface_basis, surface_nodes, surface_t
   implicit none
   private
@@ -53,7 +53,7 @@ contains
     vectors = merge(6, 3, wanted == for_tangent)
   end function vectors
 
-  !> Project all points, element by element (theory 3.1).
+  !> Project all points, element by element, all threads (theory 3.1). Where several fail the first element is told.
   subroutine locate(self, slave, positions, started, had, projections, status, place, work)
     class(closest_point_t), intent(in) :: self
     type(slave_t), intent(in) :: slave
@@ -63,19 +63,30 @@ contains
     integer, intent(out) :: status, place
     type(work_t), intent(inout) :: work
     type(hulls_t) :: hulls
+    type(work_t), allocatable :: works(:)
+    integer, allocatable :: places(:), statuses(:)
     real(wp) :: shallow
-    integer :: e
+    integer :: e, elements
 
     place = first_not_finite(positions, self%surface%point)
     status = merge(status_not_finite, status_ok, place > 0)
     if (status /= status_ok) return
     call enclose(self%surface, positions, hulls)
     shallow = shallow_depth(self%surface, self%opposite, positions)
-    do e = 1, size(slave%area) / slave%per_element
-      call project_element(self, slave, hulls, positions, started, had, shallow, slave%per_element * (e - 1), projections, status, &
-        place, work)
-      if (status /= status_ok) return
+    elements = size(slave%area) / slave%per_element
+    allocate (places(elements), statuses(elements), works(elements))
+    !$omp parallel do default(none) shared(self, slave, hulls, positions, started, had, shallow, projections) &
+    !$omp shared(elements, places, statuses, works) schedule(dynamic)
+    do e = 1, elements
+      call project_element(self, slave, hulls, positions, started, had, shallow, slave%per_element * (e - 1), projections, &
+        statuses(e), places(e), works(e))
     end do
+    !$omp end parallel do
+    call gather_work(works, work)
+    e = findloc(statuses /= status_ok, .true., dim=1)
+    if (e == 0) return
+    status = statuses(e)
+    place = places(e)
   end subroutine locate
 
   !> Project the quadrature points of a slave element, which are near each other: those after number `before` (theory 3.19).
@@ -88,7 +99,7 @@ contains
     logical, intent(in) :: started(:), had(:)
     integer, intent(in) :: before
     type(projections_t), intent(inout) :: projections
-    integer, intent(inout) :: status, place
+    integer, intent(out) :: status, place
     type(work_t), intent(inout) :: work
     type(search_t) :: here(slave%per_element)
     real(wp) :: x(3, size(here)), middle(3), reach
@@ -98,6 +109,8 @@ contains
     real(wp) :: coefficients(size(points), self%vectors(for_forces))
     logical :: deep
 
+    status = status_ok
+    place = 0
     call count_points(size(here), work)
     work%warm = work%warm + count(started(before + 1:before + size(here)))
     work%cold = work%cold + count(.not. started(before + 1:before + size(here)))
