@@ -209,8 +209,8 @@ contains
     status = status_ok
   end subroutine integrate_blocks
 
-  !> Number the quadrature points that bear on the same control points, of each active slave element: `group` (points), 0 where there
-  !> is nothing to add; `element` (groups) of each. `stencils` (any, points) says what a point bears on.
+  !> Number the quadrature points that bear on the same control points, of each active slave element: `group` (points), 0 where
+  !> there is nothing to add; `element` (groups) of each. `stencils` (any, points) says what a point bears on.
   pure subroutine number_groups(slave, active, found, stencils, group, element)
     type(slave_t), intent(in) :: slave
     logical, intent(in) :: active(:), found(:)

@@ -29,15 +29,43 @@ print(hashlib.sha256(forces.tobytes() + tangent.tobytes()).hexdigest())
 """
 
 
-def bits(threads: int) -> str:
+#: A scene in a few load steps; prints a hash of each state and of what was counted.
+RUN = """
+import hashlib, sys
+from isomortar import Scene
+from isomortar.solve.simulation import Simulation
+bits = hashlib.sha256()
+for step in Simulation(Scene.load(sys.argv[1], sys.argv[2:]).problem()).run():
+    for contact in step.state.contacts:
+        bits.update(contact.pressure.tobytes() + contact.traction.tobytes())
+    bits.update(step.state.positions.tobytes() + repr(sorted(step.counters.items())).encode())
+print(bits.hexdigest())
+"""
+SHORT = ("stages.0.steps=2", "stages.1.steps=1")
+#: Feet on a plane, by closest points, along averaged normals; the paper's slip sum.
+RUNS = {
+    "plane": ("press", "bodies.block.mesh.elements=[4,4,2]", "stages.0.steps=2"),
+    "closest": ("twist", *SHORT, "stages.0.motions.top.translate=[0,0,-0.25]", "stages.1.motions.top.rotate=6.0"),
+    "averaged": ("block", *SHORT, "stages.1.motions.top.translate=[0.05,0,0]"),
+    "summed": ("press", "bodies.block.mesh.elements=[4,4,2]", "stages.0.steps=2", "solver.method=uzawa", "solver.slip_sum=paper"),
+}
+
+
+def bits(threads: int, *program: str) -> str:
     environment = {**os.environ, "OMP_NUM_THREADS": str(threads), "OPENBLAS_NUM_THREADS": "1"}
-    done = subprocess.run([sys.executable, "-c", PROGRAM], capture_output=True, text=True, env=environment, check=True)
+    done = subprocess.run([sys.executable, "-c", *program], capture_output=True, text=True, env=environment, check=True)
     return done.stdout
 
 
 @pytest.mark.parametrize("threads", [2, 3, 7])
 def test_assembly_has_the_same_bits_on_any_number_of_threads(threads: int) -> None:
-    assert bits(threads) == bits(1)
+    assert bits(threads, PROGRAM) == bits(1, PROGRAM)
+
+
+@pytest.mark.parametrize("words", RUNS.values(), ids=RUNS)
+def test_runs_have_the_same_bits_on_any_number_of_threads(words: tuple[str, ...]) -> None:
+    """Solids and contacts: passes of a contact have results, and orders of sums, that no thread can change."""
+    assert {bits(threads, RUN, *words) for threads in (2, 3, 7)} == {bits(1, RUN, *words)}
 
 
 #: Runs scenes with two threads for NumPy, as they are on most machines; prints the seconds of the second one.
