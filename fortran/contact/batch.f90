@@ -169,7 +169,7 @@ contains
     end if
   end subroutine sum_up
 
-  !> Add sums to constraint rows and tangent.
+  !> Add the `sums` of a batch to constraint rows and tangent.
   !>
   !> - `nodes` (functions of an element), `active` (test functions): test functions of the element; which of all act.
   !> - `row_pattern`, `rows` (component, kind, blocks): pattern of the constraint rows, and these (isomortar_contact_rows).
