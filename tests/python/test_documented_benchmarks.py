@@ -26,7 +26,7 @@ def tool(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Any:
     module = importlib.import_module("document_benchmarks")
     monkeypatch.setattr(module, "DOCS", tmp_path)
     tables = "".join(f"<!-- table: isomortar bench {name} -->\n\nold {name}\n<!-- end of the table -->\n\n" for name in ("sizes", "mumps"))
-    (tmp_path / "page.md").write_text(f"before\n\n{tables}after\n")
+    (tmp_path / "sizes.md").write_text(f"before\n\n{tables}after\n")
     return module
 
 
@@ -49,7 +49,7 @@ def test_there_are_tables() -> None:
 def test_numbers_come_in_place_of_old_ones_and_all_else_stays(tool: Any, tmp_path: Path) -> None:
     (page,) = tool.pages(measured(tmp_path / "bench.json"))
     page.write()
-    before, sizes, mumps = (tmp_path / "page.md").read_text().split("<!-- table")
+    before, sizes, mumps = (tmp_path / "sizes.md").read_text().split("<!-- table")
     assert before == "before\n\n"
     assert sizes.splitlines()[2:6] == ["| unknowns | a step, s |", "| --- | --- |", "| 768 | 0.123 |", "| 4 | 1110 |"]
     assert "old" not in sizes
