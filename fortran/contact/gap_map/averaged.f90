@@ -107,8 +107,8 @@ contains
     vectors = merge(way_back, slave_along, wanted == for_tangent)
   end function vectors
 
-  !> Find the feet of all points, all threads: from where they were, else anywhere (theory 3.30); none behind the body (theory
-  !> 3.19). Where several fail the first point is told.
+  !> Find the feet of all points, all threads: from where they were, else anywhere (theory 3.30); none behind the body
+  !> (theory 3.19). Where several fail the first point is told.
   subroutine locate(self, slave, positions, started, had, projections, status, place, work)
     class(averaged_t), intent(in) :: self
     type(slave_t), intent(in) :: slave
