@@ -43,7 +43,7 @@ SCENES = {
         _B,
     ),
     "behind from the start": ("[2, 0, 0], upper = [3, 1, 1]", "[2, 0, -2], upper = [3, 1, -1]", (DOWN,), []),
-    "by less than it is seen": ("", "", (DOWN.replace("b.translate=[0,0,-0.05]", "b.translate=[0,0,-0.01]"),), []),
+    "by less than it is seen": ("", "", (DOWN.replace("b.translate=[0,0,-0.05]", "b.translate=[0,0,-0.009]"),), []),
     "away from it": ("", "", (DOWN.replace("b.translate=[0,0,-0.05]", "b.translate=[0,0,0.05]"),), []),
     "a side": (
         "",
