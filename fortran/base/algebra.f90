@@ -4,7 +4,7 @@ module isomortar_base_algebra
   implicit none
   private
 
-  public :: add_product, cross, determinant, determinant2, first_not_finite, inverse, inverse2, identity, log1p
+  public :: add_product, cross, determinant, determinant2, first_not_finite, inverse, inverse2, identity, log1p, weighted_sums
 
   !> 3x3 unit matrix.
   real(wp), parameter :: identity(3, 3) = reshape([1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [3, 3])
@@ -75,6 +75,27 @@ contains
       r = y
     end if
   end function log1p
+
+  !> Sums of those of the `vectors` (3, vectors) that `numbers` (terms) lists, times `weights` (terms, sums).
+  pure function weighted_sums(vectors, numbers, weights) result(sums)
+    real(wp), intent(in) :: vectors(:, :)
+    real(wp), contiguous, intent(in) :: weights(:, :)
+    integer, intent(in) :: numbers(:)
+    real(wp) :: sums(3, size(weights, 2))
+    real(wp) :: term(4, size(numbers)), total(4) ! four numbers fill a processor's register
+    integer :: a, column
+
+    do a = 1, size(numbers)
+      term(:, a) = [vectors(1, numbers(a)), vectors(2, numbers(a)), vectors(3, numbers(a)), 0.0_wp]
+    end do
+    do column = 1, size(weights, 2)
+      total = 0.0_wp
+      do a = 1, size(numbers)
+        total = total + weights(a, column) * term(:, a)
+      end do
+      sums(:, column) = total(1:3)
+    end do
+  end function weighted_sums
 
   !> Add a number, `scale`, times the product of `left` (rows) and the transpose of `right` (columns) to `form` (rows, columns).
   pure subroutine add_product(scale, left, right, form)

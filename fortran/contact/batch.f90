@@ -156,16 +156,20 @@ contains
     type(batch_t), intent(in) :: batch
     type(sums_t), intent(inout) :: sums
     type(reached_t) :: reached
+    real(wp), allocatable :: rows(:, :, :, :), second(:, :, :, :)
 
     if (normals%count > 0) then
       call reach(normals, n, points, reached)
       sums%points = reached%point
-      sums%rows = carry_rows(reached, sum_rows(batch))
-      if (allocated(batch%second)) sums%second = carry_form(reached, sum_second(batch))
+      call sum_rows(batch, rows)
+      call carry_rows(reached, rows, sums%rows)
+      if (.not. allocated(batch%second)) return
+      call sum_second(batch, second)
+      call carry_form(reached, second, sums%second)
     else
       sums%points = points
-      sums%rows = sum_rows(batch)
-      if (allocated(batch%second)) sums%second = sum_second(batch)
+      call sum_rows(batch, sums%rows)
+      if (allocated(batch%second)) call sum_second(batch, sums%second)
     end if
   end subroutine sum_up
 
@@ -182,7 +186,7 @@ contains
     type(sums_t), intent(in) :: sums
     type(pattern_t), intent(in) :: row_pattern, pattern
     integer, intent(inout) :: columns(:)
-    real(wp), intent(inout) :: rows(:, :, :), tangent(:, :, :)
+    real(wp), contiguous, intent(inout) :: rows(:, :, :), tangent(:, :, :)
     integer, intent(out) :: lacking
 
     call scatter_rows(nodes, active, sums%rows, sums%points, row_pattern, columns, rows, lacking)
@@ -191,9 +195,9 @@ contains
   end subroutine scatter
 
   !> Rows of a batch, summed over its quadrature points: (control point, component, slave control point, kind).
-  pure function sum_rows(batch) result(sums)
+  pure subroutine sum_rows(batch, sums)
     type(batch_t), intent(in) :: batch
-    real(wp), allocatable :: sums(:, :, :, :)
+    real(wp), allocatable, intent(out) :: sums(:, :, :, :)
     integer :: kind
 
     allocate (sums(size(batch%rows, 1), 3, size(batch%weight, 1), size(batch%rows, 4)))
@@ -206,18 +210,18 @@ contains
         end if
       end do
     end associate
-  end function sum_rows
+  end subroutine sum_rows
 
   !> Geometric tangent of a batch: (right control point, left component, right component, left control point).
-  pure function sum_second(batch) result(sums)
+  pure subroutine sum_second(batch, sums)
     type(batch_t), intent(in) :: batch
-    real(wp), allocatable :: sums(:, :, :, :)
+    real(wp), allocatable, intent(out) :: sums(:, :, :, :)
 
     allocate (sums(size(batch%second, 1), 3, 3, size(batch%second, 1)))
     associate (points => size(sums, 1))
       call sum_points(9 * points, size(batch%coefficients, 2) * batch%count, points, batch%second, batch%coefficients, sums)
     end associate
-  end function sum_second
+  end subroutine sum_second
 
   !> sums = left right^T, over m quadrature points.
   pure subroutine sum_points(n_left, m, n_right, left, right, sums)
@@ -232,10 +236,10 @@ contains
   pure subroutine scatter_rows(nodes, active, sums, points, pattern, columns, rows, lacking)
     integer, intent(in) :: nodes(:), points(:)
     logical, intent(in) :: active(:)
-    real(wp), intent(in) :: sums(:, :, :, :)
+    real(wp), contiguous, intent(in) :: sums(:, :, :, :)
     type(pattern_t), intent(in) :: pattern
     integer, intent(inout) :: columns(:)
-    real(wp), intent(inout) :: rows(:, :, :)
+    real(wp), contiguous, intent(inout) :: rows(:, :, :)
     integer, intent(out) :: lacking
     integer :: a, i
 
@@ -255,13 +259,13 @@ contains
 
   !> Add the geometric tangent of a batch; `lacking` as above.
   pure subroutine scatter_tangent(sums, points, pattern, columns, tangent, lacking)
-    real(wp), intent(in) :: sums(:, :, :, :)
+    real(wp), contiguous, intent(in) :: sums(:, :, :, :)
     integer, intent(in) :: points(:)
     type(pattern_t), intent(in) :: pattern
     integer, intent(inout) :: columns(:)
-    real(wp), intent(inout) :: tangent(:, :, :)
+    real(wp), contiguous, intent(inout) :: tangent(:, :, :)
     integer, intent(out) :: lacking
-    integer :: a, b
+    integer :: a, b, i
 
     do a = 1, size(points)
       lacking = points(a)
@@ -269,7 +273,9 @@ contains
       if (lacks(pattern, lacking, columns, points)) return
       do b = 1, size(points)
         associate (block => tangent(:, :, columns(points(b))))
-          block = block + transpose(sums(b, :, :, a))
+          do i = 1, 3
+            block(1:3, i) = block(1:3, i) + sums(b, i, 1:3, a)
+          end do
         end associate
       end do
     end do

@@ -33,7 +33,7 @@ contains
     type(projections_t), intent(in) :: projections
     logical, intent(in) :: with_friction
     type(multipliers_t), intent(in) :: multipliers
-    real(wp), intent(inout) :: forces(:, :)
+    real(wp), contiguous, intent(inout) :: forces(:, :)
     type(work_t), intent(inout) :: work
     type(normals_t) :: normals
     real(wp), allocatable :: extended(:, :), on_normals(:, :)
@@ -53,7 +53,7 @@ contains
     type(projections_t), intent(in) :: projections
     logical, intent(in) :: with_friction
     type(multipliers_t), intent(in) :: multipliers
-    real(wp), intent(inout) :: forces(:, :), on_normals(:, :)
+    real(wp), contiguous, intent(inout) :: forces(:, :), on_normals(:, :)
     type(work_t), intent(inout) :: work
     type(sample_t) :: sample
     type(work_t), allocatable :: works(:)
@@ -90,7 +90,7 @@ contains
     integer, allocatable, intent(inout) :: points(:, :)
     real(wp), allocatable, intent(inout) :: parts(:, :, :)
     type(work_t), intent(inout) :: work
-    real(wp) :: field(3), row(all_components)
+    real(wp) :: field(3), force(3), row(all_components)
     integer :: a, i, k, q
 
     if (.not. allocated(points)) then
@@ -111,10 +111,11 @@ contains
       end associate
       points(:, i) = sample%points
       do a = 1, size(sample%points)
-        parts(:, a, i) = 0.0_wp
+        force = 0.0_wp
         do k = 1, size(sample%coefficients, 2)
-          parts(:, a, i) = parts(:, a, i) + sample%coefficients(a, k) * row(3 * k - 2:3 * k)
+          force = force + sample%coefficients(a, k) * row(3 * k - 2:3 * k)
         end do
+        parts(:, a, i) = force
       end do
     end do
   end subroutine forces_of_element
@@ -122,8 +123,8 @@ contains
   !> Add the forces of an element's points to those on control points and on normals, which are counted on from these.
   pure subroutine add_parts(points, parts, forces, on_normals)
     integer, intent(in) :: points(:, :)
-    real(wp), intent(in) :: parts(:, :, :)
-    real(wp), intent(inout) :: forces(:, :), on_normals(:, :)
+    real(wp), contiguous, intent(in) :: parts(:, :, :)
+    real(wp), contiguous, intent(inout) :: forces(:, :), on_normals(:, :)
     integer :: a, i, n
 
     n = size(forces, 2)
@@ -131,9 +132,9 @@ contains
       if (points(1, i) == 0) cycle
       do a = 1, size(points, 1)
         if (points(a, i) <= n) then
-          forces(:, points(a, i)) = forces(:, points(a, i)) + parts(:, a, i)
+          forces(1:3, points(a, i)) = forces(1:3, points(a, i)) + parts(1:3, a, i)
         else
-          on_normals(:, points(a, i) - n) = on_normals(:, points(a, i) - n) + parts(:, a, i)
+          on_normals(1:3, points(a, i) - n) = on_normals(1:3, points(a, i) - n) + parts(1:3, a, i)
         end if
       end do
     end do
@@ -156,7 +157,7 @@ contains
     type(multipliers_t), intent(in) :: multipliers
     real(wp), intent(in) :: field_slip(:, :)
     type(pattern_t), intent(in) :: row_pattern, pattern
-    real(wp), intent(inout) :: rows(:, :, :), tangent(:, :, :)
+    real(wp), contiguous, intent(inout) :: rows(:, :, :), tangent(:, :, :)
     integer, intent(out) :: status, place
     type(work_t), intent(inout) :: work
     type(sample_t) :: sample

@@ -9,7 +9,7 @@ module isomortar_nurbs_surface
   use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
   use isomortar_base_predicate, only: is_index, sums_to
-  use isomortar_nurbs_direction, only: basis, direction_t, max_order
+  use isomortar_nurbs_direction, only: basis, direction_t
   use isomortar_nurbs_patch, only: patch_t
   implicit none
   private
@@ -29,6 +29,8 @@ module isomortar_nurbs_surface
     !> Global number (from 1) of each control point; the first surface direction runs fastest.
     integer, allocatable :: point(:)
     real(wp), allocatable :: weight(:)
+    !> Whether weights differ: else functions are the products of those of the directions.
+    logical :: rational = .false.
     !> Sign of a_1 x a_2 that points out of the body.
     real(wp) :: outward = 1.0_wp
     !> Directions whose first and last row of control points are the same: there the last element meets the first one at a seam.
@@ -72,6 +74,7 @@ contains
         end associate
       end do
     end do
+    self%rational = any(abs(self%weight - self%weight(1)) > 0.0_wp)
     associate (count => self%direction%count)
       self%closed(1) = all(self%point(1::count(1)) == self%point(count(1)::count(1)))
       self%closed(2) = all(self%point(:count(1)) == self%point(size(self%point) - count(1) + 1:))
@@ -264,48 +267,52 @@ contains
   end subroutine surface_point
 
   !> Rational functions of an element at `xi` and their partial derivatives up to `order` (columns: derivative_column) (theory 2.4):
-  !> `values` (functions of an element, derivatives). Quotient rule on the homogeneous form, Piegl and Tiller 1997, Section 4.5.
+  !> `values` (functions of an element, derivatives). Quotient rule on the homogeneous form, Piegl and Tiller 1997, Section 4.5,
+  !> where weights differ.
   pure subroutine surface_basis(self, place, nodes, xi, order, values)
     type(surface_t), intent(in) :: self
     integer, intent(in) :: place(2), nodes(:)
     real(wp), intent(in) :: xi(2)
     integer, intent(in) :: order
-    real(wp), intent(out) :: values(:, :)
-    real(wp) :: u(0:max_order, 0:3), v(0:max_order, 0:3), total(10)
-    integer :: a, column, i, j, k, l, pu, pv
+    real(wp), contiguous, intent(out) :: values(:, :)
+    real(wp) :: u(0:self%direction(1)%order, 0:order), v(0:self%direction(2)%order, 0:order)
+    integer :: a, column, i, j, k, l
 
     if (contracts) call require(order >= 0 .and. order <= 3, "surface_basis: derivatives are those in the table")
-    if (contracts) call require(all(shape(values) >= [size(nodes), derivative_columns(order)]), "surface_basis: there is room")
-    pu = self%direction(1)%order
-    pv = self%direction(2)%order
-    call basis(self%direction(1), place(1), xi(1), order, u(0:pu, 0:order))
-    call basis(self%direction(2), place(2), xi(2), order, v(0:pv, 0:order))
+    if (contracts) call require(size(values, 1) == size(nodes), "surface_basis: there is a row for each control point")
+    if (contracts) call require(size(values, 2) >= derivative_columns(order), "surface_basis: there is room for derivatives")
+    call basis(self%direction(1), place(1), xi(1), order, u)
+    call basis(self%direction(2), place(2), xi(2), order, v)
     do l = 0, order
       do k = 0, order - l
         column = derivative_column(k, l)
         a = 0
-        do j = 0, pv
-          do i = 0, pu
+        do j = 0, ubound(v, 1)
+          do i = 0, ubound(u, 1)
             a = a + 1
-            values(a, column) = self%weight(nodes(a)) * u(i, k) * v(j, l)
+            values(a, column) = u(i, k) * v(j, l)
           end do
         end do
-        total(column) = sum(values(:, column))
       end do
     end do
-    call divide(order, total, values)
+    if (self%rational) call make_rational(order, self%weight(nodes), values)
     if (contracts) call require(sums_to(values(:, 1), 1.0_wp), "surface_basis: functions sum to one")
     if (contracts) call require(order == 0 .or. sums_to(values(:, min(2, order + 1)), 0.0_wp), "surface_basis: slopes sum to zero")
   end subroutine surface_basis
 
-  !> From the derivatives of numerators and denominator to those of the quotients (theory 2.5).
-  pure subroutine divide(order, total, values)
+  !> From functions without weights and their derivatives up to `order` to those with `weight`s (functions) (theory 2.4, 2.5).
+  pure subroutine make_rational(order, weight, values)
     integer, intent(in) :: order
-    real(wp), intent(in) :: total(:)
-    real(wp), intent(inout) :: values(:, :)
+    real(wp), contiguous, intent(in) :: weight(:)
+    real(wp), contiguous, intent(inout) :: values(:, :)
     integer, parameter :: binomial(0:3, 0:3) = reshape([1, 1, 1, 1, 0, 1, 2, 3, 0, 0, 1, 3, 0, 0, 0, 1], [4, 4])
+    real(wp) :: total(10)
     integer :: column, degree, i, j, k, l
 
+    do column = 1, derivative_columns(order)
+      values(:, column) = weight * values(:, column)
+      total(column) = sum(values(:, column))
+    end do
     do degree = 0, order
       do l = 0, degree
         k = degree - l
@@ -320,6 +327,6 @@ contains
         values(:, column) = values(:, column) / total(1)
       end do
     end do
-  end subroutine divide
+  end subroutine make_rational
 
 end module isomortar_nurbs_surface

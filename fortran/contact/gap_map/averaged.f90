@@ -4,7 +4,8 @@
 !> dx - dS, dm, dS,1, dS,2, dm,1, dm,2 with m the field before it is made a unit vector; with friction the variations of the slave's
 !> tangents as well, and that of the way from the foot to the place of the last one.
 module isomortar_contact_gap_map_averaged
-  use isomortar_base_algebra, only: add_product, cross, determinant, first_not_finite, identity, inverse, inverse2
+  use isomortar_base_algebra, only: add_product, cross, determinant, first_not_finite, identity, inverse, inverse2, &
+    weighted_sums
   use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
   use isomortar_base_predicate, only: is_unit, sums_to
@@ -223,7 +224,7 @@ contains
     real(wp), intent(out) :: coefficients(:, :)
     type(work_t), intent(inout) :: work
     integer :: n, nodes(size(points) / 3), origin(2)
-    real(wp) :: before(size(nodes), 1), equation(3, 3), functions(size(nodes), 3), x(3)
+    real(wp) :: before(size(nodes), 1), equation(3, 3), functions(size(nodes), 3), last(3, 1), x(3)
 
     if (contracts) call require(projections%found(q), "at: the point has a foot")
     if (contracts) call require(all(shape(coefficients) == [self%bearing(), self%vectors(wanted)]), "at: there is room")
@@ -240,8 +241,8 @@ contains
     coefficients(:n, along + 1:along + 2) = functions(:, 2:3)
     coefficients(n + 1:2 * n, field) = functions(:, 1)
     coefficients(n + 1:2 * n, field_along + 1:field_along + 2) = functions(:, 2:3)
-    point%surface(:, 1:3) = matmul(positions(:, points(:n)), functions)
-    point%field = matmul(positions(:, points(n + 1:2 * n)), functions)
+    point%surface(:, 1:3) = weighted_sums(positions, points(:n), functions)
+    point%field = weighted_sums(positions, points(n + 1:2 * n), functions)
     point%normal = point%field(:, 1) / norm2(point%field(:, 1))
     if (contracts) call require(is_unit(point%normal), "at: the normal is a unit vector")
     if (contracts) call require(sums_to(coefficients(:n, apart), -1.0_wp), "at: the foot moves with the master")
@@ -264,7 +265,8 @@ contains
     points(2 * n + 1:) = self%surface%point(nodes)
     coefficients(:n, way_back) = -functions(:, 1)
     coefficients(2 * n + 1:, way_back) = before(:, 1)
-    point%way = point%surface(:, 1) - matmul(positions(:, points(2 * n + 1:)), before(:, 1))
+    last = weighted_sums(positions, points(2 * n + 1:), before)
+    point%way = point%surface(:, 1) - last(:, 1)
   end subroutine at
 
   !> Components 3 k - 2 .. 3 k of short vector k.

@@ -7,7 +7,7 @@
 !> - `x`, `across`: place of a slave point, L, and its unit normal. `xi`: coordinates of a start, P.
 !> - `scope`, `foot`: where feet are looked for, and one that is found, or not. `work`: counts of what is done.
 module isomortar_contact_gap_map_averaged_foot
-  use isomortar_base_algebra, only: determinant, inverse
+  use isomortar_base_algebra, only: determinant, inverse, weighted_sums
   use isomortar_base_kinds, only: wp
   use isomortar_contact_work, only: evaluate, work_t
   use isomortar_nurbs_direction, only: element_at
@@ -124,8 +124,8 @@ contains
     call surface_nodes(surface, foot%place, nodes)
     call surface_basis(surface, foot%place, nodes, foot%xi, 1, functions)
     call evaluate(1, 1, work)
-    s = matmul(positions(:, surface%point(nodes)), functions)
-    field = matmul(positions(:, size(positions, 2) - size(surface%point) + nodes), functions)
+    s = weighted_sums(positions, surface%point(nodes), functions)
+    field = weighted_sums(positions, size(positions, 2) - size(surface%point) + nodes, functions)
     foot%normal = field(:, 1) / norm2(field(:, 1))
     foot%gap = -dot_product(x - s(:, 1), foot%normal)
     equation = foot_equation(s(:, 2:3), field, foot%gap)

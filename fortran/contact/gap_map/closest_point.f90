@@ -1,6 +1,6 @@
 !> The gap map of the closest point on a face of a deformable body (theory 3): inside the face, on its C0 lines, at its poles.
 module isomortar_contact_gap_map_closest_point
-  use isomortar_base_algebra, only: first_not_finite
+  use isomortar_base_algebra, only: first_not_finite, weighted_sums
   use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
   use isomortar_base_predicate, only: sums_to
@@ -182,7 +182,7 @@ contains
     real(wp), intent(out) :: coefficients(:, :)
     type(work_t), intent(inout) :: work
     integer :: nodes(size(points)), pole
-    real(wp) :: functions(size(points), derivative_columns(max(wanted, for_forces))), x(3)
+    real(wp) :: functions(size(points), derivative_columns(wanted)), x(3)
 
     if (contracts) call require(projections%found(q), "at: the point has a foot")
     if (contracts) call require(all(shape(coefficients) == [self%bearing(), self%vectors(wanted)]), "at: there is room")
@@ -191,7 +191,6 @@ contains
       call surface_nodes(surface, place, nodes)
       call surface_basis(surface, place, nodes, xi, wanted, functions)
       call evaluate(wanted, 1, work)
-      functions(:, derivative_columns(wanted) + 1:) = 0.0_wp ! as wide as ever: last bits of the product depend on it
       pole = pole_of(surface, place, xi)
       if (pole /= 0) call gather_at_pole(surface, pole, functions)
       points = surface%point(nodes)
@@ -202,7 +201,7 @@ contains
         call hold_at_pole(surface, positions, x, pole, point, work)
         return
       end if
-      point = contact_point(x, matmul(positions(:, points), functions), surface%outward)
+      point = contact_point(x, weighted_sums(positions, points, functions), surface%outward)
       if (any(projections%fixed(:, q))) call hold_on_lines(surface, positions, x, xi, place, projections%fixed(:, q), point, work)
     end associate
   end subroutine at

@@ -28,14 +28,14 @@ contains
 
   !> Kinematics on a deformable surface (theory 3.2, 3.3) of a slave point at `x`, L.
   !>
-  !> - `derivatives` (3, columns): S and its derivatives at the foot by column (derivative_column), L/P^order.
+  !> - `derivatives` (3, columns): S and its derivatives at the foot by column (derivative_column), L/P^order; 0 what is not given.
   !> - `outward`: sign of the normal.
   pure function contact_point(x, derivatives, outward) result(self)
     real(wp), intent(in) :: x(3), derivatives(:, :), outward
     type(contact_point_t) :: self
     integer :: a, b
 
-    if (contracts) call require(size(derivatives, 2) >= 6, "contact_point: derivatives are those to order two")
+    if (contracts) call require(size(derivatives, 2) >= 3, "contact_point: derivatives are those to order one")
     self%surface = 0.0_wp
     self%surface(:, 1:size(derivatives, 2)) = derivatives
     self%tangent = self%surface(:, 2:3)

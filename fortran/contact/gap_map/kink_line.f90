@@ -2,7 +2,7 @@
 !>
 !> Gap and normal are continuous from a face onto the line, along it, and onto the next face.
 module isomortar_contact_gap_map_kink_line
-  use isomortar_base_algebra, only: add_product, cross, determinant2, inverse2
+  use isomortar_base_algebra, only: add_product, cross, determinant2, inverse2, weighted_sums
   use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
   use isomortar_base_predicate, only: is_unit
@@ -80,7 +80,7 @@ contains
         call step_across(surface, [i, j], there, at, within)
         call surface_nodes(surface, there, nodes)
         call surface_basis(surface, there, nodes, at, 1, values)
-        tangents = matmul(positions(:, surface%point(nodes)), values(:, 2:3))
+        tangents = weighted_sums(positions, surface%point(nodes), values(:, 2:3))
         face = surface%outward * cross(tangents(:, 1), tangents(:, 2))
         normal = normal + face / norm2(face)
       end do

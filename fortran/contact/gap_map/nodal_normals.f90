@@ -8,7 +8,7 @@
 !> - `forces` (3, control points), `on_normals` (3, nodes): forces on them, F; those on the normals of nodes, F L.
 !> - `work`: counts of what is done.
 module isomortar_contact_gap_map_nodal_normals
-  use isomortar_base_algebra, only: add_product, cross, identity, inverse2
+  use isomortar_base_algebra, only: add_product, cross, identity, inverse2, weighted_sums
   use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
   use isomortar_base_predicate, only: is_compressed, is_index, is_unit
@@ -222,7 +222,7 @@ contains
     call surface_nodes(surface, place, nodes)
     call surface_basis(surface, place, nodes, xi, 1, functions)
     self%point = surface%point(nodes)
-    tangent = matmul(positions(:, self%point), functions(:, 2:3))
+    tangent = weighted_sums(positions, self%point, functions(:, 2:3))
     self%normal = surface%outward * cross(tangent(:, 1), tangent(:, 2))
     self%normal = self%normal / norm2(self%normal)
     metric = matmul(transpose(tangent), tangent)
@@ -322,11 +322,12 @@ contains
     reached%slope(:, :, entries) = slope
   end subroutine add_reached
 
-  !> Linear `forms` (points, component, row, kind) in a list of points as forms in the control points that it has `reached`.
-  pure function carry_rows(reached, forms) result(carried)
+  !> Linear `forms` (points, component, row, kind) in a list of points, `carried` (reached, component, row, kind) to the control
+  !> points that it has `reached`.
+  pure subroutine carry_rows(reached, forms, carried)
     type(reached_t), intent(in) :: reached
-    real(wp), intent(in) :: forms(:, :, :, :)
-    real(wp), allocatable :: carried(:, :, :, :)
+    real(wp), contiguous, intent(in) :: forms(:, :, :, :)
+    real(wp), allocatable, intent(out) :: carried(:, :, :, :)
     integer :: a, i, k, kind, row
 
     allocate (carried(size(reached%point), 3, size(forms, 3), size(forms, 4)), source=0.0_wp)
@@ -344,14 +345,15 @@ contains
         end do
       end do
     end do
-  end function carry_rows
+  end subroutine carry_rows
 
-  !> A bilinear `form` (right point, left component, right component, left point) in a list of points as one in the control points
-  !> that it has `reached`.
-  pure function carry_form(reached, form) result(carried)
+  !> A bilinear `form` (right point, left component, right component, left point) in a list of points, `carried` (right point, left
+  !> component, right component, left point) to the control points that it has `reached`.
+  pure subroutine carry_form(reached, form, carried)
     type(reached_t), intent(in) :: reached
-    real(wp), intent(in) :: form(:, :, :, :)
-    real(wp), allocatable :: carried(:, :, :, :), left(:, :, :, :)
+    real(wp), contiguous, intent(in) :: form(:, :, :, :)
+    real(wp), allocatable, intent(out) :: carried(:, :, :, :)
+    real(wp), allocatable :: left(:, :, :, :)
     integer :: a, b, i, j, k
 
     associate (points => size(reached%point))
@@ -382,7 +384,7 @@ contains
         end do
       end do
     end do
-  end function carry_form
+  end subroutine carry_form
 
   !> Add the second variation of the normals, times forces on them, to a tangent (theory 3.23).
   !>
