@@ -5,7 +5,7 @@ user has set stands, and what the program around us does with libraries of its o
 
 - Debian's OpenBLAS takes a processor that is younger than itself for a very old one: matrix products, and with them assembly and
   factorisation, are then two to ten times slower. The right choice follows from the processor's flags.
-- One thread for OpenBLAS, and threads of the assembly that sleep when they wait (`LIBRARIES`); one in a process that is forked off.
+- One thread for OpenBLAS, and threads of the assembly that wait for a moment, then sleep; one in a process that is forked off.
 - Memory that is freed stays with the process (`keep_memory`), that of the program around us too.
 
 Another kernel with the same interface takes its place where the environment names one (docs/programs.md).
@@ -23,7 +23,7 @@ from functools import cache
 from pathlib import Path
 from types import ModuleType
 
-from isomortar._process import LIBRARIES, keep_memory
+from isomortar._process import for_libraries, keep_memory
 from isomortar.errors import InputError
 
 #: Variable of the environment that names the file of another kernel, for this process and those that it starts.
@@ -76,8 +76,9 @@ def kernel_at(path: Path, own: ModuleType) -> ModuleType:
 def _settings() -> Iterator[None]:
     """Say what libraries should read while they are loaded, where the user has not."""
     kind = processor_kind(_processor_flags())
-    said = LIBRARIES | ({"OPENBLAS_CORETYPE": kind} if kind else {})
-    ours = {variable: value for variable, value in said.items() if variable not in os.environ}
+    ours = for_libraries()
+    if kind and "OPENBLAS_CORETYPE" not in os.environ:
+        ours["OPENBLAS_CORETYPE"] = kind
     os.environ.update(ours)
     try:
         yield

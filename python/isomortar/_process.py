@@ -13,10 +13,12 @@ from threading import Timer, main_thread
 
 # Parameters of glibc's mallopt, with the variables of the environment that set them too.
 _KEPT = {"MALLOC_MMAP_MAX_": (-4, 0), "MALLOC_TRIM_THRESHOLD_": (-1, -1)}
-#: What numerical libraries read of the environment while they are loaded. One thread for the linear algebra: more do not make the solves
-#: faster, and get in the way of the assembly's. Threads of the assembly sleep when they wait: two runs on the same cores would hold each
-#: other up tenfold.
-LIBRARIES = {"OPENBLAS_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive"}
+#: Variables of the environment that numerical libraries read while they are loaded. One thread for the linear algebra: more do not make
+#: the solves faster, and get in the way of the assembly's.
+_ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1"}
+#: Threads of the assembly that wait look so many times before they sleep, some microseconds, as the next pass often comes at once. If they
+#: did so without end two runs on the same cores would hold each other up tenfold.
+_BRIEF_WAIT, _WAIT = {"GOMP_SPINCOUNT": "3000"}, "OMP_WAIT_POLICY"
 
 
 def own_process() -> None:
@@ -26,9 +28,15 @@ def own_process() -> None:
     told what the kernel's is. And Pydantic does not look through all that is installed for plugins of its own, which would have nothing to
     do here.
     """
-    for variable, value in (LIBRARIES | {"PYDANTIC_DISABLE_PLUGINS": "__all__"}).items():
-        os.environ.setdefault(variable, value)
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
+    os.environ.update(for_libraries())
     sys.unraisablehook = _heard_again
+
+
+def for_libraries() -> dict[str, str]:
+    """What the environment should say to numerical libraries while they are loaded, and the user's does not."""
+    said = _ONE_THREAD if _WAIT in os.environ else _ONE_THREAD | _BRIEF_WAIT
+    return {variable: value for variable, value in said.items() if variable not in os.environ}
 
 
 def keep_memory() -> None:

@@ -106,6 +106,15 @@ def test_the_kernel_is_loaded_with_one_thread_for_its_linear_algebra_unless_the_
     assert said(LOADED, tmp_path, **environment) == f"True {threads}"
 
 
+@pytest.mark.parametrize(
+    ("environment", "looks"),
+    [({}, "3000"), ({"GOMP_SPINCOUNT": "7"}, "7"), ({"OMP_WAIT_POLICY": "passive"}, "0"), ({"OMP_WAIT_POLICY": "active"}, "30000000000")],
+)
+def test_threads_of_the_assembly_look_for_a_moment_before_they_sleep_unless_the_user_says_so(tmp_path, environment, looks) -> None:
+    told = output("import isomortar._compiled", tmp_path, OMP_DISPLAY_ENV="verbose", **environment).stderr
+    assert f"GOMP_SPINCOUNT = '{looks}'" in told
+
+
 #: Computes a scene, and the same in a process that is forked off: a child would wait for threads of the assembly that it does not have.
 FORKED = """
 import os
@@ -130,8 +139,12 @@ def test_a_process_that_is_forked_off_a_run_runs(tmp_path: Path) -> None:
 
 def said(code: str, folder: Path, **environment: str) -> str:
     """What a program prints, in an environment that says nothing of threads but this."""
-    clean = {name: value for name, value in os.environ.items() if not name.startswith(("OMP_", "OPENBLAS_"))}
-    done = subprocess.run(
+    return output(code, folder, **environment).stdout.strip()
+
+
+def output(code: str, folder: Path, **environment: str) -> subprocess.CompletedProcess[str]:
+    """All that a program prints, in an environment that says nothing of threads but this."""
+    clean = {name: value for name, value in os.environ.items() if not name.startswith(("OMP_", "OPENBLAS_", "GOMP_"))}
+    return subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, env=clean | environment, check=True, cwd=folder, timeout=300
     )
-    return done.stdout.strip()
