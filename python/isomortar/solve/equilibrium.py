@@ -90,6 +90,7 @@ class Equilibrium:
         ]
         self.loads = Loads(problem, self.numbering)
         self.time = 0.0
+        self._known: tuple[FloatArray, State, FloatArray, tuple[Kinematics, ...]] | None = None
         self._engine = engine_of(problem.settings)
         self.orderings: dict[int, Ordering] = {}
         self._stand(0)
@@ -151,7 +152,7 @@ class Equilibrium:
         Scales
             What forces are measured against.
         """
-        self.time = time
+        self.time, self._known = time, None
         if self._system is not None:
             self._system.begin()
         self._touching.begin(start.positions, time)
@@ -191,20 +192,30 @@ class Equilibrium:
 
     def forces(self, positions: FloatArray, start: State, respond: Callable[[int, Kinematics], Response]) -> Balance:
         """The same with the response of each pair, by its number and kinematics, given by a function."""
-        with self.ledger.phase("solid"):
-            internal = self.solid.forces(positions)
-        self.ledger.counts["solid residuals"] += 1
+        internal, kinematics = self._without_multipliers(positions, start)
         total = internal.copy()
         with self.ledger.phase("solid"):
             for load in self.loads.forces(positions, self.time):
                 total -= load
-        kinematics, responses = [], []
-        for k, (pair, state) in enumerate(zip(self.pairs, start.contacts, strict=True)):
-            kinematics.append(pair.kinematics(positions, state))
-            responses.append(respond(k, kinematics[-1]))
-            pair.add_forces(positions, kinematics[-1], responses[-1], total)
+        responses = []
+        for k, (pair, found) in enumerate(zip(self.pairs, kinematics, strict=True)):
+            responses.append(respond(k, found))
+            pair.add_forces(positions, found, responses[-1], total)
         unbalanced = self.supports.unbalanced(total, positions, self.time)
-        return Balance(positions, internal, total, unbalanced, tuple(kinematics), tuple(responses))
+        return Balance(positions, internal, total, unbalanced, kinematics, tuple(responses))
+
+    def _without_multipliers(self, positions: FloatArray, start: State) -> tuple[FloatArray, tuple[Kinematics, ...]]:
+        """Internal forces, and the kinematics of each pair.
+
+        Those of the last positions are kept: an augmentation begins with other multipliers where the last one ended.
+        """
+        if self._known is None or self._known[0] is not positions or self._known[1] is not start:
+            with self.ledger.phase("solid"):
+                internal = self.solid.forces(positions)
+            kinematics = tuple(pair.kinematics(positions, state) for pair, state in zip(self.pairs, start.contacts, strict=True))
+            self._known = positions, start, internal, kinematics
+        self.ledger.counts["solid residuals"] += 1
+        return self._known[2:]
 
     def bear(self, balance: Balance) -> bool:
         """Whether constraints that supports hold along the normal are inside their master, and bear on it from now on (theory 4.11)."""

@@ -14,20 +14,29 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
 from isomortar.solve.contact import Kinematics, PairMechanics
 from isomortar.solve.distances import apart, largest, off_conditions, ratio, round_off
-from isomortar.solve.equilibrium import Balance
+from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.method import Increment, Method, augmentation_record
 from isomortar.solve.metric import median
 from isomortar.solve.newton import Iterate, Newton
 from isomortar.solve.record import State
 from isomortar.solve.scales import Scales
+from isomortar.solve.secants import Secants
 
 
 class _PositionNewton(Newton[Iterate, FloatArray]):
     """Newton's method for the positions, with the multipliers of one augmentation held."""
 
+    def __init__(self, equilibrium: Equilibrium, start: State, scales: Scales) -> None:
+        super().__init__(equilibrium, start, scales)
+        self._secants = Secants()
+        self._first: tuple[FloatArray, FloatArray] | None = None  # positions, and the first correction there by the present factors
+
     def held(self, laws: Sequence[Law], positions: FloatArray) -> Iterate:
-        """The first iterate with these laws."""
-        self._laws = laws
+        """The first iterate with these laws, at the start of the increment or where the last augmentation ended."""
+        if self._first is not None:
+            begun, correction = self._first
+            self._secants.learn(positions - begun, correction)
+        self._laws, self._first = laws, None
         return self._evaluate(positions)
 
     def closing(self, laws: Sequence[Law], positions: FloatArray, nearest: Sequence[FloatArray]) -> Iterate:
@@ -50,11 +59,15 @@ class _PositionNewton(Newton[Iterate, FloatArray]):
         return self._evaluate(self._equilibrium.moved(iterate.balance.positions, share * correction))
 
     def _correct(self, iterate: Iterate, prescribed: FloatArray | None) -> tuple[Iterate, FloatArray, tuple[str, ...]]:
+        self._secants, self._first = Secants(), None
         increment = np.zeros_like(iterate.balance.positions) if prescribed is None else prescribed
         return iterate, self._equilibrium.correction(iterate.balance, self._laws, increment), ()
 
     def _correct_again(self, iterate: Iterate) -> FloatArray:
-        return self._equilibrium.kept_correction(iterate.balance)
+        correction = self._equilibrium.kept_correction(iterate.balance)
+        if self._first is None:
+            self._first = iterate.balance.positions, correction
+        return self._secants.improved(correction)
 
     def _update(self, iterate: Iterate, correction: FloatArray, iteration: int) -> tuple[Iterate, tuple[str, ...]]:
         """The full update; late, where that leaves more of the residual than before, one halved until it leaves less.

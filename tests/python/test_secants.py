@@ -1,0 +1,71 @@
+"""Corrections by kept factors learn from whole augmentations, and change what they cost alone."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from isomortar.scene import Scene
+from isomortar.solve.secants import Secants
+from isomortar.solve.simulation import Simulation
+
+RANDOM = np.random.default_rng(7)
+TANGENT = np.diag(np.arange(1.0, 9.0)) + 0.1 * RANDOM.standard_normal((8, 8))
+KEPT = np.linalg.inv(TANGENT + 0.2 * RANDOM.standard_normal((8, 8)))
+
+
+def loaded(count: int) -> np.ndarray:
+    """Some right-hand sides."""
+    return np.random.default_rng(3).standard_normal((count, 8))
+
+
+def taught(loads: np.ndarray) -> Secants:
+    """What is known after these loads, one after the other."""
+    secants = Secants()
+    for load in loads:
+        secants.learn(np.linalg.solve(TANGENT, load), KEPT @ load)
+    return secants
+
+
+@pytest.mark.parametrize("count", [1, 3, 4])
+def test_a_load_made_of_the_last_ones_is_solved_whole(count: int) -> None:
+    loads = loaded(count)
+    load = np.linspace(1.0, 2.0, count) @ loads
+    np.testing.assert_allclose(taught(loads).improved(KEPT @ load), np.linalg.solve(TANGENT, load), rtol=1e-10)
+
+
+def test_what_is_across_all_that_is_known_is_left_as_it_is() -> None:
+    loads = loaded(3)
+    basis = np.linalg.svd((KEPT @ loads.T).T)[2]
+    np.testing.assert_allclose(taught(loads).improved(basis[5]), basis[5], atol=1e-14)
+
+
+def test_the_oldest_of_five_is_forgotten() -> None:
+    loads = loaded(5)
+    np.testing.assert_array_equal(taught(loads).improved(KEPT @ loads[2]), taught(loads[1:]).improved(KEPT @ loads[2]))
+
+
+def test_of_what_is_known_twice_the_last_one_counts() -> None:
+    first, secants = loaded(1)[0], Secants()
+    secants.learn(first, first)
+    secants.learn(2.0 * first, (1.0 + 1e-9) * first)
+    np.testing.assert_allclose(secants.improved(first), 2.0 * first, rtol=1e-8)
+
+
+def test_nothing_is_learnt_of_nothing() -> None:
+    secants = Secants()
+    secants.learn(np.zeros((2, 3)), np.zeros((2, 3)))
+    np.testing.assert_array_equal(secants.improved(np.ones((2, 3))), np.ones((2, 3)))
+
+
+def test_augmentations_need_fewer_solves_and_come_to_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    problem = Scene.load(
+        "press", ["bodies.block.mesh.elements=[3,3,2]", "stages.press.steps=2", 'solver.method="uzawa"', "solver.penalty_growth=1.0"]
+    ).problem()
+    problem = replace(problem, settings=replace(problem.settings, augmentation_tolerance=1e-4))
+    one = list(Simulation(problem).run())
+    monkeypatch.setattr(Secants, "improved", lambda _, correction: correction)
+    other = list(Simulation(problem).run())
+    solves = [sum(result.counters["solves"] for result in results) for results in (one, other)]
+    assert solves[0] < 0.8 * solves[1]
+    np.testing.assert_allclose(one[-1].state.positions, other[-1].state.positions, atol=1e-7)
