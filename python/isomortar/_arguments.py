@@ -20,6 +20,7 @@ MAX_ORDERS = {1: 10, 2: 4}
 MAX_POINT = np.iinfo(np.int32).max // 3 - 1
 #: Largest number of Gauss points per direction: more is taken for a mistake.
 MAX_GAUSS = 64
+_LARGEST = float(np.finfo(np.float64).max)
 
 
 def kind(name: str, value: Any, *allowed: type) -> None:
@@ -65,7 +66,7 @@ def whole(name: str, value: Any, low: int, high: int) -> int:
 def real(name: str, value: Any, allowed: Callable[[float], bool], sentence: str) -> float:
     """The number, if it is finite and allowed; `sentence` says what is."""
     known = isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
-    if not known or not abs(value) <= np.finfo(np.float64).max or not allowed(float(value)):
+    if not known or not abs(value) <= _LARGEST or not allowed(float(value)):
         raise InputError(f"is {value!r:.60}; allowed: {sentence}", name)
     return float(value)
 

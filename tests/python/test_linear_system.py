@@ -72,3 +72,34 @@ def test_in_doubt_the_ordering_with_fewer_operations_is_kept() -> None:
     told = LinearSystem(n, [Source(pattern, equation, equation)], Ledger(), ordering="amd")
     told.factorise([blocks])
     assert told.ordering == "amd"
+
+
+def counted(monkeypatch: pytest.MonkeyPatch) -> tuple[LinearSystem, list[int]]:
+    """A system with factors, and a list that grows with each product by its matrix."""
+    pattern, blocks = grid(3)
+    n = 3 * (len(pattern.start) - 1)
+    equation, products = np.arange(n, dtype=np.int32), list[int]()
+    system = LinearSystem(n, [Source(pattern, equation, equation)], Ledger())
+    system.factorise([blocks])
+    product = system._product
+    monkeypatch.setattr(system, "_product", lambda solution: (products.append(1), product(solution))[1])
+    return system, products
+
+
+def test_a_second_solution_by_the_same_factors_takes_no_product(monkeypatch: pytest.MonkeyPatch) -> None:
+    system, products = counted(monkeypatch)
+    right = np.arange(1.0, 82.0)
+    first, before = system.solve(right), len(products)
+    assert before > 0
+    np.testing.assert_array_equal(system.solve_again(right), first)
+    assert len(products) == before
+
+
+def test_where_the_first_was_refined_the_second_is_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    system, products = counted(monkeypatch)
+    exact, right = system._substituted, np.arange(1.0, 82.0)
+    monkeypatch.setattr(system, "_substituted", lambda right: 1.001 * exact(right))  # as factors that have lost digits
+    first, before = system.solve(right), len(products)
+    np.testing.assert_array_equal(system.solve_again(right), first)
+    assert len(products) == 2 * before
+    np.testing.assert_allclose(system.matrix() @ first, right, rtol=1e-10)

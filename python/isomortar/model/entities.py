@@ -33,7 +33,7 @@ class Material:
     law: MaterialLaw = "neo-hookean"
     """Stored energy (docs/method.md): the paper's, that of Abaqus and CalculiX, or small strains' for turns that are small too."""
 
-    @property
+    @cached_property
     def arrays(self) -> MaterialArrays:
         """What the kernel takes for it."""
         return MaterialArrays(LAWS[self.law], np.array([self.bulk, self.shear]))

@@ -315,7 +315,7 @@ class Equilibrium:
     def solve_again(self, right: FloatArray) -> FloatArray:
         """Solve with the factors of the last `solve`."""
         assert self._system is not None, "nothing was solved before"
-        return self._system.solve(right)
+        return self._system.solve_again(right)
 
     def _system_for(self, sources: list[Source], size: int) -> CheckedSystem:
         """The linear system of these sources: the last one, as long as all patterns stand."""

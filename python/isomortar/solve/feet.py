@@ -45,7 +45,7 @@ class Feet:
 
     def __init__(self, pair: Pair, origin: FloatArray) -> None:
         self._pair, self._origin = pair, origin
-        self._slips = pair.contact.friction_law.acts
+        self._slips, self._poles = pair.contact.friction_law.acts, pole_elements(pair)
 
     def check(self, positions: FloatArray, projections: Projections, response: Response) -> None:
         """Refuse feet that do not follow their points, or cannot slip, under active constraints.
@@ -56,9 +56,9 @@ class Feet:
             Naming contact, point, place and gap.
         """
         doubt = projections.doubt
-        if self._slips:
+        if self._slips and self._poles:
             doubt = np.where(beside_poles(self._pair, projections) & (doubt == 0), _SLIPS_AT_POLE, doubt)
-        else:
+        if not self._slips:
             doubt = np.where(doubt == _NO_SLIP, 0, doubt)
         if not doubt.any():
             return
@@ -108,8 +108,13 @@ def slave_points(pair: Pair, positions: FloatArray) -> FloatArray:
 def beside_poles(pair: Pair, projections: Projections) -> np.ndarray:
     """Which slave quadrature points have their feet in elements of the master that end at an edge that is one control point."""
     beside = np.zeros(len(projections.found), dtype=np.bool_)
-    for number, (direction, points) in enumerate(pair.master_edges):
-        if np.all(points == points[0]):
-            edge = 0 if number % 2 == 0 else pair.master_elements[direction] - 1
-            beside |= (projections.element[:, direction] == edge) & (projections.found > 0)
+    for direction, element in pole_elements(pair):
+        beside |= (projections.element[:, direction] == element) & (projections.found > 0)
     return beside
+
+
+def pole_elements(pair: Pair) -> list[tuple[int, int]]:
+    """Direction of the master, and element along it, of each of its edges that is one control point."""
+    ends = [0 if number % 2 == 0 else pair.master_elements[direction] - 1 for number, (direction, _) in enumerate(pair.master_edges)]
+    edges = zip(pair.master_edges, ends, strict=True)
+    return [(direction, end) for (direction, points), end in edges if np.all(points == points[0])]

@@ -52,10 +52,11 @@ def entries(sources: Sequence[Source], size: int) -> sparse.csr_array:
 
 
 class CheckedSystem(ABC):
-    """A linear system with a fixed pattern that is factorised and solved many times; every solution is checked."""
+    """A linear system with a fixed pattern that is factorised and solved many times; the first solution by any factors is checked."""
 
     def __init__(self, ledger: Ledger) -> None:
         self._ledger = ledger
+        self._refines = False
 
     @abstractmethod
     def begin(self) -> None:
@@ -107,7 +108,8 @@ class CheckedSystem(ABC):
         """
         with self._ledger.phase("solve"):
             solution = self._substituted(right)
-            if not self._left(solution, right) <= constants.REFINED_ABOVE:
+            self._refines = not self._left(solution, right) <= constants.REFINED_ABOVE
+            if self._refines:
                 solution = self._refined(solution, right)
                 left = self._left(solution, right)
                 if not left <= constants.REFUSED_ABOVE:
@@ -118,6 +120,24 @@ class CheckedSystem(ABC):
                     )
         self._ledger.counts["solves"] += 1
         return solution
+
+    def solve_again(self, right: FloatArray) -> FloatArray:
+        """Solution by factors that have solved before, for an iteration that looks itself at what it leaves.
+
+        It is checked, which takes a product with the matrix, and refined where the one before had to be, or where it is no number.
+
+        Raises
+        ------
+        SingularSystemError
+            As `solve`.
+        """
+        if not self._refines:
+            with self._ledger.phase("solve"):
+                solution = self._substituted(right)
+            if np.isfinite(solution).all():
+                self._ledger.counts["solves"] += 1
+                return solution
+        return self.solve(right)
 
     def _left(self, solution: FloatArray, right: FloatArray) -> float:
         """What a solution leaves of the right-hand side; not a number where it is not finite."""

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager
 from time import process_time
 
 import numpy as np
@@ -56,14 +55,9 @@ class Ledger:
         self.work: LongArray = np.zeros(len(WORK), dtype=np.int64)
         self._start = process_time()
 
-    @contextmanager
-    def phase(self, name: str) -> Iterator[None]:
+    def phase(self, name: str) -> AbstractContextManager[None]:
         """Time a phase."""
-        start = process_time()
-        try:
-            yield
-        finally:
-            self.seconds[name] += process_time() - start
+        return _Phase(self.seconds, name)
 
     def largest(self, name: str, size: int) -> None:
         """Note one of SIZES."""
@@ -79,3 +73,16 @@ class Ledger:
         self.work[:] = 0
         self._start += total
         return seconds, counts
+
+
+class _Phase(AbstractContextManager[None]):
+    """Adds the CPU seconds of a block to those of its phase: thousands a run, by a class that costs less than a generator."""
+
+    def __init__(self, seconds: dict[str, float], name: str) -> None:
+        self._seconds, self._name = seconds, name
+
+    def __enter__(self) -> None:
+        self._start = process_time()
+
+    def __exit__(self, *raised: object) -> None:
+        self._seconds[self._name] += process_time() - self._start
