@@ -38,6 +38,7 @@ contains
         surface%weight(i + 5 * (j - 1)) = 1.0_wp + 0.1_wp * mod(2 * i + j, 4)
       end do
     end do
+    surface%rational = .true.
   end subroutine curved
 
   !> Two linear elements that meet in a ridge along the second direction at x = 1, of a height there, zero at x = 0 and x = 2; y is
