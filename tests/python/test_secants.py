@@ -1,11 +1,13 @@
 """Corrections by kept factors learn from whole augmentations, and change what they cost alone."""
 
-from dataclasses import replace
+import math
 
 import numpy as np
 import pytest
 
+from isomortar.model.entities import Problem
 from isomortar.scene import Scene
+from isomortar.solve.record import StepResult
 from isomortar.solve.secants import Secants
 from isomortar.solve.simulation import Simulation
 
@@ -58,14 +60,30 @@ def test_nothing_is_learnt_of_nothing() -> None:
     np.testing.assert_array_equal(secants.improved(np.ones((2, 3))), np.ones((2, 3)))
 
 
+def pressed() -> Problem:
+    """A block that is pressed onto a plane in two load steps of many augmentations."""
+    changes = ["bodies.block.mesh.elements=[3,3,2]", "stages.press.steps=2", 'solver.method="uzawa"', "solver.penalty_growth=1.0"]
+    return Scene.load("press", [*changes, "solver.augmentation_tolerance=1e-4"]).problem()
+
+
+def summed(results: list[StepResult], name: str) -> int:
+    """Of all load steps."""
+    return sum(result.counters[name] for result in results)
+
+
 def test_augmentations_need_fewer_solves_and_come_to_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
-    problem = Scene.load(
-        "press", ["bodies.block.mesh.elements=[3,3,2]", "stages.press.steps=2", 'solver.method="uzawa"', "solver.penalty_growth=1.0"]
-    ).problem()
-    problem = replace(problem, settings=replace(problem.settings, augmentation_tolerance=1e-4))
-    one = list(Simulation(problem).run())
+    one = list(Simulation(pressed()).run())
     monkeypatch.setattr(Secants, "improved", lambda _, correction: correction)
-    other = list(Simulation(problem).run())
-    solves = [sum(result.counters["solves"] for result in results) for results in (one, other)]
-    assert solves[0] < 0.8 * solves[1]
+    other = list(Simulation(pressed()).run())
+    assert summed(one, "solves") < 0.8 * summed(other, "solves")
     np.testing.assert_allclose(one[-1].state.positions, other[-1].state.positions, atol=1e-7)
+
+
+def test_an_augmentation_begins_with_the_forces_that_the_last_one_ended_with() -> None:
+    problem = pressed()
+    results, (body,) = list(Simulation(problem).run()), problem.deformable
+    points = math.prod(body.quadrature) * math.prod(direction.elements for direction in body.patch.directions)
+    augmentations = sum(len(result.augmentations) for result in results)
+    assert augmentations > 20
+    computed = summed(results, "solid points") / points - summed(results, "solid tangents")
+    assert computed <= summed(results, "solid residuals") - augmentations + 2 * len(results)
