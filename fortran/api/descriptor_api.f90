@@ -39,6 +39,41 @@ subroutine keep_patch(families, orders, counts, knots, nknots, point, weight, np
   call keep(descriptor, handle, status)
 end subroutine keep_patch
 
+!> Keep a body (isomortar_solid_body). One that is folded is kept, too: its forces are refused.
+!>
+!> - `patch`: handle of its mesh. `gauss`: quadrature points of an element by direction.
+!> - `reference`: positions of all `n` control points in the reference configuration, L.
+subroutine keep_body(patch, gauss, reference, n, handle, status)
+  use iso_c_binding, only: c_double, c_int, c_int64_t
+  use isomortar_api_descriptors, only: descriptor_t, find, keep
+  use isomortar_base_kinds, only: wp
+  use isomortar_base_status, only: status_out_of_memory
+  use isomortar_nurbs_patch, only: patch_t
+  use isomortar_solid_body, only: body_of
+  implicit none
+  integer(c_int64_t), intent(in) :: patch
+  integer(c_int), intent(in) :: n, gauss(3)
+  real(c_double), intent(in) :: reference(3, n)
+  integer(c_int64_t), intent(out) :: handle
+  integer(c_int), intent(out) :: status
+  type(descriptor_t) :: descriptor
+  type(patch_t), pointer :: mesh
+  real(wp), allocatable :: places(:, :)
+  integer :: failed
+
+  handle = -1
+  status = 0
+  call find(patch, mesh, status)
+  if (status /= 0) return
+  status = status_out_of_memory
+  allocate (places(3, n), stat=failed)
+  if (failed /= 0) return
+  places(:, :) = real(reference, wp)
+  allocate (descriptor%body)
+  call body_of(mesh, gauss, places, descriptor%body)
+  if (descriptor%body%status /= status_out_of_memory) call keep(descriptor, handle, status)
+end subroutine keep_body
+
 !> Keep a material.
 !>
 !> - `law`, `parameters`: number of the law, and its `nparameters` (isomortar_solid_material_table), F/L^2.

@@ -1,12 +1,12 @@
-!> What stays the same through a computation, handed over once and known by a handle from then on: patches, laws, slave sides, gap
-!> maps, patterns. Nothing in a descriptor ever changes, so that the kernel stays free of state.
+!> What stays the same through a computation, handed over once and known by a handle from then on: patches, bodies, laws, slave
+!> sides, gap maps, patterns. Nothing in a descriptor ever changes, so that the kernel stays free of state.
 !>
 !> A handle is a slot of a table and the generation that the slot was in when it was given out: one that was released is told from
 !> those after it.
 !>
 !> - `handle`: of what is kept. `status`: how it ended (isomortar_base_status).
-!> - `descriptor`, `patch`, `material`, `friction`, `slave`, `map`, `pattern`: what is kept; null where a handle does not stand
-!>   for it.
+!> - `descriptor`, `patch`, `body`, `material`, `friction`, `slave`, `map`, `pattern`: what is kept; null where a handle does not
+!>   stand for it.
 module isomortar_api_descriptors
   use, intrinsic :: iso_c_binding, only: c_int64_t
   use isomortar_base_status, only: status_ok, status_out_of_memory, status_stale_handle
@@ -14,6 +14,7 @@ module isomortar_api_descriptors
   use isomortar_contact_gap_map_map, only: gap_map_t
   use isomortar_contact_slave, only: slave_t
   use isomortar_nurbs_patch, only: patch_t
+  use isomortar_solid_body, only: body_t
   use isomortar_solid_material_law, only: material_t
   use isomortar_sparse_blocks, only: pattern_t
   implicit none
@@ -23,7 +24,7 @@ module isomortar_api_descriptors
 
   !> What a handle stands for; of one that is stale, or stands for something else, null, and the status says so (else it is left).
   interface find
-    module procedure :: find_patch, find_material, find_friction, find_slave, find_gap_map, find_pattern
+    module procedure :: find_patch, find_body, find_material, find_friction, find_slave, find_gap_map, find_pattern
   end interface find
 
   !> Most descriptors at a time.
@@ -32,6 +33,7 @@ module isomortar_api_descriptors
   !> One of these; nothing stands for a law of friction that is none.
   type, public :: descriptor_t
     type(patch_t), allocatable :: patch
+    type(body_t), allocatable :: body
     class(material_t), allocatable :: material
     class(friction_t), allocatable :: friction
     type(slave_t), allocatable :: slave
@@ -66,6 +68,7 @@ contains
     allocate (kept, stat=failed)
     if (failed /= 0) return
     call move_alloc(descriptor%patch, kept%patch)
+    call move_alloc(descriptor%body, kept%body)
     call move_alloc(descriptor%material, kept%material)
     call move_alloc(descriptor%friction, kept%friction)
     call move_alloc(descriptor%slave, kept%slave)
@@ -115,6 +118,20 @@ contains
     if (.not. associated(patch)) status = status_stale_handle
   end subroutine find_patch
 
+  subroutine find_body(handle, body, status)
+    integer(c_int64_t), intent(in) :: handle
+    type(body_t), pointer, intent(out) :: body
+    integer, intent(inout) :: status
+    type(descriptor_t), pointer :: descriptor
+
+    body => null()
+    descriptor => descriptor_of(handle)
+    if (associated(descriptor)) then
+      if (allocated(descriptor%body)) body => descriptor%body
+    end if
+    if (.not. associated(body)) status = status_stale_handle
+  end subroutine find_body
+
   subroutine find_material(handle, material, status)
     integer(c_int64_t), intent(in) :: handle
     class(material_t), pointer, intent(out) :: material
@@ -149,8 +166,8 @@ contains
     type(descriptor_t), intent(in) :: descriptor
 
     associate (d => descriptor)
-      is_empty = .not. (allocated(d%patch) .or. allocated(d%material) .or. allocated(d%friction) .or. allocated(d%slave) &
-        .or. allocated(d%map) .or. allocated(d%pattern))
+      is_empty = .not. (allocated(d%patch) .or. allocated(d%body) .or. allocated(d%material) .or. allocated(d%friction) &
+        .or. allocated(d%slave) .or. allocated(d%map) .or. allocated(d%pattern))
     end associate
   end function is_empty
 

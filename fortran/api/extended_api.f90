@@ -3,24 +3,24 @@
 
 !> Directional derivative of one body's internal forces (isomortar_solid_assembly).
 !>
-!> - `patch`, `gauss`, `material`, `x`, `reference`, `n`: as in `add_body`.
+!> - `body`, `material`, `x`, `n`: as in `add_body`.
 !> - `forces`: the derivative, F/L times the unit of `along`.
 !> - `status`, `place`: as in `add_body`.
-subroutine solid_difference(patch, gauss, material, x, along, step, reference, n, forces, status, place)
+subroutine solid_difference(body, material, x, along, step, n, forces, status, place)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: find
   use isomortar_api_difference, only: difference
   use isomortar_base_kinds, only: wp
-  use isomortar_nurbs_patch, only: patch_t
   use isomortar_solid_assembly, only: add_body
+  use isomortar_solid_body, only: body_t
   use isomortar_solid_material_law, only: material_t
   implicit none
-  integer(c_int64_t), intent(in) :: patch, material
-  integer(c_int), intent(in) :: n, gauss(3)
-  real(c_double), intent(in) :: x(3, n), along(3, n), step, reference(3, n)
+  integer(c_int64_t), intent(in) :: body, material
+  integer(c_int), intent(in) :: n
+  real(c_double), intent(in) :: x(3, n), along(3, n), step
   real(c_double), intent(out) :: forces(3, n)
   integer(c_int), intent(out) :: status, place
-  type(patch_t), pointer :: body
+  type(body_t), pointer :: solid
   class(material_t), pointer :: law
   real(wp), allocatable :: sides(:, :, :)
   real(wp) :: smallest_jacobian
@@ -29,14 +29,14 @@ subroutine solid_difference(patch, gauss, material, x, along, step, reference, n
   forces = 0.0_c_double
   status = 0
   place = 0
-  call find(patch, body, status)
+  call find(body, solid, status)
   call find(material, law, status)
   if (status /= 0) return
   allocate (sides(3, n, 2))
   sides = 0.0_wp
   do side = 1, 2
-    call add_body(body, gauss, law, real(x, wp) + (2 * side - 3) * real(step, wp) * real(along, wp), real(reference, wp), &
-      sides(:, :, side), smallest_jacobian, status, place)
+    call add_body(solid, law, real(x, wp) + (2 * side - 3) * real(step, wp) * real(along, wp), sides(:, :, side), &
+      smallest_jacobian, status, place)
     if (status /= 0) return
   end do
   forces = real(difference(sides(:, :, 2), sides(:, :, 1), real(step, wp)), c_double)

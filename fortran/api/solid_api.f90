@@ -1,72 +1,71 @@
-! What Python sees of solids. Shapes stand in the declarations; units are made of length L and force F. `patch`, `material` and
+! What Python sees of solids. Shapes stand in the declarations; units are made of length L and force F. `body`, `material` and
 ! `pattern` are handles (isomortar_api_descriptors); `status` says how it ended (isomortar_base_status).
 
 !> Add internal forces and the tangent of one body (isomortar_solid_assembly).
 !>
-!> - `gauss`: quadrature points of an element by direction.
-!> - `x`, `reference`: positions of all `n` control points, now and in the reference configuration, L.
+!> - `x`: positions of all `n` control points, L.
 !> - `forces`: on all control points, F.
 !> - `with_tangent`: 1 to add to `tangent`, F/L, (column component, row component, block) on `pattern` of `nblocks`.
 !> - `smallest_jacobian`: least J met; of an element folded initially the determinant of its map.
 !> - `place`: on failure the element, from 1.
-subroutine add_body(patch, gauss, material, x, reference, n, forces, with_tangent, pattern, nblocks, tangent, smallest_jacobian, &
-    status, place)
+subroutine add_body(body, material, x, n, forces, with_tangent, pattern, nblocks, tangent, smallest_jacobian, status, place)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: find
-  use isomortar_nurbs_patch, only: patch_t
   use isomortar_solid_assembly, only: assemble_body => add_body
+  use isomortar_solid_body, only: body_t
   use isomortar_solid_material_law, only: material_t
   use isomortar_sparse_blocks, only: pattern_t
   implicit none
-  integer(c_int64_t), intent(in) :: patch, material, pattern
-  integer(c_int), intent(in) :: n, nblocks, gauss(3), with_tangent
-  real(c_double), intent(in) :: x(3, n), reference(3, n)
+  integer(c_int64_t), intent(in) :: body, material, pattern
+  integer(c_int), intent(in) :: n, nblocks, with_tangent
+  real(c_double), intent(in) :: x(3, n)
   real(c_double), intent(inout) :: forces(3, n), tangent(3, 3, nblocks)
   real(c_double), intent(out) :: smallest_jacobian
   integer(c_int), intent(out) :: status, place
-  type(patch_t), pointer :: body
+  type(body_t), pointer :: solid
   class(material_t), pointer :: law
   type(pattern_t), pointer :: of_tangent
 
   smallest_jacobian = 0.0_c_double
   status = 0
   place = 0
-  call find(patch, body, status)
+  call find(body, solid, status)
   call find(material, law, status)
   if (with_tangent /= 0) call find(pattern, of_tangent, status)
   if (status /= 0) return
   if (with_tangent /= 0) then
-    call assemble_body(body, gauss, law, x, reference, forces, smallest_jacobian, status, place, of_tangent, tangent)
+    call assemble_body(solid, law, x, forces, smallest_jacobian, status, place, of_tangent, tangent)
   else
-    call assemble_body(body, gauss, law, x, reference, forces, smallest_jacobian, status, place)
+    call assemble_body(solid, law, x, forces, smallest_jacobian, status, place)
   end if
 end subroutine add_body
 
 !> Volumes of the control points of one body (isomortar_solid_volume).
 !>
-!> - `gauss`: quadrature points of an element by direction.
-!> - `reference`: positions of all `n` control points in the reference configuration, L.
-!> - `volumes`: of each of them, L^3.
-!> - `place`: on failure the element, from 1.
-subroutine control_volumes(patch, gauss, reference, n, volumes, status, place)
+!> - `volumes`: of each of all `n` control points, L^3.
+!> - `smallest_jacobian`: of an element folded initially the determinant of its map. `place`: on failure the element, from 1.
+subroutine control_volumes(body, n, volumes, smallest_jacobian, status, place)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: find
-  use isomortar_nurbs_patch, only: patch_t
+  use isomortar_solid_body, only: body_t
   use isomortar_solid_volume, only: volumes_of => control_volumes
   implicit none
-  integer(c_int64_t), intent(in) :: patch
-  integer(c_int), intent(in) :: n, gauss(3)
-  real(c_double), intent(in) :: reference(3, n)
-  real(c_double), intent(out) :: volumes(n)
+  integer(c_int64_t), intent(in) :: body
+  integer(c_int), intent(in) :: n
+  real(c_double), intent(out) :: volumes(n), smallest_jacobian
   integer(c_int), intent(out) :: status, place
-  type(patch_t), pointer :: body
+  type(body_t), pointer :: solid
 
   volumes = 0.0_c_double
+  smallest_jacobian = 0.0_c_double
   status = 0
   place = 0
-  call find(patch, body, status)
+  call find(body, solid, status)
   if (status /= 0) return
-  call volumes_of(body, gauss, reference, volumes, status, place)
+  smallest_jacobian = solid%smallest_jacobian
+  status = solid%status
+  place = solid%place
+  if (status == 0) call volumes_of(solid, volumes)
 end subroutine control_volumes
 
 !> First Piola stresses of a material.

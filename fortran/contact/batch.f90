@@ -6,7 +6,8 @@ module isomortar_contact_batch
   use isomortar_base_kinds, only: wp
   use isomortar_base_predicate, only: is_symmetric
   use isomortar_contact_gap_map_map, only: all_components, gap_map_t
-  use isomortar_contact_gap_map_nodal_normals, only: carry_form, carry_rows, normals_t, reach, reached_t
+  use isomortar_contact_gap_map_nodal_normals, only: normals_t
+  use isomortar_contact_gap_map_reach, only: carry_form, carry_rows, reach, reached_t
   use isomortar_contact_rows, only: row_metric, row_pressure_work, row_slip, row_slip_sum, row_traction_work, rows_of, rows_t
   use isomortar_contact_sample, only: sample_t
   use isomortar_contact_slave, only: slave_t

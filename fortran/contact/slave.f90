@@ -2,7 +2,7 @@
 !>
 !> - `slave`, `positions` (3, control points): the slave side; all control points, L. `q`: a quadrature point, from 1.
 module isomortar_contact_slave
-  use isomortar_base_algebra, only: add_product, cross
+  use isomortar_base_algebra, only: add_product, cross, weighted_sums
   use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
   use isomortar_base_predicate, only: is_index, is_unit
@@ -78,7 +78,7 @@ contains
           call surface_basis(surface, place, nodes(:, e), low + length * [at1(i), at2(j)], 1, values)
           basis(:, k) = values(:, 1)
           slopes(:, :, k) = values(:, 2:3)
-          tangents = matmul(references(:, surface%point(nodes(:, e))), values(:, 2:3))
+          tangents = weighted_sums(references, surface%point(nodes(:, e)), values(:, 2:3))
           area(k) = weight1(i) * weight2(j) * product(length) * norm2(cross(tangents(:, 1), tangents(:, 2)))
         end do
       end do

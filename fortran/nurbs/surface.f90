@@ -15,7 +15,7 @@ module isomortar_nurbs_surface
   private
 
   public :: element_bounds, element_span, face_of, first_bound, homogeneous_net, shortest_way, step_across, surface_basis, &
-    surface_element_count, surface_element_of, surface_nodes, surface_point
+    surface_element_count, surface_element_of, surface_nodes, surface_of, surface_point
 
   !> Column of each partial derivative (k, l) in a table of derivatives to order three.
   integer, parameter, public :: derivative_column(0:3, 0:3) = reshape( &
@@ -52,30 +52,46 @@ contains
     integer, intent(in) :: axis, end
     type(surface_t) :: self
     integer :: first, second, i, j, index(3), a
+    integer, allocatable :: point(:)
+    real(wp), allocatable :: weight(:)
 
     if (contracts) call require(is_index(axis, 3) .and. is_index(end + 1, 2), "face_of: the face is one of the six")
     first = mod(axis, 3) + 1
     second = mod(axis + 1, 3) + 1
-    self%direction(1) = patch%direction(first)
-    self%direction(2) = patch%direction(second)
-    self%outward = merge(1.0_wp, -1.0_wp, end == 1)
-    a = self%direction(1)%count * self%direction(2)%count
-    allocate (self%point(a), self%weight(a))
     index(axis) = merge(patch%direction(axis)%count - 1, 0, end == 1)
+    a = patch%direction(first)%count * patch%direction(second)%count
+    allocate (point(a), weight(a)) ! and not sections by a list, which are copied to the stack
     a = 0
-    do j = 0, self%direction(2)%count - 1
-      do i = 0, self%direction(1)%count - 1
+    do j = 0, patch%direction(second)%count - 1
+      do i = 0, patch%direction(first)%count - 1
         index(first) = i
         index(second) = j
         a = a + 1
         associate (local => 1 + index(1) + patch%direction(1)%count * (index(2) + patch%direction(2)%count * index(3)))
-          self%point(a) = patch%point(local)
-          self%weight(a) = patch%weight(local)
+          point(a) = patch%point(local)
+          weight(a) = patch%weight(local)
         end associate
       end do
     end do
-    self%rational = any(abs(self%weight - self%weight(1)) > 0.0_wp)
-    associate (count => self%direction%count)
+    self = surface_of([patch%direction(first), patch%direction(second)], point, weight)
+    self%outward = merge(1.0_wp, -1.0_wp, end == 1)
+    if (contracts) call require(all(is_index(self%point, maxval(patch%point))), "face_of: control points are the patch's")
+  end function face_of
+
+  !> A surface of some directions, `direction` (2), with the numbers and weights of its control points, `point` (control points) and
+  !> `weight` (control points); where it is closed, and its poles, are told by the numbers.
+  pure function surface_of(direction, point, weight) result(self)
+    type(direction_t), intent(in) :: direction(2)
+    integer, intent(in) :: point(:)
+    real(wp), intent(in) :: weight(:)
+    type(surface_t) :: self
+
+    if (contracts) call require(all([size(point), size(weight)] == product(direction%count)), "surface_of: a number, a weight each")
+    self%direction = direction
+    allocate (self%point, source=point)
+    allocate (self%weight, source=weight)
+    self%rational = any(abs(weight - weight(1)) > 0.0_wp)
+    associate (count => direction%count)
       self%closed(1) = all(self%point(1::count(1)) == self%point(count(1)::count(1)))
       self%closed(2) = all(self%point(:count(1)) == self%point(size(self%point) - count(1) + 1:))
       self%pole(1, 1) = self%closed(2) .and. all(self%point(1::count(1)) == self%point(1))
@@ -83,8 +99,7 @@ contains
       self%pole(1, 2) = self%closed(1) .and. all(self%point(:count(1)) == self%point(1))
       self%pole(2, 2) = self%closed(1) .and. all(self%point(size(self%point) - count(1) + 1:) == self%point(size(self%point)))
     end associate
-    if (contracts) call require(all(is_index(self%point, maxval(patch%point))), "face_of: control points are the patch's")
-  end function face_of
+  end function surface_of
 
   !> Go to the element `step` (-1, 0 or 1 by direction) further on, past a seam too; `xi` is put on the line that is crossed.
   !> Not `within`: past the edge of the patch.

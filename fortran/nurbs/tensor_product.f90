@@ -62,16 +62,32 @@ contains
     integer :: d, n, q, r
 
     n = size(line%values, 1)
-    target = 0.0_wp
     do r = 1, after
       do q = 1, size(line%weight)
         do d = 1, kinds
-          call add_columns(before, n, source(:, :, r, d), line%values(:, 0, q), target(:, q, r, d))
+          call sum_columns(before, n, source(:, :, r, d), line%values(:, 0, q), target(:, q, r, d))
         end do
-        call add_columns(before, n, source(:, :, r, 1), line%values(:, 1, q), target(:, q, r, kinds + 1))
+        call sum_columns(before, n, source(:, :, r, 1), line%values(:, 1, q), target(:, q, r, kinds + 1))
       end do
     end do
   end subroutine spread_line
+
+  !> The sum of n columns of m numbers times their shares, `total` (m).
+  pure subroutine sum_columns(m, n, columns, shares, total)
+    integer, intent(in) :: m, n
+    real(wp), intent(in) :: columns(m, n), shares(n)
+    real(wp), intent(out) :: total(m)
+
+    select case (n)
+    case (1)
+      total = columns(:, 1) * shares(1)
+    case (2)
+      total = columns(:, 1) * shares(1) + columns(:, 2) * shares(2)
+    case default
+      total = columns(:, 1) * shares(1) + columns(:, 2) * shares(2) + columns(:, 3) * shares(3)
+      call add_columns(m, n - 3, columns(:, 4:), shares(4:), total)
+    end select
+  end subroutine sum_columns
 
   !> Add n columns of m numbers times their shares to `total` (m), three at a time: the total is read and written less often.
   pure subroutine add_columns(m, n, columns, shares, total)
@@ -116,11 +132,10 @@ contains
     m = size(line%weight)
     values = transpose(line%values(:, 0, :))
     slopes = transpose(line%values(:, 1, :))
-    target = 0.0_wp
     do r = 1, after
       do a = 1, size(line%values, 1)
         do d = 1, kinds
-          call add_columns(before, m, source(:, :, r, d), values(:, a), target(:, a, r, d))
+          call sum_columns(before, m, source(:, :, r, d), values(:, a), target(:, a, r, d))
         end do
         call add_columns(before, m, source(:, :, r, kinds + 1), slopes(:, a), target(:, a, r, 1))
       end do

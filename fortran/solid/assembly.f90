@@ -7,8 +7,9 @@ module isomortar_solid_assembly
   use isomortar_base_kinds, only: wp
   use isomortar_base_predicate, only: is_compressed, is_index
   use isomortar_base_status, only: status_ok, status_pattern
-  use isomortar_nurbs_patch, only: element_count, element_nodes, element_of, line_rule, line_rule_t, patch_t
+  use isomortar_nurbs_patch, only: element_nodes, element_of
   use isomortar_nurbs_tensor_product, only: line_pairs, line_pairs_t
+  use isomortar_solid_body, only: body_t, geometry_t
   use isomortar_solid_element, only: element_residual, element_tangent, room_t, sample_element, samples_t
   use isomortar_solid_material_law, only: component_pairs, material_t
   use isomortar_sparse_blocks, only: lacks, mark_row, pattern_t
@@ -35,56 +36,54 @@ contains
 
   !> Add internal forces and, where a pattern is given, the tangent of a body.
   !>
-  !> - `patch`, `material`: its mesh and its law. `points`: Gauss points of an element by direction.
-  !> - `positions` (3, control points), `references` (3, control points): of all control points, now and in the reference
-  !>   configuration, L.
+  !> - `body`, `material`: the body and its law.
+  !> - `positions` (3, control points): of all control points, L.
   !> - `residual` (3, control points): forces on all of them, F.
   !> - `pattern`, `tangent` (column component, row component, blocks): pattern of the tangent, and its blocks, F/L.
   !> - `smallest_jacobian`: least J met; of an element folded initially the determinant of its map.
   !> - `status`, `place`: how it ended (isomortar_base_status), and on failure the element, from 1.
-  subroutine add_body(patch, points, material, positions, references, residual, smallest_jacobian, status, place, &
-      pattern, tangent)
-    type(patch_t), intent(in) :: patch
-    integer, intent(in) :: points(3)
+  subroutine add_body(body, material, positions, residual, smallest_jacobian, status, place, pattern, tangent)
+    type(body_t), intent(in) :: body
     class(material_t), intent(in) :: material
-    real(wp), intent(in) :: positions(:, :), references(:, :)
+    real(wp), intent(in) :: positions(:, :)
     real(wp), intent(inout) :: residual(:, :)
     real(wp), intent(out) :: smallest_jacobian
     integer, intent(out) :: status, place
     type(pattern_t), intent(in), optional :: pattern
     real(wp), intent(inout), optional :: tangent(:, :, :)
-    type(line_rule_t), allocatable :: u(:), v(:), w(:)
-    type(line_pairs_t), allocatable :: uu(:), vv(:), ww(:)
+    type(line_pairs_t), allocatable :: u(:), v(:), w(:)
     type(element_t), allocatable :: batch(:)
     type(room_t) :: room
     type(samples_t) :: samples
     integer :: at(3), first, k, many
 
-    if (contracts) call require(all(shape(positions) == shape(references)), "add_body: the body is the reference's")
     if (contracts) call require(all(shape(positions) == shape(residual)), "add_body: forces are those of the positions")
-    if (contracts) call require(all(is_index(patch%point, size(positions, 2))), "add_body: the patch is among the positions")
+    if (contracts) call require(all(is_index(body%patch%point, size(positions, 2))), "add_body: the body is among the positions")
     if (contracts) call require(present(pattern) .eqv. present(tangent), "add_body: a tangent has a pattern")
-    call line_rule(patch%direction(1), points(1), 1, u)
-    call line_rule(patch%direction(2), points(2), 1, v)
-    call line_rule(patch%direction(3), points(3), 1, w)
+    smallest_jacobian = body%smallest_jacobian
+    status = body%status
+    place = body%place
+    if (status /= status_ok) return
     if (present(tangent)) then
       if (contracts) call require(is_compressed(pattern%start, size(tangent, 3)), "add_body: blocks are those of a pattern")
-      call line_pairs(u, uu)
-      call line_pairs(v, vv)
-      call line_pairs(w, ww)
+      call line_pairs(body%u, u)
+      call line_pairs(body%v, v)
+      call line_pairs(body%w, w)
     end if
-    call reserve(product(patch%direction%order + 1), element_count(patch), present(tangent), batch)
+    call reserve(product(body%patch%direction%order + 1), size(body%element), present(tangent), batch)
     smallest_jacobian = huge(1.0_wp)
-    do first = 0, element_count(patch) - 1, size(batch)
-      many = min(size(batch), element_count(patch) - first)
-      !$omp parallel do default(none) private(at, room, samples) shared(batch, first, many, material, patch, positions) &
-      !$omp shared(references, tangent, u, uu, v, vv, w, ww) schedule(dynamic)
+    do first = 0, size(body%element) - 1, size(batch)
+      many = min(size(batch), size(body%element) - first)
+      !$omp parallel do default(none) private(at, room, samples) shared(batch, body, first, many, material, positions) &
+      !$omp shared(tangent, u, v, w) schedule(dynamic)
       do k = 1, many
-        at = element_of(patch, first + k)
-        call take_element(patch, at, u(at(1)), v(at(2)), w(at(3)), material, positions, references, room, samples, batch(k))
-        if (present(tangent) .and. batch(k)%status == status_ok) then
-          call element_tangent(uu(at(1)), vv(at(2)), ww(at(3)), samples, material, batch(k)%block)
-        end if
+        associate (geometry => body%element(first + k))
+          at = element_of(body%patch, first + k)
+          call take_element(body, at, geometry, material, positions, room, samples, batch(k))
+          if (present(tangent) .and. batch(k)%status == status_ok) then
+            call element_tangent(u(at(1)), v(at(2)), w(at(3)), geometry, samples, material, batch(k)%block)
+          end if
+        end associate
       end do
       !$omp end parallel do
       do k = 1, many
@@ -95,7 +94,7 @@ contains
         call add_forces(batch(k), residual)
       end do
       if (.not. present(tangent)) cycle
-      call add_blocks(pattern, batch(:many), patch%direction%order + 1, tangent, place)
+      call add_blocks(pattern, batch(:many), body%patch%direction%order + 1, tangent, place)
       status = merge(status_pattern, status_ok, place > 0)
       if (status /= status_ok) return
     end do
@@ -118,25 +117,27 @@ contains
     end do
   end subroutine reserve
 
-  !> Sample one element and compute its forces.
-  pure subroutine take_element(patch, at, u, v, w, material, positions, references, room, samples, element)
-    type(patch_t), intent(in) :: patch
+  !> Sample one element, `at` its place by direction, from 1, and compute its forces.
+  pure subroutine take_element(body, at, geometry, material, positions, room, samples, element)
+    type(body_t), intent(in) :: body
     integer, intent(in) :: at(3)
-    type(line_rule_t), intent(in) :: u, v, w
+    type(geometry_t), intent(in) :: geometry
     class(material_t), intent(in) :: material
-    real(wp), intent(in) :: positions(:, :), references(:, :)
+    real(wp), intent(in) :: positions(:, :)
     type(room_t), intent(inout) :: room
     type(samples_t), intent(inout) :: samples
     type(element_t), intent(inout) :: element
 
-    call element_nodes(patch, at, element%local)
-    element%nodes(:) = patch%point(element%local)
-    element%weight(:) = patch%weight(element%local)
-    call sample_element(u, v, w, element%weight, positions(:, element%nodes), references(:, element%nodes), room, &
-      samples, element%status)
-    element%smallest_jacobian = samples%smallest_jacobian
-    if (element%status /= status_ok) return
-    call element_residual(u, v, w, element%weight, samples, material, room, element%forces)
+    call element_nodes(body%patch, at, element%local)
+    element%nodes(:) = body%patch%point(element%local)
+    element%weight(:) = body%patch%weight(element%local)
+    associate (u => body%u(at(1)), v => body%v(at(2)), w => body%w(at(3)))
+      call sample_element(u, v, w, geometry, element%weight, positions(:, element%nodes), body%reference(:, element%local), room, &
+        samples, element%status)
+      element%smallest_jacobian = samples%smallest_jacobian
+      if (element%status /= status_ok) return
+      call element_residual(u, v, w, geometry, element%weight, samples, material, room, element%forces)
+    end associate
   end subroutine take_element
 
   !> Add the forces of an element; a control point may stand twice in an element of a closed ring.

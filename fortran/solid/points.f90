@@ -6,7 +6,7 @@ module isomortar_solid_points
   implicit none
   private
 
-  public :: cofactors, determinants, quotients
+  public :: cofactors, determinants, least, quotients
 
 contains
 
@@ -37,6 +37,21 @@ contains
     end do
     det = a(:, 1, 1) * b(:, 1, 1) + a(:, 2, 1) * b(:, 2, 1) + a(:, 3, 1) * b(:, 3, 1)
   end subroutine cofactors
+
+  !> The first of some `numbers` (numbers) that is not above zero, or else the smallest of them.
+  pure real(wp) function least(numbers)
+    real(wp), intent(in) :: numbers(:)
+    integer :: q
+
+    least = huge(1.0_wp)
+    do q = 1, size(numbers)
+      if (.not. numbers(q) > 0.0_wp) then
+        least = numbers(q)
+        return
+      end if
+      least = min(least, numbers(q))
+    end do
+  end function least
 
   !> Derivatives by the parameters of a rational field: `slope` (point, component, parameter) (theory 1.3).
   !>

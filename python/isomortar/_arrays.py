@@ -68,6 +68,21 @@ class PatchArrays:
 
 
 @dataclass(frozen=True, eq=False)
+class BodyArrays:
+    """A body: its patch, Gauss points of an element by direction, and the reference positions of all control points, shape (n, 3)."""
+
+    patch: PatchArrays
+    gauss: tuple[int, int, int]
+    reference: FloatArray
+
+    def __post_init__(self) -> None:
+        check.kind("patch", self.patch, PatchArrays)
+        check.gauss("gauss", self.gauss, 3)
+        check.finite("reference", check.array("reference", self.reference, np.float64, None, 3))
+        check.below("patch.point", self.patch.highest, len(self.reference), "control point")
+
+
+@dataclass(frozen=True, eq=False)
 class MaterialArrays:
     """A material: number of its law (isomortar_solid_material_table) and what that takes, the moduli A1 and A2."""
 

@@ -1,4 +1,4 @@
-"""Handles of what the kernel is handed once: patches, laws, slave sides, masters, patterns (isomortar_api_descriptors)."""
+"""Handles of what the kernel is handed once: patches, bodies, laws, slave sides, masters, patterns (isomortar_api_descriptors)."""
 
 from __future__ import annotations
 
@@ -7,9 +7,12 @@ from collections.abc import Callable
 from typing import Any
 from weakref import WeakKeyDictionary
 
+import numpy as np
+
 from isomortar import _arguments as check
 from isomortar._arrays import (
     AveragedFaceArrays,
+    BodyArrays,
     FaceArrays,
     FrictionArrays,
     MaterialArrays,
@@ -38,6 +41,7 @@ class Descriptors:
         self._handles: WeakKeyDictionary[Any, int] = WeakKeyDictionary()
         self._keepers: dict[type, Callable[[Any], tuple[int, int]]] = {
             PatchArrays: self._patch,
+            BodyArrays: self._body,
             MaterialArrays: self._law_by(library.keep_material),
             FrictionArrays: self._law_by(library.keep_friction),
             PlaneArrays: lambda plane: library.keep_plane(plane.origin, plane.normal, plane.tangent),
@@ -73,6 +77,11 @@ class Descriptors:
         )
         return found
 
+    def _body(self, body: BodyArrays) -> tuple[int, int]:
+        patch, gauss = self.handle("patch", body.patch, PatchArrays), np.asarray(body.gauss, np.int32)
+        found: tuple[int, int] = self._library.keep_body(patch, gauss, body.reference.T)
+        return found
+
     def _slave(self, slave: SlaveArrays) -> tuple[int, int]:
         shape, test = slave.shape, slave.test
         found: tuple[int, int] = self._library.keep_slave(
@@ -93,6 +102,6 @@ class Descriptors:
 
 _REFUSALS = {
     Status.NO_SUCH_LAW: "no law of material or friction has that number and so many parameters",
-    Status.OUT_OF_MEMORY: "memory ran out, or too many patches, laws, contacts and patterns are alive: let some go",
-    Status.STALE_HANDLE: "the patch of a face was released before",
+    Status.OUT_OF_MEMORY: "memory ran out, or too many patches, bodies, laws, contacts and patterns are alive: let some go",
+    Status.STALE_HANDLE: "the patch of a face or a body was released before",
 }

@@ -12,6 +12,7 @@ import numpy as np
 
 from isomortar import _extended
 from isomortar._bindings import (
+    BodyArrays,
     FaceArrays,
     FloatArray,
     FrictionArrays,
@@ -71,12 +72,10 @@ class Hulls:
 
 
 def solid_difference(
-    patch: PatchArrays,
-    gauss: tuple[int, int, int],
+    body: BodyArrays,
     material: MaterialArrays,
     positions: FloatArray,
     along: FloatArray,
-    reference: FloatArray,
     step: float = STEP,
 ) -> FloatArray:
     """Derivative of one body's internal forces along a change of the positions, shape (control points, 3).
@@ -87,9 +86,8 @@ def solid_difference(
         An element is folded.
     """
     forces, status, place = _extended.solid_difference(
-        _DESCRIPTORS.handle("patch", patch, PatchArrays), np.asarray(gauss, np.int32),
-        _DESCRIPTORS.handle("material", material, MaterialArrays), positions.T, along.T, step, reference.T,
-    )  # fmt: skip
+        _DESCRIPTORS.handle("body", body, BodyArrays), _DESCRIPTORS.handle("material", material, MaterialArrays), positions.T, along.T, step
+    )
     _check(status, place)
     return np.ascontiguousarray(forces.T)
 

@@ -3,7 +3,7 @@ module surfaces
   use isomortar_base_kinds, only: wp
   use isomortar_contact_slave, only: slave_t
   use isomortar_nurbs_direction, only: direction_t, family_lagrange, family_nurbs, new_direction
-  use isomortar_nurbs_surface, only: surface_t
+  use isomortar_nurbs_surface, only: surface_of, surface_t
   implicit none
   private
 
@@ -11,16 +11,13 @@ module surfaces
 
 contains
 
-  !> A surface of given directions, weights of one, control points by number.
+  !> A surface of two directions, weights of one, control points by number.
   function over(first, second) result(surface)
     type(direction_t), intent(in) :: first, second
     type(surface_t) :: surface
     integer :: i
 
-    surface%direction(1) = first
-    surface%direction(2) = second
-    allocate (surface%point(first%count * second%count), source=[(i, i=1, first%count * second%count)])
-    allocate (surface%weight(size(surface%point)), source=1.0_wp)
+    surface = surface_of([first, second], [(i, i=1, first%count * second%count)], [(1.0_wp, i=1, first%count * second%count)])
   end function over
 
   !> A rational surface of two by two elements of order 3, hollow and uneven, and its control points.
@@ -28,17 +25,19 @@ contains
     type(surface_t), intent(out) :: surface
     real(wp), allocatable, intent(out) :: positions(:, :)
     real(wp), parameter :: knots(9) = [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.4_wp, 1.0_wp, 1.0_wp, 1.0_wp, 1.0_wp]
+    type(direction_t) :: direction
+    real(wp) :: weight(25)
     integer :: i, j
 
-    surface = over(new_direction(family_nurbs, 3, knots), new_direction(family_nurbs, 3, knots))
+    direction = new_direction(family_nurbs, 3, knots)
     allocate (positions(3, 25))
     do j = 1, 5
       do i = 1, 5
         positions(:, i + 5 * (j - 1)) = [i + 0.1_wp * j, j - 0.05_wp * i * i, 0.1_wp * (i - 3)**2 - 0.07_wp * (j - 2) * (i + j)]
-        surface%weight(i + 5 * (j - 1)) = 1.0_wp + 0.1_wp * mod(2 * i + j, 4)
+        weight(i + 5 * (j - 1)) = 1.0_wp + 0.1_wp * mod(2 * i + j, 4)
       end do
     end do
-    surface%rational = .true.
+    surface = surface_of([direction, direction], [(i, i=1, 25)], weight)
   end subroutine curved
 
   !> Two linear elements that meet in a ridge along the second direction at x = 1, of a height there, zero at x = 0 and x = 2; y is
@@ -63,12 +62,12 @@ contains
     type(surface_t), intent(out) :: surface
     real(wp), allocatable, intent(out) :: positions(:, :)
     real(wp), parameter :: corner(2, 4) = reshape([1, 1, -1, 1, -1, -1, 1, -1], [2, 4])
+    type(direction_t) :: round, along
     integer :: i
 
-    surface = over(new_direction(family_lagrange, 1, [0.0_wp, 1.0_wp, 2.0_wp, 3.0_wp, 4.0_wp]), &
-      new_direction(family_lagrange, 1, [0.0_wp, 1.0_wp]))
-    surface%point = [1, 2, 3, 4, 1, 5, 6, 7, 8, 5]
-    surface%closed(1) = .true.
+    round = new_direction(family_lagrange, 1, [0.0_wp, 1.0_wp, 2.0_wp, 3.0_wp, 4.0_wp])
+    along = new_direction(family_lagrange, 1, [0.0_wp, 1.0_wp])
+    surface = surface_of([round, along], [1, 2, 3, 4, 1, 5, 6, 7, 8, 5], [(1.0_wp, i=1, 10)])
     allocate (positions(3, 8))
     do i = 1, 4
       positions(:, i) = [corner(:, i), 0.0_wp]

@@ -12,7 +12,7 @@ import pytest
 
 import isomortar
 from isomortar import _bindings
-from isomortar._bindings import FaceArrays, MasterArrays, PatchArrays, PlaneArrays, Projections, Response, SlaveArrays
+from isomortar._bindings import BodyArrays, FaceArrays, MasterArrays, PlaneArrays, Projections, Response, SlaveArrays
 from isomortar._codes import WORK
 from isomortar.cli.cost import totals
 from isomortar.geometry.primitives import box
@@ -139,9 +139,9 @@ def test_counts_of_a_run_are_those_that_the_results_tell(tmp_path: Path, monkeyp
 
         return call
 
-    def visited(patch: PatchArrays, gauss: tuple[int, int, int], *others: Any) -> float:
-        smallest = add_body(patch, gauss, *others)
-        stressed.append(int(np.prod(gauss) * np.prod(patch.elements)))  # not where an element folds, which ends the visit
+    def visited(body: BodyArrays, *others: Any) -> float:
+        smallest = add_body(body, *others)
+        stressed.append(int(np.prod(body.gauss) * np.prod(body.patch.elements)))  # not where an element folds, which ends the visit
         return smallest
 
     for name in ("solve", "solve_again"):

@@ -66,6 +66,8 @@ def test_a_handle_of_something_else_is_refused_by_every_routine() -> None:
     assert kernel.friction_radius(wrong, np.ones(2))[1] == Status.STALE_HANDLE
     assert kernel.material_stress(wrong, np.zeros((3, 3, 1), order="F"))[1] == Status.STALE_HANDLE
     assert kernel.surface_functions(wrong, 1, 0, feet, 4)[2] == Status.STALE_HANDLE
+    assert kernel.keep_body(wrong, np.ones(3, np.int32), points) == (-1, Status.STALE_HANDLE)
+    assert kernel.control_volumes(wrong, 2)[2] == Status.STALE_HANDLE
     assert kernel.keep_face(wrong, 1, 0, 0, 0.0, places) == (-1, Status.STALE_HANDLE)
     counts = np.zeros(len(WORK), np.int64)
     assert kernel.project_points(wrong, wrong, points, flags, feet, flags, 1, counts, feet)[-2] == Status.STALE_HANDLE

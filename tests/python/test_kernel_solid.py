@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from isomortar import _bindings, _twin
-from isomortar._bindings import Pattern
+from isomortar._bindings import BodyArrays, Pattern
 from isomortar.errors import FoldedElementError
 from isomortar.geometry.primitives import box
 from isomortar.geometry.refinement import mesh
@@ -19,12 +19,12 @@ ARRAYS = patch_arrays(PATCH, np.arange(len(PATCH.weights), dtype=np.int32))
 REFERENCE = PATCH.control_points
 #: Displacements that add to the (dyadic) reference positions without rounding.
 SHAPE = np.random.default_rng(2).integers(-8, 9, REFERENCE.shape) / 8.0
-GAUSS = (3, 3, 3)
+BODY = BodyArrays(ARRAYS, (3, 3, 3), REFERENCE)
 
 
 def forces(positions: np.ndarray) -> np.ndarray:
     result = np.zeros_like(REFERENCE)
-    _bindings.add_body(ARRAYS, GAUSS, MATERIAL.arrays, positions, REFERENCE, result)
+    _bindings.add_body(BODY, MATERIAL.arrays, positions, result)
     return result
 
 
@@ -33,7 +33,7 @@ def tangent(positions: np.ndarray) -> np.ndarray:
     n = len(REFERENCE)
     pattern = Pattern(np.arange(0, n * n + 1, n, dtype=np.int32), np.tile(np.arange(n, dtype=np.int32), n))
     blocks = np.zeros((n * n, 3, 3))
-    _bindings.add_body(ARRAYS, GAUSS, MATERIAL.arrays, positions, REFERENCE, np.zeros_like(REFERENCE), pattern, blocks)
+    _bindings.add_body(BODY, MATERIAL.arrays, positions, np.zeros_like(REFERENCE), pattern, blocks)
     return blocks.reshape(n, n, 3, 3).transpose(0, 2, 1, 3).reshape(3 * n, 3 * n)
 
 
@@ -41,7 +41,7 @@ def tangent(positions: np.ndarray) -> np.ndarray:
 def test_stress_of_small_strains_keeps_its_digits(power: int) -> None:
     """At 2^-30 (1e-9), and far below: forces over strain against the twin's slope, even in strain up to its square."""
     strain = 2.0**power
-    slope = _twin.solid_difference(ARRAYS, GAUSS, MATERIAL.arrays, REFERENCE, SHAPE, REFERENCE, step=strain)
+    slope = _twin.solid_difference(BODY, MATERIAL.arrays, REFERENCE, SHAPE, step=strain)
     odd = (forces(REFERENCE + strain * SHAPE) - forces(REFERENCE - strain * SHAPE)) / (2.0 * strain)
     assert np.linalg.norm(odd - slope) < 1e-13 * np.linalg.norm(slope)
 
@@ -49,7 +49,7 @@ def test_stress_of_small_strains_keeps_its_digits(power: int) -> None:
 @pytest.mark.parametrize("strain", [0.0, 2.0**-30, 2.0**-4])
 def test_tangent_from_no_strain_to_a_large_one(strain: float) -> None:
     positions, along = REFERENCE + strain * SHAPE, np.random.default_rng(3).standard_normal(REFERENCE.shape)
-    twin = _twin.solid_difference(ARRAYS, GAUSS, MATERIAL.arrays, positions, along, REFERENCE)
+    twin = _twin.solid_difference(BODY, MATERIAL.arrays, positions, along)
     matrix = tangent(positions)
     assert np.linalg.norm(matrix @ along.ravel() - twin.ravel()) < 1e-14 * np.linalg.norm(twin)
     assert np.linalg.norm(matrix - matrix.T) < 1e-15 * np.linalg.norm(matrix)
@@ -65,7 +65,7 @@ def test_twin_is_in_extended_precision() -> None:
     """Where the difference of two nearly equal double-precision forces has four digits left, the twin's has all."""
     positions, step = REFERENCE + 0.03 * SHAPE, 1e-12
     rough = (forces(positions + step * SHAPE) - forces(positions - step * SHAPE)) / (2.0 * step)
-    fine = _twin.solid_difference(ARRAYS, GAUSS, MATERIAL.arrays, positions, SHAPE, REFERENCE, step=step)
+    fine = _twin.solid_difference(BODY, MATERIAL.arrays, positions, SHAPE, step=step)
     exact = (tangent(positions) @ SHAPE.ravel()).reshape(-1, 3)
     assert np.linalg.norm(fine - exact) < 1e-13 * np.linalg.norm(exact)
     assert np.linalg.norm(rough - exact) > 1e-7 * np.linalg.norm(exact)
@@ -74,5 +74,9 @@ def test_twin_is_in_extended_precision() -> None:
 def test_a_folded_element_is_named_with_its_jacobian() -> None:
     with pytest.raises(FoldedElementError, match=r"^element 0 is folded \(J = -0\.75\)$"):
         forces(np.ascontiguousarray(REFERENCE * [1.0, -0.75, 1.0]))
-    with pytest.raises(FoldedElementError, match=r"^element 0 is folded \(J = -2\) in the reference configuration$"):
-        _bindings.add_body(ARRAYS, GAUSS, MATERIAL.arrays, REFERENCE, np.ascontiguousarray(-REFERENCE), np.zeros_like(REFERENCE))
+    turned = BodyArrays(ARRAYS, BODY.gauss, np.ascontiguousarray(-REFERENCE))
+    told = r"^element 0 is folded \(J = -2\) in the reference configuration$"
+    with pytest.raises(FoldedElementError, match=told):
+        _bindings.add_body(turned, MATERIAL.arrays, REFERENCE, np.zeros_like(REFERENCE))
+    with pytest.raises(FoldedElementError, match=told):
+        _bindings.control_volumes(turned)

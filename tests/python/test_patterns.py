@@ -71,8 +71,7 @@ class Assembly:
         body, numbering = self.problem.bodies[0], self.equilibrium.numbering
         values = np.zeros((len(solid.column), 3, 3))
         forces = np.zeros_like(self.positions)
-        patch = numbering.patch_arrays(body)
-        _bindings.add_body(patch, body.quadrature, body.material.arrays, self.positions, numbering.reference, forces, solid, values)
+        _bindings.add_body(numbering.body_arrays(body), body.material.arrays, self.positions, forces, solid, values)
         return {"solid": values}
 
     def blocks(self, rows: Pattern, tangent: Pattern) -> Values:

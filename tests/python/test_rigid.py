@@ -73,7 +73,7 @@ def test_a_support_carries_all_that_is_glued(monkeypatch: pytest.MonkeyPatch) ->
     add_body = _bindings.add_body
 
     def counted(*arguments: object) -> float:
-        called.append(len(arguments[0].point))  # type: ignore[attr-defined]
+        called.append(len(arguments[0].patch.point))  # type: ignore[attr-defined]
         return add_body(*arguments)  # type: ignore[arg-type]
 
     monkeypatch.setattr(_bindings, "add_body", counted)

@@ -1,12 +1,15 @@
 """Corrections by kept factors learn from whole augmentations, and change what they cost alone."""
 
-import math
+from typing import Any
 
 import numpy as np
 import pytest
 
+from isomortar.geometry.patch import FloatArray
+from isomortar.model.constants import MAX_SECANTS
 from isomortar.model.entities import Problem
 from isomortar.scene import Scene
+from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.record import StepResult
 from isomortar.solve.secants import Secants
 from isomortar.solve.simulation import Simulation
@@ -82,8 +85,33 @@ def test_augmentations_need_fewer_solves_and_come_to_the_same(monkeypatch: pytes
 def test_an_augmentation_begins_with_the_forces_that_the_last_one_ended_with() -> None:
     problem = pressed()
     results, (body,) = list(Simulation(problem).run()), problem.deformable
-    points = math.prod(body.quadrature) * math.prod(direction.elements for direction in body.patch.directions)
     augmentations = sum(len(result.augmentations) for result in results)
     assert augmentations > 20
-    computed = summed(results, "solid points") / points - summed(results, "solid tangents")
+    computed = summed(results, "solid points") / body.points - summed(results, "solid tangents")
     assert computed <= summed(results, "solid residuals") - augmentations + 2 * len(results)
+
+
+def test_what_is_known_of_one_tangent_is_not_used_with_another(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Corrections are the same in the end, whatever is known: solves alone would be more, or fewer."""
+    since, most = [0], [0]
+    factorised, learnt, used = Equilibrium.correction, Secants.learn, Secants.improved
+
+    def correction(*arguments: Any) -> FloatArray:
+        since[0] = 0
+        return factorised(*arguments)
+
+    def learn(secants: Secants, way: FloatArray, correction: FloatArray) -> None:
+        since[0] += 1
+        learnt(secants, way, correction)
+
+    def improved(secants: Secants, correction: FloatArray) -> FloatArray:
+        assert len(secants._known) == min(since[0], MAX_SECANTS)
+        most[0] = max(most[0], since[0])
+        return used(secants, correction)
+
+    monkeypatch.setattr(Equilibrium, "correction", correction)
+    monkeypatch.setattr(Secants, "learn", learn)
+    monkeypatch.setattr(Secants, "improved", improved)
+    results = list(Simulation(pressed()).run())
+    assert most[0] > MAX_SECANTS
+    assert summed(results, "factorisations") > len(results)

@@ -13,7 +13,7 @@ import pytest
 from scipy.interpolate import BSpline
 
 from isomortar import _bindings
-from isomortar._bindings import Pattern
+from isomortar._bindings import BodyArrays, Pattern
 from isomortar.geometry.patch import Direction, Patch
 from isomortar.geometry.primitives import box
 from isomortar.geometry.refinement import mesh
@@ -80,7 +80,8 @@ def test_forces_and_tangent(order: tuple[int, int, int], elements: tuple[int, in
     positions = patch.control_points + 0.03 * rng.standard_normal((n, 3))
     pattern = Pattern(np.arange(0, n * n + 1, n, dtype=np.int32), np.tile(np.arange(n, dtype=np.int32), n))
     forces, blocks = np.zeros((n, 3)), np.zeros((n * n, 3, 3))
-    _bindings.add_body(arrays, points, MATERIAL.arrays, positions, patch.control_points, forces, pattern, blocks)
+    body = BodyArrays(arrays, points, patch.control_points)
+    _bindings.add_body(body, MATERIAL.arrays, positions, forces, pattern, blocks)
     tangent = blocks.reshape(n, n, 3, 3).transpose(0, 2, 1, 3).reshape(3 * n, 3 * n)
 
     samples = gradients(patch, points)

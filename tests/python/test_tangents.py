@@ -208,7 +208,7 @@ def test_check_sees_a_wrong_part(
 ) -> None:
     right = PairMechanics.blocks
     monkeypatch.setattr(PairMechanics, "blocks", lambda *arguments: change(right(*arguments)))
-    monkeypatch.setattr(_twin, "solid_difference", lambda *arguments: np.zeros_like(arguments[5]))  # slow, and not what is tested
+    monkeypatch.setattr(_twin, "solid_difference", lambda *arguments: np.zeros_like(arguments[2]))  # slow, and not what is tested
     report = measure(problem, STEP, visits[:1], directions=1)
     assert not report.passes
     assert errors(report)[part] > 1e-11

@@ -12,7 +12,7 @@ PROGRAM = """
 import hashlib
 import numpy as np
 from isomortar import _bindings
-from isomortar._bindings import Pattern
+from isomortar._bindings import BodyArrays, Pattern
 from isomortar.geometry.primitives import box
 from isomortar.geometry.refinement import mesh
 from isomortar.model.entities import Material
@@ -22,8 +22,8 @@ reference, n = patch.control_points, len(patch.weights)
 pattern = Pattern(np.arange(0, n * n + 1, n, dtype=np.int32), np.tile(np.arange(n, dtype=np.int32), n))
 forces, tangent = np.zeros_like(reference), np.zeros((n * n, 3, 3))
 positions = reference + np.random.default_rng(3).uniform(-0.02, 0.02, reference.shape)
-arrays = patch_arrays(patch, np.arange(n, dtype=np.int32))
-_bindings.add_body(arrays, (3, 4, 3), Material().arrays, positions, reference, forces, pattern, tangent)
+body = BodyArrays(patch_arrays(patch, np.arange(n, dtype=np.int32)), (3, 4, 3), reference)
+_bindings.add_body(body, Material().arrays, positions, forces, pattern, tangent)
 assert np.abs(tangent).max() > 0
 print(hashlib.sha256(forces.tobytes() + tangent.tobytes()).hexdigest())
 """

@@ -6,6 +6,7 @@ import numpy as np
 from shapes import cylinder_sector, cylinder_volume, turned_area, turned_sector, turned_volume
 
 from isomortar import _bindings
+from isomortar._bindings import BodyArrays
 from isomortar.geometry.patch import FloatArray, Patch
 from isomortar.geometry.primitives import box, ring
 from isomortar.geometry.quadrature import contact_points, volume_points
@@ -60,8 +61,8 @@ def volume(patch: Patch, gauss: tuple[int, int, int]) -> float:
     """From the work of a uniform stress: swollen by s, the internal forces do 9 A1 ln(s)/s V along the reference positions."""
     reference, s = patch.control_points, 1.5
     forces = np.zeros_like(reference)
-    arrays = patch_arrays(patch, np.arange(len(reference), dtype=np.int32))
-    _bindings.add_body(arrays, gauss, MATERIAL.arrays, s * reference, reference, forces)
+    arrays = BodyArrays(patch_arrays(patch, np.arange(len(reference), dtype=np.int32)), gauss, reference)
+    _bindings.add_body(arrays, MATERIAL.arrays, s * reference, forces)
     return float(np.vdot(forces, reference)) / (9 * MATERIAL.bulk * np.log(s) / s)
 
 

@@ -8,6 +8,7 @@ from patch_tests.bulk import GRADIENT, MATERIAL, SHIFT
 from transforms import orientations, permuted, reversed_along
 
 from isomortar import _bindings
+from isomortar._bindings import BodyArrays
 from isomortar.geometry.faces import cells
 from isomortar.geometry.patch import FACES, IntArray, Patch
 from isomortar.geometry.primitives import box, ring, sphere
@@ -45,7 +46,8 @@ def homogeneous(body: str, kind: str) -> dict[str, float]:
     reference = patch.control_points
     forces = np.zeros_like(reference)
     arrays = patch_arrays(patch, same_points(patch, BODIES[body].closed))
-    _bindings.add_body(arrays, (MANY,) * 3, MATERIAL.arrays, np.ascontiguousarray(reference @ GRADIENT.T + SHIFT), reference, forces)
+    positions = np.ascontiguousarray(reference @ GRADIENT.T + SHIFT)
+    _bindings.add_body(BodyArrays(arrays, (MANY,) * 3, reference), MATERIAL.arrays, positions, forces)
     places = np.unique(np.round(reference / np.ptp(reference), 10), axis=0)
     return {
         "residual": float(np.abs(forces[within]).max() / np.abs(forces).max()),

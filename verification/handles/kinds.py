@@ -20,21 +20,32 @@ def _patch() -> int:
     return int(kernel.keep_patch(np.ones(3, np.int32), np.ones(3, np.int32), np.full(3, 2, np.int32), _KNOTS, numbers, np.ones(8))[0])
 
 
-#: What keeps a descriptor of each kind, and a call that asks for a law of friction, a material, a pattern: the status.
+def _body() -> int:
+    """Of a cube."""
+    patch = _patch()
+    corners = np.indices((2, 2, 2))[::-1].reshape(3, 8).astype(np.float64)
+    handle = int(kernel.keep_body(patch, np.full(3, 2, np.int32), corners)[0])
+    kernel.release_descriptor(patch)
+    return handle
+
+
+#: What keeps a descriptor of each kind, and a call that asks for a body, a law of friction, a material: the status.
 KEPT: dict[str, Callable[[], int]] = {
     "patch": _patch,
+    "body": _body,
     "material": lambda: int(kernel.keep_material(1, np.array([2.0, 1.0]))[0]),
     "friction": lambda: int(kernel.keep_friction(1, np.array([0.3]))[0]),
     "pattern": lambda: int(kernel.keep_pattern(np.array([0, 1], dtype=np.int32), np.zeros(1, dtype=np.int32))[0]),
 }
 ASKED: dict[str, Callable[[int], int]] = {
+    "body": lambda handle: int(kernel.control_volumes(handle, 8)[-2]),
     "friction": lambda handle: int(kernel.friction_radius(handle, _PRESSURE)[-1]),
     "material": lambda handle: int(kernel.material_stress(handle, np.zeros((3, 3, 1)))[-2]),
 }
 
 
 @case(
-    claim="A handle of another kind is stale where a law of friction or a material is asked for, and one of its own kind is not.",
+    claim="A handle of another kind is stale where a body, a law of friction or a material is asked for, and one of its own kind is not.",
     tier="gate",
     grid={"asked": list(ASKED)},
     bounds={

@@ -5,8 +5,11 @@ from __future__ import annotations
 import json
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from datetime import datetime
+from functools import partial
+from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
@@ -60,11 +63,10 @@ def write(folder: Path, report: Report) -> Path:
     """Write ``paper.html``, ``paper.json`` and ``figures/``; returns the path of the page."""
     path = folder / "paper.html"
     (folder / "figures").mkdir(parents=True, exist_ok=True)
-    drawn = {
-        section.scene: [_saved(folder / "figures", plate) for plate in plates(section, report.outcomes)]
-        for section in report.outcomes.sections
-    }
-    write_whole(path, page(report, drawn))
+    sections = report.outcomes.sections
+    with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:  # pictures take minutes
+        drawn = pool.map(partial(_drawn, folder / "figures", report.outcomes), sections)
+        write_whole(path, page(report, {section.scene: found for section, found in zip(sections, drawn, strict=True)}))
     write_whole(path.with_suffix(".json"), json.dumps(plain(as_data(report)), indent=1))
     return path
 
@@ -79,6 +81,11 @@ def as_data(report: Report) -> dict[str, Any]:
         "statements": [judgement.as_data() for judgement in report.judgements],
         "runs": [_run(report, outcome) for outcome in report.outcomes.entries],
     }
+
+
+def _drawn(folder: Path, outcomes: Outcomes, section: Section) -> list[dict[str, str]]:
+    """The figures of a section, whose files are written."""
+    return [_saved(folder, plate) for plate in plates(section, outcomes)]
 
 
 def _saved(folder: Path, plate: Plate) -> dict[str, str]:

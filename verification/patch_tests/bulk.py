@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from isomortar import _bindings
+from isomortar._bindings import BodyArrays
 from isomortar.geometry.patch import FloatArray, Patch
 from isomortar.geometry.primitives import box
 from isomortar.geometry.quadrature import volume_points
@@ -50,8 +51,8 @@ def residual(patch: Patch, gauss: tuple[int, int, int]) -> float:
     reference = patch.control_points
     positions: FloatArray = np.ascontiguousarray(reference @ GRADIENT.T + SHIFT)
     forces = np.zeros_like(reference)
-    arrays = patch_arrays(patch, np.arange(len(reference), dtype=np.int32))
-    _bindings.add_body(arrays, gauss, MATERIAL.arrays, positions, reference, forces)
+    arrays = BodyArrays(patch_arrays(patch, np.arange(len(reference), dtype=np.int32)), gauss, reference)
+    _bindings.add_body(arrays, MATERIAL.arrays, positions, forces)
     return float(np.abs(forces[interior(patch)]).max() / np.abs(forces).max())
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from isomortar import _bindings, _twin
-from isomortar._arrays import MaterialLaw
+from isomortar._arrays import BodyArrays, MaterialLaw
 from isomortar.errors import FoldedElementError
 from isomortar.geometry.patch import FloatArray, Patch
 from isomortar.geometry.primitives import box
@@ -34,7 +34,8 @@ def forces(patch: Patch, positions: FloatArray, points: int, material: Material 
     """The kernel's internal forces, shape (control points, 3)."""
     found = np.zeros_like(positions)
     arrays = patch_arrays(patch, np.arange(len(positions), dtype=np.int32))
-    _bindings.add_body(arrays, (points,) * 3, material.arrays, np.ascontiguousarray(positions), patch.control_points, found)
+    body = BodyArrays(arrays, (points,) * 3, patch.control_points)
+    _bindings.add_body(body, material.arrays, np.ascontiguousarray(positions), found)
     return found
 
 
@@ -182,8 +183,7 @@ def tangent_errors(patch: Patch, material: Material, volume_ratio: float) -> dic
         matrix = np.zeros((n, 3, n, 3))
         matrix[rows, :, solid.pattern.column, :] = blocks
         along = random.standard_normal((n, 3))
-        arrays = numbering.patch_arrays(problem.bodies[0])
-        exact = _twin.solid_difference(arrays, gauss, material.arrays, positions, along, numbering.reference)
+        exact = _twin.solid_difference(numbering.body_arrays(problem.bodies[0]), material.arrays, positions, along)
         worst = float(np.maximum(worst, np.abs(np.einsum("aibk,bk->ai", matrix, along) - exact).max() / np.abs(exact).max()))
         square = matrix.reshape(3 * n, 3 * n)
         asymmetry = float(np.maximum(asymmetry, np.abs(square - square.T).max() / np.abs(square).max()))

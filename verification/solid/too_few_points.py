@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from isomortar import _bindings
+from isomortar._bindings import BodyArrays
 from isomortar.geometry.patch import FACES, FloatArray, Patch
 from isomortar.geometry.primitives import box
 from isomortar.geometry.refinement import mesh
@@ -39,8 +40,8 @@ def forces(body: Body, rule: tuple[int, int, int]) -> FloatArray:
     """Of a body that is longer by a hundredth along all directions."""
     points = np.ascontiguousarray(body.patch.control_points)
     found = np.zeros_like(points)
-    patch = patch_arrays(body.patch, np.arange(len(points), dtype=np.int32))
-    _bindings.add_body(patch, rule, body.material.arrays, points + 0.01 * (points - points.mean(axis=0)), points, found)
+    arrays = BodyArrays(patch_arrays(body.patch, np.arange(len(points), dtype=np.int32)), rule, points)
+    _bindings.add_body(arrays, body.material.arrays, points + 0.01 * (points - points.mean(axis=0)), found)
     return found
 
 

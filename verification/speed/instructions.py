@@ -39,7 +39,7 @@ WORK = {
 OTHERS = (
     *("slave_tables_", "surface_functions_", "condense_multipliers_", "find_climbs_", "find_places_", "add_values_"),
     *("control_volumes_", "squares_times_", "sparse_release_"),
-    *("keep_patch_", "keep_material_", "keep_friction_", "keep_slave_", "keep_plane_", "keep_face_"),
+    *("keep_patch_", "keep_body_", "keep_material_", "keep_friction_", "keep_slave_", "keep_plane_", "keep_face_"),
     *("keep_pattern_", "release_descriptor_"),
 )
 #: valgrind knows no AVX-512; and the routines that OpenBLAS takes must not depend on the machine.

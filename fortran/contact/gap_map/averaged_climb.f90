@@ -1,5 +1,6 @@
 !> How far a foot has climbed along the averaged normal (theory 3.31): of pressures this makes spurious work.
 module isomortar_contact_gap_map_averaged_climb
+  use isomortar_base_algebra, only: weighted_sums
   use isomortar_base_kinds, only: wp
   use isomortar_contact_work, only: evaluate, work_t
   use isomortar_nurbs_direction, only: element_at
@@ -50,7 +51,7 @@ contains
     real(wp), intent(in) :: positions(:, :), from(2), way(2)
     integer, intent(in) :: place(2)
     integer :: k, nodes(product(surface%direction%order + 1))
-    real(wp) :: along(3), functions(size(nodes), 3), normal(3)
+    real(wp) :: functions(size(nodes), 3), normal(3, 1), tangents(3, 2)
     real(wp), dimension(sum(surface%direction%order) + 1) :: points, weights
 
     climb = 0.0_wp
@@ -58,9 +59,9 @@ contains
     call gauss_legendre(points, weights)
     do k = 1, size(points)
       call surface_basis(surface, place, nodes, from + points(k) * way, 1, functions)
-      normal = matmul(positions(:, size(positions, 2) - size(surface%point) + nodes), functions(:, 1))
-      along = matmul(positions(:, surface%point(nodes)), matmul(functions(:, 2:3), way))
-      climb = climb + weights(k) * dot_product(normal, along) / norm2(normal)
+      normal = weighted_sums(positions, size(positions, 2) - size(surface%point) + nodes, functions(:, :1))
+      tangents = weighted_sums(positions, surface%point(nodes), functions(:, 2:3))
+      climb = climb + weights(k) * dot_product(normal(:, 1), matmul(tangents, way)) / norm2(normal)
     end do
   end function climb_inside
 

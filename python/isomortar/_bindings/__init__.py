@@ -6,6 +6,7 @@ Arguments are checked, status codes become exceptions. Arrays are laid out as `_
 from isomortar._arguments import FloatArray, IntArray, LongArray
 from isomortar._arrays import (
     AveragedFaceArrays,
+    BodyArrays,
     Control,
     FaceArrays,
     FrictionArrays,
@@ -28,9 +29,9 @@ from isomortar._bindings.solid import add_body, control_volumes, material_stress
 from isomortar._bindings.system import add_values, find_places, squares_times
 
 __all__ = [
-    "AveragedFaceArrays", "Control", "FaceArrays", "FloatArray", "FrictionArrays", "FunctionArrays", "IntArray", "Law", "LongArray",
-    "MasterArrays", "MaterialArrays", "PatchArrays", "Pattern", "PlaneArrays", "Projections", "Response", "SlaveArrays", "add_body",
-    "add_values", "augmented_multipliers",
+    "AveragedFaceArrays", "BodyArrays", "Control", "FaceArrays", "FloatArray", "FrictionArrays", "FunctionArrays", "IntArray", "Law",
+    "LongArray", "MasterArrays", "MaterialArrays", "PatchArrays", "Pattern", "PlaneArrays", "Projections", "Response", "SlaveArrays",
+    "add_body", "add_values", "augmented_multipliers",
     "condense_multipliers", "contact_blocks", "contact_forces", "control_quantities",
     "control_volumes", "find_climbs", "find_places", "friction_radius",
     "material_stress", "multiplier_rows", "project_points", "slave_tables", "squares_times", "surface_functions",

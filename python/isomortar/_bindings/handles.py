@@ -2,7 +2,17 @@
 
 from __future__ import annotations
 
-from isomortar._arrays import FaceArrays, FrictionArrays, MasterArrays, MaterialArrays, PatchArrays, Pattern, PlaneArrays, SlaveArrays
+from isomortar._arrays import (
+    BodyArrays,
+    FaceArrays,
+    FrictionArrays,
+    MasterArrays,
+    MaterialArrays,
+    PatchArrays,
+    Pattern,
+    PlaneArrays,
+    SlaveArrays,
+)
 from isomortar._compiled import kernel
 from isomortar._descriptors import Descriptors
 
@@ -12,6 +22,11 @@ _DESCRIPTORS = Descriptors(kernel)
 def patch(arrays: PatchArrays) -> int:
     """That of a patch."""
     return _DESCRIPTORS.handle("patch", arrays, PatchArrays)
+
+
+def body(arrays: BodyArrays) -> int:
+    """That of a body."""
+    return _DESCRIPTORS.handle("body", arrays, BodyArrays)
 
 
 def material(arrays: MaterialArrays) -> int:

@@ -6,7 +6,7 @@ import numpy as np
 
 from isomortar import _arguments as check
 from isomortar._arguments import FloatArray
-from isomortar._arrays import MaterialArrays, PatchArrays, Pattern
+from isomortar._arrays import BodyArrays, MaterialArrays, Pattern
 from isomortar._bindings import handles
 from isomortar._bindings.checks import check_pattern
 from isomortar._bindings.statuses import raise_status
@@ -17,11 +17,9 @@ _NO_BLOCKS, _NO_PATTERN = np.zeros((1, 3, 3)), -1
 
 
 def add_body(
-    patch: PatchArrays,
-    gauss: tuple[int, int, int],
+    body: BodyArrays,
     material: MaterialArrays,
     positions: FloatArray,
-    reference: FloatArray,
     forces: FloatArray,
     pattern: Pattern | None = None,
     tangent: FloatArray | None = None,
@@ -36,28 +34,25 @@ def add_body(
     Raises
     ------
     FoldedElementError
-        J <= 0, with the number of the element.
+        J <= 0, now or in the reference configuration, with the number of the element.
     """
-    check.kind("patch", patch, PatchArrays)
-    n = len(check.finite("reference", check.array("reference", reference, np.float64, None, 3)))
+    check.kind("body", body, BodyArrays)
+    n = len(body.reference)
     check.finite("positions", check.array("positions", positions, np.float64, n, 3))
     check.array("forces", forces, np.float64, n, 3)
-    check.below("patch.point", patch.highest, n, "control point")
-    rule = check.gauss("gauss", gauss, 3)
     of_tangent, values = _NO_PATTERN, _NO_BLOCKS
     if pattern is not None and tangent is not None:
         check_pattern("pattern", pattern, n, n)
         of_tangent, values = handles.pattern("pattern", pattern), check.array("tangent", tangent, np.float64, len(pattern.column), 3, 3)
     jacobian, status, place = _kernel.add_body(
-        handles.patch(patch), rule, handles.material(material), positions.T, reference.T, forces.T,
-        int(of_tangent != _NO_PATTERN), of_tangent, values.T,
-    )  # fmt: skip
+        handles.body(body), handles.material(material), positions.T, forces.T, int(of_tangent != _NO_PATTERN), of_tangent, values.T
+    )
     if status:
         raise_status(status, place - 1, jacobian)
     return float(jacobian)
 
 
-def control_volumes(patch: PatchArrays, gauss: tuple[int, int, int], reference: FloatArray) -> FloatArray:
+def control_volumes(body: BodyArrays) -> FloatArray:
     """Volumes of control points: integrals of their functions over the reference configuration of one body, shape (control points,).
 
     Raises
@@ -65,12 +60,9 @@ def control_volumes(patch: PatchArrays, gauss: tuple[int, int, int], reference: 
     FoldedElementError
         With the number of the element.
     """
-    check.kind("patch", patch, PatchArrays)
-    n = len(check.finite("reference", check.array("reference", reference, np.float64, None, 3)))
-    check.below("patch.point", patch.highest, n, "control point")
-    volumes, status, place = _kernel.control_volumes(handles.patch(patch), check.gauss("gauss", gauss, 3), reference.T)
+    volumes, jacobian, status, place = _kernel.control_volumes(handles.body(body), len(body.reference))
     if status:
-        raise_status(status, place - 1)
+        raise_status(status, place - 1, jacobian)
     return np.asarray(volumes)
 
 

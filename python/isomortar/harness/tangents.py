@@ -16,7 +16,7 @@ from isomortar.errors import KernelError
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.harness.visits import PairVisit, Visit, visited_states
 from isomortar.model.entities import Problem
-from isomortar.model.numbering import patch_arrays
+from isomortar.model.numbering import body_arrays
 from isomortar.solve.contact import PairMechanics, pressure_share
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.system import block_product
@@ -341,14 +341,8 @@ def solid_twin(equilibrium: Equilibrium, positions: FloatArray, along: FloatArra
     """The twin's derivative of all internal forces, shape (control points, 3)."""
     numbering, total = equilibrium.numbering, np.zeros_like(positions)
     for body in equilibrium.problem.deformable:
-        points = np.arange(len(body.patch.weights), dtype=np.int32)
         of_patch = _twin.solid_difference(
-            patch_arrays(body.patch, points),
-            body.quadrature,
-            body.material.arrays,
-            numbering.of_patch(body.name, positions),
-            numbering.of_patch(body.name, along),
-            body.patch.control_points,
+            body_arrays(body), body.material.arrays, numbering.of_patch(body.name, positions), numbering.of_patch(body.name, along)
         )
         numbering.add_of_patch(body.name, of_patch, total)
     return total

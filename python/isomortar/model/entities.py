@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Annotated, Literal, get_args
@@ -95,6 +96,11 @@ class Body:
     def modulus(self) -> float:
         """Stiffness without lateral strain, theory 5.7; that of a rigid body is infinite."""
         return np.inf if self.rigid else self.material.modulus
+
+    @cached_property
+    def points(self) -> int:
+        """Gauss points of all its elements."""
+        return math.prod(direction.elements for direction in self.patch.directions) * math.prod(self.quadrature)
 
     @cached_property
     def size(self) -> float:

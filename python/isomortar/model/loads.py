@@ -11,7 +11,7 @@ from isomortar._bindings import Pattern
 from isomortar.geometry.patch import FloatArray, IntArray, Patch
 from isomortar.geometry.quadrature import load_points
 from isomortar.model.entities import Body, Load, Problem
-from isomortar.model.numbering import Numbering, patch_arrays
+from isomortar.model.numbering import Numbering, body_arrays, patch_arrays
 from isomortar.model.pattern import incidence, pattern_of
 from isomortar.model.supports import factor_at
 
@@ -105,8 +105,7 @@ def _part(load: Load, body: Body, numbering: Numbering) -> Pressure | _Dead:
 
 def control_volumes(body: Body) -> FloatArray:
     """Integrals of the functions of a body's patch over its reference volume, shape (control points of the patch,)."""
-    points = np.arange(len(body.patch.weights), dtype=np.int32)
-    return _bindings.control_volumes(patch_arrays(body.patch, points), body.quadrature, body.patch.control_points)
+    return _bindings.control_volumes(body_arrays(body))
 
 
 def control_areas(patch: Patch, face: str) -> FloatArray:

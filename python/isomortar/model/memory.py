@@ -1,4 +1,4 @@
-"""What memory a problem will take, before any of it is taken: entries of the tangent, and of its factors by nested dissection."""
+"""What memory a problem will take, before any of it is taken: at Gauss points, for the tangent, for its factors by nested dissection."""
 
 from __future__ import annotations
 
@@ -18,13 +18,18 @@ from isomortar.model.entities import Problem
 BLOCK_BYTES = 900.0
 #: Bytes of each entry of the factors, fronts included (measured: 11 to 24).
 FACTOR_BYTES = 16.0
+#: Bytes of what the kernel keeps of the reference configuration at each Gauss point: 23 numbers, fewer where no control point has a weight.
+POINT_BYTES = 184.0
 #: Files that tell what the machine could give at once, and all of what a control group may have; how they do, and in how many bytes.
 _LIMITS = (("/proc/meminfo", "MemAvailable: +([0-9]+)", 1024.0), ("/sys/fs/cgroup/memory.max", "^([0-9]+)", 1.0))
 
 
 def memory_needed(problem: Problem) -> float:
     """Bytes that tangents and factors of deformable bodies will take, within a factor of two; contact comes on top (theory 9.3)."""
-    return sum(BLOCK_BYTES * blocks(body.patch) + FACTOR_BYTES * factor_entries(body.patch) for body in problem.deformable)
+    return sum(
+        BLOCK_BYTES * blocks(body.patch) + FACTOR_BYTES * factor_entries(body.patch) + POINT_BYTES * body.points
+        for body in problem.deformable
+    )
 
 
 def memory_of_machine() -> float:

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from isomortar._bindings import PatchArrays
+from isomortar._bindings import BodyArrays, PatchArrays
 from isomortar.errors import InputError
 from isomortar.geometry.patch import FloatArray, IntArray, Patch
 from isomortar.model import constants
@@ -107,6 +107,16 @@ class Numbering:
     def patch_arrays(self, body: Body) -> PatchArrays:
         """The body's patch as the kernel reads it."""
         return patch_arrays(body.patch, self.points[body.name])
+
+    def body_arrays(self, body: Body) -> BodyArrays:
+        """The body as the kernel reads it."""
+        return BodyArrays(self.patch_arrays(body), body.quadrature, self.reference)
+
+
+def body_arrays(body: Body) -> BodyArrays:
+    """A body alone as the kernel reads it: its control points are those of its patch."""
+    points = np.arange(len(body.patch.weights), dtype=np.int32)
+    return BodyArrays(patch_arrays(body.patch, points), body.quadrature, body.patch.control_points)
 
 
 def patch_arrays(patch: Patch, points: IntArray) -> PatchArrays:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from isomortar import _bindings
+from isomortar._bindings import BodyArrays
 from isomortar.geometry.patch import FACES, FloatArray
 from isomortar.model.entities import Body
 from isomortar.model.numbering import patch_arrays
@@ -79,5 +80,5 @@ def _stretched(body: Body, rule: Rule) -> FloatArray:
     points = body.patch.control_points - body.patch.control_points.mean(axis=0)
     forces = np.zeros_like(points)
     patch = patch_arrays(body.patch, np.arange(len(points), dtype=np.int32))
-    _bindings.add_body(patch, rule, body.material.arrays, 1.01 * points, points, forces)
+    _bindings.add_body(BodyArrays(patch, rule, points), body.material.arrays, 1.01 * points, forces)
     return forces

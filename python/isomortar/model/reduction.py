@@ -9,7 +9,7 @@ from isomortar import _bindings
 from isomortar._bindings import Pattern
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Body
-from isomortar.model.numbering import Numbering, patch_arrays
+from isomortar.model.numbering import Numbering, body_arrays
 from isomortar.model.pattern import element_points, incidence, pattern_of
 
 
@@ -25,9 +25,9 @@ class Reduction:
     def __init__(self, body: Body, numbering: Numbering) -> None:
         self._body, self._numbering, count = body, numbering, len(body.patch.weights)
         rows, own = numbering.rows[body.name].into, numbering.own[body.name]
-        self._patch = patch_arrays(body.patch, np.arange(count, dtype=np.int32))
+        self._arrays = body_arrays(body)
         self._into = sparse.csr_array((rows.data, own[rows.indices], rows.indptr), shape=(count, numbering.count))
-        elements = incidence(element_points(body.patch, self._patch.point), count)
+        elements = incidence(element_points(body.patch, self._arrays.patch.point), count)
         met = abs(self._into).sign().astype(np.int32)
         self._pattern = pattern_of(sparse.csr_array(elements.T @ elements))
         self.reach = sparse.csr_array((elements @ met).T @ (elements @ met))
@@ -35,13 +35,12 @@ class Reduction:
 
     def add(self, positions: FloatArray, forces: FloatArray, pattern: Pattern | None, tangent: FloatArray | None) -> float:
         """Add internal forces and, where a pattern is given, tangent blocks; the smallest J, as `_bindings.add_body` (theory 2.12)."""
-        name, reference = self._body.name, self._body.patch.control_points
-        place, of_patch = self._numbering.of_patch(name, positions), np.zeros_like(reference)
+        name = self._body.name
+        place, of_patch = self._numbering.of_patch(name, positions), np.zeros_like(self._arrays.reference)
         blocks = None if tangent is None else np.zeros((len(self._pattern.column), 3, 3))
         smallest = _bindings.add_body(
-            self._patch, self._body.quadrature, self._body.material.arrays, place, reference, of_patch,
-            None if pattern is None else self._pattern, blocks,
-        )  # fmt: skip
+            self._arrays, self._body.material.arrays, place, of_patch, None if pattern is None else self._pattern, blocks
+        )
         self._numbering.add_of_patch(name, of_patch, forces)
         if pattern is not None and tangent is not None and blocks is not None:
             if self._gather is None:

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections import Counter
 
 import numpy as np
 from scipy import sparse
 
 from isomortar import _bindings
-from isomortar._bindings import PatchArrays
 from isomortar.errors import FoldedElementError, InputError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Body, Problem
@@ -51,14 +49,15 @@ class Solid:
         rows = np.repeat(np.arange(numbering.count), np.diff(self.pattern.start))
         self._last: tuple[FloatArray, FloatArray, FloatArray] | None = None
         self.diagonal = np.flatnonzero(rows == self.pattern.column)
-        self._patches = [numbering.patch_arrays(body) for body in self._bodies]
+        self._arrays = {body.name: numbering.body_arrays(body) for body in problem.bodies if not body.raised}
         try:
             for body in problem.bodies:
-                self._add_body(body, numbering.patch_arrays(body), np.zeros_like(numbering.reference), numbering.reference, None)
+                self._add_body(body, np.zeros_like(numbering.reference), numbering.reference, None)
         except FoldedElementError as error:
             raise InputError(
                 f"{error}; check the geometry, the order of its control points, their weights, and the face it is seen from"
             ) from error
+        self._arrays = {body.name: self._arrays[body.name] for body in self._bodies if not body.raised}  # the others do not deform
 
     def smallest_jacobians(self, positions: FloatArray) -> list[float]:
         """The smallest J = det F at a quadrature point of each deformable body; see `forces`."""
@@ -91,20 +90,19 @@ class Solid:
 
     def _add(self, forces: FloatArray, positions: FloatArray, tangent: FloatArray | None) -> list[float]:
         """Add forces and tangent; the smallest J of each deformable body."""
-        pairs = zip(self._bodies, self._patches, strict=True)
-        return [self._add_body(body, patch, forces, positions, tangent) for body, patch in pairs]
+        return [self._add_body(body, forces, positions, tangent) for body in self._bodies]
 
-    def _add_body(self, body: Body, patch: PatchArrays, forces: FloatArray, positions: FloatArray, tangent: FloatArray | None) -> float:
+    def _add_body(self, body: Body, forces: FloatArray, positions: FloatArray, tangent: FloatArray | None) -> float:
         """Add forces and tangent of a body; its smallest J."""
-        pattern, reference = self.pattern if tangent is not None else None, self._numbering.reference
+        pattern = self.pattern if tangent is not None else None
         try:
             if body.raised:
                 smallest = self._reductions[body.name].add(positions, forces, pattern, tangent)
             else:
-                smallest = _bindings.add_body(patch, body.quadrature, body.material.arrays, positions, reference, forces, pattern, tangent)
+                smallest = _bindings.add_body(self._arrays[body.name], body.material.arrays, positions, forces, pattern, tangent)
         except FoldedElementError as error:
             where = np.unravel_index(error.place, [d.elements for d in body.patch.directions], order="F")
             place = ", ".join(str(int(i)) for i in where)
             raise FoldedElementError(f"body {body.name!r}: {error} (element {place} along u, v, w)", error.place) from error
-        self._counts["solid points"] += math.prod(patch.elements) * math.prod(body.quadrature)
+        self._counts["solid points"] += body.points
         return smallest
