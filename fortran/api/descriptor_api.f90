@@ -43,7 +43,8 @@ end subroutine keep_patch
 !>
 !> - `patch`: handle of its mesh. `gauss`: quadrature points of an element by direction.
 !> - `reference`: positions of all `n` control points in the reference configuration, L.
-subroutine keep_body(patch, gauss, reference, n, handle, status)
+!> - `often`: 1 to keep as well what it has at its Gauss points, which is else computed with its forces.
+subroutine keep_body(patch, gauss, reference, n, often, handle, status)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: descriptor_t, find, keep
   use isomortar_base_kinds, only: wp
@@ -52,7 +53,7 @@ subroutine keep_body(patch, gauss, reference, n, handle, status)
   use isomortar_solid_body, only: body_of
   implicit none
   integer(c_int64_t), intent(in) :: patch
-  integer(c_int), intent(in) :: n, gauss(3)
+  integer(c_int), intent(in) :: n, gauss(3), often
   real(c_double), intent(in) :: reference(3, n)
   integer(c_int64_t), intent(out) :: handle
   integer(c_int), intent(out) :: status
@@ -70,8 +71,8 @@ subroutine keep_body(patch, gauss, reference, n, handle, status)
   if (failed /= 0) return
   places(:, :) = real(reference, wp)
   allocate (descriptor%body)
-  call body_of(mesh, gauss, places, descriptor%body)
-  if (descriptor%body%status /= status_out_of_memory) call keep(descriptor, handle, status)
+  call body_of(mesh, gauss, places, often /= 0, descriptor%body, status)
+  if (status == 0) call keep(descriptor, handle, status)
 end subroutine keep_body
 
 !> Keep a material.

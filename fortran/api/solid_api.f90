@@ -62,10 +62,7 @@ subroutine control_volumes(body, n, volumes, smallest_jacobian, status, place)
   place = 0
   call find(body, solid, status)
   if (status /= 0) return
-  smallest_jacobian = solid%smallest_jacobian
-  status = solid%status
-  place = solid%place
-  if (status == 0) call volumes_of(solid, volumes)
+  call volumes_of(solid, volumes, smallest_jacobian, status, place)
 end subroutine control_volumes
 
 !> First Piola stresses of a material.

@@ -29,7 +29,7 @@ module isomortar_contact_batch
     !> Variations that the rows integrate, (control points, component, quadrature points, kind).
     real(wp), allocatable :: rows(:, :, :, :)
     !> Second variations by short vectors on the left, by control points on the right:
-    !> (right control point, left component, right component, left vector, quadrature points).
+    !> (right control point, right component, left component, left vector, quadrature points).
     real(wp), allocatable :: second(:, :, :, :, :)
   end type batch_t
 
@@ -38,7 +38,7 @@ module isomortar_contact_batch
     integer, allocatable :: points(:)
     !> Constraint rows, (control point, component, slave control point, kind).
     real(wp), allocatable :: rows(:, :, :, :)
-    !> Geometric tangent, (right control point, left component, right component, left control point); of maps that bend.
+    !> Geometric tangent, (right control point, right component, left component, left control point); of maps that bend.
     real(wp), allocatable :: second(:, :, :, :)
   end type sums_t
 
@@ -118,7 +118,7 @@ contains
   end subroutine spread_rows
 
   !> area * (p Ddg + t_a Ddxi^a) by short vectors on the left and control points on the right:
-  !> (right control point, left component, right component, left vector).
+  !> (right control point, right component, left component, left vector).
   pure subroutine spread_geometric(map, sample, area, field, second)
     class(gap_map_t), intent(in) :: map
     type(sample_t), intent(in) :: sample
@@ -133,7 +133,7 @@ contains
     if (contracts .and. norm2(field(2:3)) <= 0.0_wp) call require(map%has_gap_row .or. is_symmetric(form), "spread_geometric: Ddg")
     do k = 1, vectors
       do l = 1, vectors
-        by_vector(l, :, :, k) = form(3 * k - 2:3 * k, 3 * l - 2:3 * l)
+        by_vector(l, :, :, k) = transpose(form(3 * k - 2:3 * k, 3 * l - 2:3 * l))
       end do
     end do
     call to_points(sample%coefficients, 9 * vectors, by_vector, second)
@@ -213,7 +213,7 @@ contains
     end associate
   end subroutine sum_rows
 
-  !> Geometric tangent of a batch: (right control point, left component, right component, left control point).
+  !> Geometric tangent of a batch: (right control point, right component, left component, left control point).
   pure subroutine sum_second(batch, sums)
     type(batch_t), intent(in) :: batch
     real(wp), allocatable, intent(out) :: sums(:, :, :, :)
@@ -275,7 +275,7 @@ contains
       do b = 1, size(points)
         associate (block => tangent(:, :, columns(points(b))))
           do i = 1, 3
-            block(1:3, i) = block(1:3, i) + sums(b, i, 1:3, a)
+            block(1:3, i) = block(1:3, i) + sums(b, 1:3, i, a)
           end do
         end associate
       end do

@@ -52,6 +52,7 @@ contains
     integer, intent(in) :: axis, end
     type(surface_t) :: self
     integer :: first, second, i, j, index(3), a
+    type(direction_t) :: direction(2)
     integer, allocatable :: point(:)
     real(wp), allocatable :: weight(:)
 
@@ -73,7 +74,9 @@ contains
         end associate
       end do
     end do
-    self = surface_of([patch%direction(first), patch%direction(second)], point, weight)
+    direction(1) = patch%direction(first)
+    direction(2) = patch%direction(second)
+    self = surface_of(direction, point, weight)
     self%outward = merge(1.0_wp, -1.0_wp, end == 1)
     if (contracts) call require(all(is_index(self%point, maxval(patch%point))), "face_of: control points are the patch's")
   end function face_of

@@ -7,9 +7,9 @@ module isomortar_solid_assembly
   use isomortar_base_kinds, only: wp
   use isomortar_base_predicate, only: is_compressed, is_index
   use isomortar_base_status, only: status_ok, status_pattern
-  use isomortar_nurbs_patch, only: element_nodes, element_of
+  use isomortar_nurbs_patch, only: element_count, element_nodes, element_of
   use isomortar_nurbs_tensor_product, only: line_pairs, line_pairs_t
-  use isomortar_solid_body, only: body_t, geometry_t
+  use isomortar_solid_body, only: body_t, geometry_room_t, geometry_t, take_geometry
   use isomortar_solid_element, only: element_residual, element_tangent, room_t, sample_element, samples_t
   use isomortar_solid_material_law, only: component_pairs, material_t
   use isomortar_sparse_blocks, only: lacks, mark_row, pattern_t
@@ -23,6 +23,11 @@ module isomortar_solid_assembly
   integer, parameter :: batch_room = 2**17
   !> Elements of the smallest batch; it has one for every thread at least.
   integer, parameter :: smallest_batch = 8
+  !> Tables for tangents, by direction and element.
+  type :: tables_t
+    type(line_pairs_t), allocatable :: u(:), v(:), w(:)
+  end type tables_t
+
   !> One element of a batch.
   type :: element_t
     integer, allocatable :: local(:), nodes(:)
@@ -51,39 +56,37 @@ contains
     integer, intent(out) :: status, place
     type(pattern_t), intent(in), optional :: pattern
     real(wp), intent(inout), optional :: tangent(:, :, :)
-    type(line_pairs_t), allocatable :: u(:), v(:), w(:)
+    type(tables_t) :: tables
     type(element_t), allocatable :: batch(:)
+    type(geometry_room_t) :: geometry_room
+    type(geometry_t) :: geometry
     type(room_t) :: room
     type(samples_t) :: samples
-    integer :: at(3), first, k, many
+    integer :: elements, first, k, many
 
     if (contracts) call require(all(shape(positions) == shape(residual)), "add_body: forces are those of the positions")
     if (contracts) call require(all(is_index(body%patch%point, size(positions, 2))), "add_body: the body is among the positions")
     if (contracts) call require(present(pattern) .eqv. present(tangent), "add_body: a tangent has a pattern")
-    smallest_jacobian = body%smallest_jacobian
-    status = body%status
-    place = body%place
-    if (status /= status_ok) return
     if (present(tangent)) then
       if (contracts) call require(is_compressed(pattern%start, size(tangent, 3)), "add_body: blocks are those of a pattern")
-      call line_pairs(body%u, u)
-      call line_pairs(body%v, v)
-      call line_pairs(body%w, w)
+      call line_pairs(body%u, tables%u)
+      call line_pairs(body%v, tables%v)
+      call line_pairs(body%w, tables%w)
     end if
-    call reserve(product(body%patch%direction%order + 1), size(body%element), present(tangent), batch)
+    elements = element_count(body%patch)
+    call reserve(product(body%patch%direction%order + 1), elements, present(tangent), batch)
     smallest_jacobian = huge(1.0_wp)
-    do first = 0, size(body%element) - 1, size(batch)
-      many = min(size(batch), size(body%element) - first)
-      !$omp parallel do default(none) private(at, room, samples) shared(batch, body, first, many, material, positions) &
-      !$omp shared(tangent, u, v, w) schedule(dynamic)
+    do first = 0, elements - 1, size(batch)
+      many = min(size(batch), elements - first)
+      !$omp parallel do default(none) private(geometry, geometry_room, room, samples) schedule(dynamic) &
+      !$omp shared(batch, body, first, many, material, positions, tables)
       do k = 1, many
-        associate (geometry => body%element(first + k))
-          at = element_of(body%patch, first + k)
-          call take_element(body, at, geometry, material, positions, room, samples, batch(k))
-          if (present(tangent) .and. batch(k)%status == status_ok) then
-            call element_tangent(u(at(1)), v(at(2)), w(at(3)), geometry, samples, material, batch(k)%block)
-          end if
-        end associate
+        if (allocated(body%element)) then
+          call take_element(body, first + k, body%element(first + k), material, positions, tables, room, samples, batch(k))
+        else
+          call take_geometry(body, first + k, geometry_room, geometry)
+          call take_element(body, first + k, geometry, material, positions, tables, room, samples, batch(k))
+        end if
       end do
       !$omp end parallel do
       do k = 1, many
@@ -117,17 +120,23 @@ contains
     end do
   end subroutine reserve
 
-  !> Sample one element, `at` its place by direction, from 1, and compute its forces.
-  pure subroutine take_element(body, at, geometry, material, positions, room, samples, element)
+  !> Sample element `e`, from 1, compute its forces and, where there are `tables`, its tangent.
+  pure subroutine take_element(body, e, geometry, material, positions, tables, room, samples, element)
     type(body_t), intent(in) :: body
-    integer, intent(in) :: at(3)
+    integer, intent(in) :: e
     type(geometry_t), intent(in) :: geometry
     class(material_t), intent(in) :: material
     real(wp), intent(in) :: positions(:, :)
+    type(tables_t), intent(in) :: tables
     type(room_t), intent(inout) :: room
     type(samples_t), intent(inout) :: samples
     type(element_t), intent(inout) :: element
+    integer :: at(3)
 
+    element%status = geometry%status
+    element%smallest_jacobian = geometry%smallest
+    if (element%status /= status_ok) return
+    at = element_of(body%patch, e)
     call element_nodes(body%patch, at, element%local)
     element%nodes(:) = body%patch%point(element%local)
     element%weight(:) = body%patch%weight(element%local)
@@ -138,6 +147,8 @@ contains
       if (element%status /= status_ok) return
       call element_residual(u, v, w, geometry, element%weight, samples, material, room, element%forces)
     end associate
+    if (.not. allocated(tables%u)) return
+    call element_tangent(tables%u(at(1)), tables%v(at(2)), tables%w(at(3)), geometry, samples, material, element%block)
   end subroutine take_element
 
   !> Add the forces of an element; a control point may stand twice in an element of a closed ring.

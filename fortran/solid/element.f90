@@ -59,7 +59,7 @@ contains
       room%coefficients(:, a) = weight(a) * ((positions(:, a) - references(:, a)) - (positions(:, 1) - references(:, 1)))
     end do
     call interpolate(u, v, w, 3, room%coefficients, room%values, room%lines)
-    call slopes(geometry, room%values, room%numerator, room%grown)
+    call slopes(room%values, room%numerator, room%grown, geometry%weighting)
     associate (inverse => geometry%inverse, grown => room%grown)
       do j = 1, 3
         do i = 1, 3
@@ -100,18 +100,18 @@ contains
     integer :: d, i
 
     det = 1.0_wp / det
-    if (allocated(geometry%denominator)) det = det / geometry%denominator(:, 1)
+    if (allocated(geometry%weighting)) det = det * geometry%weighting(:, 1)
     do d = 1, 3
       do i = 1, 3
         gradient(:, i, 1 + d) = cofactor(:, i, d) * det
       end do
     end do
     gradient(:, :, 1) = 0.0_wp
-    if (.not. allocated(geometry%denominator)) return
-    associate (denominator => geometry%denominator)
+    if (.not. allocated(geometry%weighting)) return
+    associate (weighting => geometry%weighting)
       do i = 1, 3
-        gradient(:, i, 1) = -(gradient(:, i, 2) * denominator(:, 2) + gradient(:, i, 3) * denominator(:, 3) &
-          + gradient(:, i, 4) * denominator(:, 4)) / denominator(:, 1)
+        gradient(:, i, 1) = -(gradient(:, i, 2) * weighting(:, 2) + gradient(:, i, 3) * weighting(:, 3) &
+          + gradient(:, i, 4) * weighting(:, 4))
       end do
     end associate
   end subroutine spatial_gradients

@@ -55,19 +55,17 @@ contains
 
   !> Derivatives by the parameters of a rational field: `slope` (point, component, parameter) (theory 1.3).
   !>
-  !> - `denominator` (point, 4), `numerator` (point, 3, 4): value and derivatives by the three parameters.
-  pure subroutine quotients(m, denominator, numerator, slope)
+  !> - `weighting` (point, 4): 1/W, and the derivatives of W over W, by the three parameters.
+  !> - `numerator` (point, 3, 4): value and derivatives by the three parameters.
+  pure subroutine quotients(m, weighting, numerator, slope)
     integer, intent(in) :: m
-    real(wp), intent(in) :: denominator(m, 4), numerator(m, 3, 4)
+    real(wp), intent(in) :: weighting(m, 4), numerator(m, 3, 4)
     real(wp), intent(out) :: slope(m, 3, 3)
-    real(wp) :: scale(m), share(m)
     integer :: d, i
 
-    scale = 1.0_wp / denominator(:, 1)
     do d = 1, 3
-      share = denominator(:, 1 + d) * scale
       do i = 1, 3
-        slope(:, i, d) = (numerator(:, i, 1 + d) - numerator(:, i, 1) * share) * scale
+        slope(:, i, d) = (numerator(:, i, 1 + d) - numerator(:, i, 1) * weighting(:, 1 + d)) * weighting(:, 1)
       end do
     end do
   end subroutine quotients

@@ -69,11 +69,15 @@ class PatchArrays:
 
 @dataclass(frozen=True, eq=False)
 class BodyArrays:
-    """A body: its patch, Gauss points of an element by direction, and the reference positions of all control points, shape (n, 3)."""
+    """A body: its patch, Gauss points of an element by direction, and the reference positions of all control points, shape (n, 3).
+
+    `often`: what it has at its Gauss points is kept, 184 bytes each, and not computed with its forces.
+    """
 
     patch: PatchArrays
     gauss: tuple[int, int, int]
     reference: FloatArray
+    often: bool = False
 
     def __post_init__(self) -> None:
         check.kind("patch", self.patch, PatchArrays)

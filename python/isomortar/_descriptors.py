@@ -79,7 +79,7 @@ class Descriptors:
 
     def _body(self, body: BodyArrays) -> tuple[int, int]:
         patch, gauss = self.handle("patch", body.patch, PatchArrays), np.asarray(body.gauss, np.int32)
-        found: tuple[int, int] = self._library.keep_body(patch, gauss, body.reference.T)
+        found: tuple[int, int] = self._library.keep_body(patch, gauss, body.reference.T, int(body.often))
         return found
 
     def _slave(self, slave: SlaveArrays) -> tuple[int, int]:

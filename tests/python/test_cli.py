@@ -375,7 +375,7 @@ def test_a_scene_is_looked_at_before_it_is_computed(invoke: Invoke) -> None:
     code, out, err = invoke("check", "tire")
     assert (code, err) == (0, "")
     assert out.splitlines() == [
-        "tire: 2160 unknowns, 100 load steps, about 0.035 GB of memory (within a factor of two)",
+        "tire: 2160 unknowns, 100 load steps, about 0.037 GB of memory (within a factor of two)",
         "body tire: neo-hookean of Young's modulus 10 and Poisson's ratio 0.3, 1 x 0.25 x 1 in size; 32 x 4 x 4 elements of N2 x N1 x N1, "
         "0.0625 to 0.103 long, 925 control points, weights 0.854 to 1",
         "contact road: slave tire.v1, master a rigid plane; along the plane's normal, mortar, 3072 quadrature points; at the start they "

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import gc
+import os
 import pickle
 import resource
 import subprocess
@@ -66,7 +67,7 @@ def test_a_handle_of_something_else_is_refused_by_every_routine() -> None:
     assert kernel.friction_radius(wrong, np.ones(2))[1] == Status.STALE_HANDLE
     assert kernel.material_stress(wrong, np.zeros((3, 3, 1), order="F"))[1] == Status.STALE_HANDLE
     assert kernel.surface_functions(wrong, 1, 0, feet, 4)[2] == Status.STALE_HANDLE
-    assert kernel.keep_body(wrong, np.ones(3, np.int32), points) == (-1, Status.STALE_HANDLE)
+    assert kernel.keep_body(wrong, np.ones(3, np.int32), points, 0) == (-1, Status.STALE_HANDLE)
     assert kernel.control_volumes(wrong, 2)[2] == Status.STALE_HANDLE
     assert kernel.keep_face(wrong, 1, 0, 0, 0.0, places) == (-1, Status.STALE_HANDLE)
     counts = np.zeros(len(WORK), np.int64)
@@ -88,26 +89,33 @@ def test_a_law_with_other_parameters_is_refused() -> None:
 
 
 OUT_OF_MEMORY = """
-import resource
+import resource, sys
 import numpy as np
-from isomortar._arrays import FunctionArrays, Pattern, SlaveArrays
+from isomortar._arrays import BodyArrays, Pattern
 from isomortar._compiled import kernel
 from isomortar._descriptors import Descriptors
 from isomortar.errors import KernelError
+from isomortar.geometry.primitives import box
+from isomortar.geometry.refinement import mesh
+from isomortar.model.numbering import patch_arrays
 
 n = 2 * 10**7
+patch = mesh(box((0.0, 0.0, 0.0), (1.0, 1.0, 1.0)), ("N", "N", "N"), (1, 1, 1), (10, 10, 10))
+body = BodyArrays(patch_arrays(patch, np.arange(11**3, dtype=np.int32)), (16, 16, 16), patch.control_points, often=True)
 pattern = Pattern(np.array([0, n], dtype=np.int32), np.zeros(n, dtype=np.int32))
 in_use = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize()
 resource.setrlimit(resource.RLIMIT_AS, (in_use + (40 << 20),) * 2)
 try:
-    Descriptors(kernel).handle("pattern", pattern, Pattern)
+    Descriptors(kernel).handle(sys.argv[1], globals()[sys.argv[1]], BodyArrays, Pattern)
 except KernelError as error:
     print(error)
 """
 
 
-def test_want_of_memory_is_an_error_and_no_end() -> None:
-    done = subprocess.run([sys.executable, "-c", OUT_OF_MEMORY], capture_output=True, text=True, check=False)
+@pytest.mark.parametrize("name", ["pattern", "body"])
+def test_want_of_memory_is_an_error_and_no_end(name: str) -> None:
+    environment = {**os.environ, "OMP_NUM_THREADS": "1"}  # others would need memory to begin
+    done = subprocess.run([sys.executable, "-c", OUT_OF_MEMORY, name], capture_output=True, text=True, check=False, env=environment)
     assert done.returncode == 0, done.stderr
     assert "memory ran out" in done.stdout
 

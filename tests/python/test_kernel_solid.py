@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -71,12 +73,28 @@ def test_twin_is_in_extended_precision() -> None:
     assert np.linalg.norm(rough - exact) > 1e-7 * np.linalg.norm(exact)
 
 
+@pytest.mark.parametrize("spread", [0.0, 0.3])
+def test_what_is_kept_of_the_reference_configuration_is_what_is_computed_with_forces(spread: float) -> None:
+    """To the bit, whether weights differ or are all the same, and of what size they are."""
+    weights = 2.0 * (1.0 + spread * np.linspace(0.0, 1.0, len(PATCH.weights)))
+    arrays = patch_arrays(replace(PATCH, weights=weights), ARRAYS.point)
+    found = []
+    for often in (True, False):
+        result = np.zeros_like(REFERENCE)
+        for _ in range(2):
+            _bindings.add_body(BodyArrays(arrays, BODY.gauss, REFERENCE, often), MATERIAL.arrays, REFERENCE + 0.03 * SHAPE, result)
+        found.append(result)
+    np.testing.assert_array_equal(*found)
+    assert (np.linalg.norm(found[0] - 2.0 * forces(REFERENCE + 0.03 * SHAPE)) > 1e-3) == (spread > 0.0)
+
+
 def test_a_folded_element_is_named_with_its_jacobian() -> None:
     with pytest.raises(FoldedElementError, match=r"^element 0 is folded \(J = -0\.75\)$"):
         forces(np.ascontiguousarray(REFERENCE * [1.0, -0.75, 1.0]))
-    turned = BodyArrays(ARRAYS, BODY.gauss, np.ascontiguousarray(-REFERENCE))
     told = r"^element 0 is folded \(J = -2\) in the reference configuration$"
-    with pytest.raises(FoldedElementError, match=told):
-        _bindings.add_body(turned, MATERIAL.arrays, REFERENCE, np.zeros_like(REFERENCE))
-    with pytest.raises(FoldedElementError, match=told):
-        _bindings.control_volumes(turned)
+    for often in (True, False):
+        turned = BodyArrays(ARRAYS, BODY.gauss, np.ascontiguousarray(-REFERENCE), often)
+        with pytest.raises(FoldedElementError, match=told):
+            _bindings.add_body(turned, MATERIAL.arrays, REFERENCE, np.zeros_like(REFERENCE))
+        with pytest.raises(FoldedElementError, match=told):
+            _bindings.control_volumes(turned)

@@ -82,5 +82,5 @@ def test_the_limit_of_the_process_counts(tmp_path: Path) -> None:
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)),
     )
     assert done.returncode == 2
-    assert "bodies.block.mesh: tangent and factors would take about" in done.stderr
+    assert "bodies.block.mesh: Gauss points, tangent and factors would take about" in done.stderr
     assert "there are 2.15 GB" in done.stderr

@@ -51,6 +51,7 @@ SCENES = {
         "solver.slip_sum=paper",
     ),
     "order 10": ("press", "bodies.block.mesh={order=[10,10,10],elements=[1,1,1]}"),
+    "order 10 with weights": ("tire", "bodies.tire.mesh={order=[10,10,10],elements=[4,1,1]}"),
     "order 10 on both sides": (
         "twist", "bodies.slave.mesh={order=[10,10,2],elements=[1,1,1]}", "bodies.master.mesh={order=[10,10,2],elements=[2,2,1]}",
         "stages.press.steps=1", "stages.press.motions.top.translate=[0,0,-0.25]",

@@ -7,9 +7,11 @@ from pathlib import Path
 
 import pytest
 
-#: A deformed body of more than one batch of elements; prints a hash of its forces and tangent.
+#: A deformed body of more than one batch of elements, with weights that are all the same and that differ, and with what it has in the
+#: reference configuration kept and not; prints a hash of its forces and tangents.
 PROGRAM = """
 import hashlib
+from dataclasses import replace
 import numpy as np
 from isomortar import _bindings
 from isomortar._bindings import BodyArrays, Pattern
@@ -20,12 +22,16 @@ from isomortar.model.numbering import patch_arrays
 patch = mesh(box((0.0, 0.0, 0.0), (1.0, 2.0, 1.0)), ("N", "N", "N"), (2, 3, 2), (4, 4, 4))
 reference, n = patch.control_points, len(patch.weights)
 pattern = Pattern(np.arange(0, n * n + 1, n, dtype=np.int32), np.tile(np.arange(n, dtype=np.int32), n))
-forces, tangent = np.zeros_like(reference), np.zeros((n * n, 3, 3))
 positions = reference + np.random.default_rng(3).uniform(-0.02, 0.02, reference.shape)
-body = BodyArrays(patch_arrays(patch, np.arange(n, dtype=np.int32)), (3, 4, 3), reference)
-_bindings.add_body(body, Material().arrays, positions, forces, pattern, tangent)
-assert np.abs(tangent).max() > 0
-print(hashlib.sha256(forces.tobytes() + tangent.tobytes()).hexdigest())
+bits, point = hashlib.sha256(), np.arange(n, dtype=np.int32)
+for weights in (np.ones(n), 1.0 + 0.1 * (point % 3)):
+    for often in (True, False):
+        forces, tangent = np.zeros_like(reference), np.zeros((n * n, 3, 3))
+        body = BodyArrays(patch_arrays(replace(patch, weights=weights), point), (3, 4, 3), reference, often)
+        _bindings.add_body(body, Material().arrays, positions, forces, pattern, tangent)
+        assert np.abs(tangent).max() > 0
+        bits.update(forces.tobytes() + tangent.tobytes())
+print(bits.hexdigest())
 """
 
 

@@ -24,7 +24,7 @@ def _body() -> int:
     """Of a cube."""
     patch = _patch()
     corners = np.indices((2, 2, 2))[::-1].reshape(3, 8).astype(np.float64)
-    handle = int(kernel.keep_body(patch, np.full(3, 2, np.int32), corners)[0])
+    handle = int(kernel.keep_body(patch, np.full(3, 2, np.int32), corners, 1)[0])
     kernel.release_descriptor(patch)
     return handle
 

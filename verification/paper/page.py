@@ -59,12 +59,12 @@ class Report:
         return all(o.variant.lagrange and not o.lost for o in self.failed) and not self.counts["not measured"]
 
 
-def write(folder: Path, report: Report) -> Path:
-    """Write ``paper.html``, ``paper.json`` and ``figures/``; returns the path of the page."""
+def write(folder: Path, report: Report, jobs: int) -> Path:
+    """Write ``paper.html``, ``paper.json`` and ``figures/``, `jobs` sections at the same time; returns the path of the page."""
     path = folder / "paper.html"
     (folder / "figures").mkdir(parents=True, exist_ok=True)
     sections = report.outcomes.sections
-    with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:  # pictures take minutes
+    with ProcessPoolExecutor(jobs, get_context("spawn")) as pool:  # pictures take minutes
         drawn = pool.map(partial(_drawn, folder / "figures", report.outcomes), sections)
         write_whole(path, page(report, {section.scene: found for section, found in zip(sections, drawn, strict=True)}))
     write_whole(path.with_suffix(".json"), json.dumps(plain(as_data(report)), indent=1))

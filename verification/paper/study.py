@@ -18,8 +18,8 @@ from isomortar.harness.runner import Result
 from isomortar.harness.study import Conclusion, Study
 
 
-def study(names: Sequence[str], quick: bool, references: Path) -> Study:
-    """The sections of these names, all if there are none, in full or as their quick variants.
+def study(names: Sequence[str], quick: bool, references: Path, jobs: int) -> Study:
+    """The sections of these names, all if there are none, in full or as their quick variants; `jobs` of them are drawn at the same time.
 
     Raises
     ------
@@ -28,11 +28,17 @@ def study(names: Sequence[str], quick: bool, references: Path) -> Study:
     """
     sections = chosen(names, quick)
     settled = {} if quick else settled_curves(references)
-    return Study(tuple(run_of(*plan) for plan in planned(sections)), partial(_written, sections, quick, settled))
+    return Study(tuple(run_of(*plan) for plan in planned(sections)), partial(_written, sections, quick, settled, jobs))
 
 
 def _written(
-    sections: tuple[Section, ...], quick: bool, settled: Mapping[str, Settled], folder: Path, results: Sequence[Result], started: datetime
+    sections: tuple[Section, ...],
+    quick: bool,
+    settled: Mapping[str, Settled],
+    jobs: int,
+    folder: Path,
+    results: Sequence[Result],
+    started: datetime,
 ) -> Conclusion:
     """Judge the statements and write ``paper.html``."""
     outcomes = Outcomes(sections, tuple(outcome(*plan, result) for plan, result in zip(planned(sections), results, strict=True)))
@@ -40,4 +46,4 @@ def _written(
     judgements = tuple(statement.judge(outcomes) for statement in statements)
     report = page.Report(outcomes, judgements, len(STATEMENTS) - len(statements), quick, started, settled)
     counts = ", ".join(f"{count} {state}" for state, count in report.counts.items())
-    return Conclusion(page.write(folder, report), len(report.failed), report.complete, counts)
+    return Conclusion(page.write(folder, report, jobs), len(report.failed), report.complete, counts)

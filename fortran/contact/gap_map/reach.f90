@@ -81,62 +81,67 @@ contains
     type(reached_t), intent(in) :: reached
     real(wp), contiguous, intent(in) :: forms(:, :, :, :)
     real(wp), allocatable, intent(out) :: carried(:, :, :, :)
-    integer :: a, i, k, kind, row
+    real(wp), allocatable :: given(:, :, :), made(:, :, :)
 
-    allocate (carried(size(reached%point), 3, size(forms, 3), size(forms, 4)), source=0.0_wp)
-    do kind = 1, size(forms, 4)
-      do row = 1, size(forms, 3)
-        do a = 1, size(forms, 1)
-          associate (form => forms(a, :, row, kind))
-            do k = reached%start(a - 1) + 1, reached%start(a)
-              do i = 1, 3 ! not by matmul, whose result would be put on the heap each time
-                carried(reached%at(k), i, row, kind) = carried(reached%at(k), i, row, kind) + form(1) * reached%slope(1, i, k) &
-                  + form(2) * reached%slope(2, i, k) + form(3) * reached%slope(3, i, k)
-              end do
-            end do
-          end associate
-        end do
-      end do
-    end do
+    associate (n => size(forms, 1), points => size(reached%point), rows => size(forms, 3) * size(forms, 4))
+      allocate (given(rows, 3, n), made(rows, 3, points), carried(points, 3, size(forms, 3), size(forms, 4)))
+      call turn(n, rows, forms, given)
+      call carry_columns(reached, rows, given, made)
+      call turn(rows, points, made, carried)
+    end associate
   end subroutine carry_rows
 
-  !> A bilinear `form` (right point, left component, right component, left point) in a list of points, `carried` (right point, left
-  !> component, right component, left point) to the control points that it has `reached` (theory 3.22).
+  !> A bilinear `form` (right point, right component, left component, left point) in a list of points, `carried` (right point, right
+  !> component, left component, left point) to the control points that it has `reached` (theory 3.22).
   pure subroutine carry_form(reached, form, carried)
     type(reached_t), intent(in) :: reached
     real(wp), contiguous, intent(in) :: form(:, :, :, :)
     real(wp), allocatable, intent(out) :: carried(:, :, :, :)
-    real(wp), allocatable :: left(:, :, :, :)
-    integer :: a, b, i, j, k
+    real(wp), allocatable :: given(:, :, :), left(:, :, :), made(:, :, :)
 
-    associate (points => size(reached%point))
-      allocate (carried(points, 3, 3, points), left(size(form, 1), 3, 3, points), source=0.0_wp)
+    associate (n => size(form, 1), points => size(reached%point))
+      allocate (left(3 * n, 3, points), given(3 * points, 3, n), made(3 * points, 3, points), carried(points, 3, 3, points))
+      call carry_columns(reached, 3 * n, form, left)
+      call turn(n, 3 * points, left, given)
+      call carry_columns(reached, 3 * points, given, made)
+      call turn(3 * points, points, made, carried)
     end associate
-    do a = 1, size(form, 4)
+  end subroutine carry_form
+
+  !> Rows of a form in a list, (row, component, point), by the control points that it has reached: `carried` (row, component,
+  !> control point). Rows are contiguous: they are many.
+  pure subroutine carry_columns(reached, rows, form, carried)
+    type(reached_t), intent(in) :: reached
+    integer, intent(in) :: rows
+    real(wp), intent(in) :: form(rows, 3, size(reached%start) - 1)
+    real(wp), intent(out) :: carried(rows, 3, size(reached%point))
+    integer :: a, i, k
+
+    carried = 0.0_wp
+    do a = 1, size(form, 3)
       do k = reached%start(a - 1) + 1, reached%start(a)
-        associate (g => reached%at(k))
+        associate (g => reached%at(k), slope => reached%slope(:, :, k))
           do i = 1, 3
-            do j = 1, 3
-              left(:, i, :, g) = left(:, i, :, g) + reached%slope(j, i, k) * form(:, j, :, a)
-            end do
+            carried(:, i, g) = carried(:, i, g) + (slope(1, i) * form(:, 1, a) + slope(2, i) * form(:, 2, a) &
+              + slope(3, i) * form(:, 3, a))
           end do
         end associate
       end do
     end do
-    do a = 1, size(left, 4)
+  end subroutine carry_columns
+
+  !> A form (row, component, column) with rows for columns.
+  pure subroutine turn(rows, columns, form, turned)
+    integer, intent(in) :: rows, columns
+    real(wp), intent(in) :: form(rows, 3, columns)
+    real(wp), intent(out) :: turned(columns, 3, rows)
+    integer :: i, row
+
+    do row = 1, rows
       do i = 1, 3
-        do b = 1, size(form, 1)
-          associate (row => left(b, i, :, a))
-            do k = reached%start(b - 1) + 1, reached%start(b)
-              do j = 1, 3
-                carried(reached%at(k), i, j, a) = carried(reached%at(k), i, j, a) + row(1) * reached%slope(1, j, k) &
-                  + row(2) * reached%slope(2, j, k) + row(3) * reached%slope(3, j, k)
-              end do
-            end do
-          end associate
-        end do
+        turned(:, i, row) = form(row, i, :)
       end do
     end do
-  end subroutine carry_form
+  end subroutine turn
 
 end module isomortar_contact_gap_map_reach

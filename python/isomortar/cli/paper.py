@@ -39,5 +39,5 @@ def paper(
     from isomortar.harness.study import study_module
 
     names = [name.strip() for name in study.split(",") if name.strip()]
-    chosen = study_module(cases, "paper").study(names, quick, references)
+    chosen = study_module(cases, "paper").study(names, quick, references, jobs)
     conduct(chosen, out or Path("results") / ("paper-quick" if quick else "paper"), jobs)

@@ -146,8 +146,8 @@ def _check_memory(problem: Problem) -> None:
     if needed > 2.0 * there:
         largest = max(problem.deformable, key=lambda body: memory_needed(replace(problem, bodies=(body,))))
         raise InputError(
-            f"tangent and factors would take about {needed / 1e9:.3g} GB of memory, and there are {there / 1e9:.3g} GB; "
-            "take fewer elements or a lower order",
+            f"Gauss points, tangent and factors would take about {needed / 1e9:.3g} GB of memory, and there are {there / 1e9:.3g} GB; "
+            "take fewer elements, a lower order or fewer points",
             f"bodies.{largest.name}.mesh",
         )
 

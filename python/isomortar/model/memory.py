@@ -18,7 +18,7 @@ from isomortar.model.entities import Problem
 BLOCK_BYTES = 900.0
 #: Bytes of each entry of the factors, fronts included (measured: 11 to 24).
 FACTOR_BYTES = 16.0
-#: Bytes of what the kernel keeps of the reference configuration at each Gauss point: 23 numbers, fewer where no control point has a weight.
+#: Bytes of what the kernel keeps of the reference configuration at each Gauss point: 23 numbers, 19 where all weights are the same.
 POINT_BYTES = 184.0
 #: Files that tell what the machine could give at once, and all of what a control group may have; how they do, and in how many bytes.
 _LIMITS = (("/proc/meminfo", "MemAvailable: +([0-9]+)", 1024.0), ("/sys/fs/cgroup/memory.max", "^([0-9]+)", 1.0))

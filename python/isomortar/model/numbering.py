@@ -108,15 +108,15 @@ class Numbering:
         """The body's patch as the kernel reads it."""
         return patch_arrays(body.patch, self.points[body.name])
 
-    def body_arrays(self, body: Body) -> BodyArrays:
+    def body_arrays(self, body: Body, often: bool = False) -> BodyArrays:
         """The body as the kernel reads it."""
-        return BodyArrays(self.patch_arrays(body), body.quadrature, self.reference)
+        return BodyArrays(self.patch_arrays(body), body.quadrature, self.reference, often)
 
 
-def body_arrays(body: Body) -> BodyArrays:
+def body_arrays(body: Body, often: bool = False) -> BodyArrays:
     """A body alone as the kernel reads it: its control points are those of its patch."""
     points = np.arange(len(body.patch.weights), dtype=np.int32)
-    return BodyArrays(patch_arrays(body.patch, points), body.quadrature, body.patch.control_points)
+    return BodyArrays(patch_arrays(body.patch, points), body.quadrature, body.patch.control_points, often)
 
 
 def patch_arrays(patch: Patch, points: IntArray) -> PatchArrays:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from isomortar import _bindings
+from isomortar._arguments import MAX_GAUSS
 from isomortar._bindings import BodyArrays
 from isomortar.geometry.patch import FACES, FloatArray
 from isomortar.model.entities import Body
@@ -63,8 +64,9 @@ def points_enough(body: Body, error: float) -> Rule | None:
 
 
 def _twice(rule: Rule) -> Rule:
-    u, v, w = rule
-    return 2 * u, 2 * v, 2 * w
+    """Twice as many points, as far as there are rules."""
+    u, v, w = (min(2 * n, MAX_GAUSS) for n in rule)
+    return u, v, w
 
 
 def _error(body: Body, forces: FloatArray, better: FloatArray) -> float:

@@ -25,7 +25,7 @@ class Reduction:
     def __init__(self, body: Body, numbering: Numbering) -> None:
         self._body, self._numbering, count = body, numbering, len(body.patch.weights)
         rows, own = numbering.rows[body.name].into, numbering.own[body.name]
-        self._arrays = body_arrays(body)
+        self._arrays = body_arrays(body, often=True)
         self._into = sparse.csr_array((rows.data, own[rows.indices], rows.indptr), shape=(count, numbering.count))
         elements = incidence(element_points(body.patch, self._arrays.patch.point), count)
         met = abs(self._into).sign().astype(np.int32)

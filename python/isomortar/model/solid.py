@@ -49,7 +49,7 @@ class Solid:
         rows = np.repeat(np.arange(numbering.count), np.diff(self.pattern.start))
         self._last: tuple[FloatArray, FloatArray, FloatArray] | None = None
         self.diagonal = np.flatnonzero(rows == self.pattern.column)
-        self._arrays = {body.name: numbering.body_arrays(body) for body in problem.bodies if not body.raised}
+        self._arrays = {body.name: numbering.body_arrays(body, often=True) for body in self._bodies if not body.raised}
         try:
             for body in problem.bodies:
                 self._add_body(body, np.zeros_like(numbering.reference), numbering.reference, None)
@@ -57,7 +57,6 @@ class Solid:
             raise InputError(
                 f"{error}; check the geometry, the order of its control points, their weights, and the face it is seen from"
             ) from error
-        self._arrays = {body.name: self._arrays[body.name] for body in self._bodies if not body.raised}  # the others do not deform
 
     def smallest_jacobians(self, positions: FloatArray) -> list[float]:
         """The smallest J = det F at a quadrature point of each deformable body; see `forces`."""
@@ -99,7 +98,8 @@ class Solid:
             if body.raised:
                 smallest = self._reductions[body.name].add(positions, forces, pattern, tangent)
             else:
-                smallest = _bindings.add_body(self._arrays[body.name], body.material.arrays, positions, forces, pattern, tangent)
+                arrays = self._arrays.get(body.name) or self._numbering.body_arrays(body)  # a rigid one is looked at once
+                smallest = _bindings.add_body(arrays, body.material.arrays, positions, forces, pattern, tangent)
         except FoldedElementError as error:
             where = np.unravel_index(error.place, [d.elements for d in body.patch.directions], order="F")
             place = ", ".join(str(int(i)) for i in where)

@@ -56,7 +56,10 @@ def doubts(problem: Problem, state: State) -> Iterator[str]:
     """
     needed, there = memory_needed(problem), memory_of_machine()
     if needed > NEAR * there:
-        yield f"tangent and factors may take {needed / 1e9:.2g} GB of memory, within a factor of two, and there are {there / 1e9:.2g} GB"
+        yield (
+            f"Gauss points, tangent and factors may take {needed / 1e9:.2g} GB of memory, within a factor of two, "
+            f"and there are {there / 1e9:.2g} GB"
+        )
     for body in problem.deformable:
         yield from _locking(body)
         yield from _spans(body)
