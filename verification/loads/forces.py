@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import permutations
 
 import numpy as np
+from shapes import cylinder_sector, cylinder_volume
 
 from isomortar.geometry.patch import FACES, Family, FloatArray, Patch
 from isomortar.geometry.primitives import bowl, box, ring
@@ -189,3 +190,26 @@ def shares(orders: str) -> dict[str, float]:
         of_face[patch.face_points(face)] = np.outer(second, first).ravel()
         areas.append(np.abs(control_areas(patch, face) - of_face).max() / of_face.max())
     return {"volumes": float(np.abs(control_volumes(body) - exact).max() / exact.max()), "areas": float(np.max(areas))}
+
+
+@case(
+    claim="Control points of a body whose weights differ share its volume, and these shares have the moment of it: functions sum to one.",
+    tier="gate",
+    bounds={
+        "volume": Bound(at_most=1e-13, reason="theory: twelve points a direction leave nothing of an arc's functions; round-off"),
+        "moment": Bound(at_most=1e-13, reason="theory: places are sums of the same functions; as above"),
+        "weights": Bound(at_least=0.05, reason="definition: weights differ"),
+    },
+)
+def weighted_shares() -> dict[str, float]:
+    """Relative errors of the sums over a sector of a hollow cylinder, and by how much its weights differ."""
+    inner, outer, angle, height = 1.0, 2.0, 1.2, 0.7
+    patch = mesh(cylinder_sector(inner, outer, angle, height), ("N", "N", "N"), (1, 2, 3), (2, 3, 2))
+    shares = control_volumes(Body("sector", patch, Material(), (12, 12, 12)))
+    volume, arm = cylinder_volume(inner, outer, angle, height), (outer**3 - inner**3) / 3.0 * height
+    moment = np.array([arm * np.sin(angle), arm * (1.0 - np.cos(angle)), volume * height / 2.0])
+    return {
+        "volume": abs(float(shares.sum()) / volume - 1.0),
+        "moment": float(np.abs(shares @ patch.control_points - moment).max() / np.abs(moment).max()),
+        "weights": float(np.ptp(patch.weights)),
+    }
