@@ -155,6 +155,13 @@ def test_a_working_copy_that_may_not_be_built(tmp_path: Path) -> None:
         assert all(word in done.stderr for word in words)
 
 
+def test_a_process_that_the_command_starts_is_not_the_command_again() -> None:
+    """It imports the file that the command was started from, under another name."""
+    again = f"import runpy; runpy.run_path({str(LAUNCH)!r}, run_name='__mp_main__')"
+    done = subprocess.run([sys.executable, "-c", again, "scenes"], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
 def test_output_that_is_closed() -> None:
     for words in (["scenes"], ["check", "press", "--set", "bodies.block.mesh.elements=[2,2,1]"]):
         command = f'"{sys.executable}" -m isomortar {" ".join(words)} >&-'
