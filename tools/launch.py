@@ -16,8 +16,8 @@ def launch() -> None:
         sys.exit(1)
     except OSError as error:
         print(
-            f"isomortar: {error.strerror}: {error.filename}. This is a working copy, which is built anew when it is used: an account that may "
-            "not write to it needs a copy of its own, or an installation by `pip install .`",
+            f"isomortar: {error.strerror}: {error.filename}. This is a working copy, which is built anew when it is used: an account that "
+            "may not write to it needs a copy of its own, or an installation by `pip install .`",
             file=sys.stderr,
         )
         sys.exit(1)
