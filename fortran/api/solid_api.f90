@@ -74,6 +74,7 @@ subroutine material_stress(material, gradient, n, stress, status, place)
   use iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_api_descriptors, only: find
   use isomortar_base_algebra, only: identity, inverse
+  use isomortar_base_kinds, only: lanes
   use isomortar_base_status, only: status_folded, status_ok
   use isomortar_solid_material_law, only: material_t, stretch, stretch_t
   implicit none
@@ -83,7 +84,7 @@ subroutine material_stress(material, gradient, n, stress, status, place)
   real(c_double), intent(out) :: stress(3, 3, n)
   integer(c_int), intent(out) :: status, place
   class(material_t), pointer :: law
-  real(c_double) :: kirchhoff(n, 3, 3)
+  real(c_double) :: kirchhoff(lanes, 3, 3)
   type(stretch_t) :: state
   integer :: q
 
@@ -92,14 +93,14 @@ subroutine material_stress(material, gradient, n, stress, status, place)
   place = 0
   call find(material, law, status)
   if (status /= status_ok) return
-  call stretch(reshape(gradient, [n, 3_c_int, 3_c_int], order=[2, 3, 1]), state)
-  place = findloc(state%jacobian > 0.0_c_double, .false., dim=1)
-  if (place > 0) then
-    status = status_folded
-    return
-  end if
-  call law%stress(state, kirchhoff)
   do q = 1, n
-    stress(:, :, q) = matmul(kirchhoff(q, :, :), transpose(inverse(identity + gradient(:, :, q), state%jacobian(q))))
+    call stretch(spread(gradient(:, :, q), 1, lanes), state)
+    if (.not. state%jacobian(1) > 0.0_c_double) then
+      place = q
+      status = status_folded
+      return
+    end if
+    call law%stress(state, kirchhoff)
+    stress(:, :, q) = matmul(kirchhoff(1, :, :), transpose(inverse(identity + gradient(:, :, q), state%jacobian(1))))
   end do
 end subroutine material_stress

@@ -1,20 +1,33 @@
-!> Sums over the control points or the quadrature points of an element, one direction after the other (sum factorisation).
+!> Sums over the control points or the quadrature points of elements, one direction after the other (sum factorisation).
 !>
 !> A function of an element is B_a = u_a1 v_a2 w_a3. Kind D = 1 is its value, D = 2, 3, 4 its derivatives by the three
-!> parameters. `interpolate` and `integrate`, its transpose, leave the indices where they are. The contractions of
-!> `integrate_pairs` take the first index of an array away and append the new one as the last, so that after three of them the
-!> indices have gone round; of the kinds that are left on the way the first is the value and the second the derivative along the
-!> direction that is next.
+!> parameters. `interpolate` and `integrate`, its transpose, do the same for `lanes` elements side by side, which run fastest.
+!> The contractions of `integrate_pairs` take the first index of an array away and append the new one as the last, so that after
+!> three of them the indices have gone round; of the kinds that are left on the way the first is the value and the second the
+!> derivative along the direction that is next.
 !>
-!> - `u`, `v`, `w`: functions of the three directions in an element, or their pairs, at its points. `fields`: how many fields.
+!> - `u`, `v`, `w`: functions of the three directions in the elements, or their pairs, at their points. `fields`: how many fields.
+!> - `first`: the first kind of those there are, 1, or 2 where there are derivatives alone.
 !> - `room` (numbers): `room_for_lines` of them at least, for what is on the way.
 module isomortar_nurbs_tensor_product
-  use isomortar_base_kinds, only: wp
+  use isomortar_base_contract, only: contracts, require
+  use isomortar_base_kinds, only: lanes, wp
+  use isomortar_base_predicate, only: is_index
   use isomortar_nurbs_patch, only: line_rule_t
   implicit none
   private
 
-  public :: integrate, integrate_pairs, interpolate, line_pairs, room_for_lines
+  public :: integrate, integrate_pairs, interpolate, line_pairs, room_for_lines, side_by_side
+
+  !> Functions of one direction in elements side by side, at their points.
+  type, public :: lines_t
+    !> Quadrature weights times the lengths of the elements, shape (lanes, points).
+    real(wp), allocatable :: weight(:, :)
+    !> Values (0) and derivatives (1) at a point, shape (lanes, functions, 0:1, points).
+    real(wp), allocatable :: at_point(:, :, :, :)
+    !> The same of a function, shape (lanes, points, 0:1, functions).
+    real(wp), allocatable :: of_function(:, :, :, :)
+  end type lines_t
 
   !> Products of two functions of one direction at its points, for integrals of pairs; point and derivatives run fastest.
   type, public :: line_pairs_t
@@ -26,121 +39,223 @@ module isomortar_nurbs_tensor_product
     real(wp), allocatable :: values(:, :)
   end type line_pairs_t
 
+  !> One direction of the sums: of every kind from `first` to `kinds` with the values of its functions, of the value also with their
+  !> derivatives, which come last. Numbers are counted with all their lanes, from 0.
+  type :: stage_t
+    integer :: first, kinds
+    !> How many sums there are, two ways.
+    integer :: counts(2)
+    !> How far the next number is: both ways, along the line between them, and of the next kind. On the side of the control points
+    !> and on that of the quadrature points.
+    integer :: coarse(4), fine(4)
+  end type stage_t
+
 contains
+
+  !> Put elements of one direction, whose functions are `lines` (elements), side by side: those of the numbers `places` (lanes).
+  pure subroutine side_by_side(lines, places, self)
+    type(line_rule_t), intent(in) :: lines(:)
+    integer, intent(in) :: places(:)
+    type(lines_t), intent(inout) :: self
+    integer :: a, d, l, m, n, q
+
+    if (contracts) call require(all(is_index(places(:lanes), size(lines))), "side_by_side: there are such elements")
+    m = size(lines(1)%weight)
+    n = size(lines(1)%values, 1)
+    if (.not. allocated(self%weight)) then
+      allocate (self%weight(lanes, m), self%at_point(lanes, n, 0:1, m), self%of_function(lanes, m, 0:1, n))
+    end if
+    do l = 1, lanes
+      associate (line => lines(places(l)))
+        self%weight(l, :) = line%weight
+        do q = 1, m
+          do d = 0, 1
+            do a = 1, n
+              self%at_point(l, a, d, q) = line%values(a - 1, d, q)
+              self%of_function(l, q, d, a) = line%values(a - 1, d, q)
+            end do
+          end do
+        end do
+      end associate
+    end do
+  end subroutine side_by_side
 
   !> How many numbers `interpolate` and `integrate` need for so many fields on the way.
   pure integer function room_for_lines(u, v, w, fields) result(numbers)
-    type(line_rule_t), intent(in) :: u, v, w
+    type(lines_t), intent(in) :: u, v, w
     integer, intent(in) :: fields
 
-    numbers = fields * size(u%weight) * size(w%values, 1) * (2 * size(v%values, 1) + 3 * size(v%weight))
+    numbers = lanes * fields * size(u%weight, 2) * size(w%at_point, 2) * (2 * size(v%at_point, 2) + 3 * size(v%weight, 2))
   end function room_for_lines
 
-  !> Fields and their derivatives at all points: from `coefficients` (field, u, v, w) of the control points to `values` (field,
-  !> points, kind).
-  pure subroutine interpolate(u, v, w, fields, coefficients, values, room)
-    type(line_rule_t), intent(in) :: u, v, w
-    integer, intent(in) :: fields
-    real(wp), intent(in) :: coefficients(fields * size(u%values, 1) * size(v%values, 1) * size(w%values, 1))
-    real(wp), intent(out) :: values(fields * size(u%weight) * size(v%weight) * size(w%weight), 4)
-    real(wp), contiguous, intent(inout) :: room(:)
+  !> The three directions: u, v and w of the way to the quadrature points, w, v and u of the way back.
+  pure function stages(u, v, w, fields, first) result(stage)
+    type(lines_t), intent(in) :: u, v, w
+    integer, intent(in) :: fields, first
+    type(stage_t) :: stage(3)
+    integer :: mu, mv, nu, nv, nw
 
-    associate (two => 1 + 2 * fields * size(u%weight) * size(v%values, 1) * size(w%values, 1))
-      call spread_line(u, 1, fields, size(v%values, 1) * size(w%values, 1), coefficients, room)
-      call spread_line(v, 2, fields * size(u%weight), size(w%values, 1), room, room(two:))
-      call spread_line(w, 3, fields * size(u%weight) * size(v%weight), 1, room(two:), values)
+    mu = size(u%weight, 2)
+    mv = size(v%weight, 2)
+    nu = size(u%at_point, 2)
+    nv = size(v%at_point, 2)
+    nw = size(w%at_point, 2)
+    stage(1) = stage_t(1, 1, [nv * nw * fields, 1], [nu, 1, 0, 0], [mu, 1, 0, mu * nv * nw * fields])
+    stage(2) = stage_t(1, 2, [mu, nw * fields], [1, mu, mu * nv, mu * nv * nw * fields], [1, mu, mu * mv, mu * mv * nw * fields])
+    associate (point => fields * (5 - first), layer => mu * mv)
+      stage(3) = stage_t(first, 3, [layer, fields], [1, layer, layer * nw, layer * nw * fields], [point, layer * point, 1, fields])
+    end associate
+  end function stages
+
+  !> Fields and their derivatives at all points: from `coefficients` (lanes, u, v, w, field) of the control points to `values`
+  !> (lanes, field, kind, points).
+  pure subroutine interpolate(u, v, w, fields, coefficients, first, values, room)
+    type(lines_t), intent(in) :: u, v, w
+    integer, intent(in) :: fields, first
+    real(wp), intent(in) :: coefficients(lanes * size(u%at_point, 2) * size(v%at_point, 2) * size(w%at_point, 2) * fields)
+    real(wp), intent(out) :: values(lanes * fields * (5 - first) * size(u%weight, 2) * size(v%weight, 2) * size(w%weight, 2))
+    real(wp), contiguous, intent(inout) :: room(:)
+    type(stage_t) :: stage(3)
+
+    stage = stages(u, v, w, fields, first)
+    associate (two => 1 + 2 * lanes * stage(1)%fine(4))
+      call spread_line(u, stage(1), coefficients, room)
+      call spread_line(v, stage(2), room, room(two:))
+      call spread_line(w, stage(3), room(two:), values)
     end associate
   end subroutine interpolate
 
-  !> One direction of `interpolate`: every kind with the line's values, the value also with its derivatives, which come last.
-  !> `before`, `after`: numbers of what runs faster and slower.
-  pure subroutine spread_line(line, kinds, before, after, source, target)
-    type(line_rule_t), intent(in) :: line
-    integer, intent(in) :: kinds, before, after
-    real(wp), intent(in) :: source(before, size(line%values, 1), after, kinds)
-    real(wp), intent(out) :: target(before, size(line%weight), after, kinds + 1)
-    integer :: d, n, q, r
+  !> One direction of `interpolate`, from control points to quadrature points.
+  pure subroutine spread_line(line, stage, source, target)
+    type(lines_t), intent(in) :: line
+    type(stage_t), intent(in) :: stage
+    real(wp), intent(in) :: source(lanes, 0:*)
+    real(wp), intent(inout) :: target(lanes, 0:*)
+    integer :: d, place, q
 
-    n = size(line%values, 1)
-    do r = 1, after
-      do q = 1, size(line%weight)
-        do d = 1, kinds
-          call sum_columns(before, n, source(:, :, r, d), line%values(:, 0, q), target(:, q, r, d))
-        end do
-        call sum_columns(before, n, source(:, :, r, 1), line%values(:, 1, q), target(:, q, r, kinds + 1))
+    do q = 1, size(line%weight, 2)
+      place = stage%fine(2) * (q - 1)
+      do d = stage%first, stage%kinds
+        call sum_columns(stage%counts, source(1, stage%coarse(4) * (d - 1)), stage%coarse, line%at_point(:, :, 0, q), &
+          target(1, place + stage%fine(4) * (d - stage%first)), stage%fine)
       end do
+      call sum_columns(stage%counts, source(1, 0), stage%coarse, line%at_point(:, :, 1, q), &
+        target(1, place + stage%fine(4) * (stage%kinds + 1 - stage%first)), stage%fine)
     end do
   end subroutine spread_line
 
-  !> The sum of n columns of m numbers times their shares, `total` (m).
-  pure subroutine sum_columns(m, n, columns, shares, total)
-    integer, intent(in) :: m, n
-    real(wp), intent(in) :: columns(m, n), shares(n)
-    real(wp), intent(out) :: total(m)
-
-    select case (n)
-    case (1)
-      total = columns(:, 1) * shares(1)
-    case (2)
-      total = columns(:, 1) * shares(1) + columns(:, 2) * shares(2)
-    case default
-      total = columns(:, 1) * shares(1) + columns(:, 2) * shares(2) + columns(:, 3) * shares(3)
-      call add_columns(m, n - 3, columns(:, 4:), shares(4:), total)
-    end select
-  end subroutine sum_columns
-
-  !> Add n columns of m numbers times their shares to `total` (m), three at a time: the total is read and written less often.
-  pure subroutine add_columns(m, n, columns, shares, total)
-    integer, intent(in) :: m, n
-    real(wp), intent(in) :: columns(m, n), shares(n)
-    real(wp), intent(inout) :: total(m)
-    integer :: a
-
-    do a = 1, n - 2, 3
-      total = total + (columns(:, a) * shares(a) + columns(:, a + 1) * shares(a + 1) + columns(:, a + 2) * shares(a + 2))
-    end do
-    do a = n - modulo(n, 3) + 1, n
-      total = total + columns(:, a) * shares(a)
-    end do
-  end subroutine add_columns
-
-  !> Sum over points and kinds of `densities` times functions: from (field, points, kind) to `sums` (field, u, v, w) of the
-  !> control points.
-  pure subroutine integrate(u, v, w, fields, densities, sums, room)
-    type(line_rule_t), intent(in) :: u, v, w
-    integer, intent(in) :: fields
-    real(wp), intent(in) :: densities(fields * size(u%weight) * size(v%weight) * size(w%weight), 4)
-    real(wp), intent(out) :: sums(fields * size(u%values, 1) * size(v%values, 1) * size(w%values, 1))
+  !> Sum over points and kinds of `densities` times functions: from (lanes, field, kind, points) to `sums` (lanes, u, v, w, field)
+  !> of the control points.
+  pure subroutine integrate(u, v, w, fields, densities, first, sums, room)
+    type(lines_t), intent(in) :: u, v, w
+    integer, intent(in) :: fields, first
+    real(wp), intent(in) :: densities(lanes * fields * (5 - first) * size(u%weight, 2) * size(v%weight, 2) * size(w%weight, 2))
+    real(wp), intent(out) :: sums(lanes * size(u%at_point, 2) * size(v%at_point, 2) * size(w%at_point, 2) * fields)
     real(wp), contiguous, intent(inout) :: room(:)
+    type(stage_t) :: stage(3)
 
-    associate (two => 1 + 2 * fields * size(u%weight) * size(v%values, 1) * size(w%values, 1))
-      call gather_line(w, 3, fields * size(u%weight) * size(v%weight), 1, densities, room(two:))
-      call gather_line(v, 2, fields * size(u%weight), size(w%values, 1), room(two:), room)
-      call gather_line(u, 1, fields, size(v%values, 1) * size(w%values, 1), room, sums)
+    stage = stages(u, v, w, fields, first)
+    associate (two => 1 + 2 * lanes * stage(1)%fine(4))
+      call gather_line(w, stage(3), densities, room(two:))
+      call gather_line(v, stage(2), room(two:), room)
+      call gather_line(u, stage(1), room, sums)
     end associate
   end subroutine integrate
 
-  !> One direction of `integrate`, the transpose of `spread_line`.
-  pure subroutine gather_line(line, kinds, before, after, source, target)
-    type(line_rule_t), intent(in) :: line
-    integer, intent(in) :: kinds, before, after
-    real(wp), intent(in) :: source(before, size(line%weight), after, kinds + 1)
-    real(wp), intent(out) :: target(before, size(line%values, 1), after, kinds)
-    real(wp) :: values(size(line%weight), size(line%values, 1)), slopes(size(line%weight), size(line%values, 1))
-    integer :: a, d, m, r
+  !> One direction of `integrate`, from quadrature points to control points: the transpose of `spread_line`.
+  pure subroutine gather_line(line, stage, source, target)
+    type(lines_t), intent(in) :: line
+    type(stage_t), intent(in) :: stage
+    real(wp), intent(in) :: source(lanes, 0:*)
+    real(wp), intent(inout) :: target(lanes, 0:*)
+    integer :: a, d, place
 
-    m = size(line%weight)
-    values = transpose(line%values(:, 0, :))
-    slopes = transpose(line%values(:, 1, :))
-    do r = 1, after
-      do a = 1, size(line%values, 1)
-        do d = 1, kinds
-          call sum_columns(before, m, source(:, :, r, d), values(:, a), target(:, a, r, d))
-        end do
-        call add_columns(before, m, source(:, :, r, kinds + 1), slopes(:, a), target(:, a, r, 1))
+    do a = 1, size(line%at_point, 2)
+      place = stage%coarse(2) * (a - 1)
+      call sum_columns(stage%counts, source(1, stage%fine(4) * (stage%kinds + 1 - stage%first)), stage%fine, &
+        line%of_function(:, :, 1, a), target(1, place), stage%coarse)
+      if (stage%first == 1) call add_columns(1, stage%counts, source(1, 0), stage%fine, line%of_function(:, :, 0, a), &
+        target(1, place), stage%coarse)
+      do d = 2, stage%kinds
+        call sum_columns(stage%counts, source(1, stage%fine(4) * (d - stage%first)), stage%fine, line%of_function(:, :, 0, a), &
+          target(1, place + stage%coarse(4) * (d - 1)), stage%coarse)
       end do
     end do
   end subroutine gather_line
+
+  !> Sums of columns of numbers times their shares, of which every lane has its own. `counts`: as of stage_t, and so are `step` of
+  !> the columns and `jump` of the sums, `total`.
+  pure subroutine sum_columns(counts, columns, step, shares, total, jump)
+    integer, intent(in) :: counts(2), step(4), jump(4)
+    real(wp), intent(in) :: columns(lanes, 0:*)
+    real(wp), contiguous, intent(in) :: shares(:, :)
+    real(wp), intent(inout) :: total(lanes, 0:*)
+    integer :: b, c, next, r, t
+
+    next = step(2)
+    do r = 0, counts(2) - 1
+      c = step(3) * r
+      t = jump(3) * r
+      select case (size(shares, 2))
+      case (1)
+        do b = 1, counts(1)
+          total(:, t) = columns(:, c) * shares(:, 1)
+          c = c + step(1)
+          t = t + jump(1)
+        end do
+      case (2)
+        do b = 1, counts(1)
+          total(:, t) = columns(:, c) * shares(:, 1) + columns(:, c + next) * shares(:, 2)
+          c = c + step(1)
+          t = t + jump(1)
+        end do
+      case (3)
+        do b = 1, counts(1)
+          total(:, t) = columns(:, c) * shares(:, 1) + columns(:, c + next) * shares(:, 2) + columns(:, c + 2 * next) * shares(:, 3)
+          c = c + step(1)
+          t = t + jump(1)
+        end do
+      case default
+        do b = 1, counts(1)
+          total(:, t) = columns(:, c) * shares(:, 1) + columns(:, c + next) * shares(:, 2) &
+            + columns(:, c + 2 * next) * shares(:, 3) + columns(:, c + 3 * next) * shares(:, 4)
+          c = c + step(1)
+          t = t + jump(1)
+        end do
+      end select
+    end do
+    call add_columns(5, counts, columns, step, shares, total, jump)
+  end subroutine sum_columns
+
+  !> Add the columns from number `from` on to such sums, two at a time: the sums are read and written less often.
+  pure subroutine add_columns(from, counts, columns, step, shares, total, jump)
+    integer, intent(in) :: from, counts(2), step(4), jump(4)
+    real(wp), intent(in) :: columns(lanes, 0:*)
+    real(wp), contiguous, intent(in) :: shares(:, :)
+    real(wp), intent(inout) :: total(lanes, 0:*)
+    integer :: a, b, c, next, r, t
+
+    next = step(2)
+    do a = from, size(shares, 2), 2
+      do r = 0, counts(2) - 1
+        c = step(3) * r + next * (a - 1)
+        t = jump(3) * r
+        if (a == size(shares, 2)) then
+          do b = 1, counts(1)
+            total(:, t) = total(:, t) + columns(:, c) * shares(:, a)
+            c = c + step(1)
+            t = t + jump(1)
+          end do
+        else
+          do b = 1, counts(1)
+            total(:, t) = total(:, t) + (columns(:, c) * shares(:, a) + columns(:, c + next) * shares(:, a + 1))
+            c = c + step(1)
+            t = t + jump(1)
+          end do
+        end if
+      end do
+    end do
+  end subroutine add_columns
 
   !> The `tables` (elements) for `integrate_pairs` of the elements of a direction, whose functions are `lines` (elements).
   pure subroutine line_pairs(lines, tables)

@@ -1,8 +1,8 @@
-!> Vectors and 3x3 matrices at all quadrature points of an element: (point, component), (point, row, column).
+!> 3x3 matrices at a quadrature point of each of several elements: (lane, row, column).
 !>
-!> - `m`: points. `a`: the matrices.
+!> - `a`: the matrices.
 module isomortar_solid_points
-  use isomortar_base_kinds, only: wp
+  use isomortar_base_kinds, only: lanes, wp
   implicit none
   private
 
@@ -11,10 +11,9 @@ module isomortar_solid_points
 contains
 
   !> Determinants, `det`.
-  pure subroutine determinants(m, a, det)
-    integer, intent(in) :: m
-    real(wp), intent(in) :: a(m, 3, 3)
-    real(wp), intent(out) :: det(m)
+  pure subroutine determinants(a, det)
+    real(wp), intent(in) :: a(lanes, 3, 3)
+    real(wp), intent(out) :: det(lanes)
 
     det = a(:, 1, 1) * (a(:, 2, 2) * a(:, 3, 3) - a(:, 3, 2) * a(:, 2, 3)) &
       + a(:, 2, 1) * (a(:, 3, 2) * a(:, 1, 3) - a(:, 1, 2) * a(:, 3, 3)) &
@@ -22,10 +21,9 @@ contains
   end subroutine determinants
 
   !> Determinants, `det`, and cofactors `b`: det times the transposed inverse.
-  pure subroutine cofactors(m, a, b, det)
-    integer, intent(in) :: m
-    real(wp), intent(in) :: a(m, 3, 3)
-    real(wp), intent(out) :: b(m, 3, 3), det(m)
+  pure subroutine cofactors(a, b, det)
+    real(wp), intent(in) :: a(lanes, 3, 3)
+    real(wp), intent(out) :: b(lanes, 3, 3), det(lanes)
     integer :: i, j, k
 
     do i = 1, 3
@@ -38,29 +36,20 @@ contains
     det = a(:, 1, 1) * b(:, 1, 1) + a(:, 2, 1) * b(:, 2, 1) + a(:, 3, 1) * b(:, 3, 1)
   end subroutine cofactors
 
-  !> The first of some `numbers` (numbers) that is not above zero, or else the smallest of them.
-  pure real(wp) function least(numbers)
-    real(wp), intent(in) :: numbers(:)
-    integer :: q
+  !> The smaller one of two numbers, or the one that is not above zero, of both the `first`, not the `second`.
+  elemental real(wp) function least(first, second)
+    real(wp), intent(in) :: first, second
 
-    least = huge(1.0_wp)
-    do q = 1, size(numbers)
-      if (.not. numbers(q) > 0.0_wp) then
-        least = numbers(q)
-        return
-      end if
-      least = min(least, numbers(q))
-    end do
+    least = merge(second, first, first > 0.0_wp .and. .not. second >= first)
   end function least
 
-  !> Derivatives by the parameters of a rational field: `slope` (point, component, parameter) (theory 1.3).
+  !> Derivatives by the parameters of a rational field: `slope` (lane, component, parameter) (theory 1.3).
   !>
-  !> - `weighting` (point, 4): 1/W, and the derivatives of W over W, by the three parameters.
-  !> - `numerator` (point, 3, 4): value and derivatives by the three parameters.
-  pure subroutine quotients(m, weighting, numerator, slope)
-    integer, intent(in) :: m
-    real(wp), intent(in) :: weighting(m, 4), numerator(m, 3, 4)
-    real(wp), intent(out) :: slope(m, 3, 3)
+  !> - `weighting` (lane, 4): 1/W, and the derivatives of W over W, by the three parameters.
+  !> - `numerator` (lane, component, 4): value and derivatives by the three parameters.
+  pure subroutine quotients(weighting, numerator, slope)
+    real(wp), intent(in) :: weighting(lanes, 4), numerator(lanes, 3, 4)
+    real(wp), intent(out) :: slope(lanes, 3, 3)
     integer :: d, i
 
     do d = 1, 3

@@ -1,12 +1,11 @@
 !> What each control point has of a body's volume: the integrals of its functions over the reference configuration.
 module isomortar_solid_volume
   use isomortar_base_contract, only: contracts, require
-  use isomortar_base_kinds, only: wp
+  use isomortar_base_kinds, only: lanes, wp
   use isomortar_base_predicate, only: is_index, sums_to
   use isomortar_base_status, only: status_ok
-  use isomortar_nurbs_patch, only: element_count, element_nodes, element_of, line_rule_t
-  use isomortar_nurbs_tensor_product, only: integrate, room_for_lines
-  use isomortar_solid_body, only: body_t, geometry_room_t, geometry_t, take_geometry
+  use isomortar_nurbs_tensor_product, only: integrate
+  use isomortar_solid_body, only: body_t, bundle_count, bundle_t, geometry_t, take_bundle, take_geometry
   implicit none
   private
 
@@ -23,47 +22,56 @@ contains
     type(body_t), intent(in) :: body
     real(wp), intent(out) :: volumes(:), smallest
     integer, intent(out) :: status, place
-    type(geometry_room_t) :: room
+    type(bundle_t) :: bundle
     type(geometry_t) :: geometry
-    integer :: a, at(3), local(product(body%patch%direction%order + 1))
-    real(wp) :: shares(size(local))
+    real(wp), allocatable :: shares(:, :)
+    integer :: a, k, l
 
     if (contracts) call require(all(is_index(body%patch%point, size(volumes))), "control_volumes: the body is among them")
     volumes = 0.0_wp
-    do place = 1, element_count(body%patch)
-      at = element_of(body%patch, place)
-      call element_nodes(body%patch, at, local)
-      call take_geometry(body, place, room, geometry)
+    allocate (shares(lanes, product(body%patch%direction%order + 1)))
+    do k = 1, bundle_count(body)
+      call take_bundle(body, k, bundle)
+      call take_geometry(body, bundle, geometry)
       status = geometry%status
-      smallest = geometry%smallest
-      if (status /= status_ok) return
-      call element_volumes(body%u(at(1)), body%v(at(2)), body%w(at(3)), body%patch%weight(local), geometry, shares)
-      do a = 1, size(local) ! one may stand twice in an element of a closed ring
-        volumes(body%patch%point(local(a))) = volumes(body%patch%point(local(a))) + shares(a)
+      if (status /= status_ok) then
+        l = findloc(geometry%smallest > 0.0_wp, .false., dim=1)
+        place = lanes * (k - 1) + l
+        smallest = geometry%smallest(l)
+        return
+      end if
+      call take_shares(bundle, geometry, shares)
+      do l = 1, bundle%many
+        do a = 1, size(shares, 2) ! one may stand twice in an element of a closed ring
+          associate (volume => volumes(body%patch%point(bundle%local(a, l))))
+            volume = volume + shares(l, a)
+          end associate
+        end do
       end do
     end do
+    smallest = 0.0_wp
     place = 0
   end subroutine control_volumes
 
-  !> The same of one element.
+  !> The same of elements side by side.
   !>
-  !> - `u`, `v`, `w`: functions of the three directions in the element at its Gauss points.
-  !> - `weight` (control points): weights of its control points. `geometry`: what it has in the reference configuration.
-  !> - `shares` (control points): their volumes, L^3.
-  pure subroutine element_volumes(u, v, w, weight, geometry, shares)
-    type(line_rule_t), intent(in) :: u, v, w
-    real(wp), intent(in) :: weight(:)
+  !> - `bundle`: they. `geometry`: what they have in the reference configuration.
+  !> - `shares` (lanes, control points): volumes of their control points, L^3.
+  pure subroutine take_shares(bundle, geometry, shares)
+    type(bundle_t), intent(inout) :: bundle
     type(geometry_t), intent(in) :: geometry
-    real(wp), intent(out) :: shares(:)
-    real(wp), allocatable :: densities(:, :), room(:)
+    real(wp), contiguous, intent(out) :: shares(:, :)
+    real(wp), allocatable :: densities(:, :, :)
+    integer :: l
 
-    allocate (densities(size(geometry%volume), 4), source=0.0_wp)
-    allocate (room(room_for_lines(u, v, w, 1)))
-    densities(:, 1) = geometry%volume
-    if (allocated(geometry%weighting)) densities(:, 1) = geometry%volume * geometry%weighting(:, 1)
-    call integrate(u, v, w, 1, densities, shares, room)
-    shares = weight * shares
-    if (contracts) call require(sums_to(shares, sum(geometry%volume)), "element_volumes: they sum to the element's volume")
-  end subroutine element_volumes
+    allocate (densities(lanes, 4, size(geometry%volume, 2)), source=0.0_wp)
+    densities(:, 1, :) = geometry%volume
+    if (allocated(geometry%weighting)) densities(:, 1, :) = geometry%volume * geometry%weighting(:, 1, :)
+    call integrate(bundle%u, bundle%v, bundle%w, 1, densities, 1, shares, bundle%lines)
+    shares = bundle%weight * shares
+    do l = 1, merge(lanes, 0, contracts)
+      if (contracts) call require(sums_to(shares(l, :), sum(geometry%volume(l, :))), "take_shares: they sum to its volume")
+    end do
+  end subroutine take_shares
 
 end module isomortar_solid_volume

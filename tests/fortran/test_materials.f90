@@ -1,7 +1,7 @@
 !> The material laws (isomortar_solid_material_table): stresses, their tangents, rest and rotation.
 module test_materials
   use isomortar_base_algebra, only: identity, inverse
-  use isomortar_base_kinds, only: wp
+  use isomortar_base_kinds, only: lanes, wp
   use isomortar_solid_material_law, only: component_pairs, material_t, stretch, stretch_t
   use isomortar_solid_material_table, only: law_linear_elastic, law_neo_hookean, law_neo_hookean_j, material_of
   use testing, only: by_difference, expect, random_numbers, round_off, step
@@ -50,12 +50,12 @@ contains
     character(*), intent(in) :: name
     class(material_t), intent(in) :: law
     real(wp), intent(in) :: gradient(3, 3)
-    real(wp) :: change(3, 3), deformation(3, 3), error, moduli(1, 3, 3, 6), shift(3, 3)
+    real(wp) :: change(3, 3), deformation(3, 3), error, moduli(lanes, 3, 3, 6), shift(3, 3)
     type(stretch_t) :: state
     integer :: i, k, l, pair
 
     deformation = identity + gradient
-    call stretch(spread(gradient, 1, 1), state)
+    call stretch(spread(gradient, 1, lanes), state)
     call law%tangent(state, moduli)
     error = 0.0_wp
     do pair = 1, 6
@@ -89,10 +89,10 @@ contains
   function first_piola(law, gradient) result(piola)
     class(material_t), intent(in) :: law
     real(wp), intent(in) :: gradient(3, 3)
-    real(wp) :: kirchhoff(1, 3, 3), piola(3, 3)
+    real(wp) :: kirchhoff(lanes, 3, 3), piola(3, 3)
     type(stretch_t) :: state
 
-    call stretch(spread(gradient, 1, 1), state)
+    call stretch(spread(gradient, 1, lanes), state)
     call law%stress(state, kirchhoff)
     piola = matmul(kirchhoff(1, :, :), transpose(inverse(identity + gradient, state%jacobian(1))))
   end function first_piola

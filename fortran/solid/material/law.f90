@@ -1,12 +1,12 @@
 !> What a material law has to answer at quadrature points, and the deformations that it is asked about.
 !>
 !> A law is one file beside this one, with one entry in `isomortar_solid_material_table`. The element does not know which it serves.
-!> Laws answer for all points of an element at once, the point running fastest: loops over them are what a processor is good at.
+!> Laws answer for a point of each of several elements at once, the lane running fastest: a processor does the same for all of them.
 !>
 !> - `state`: the deformations.
 module isomortar_solid_material_law
   use isomortar_base_algebra, only: log1p
-  use isomortar_base_kinds, only: wp
+  use isomortar_base_kinds, only: lanes, wp
   use isomortar_solid_points, only: determinants
   implicit none
   private
@@ -16,18 +16,18 @@ module isomortar_solid_material_law
   !> Components i, k of the six tangents K_ik that are integrated; K_ki of control points a, b is K_ik of b, a.
   integer, parameter, public :: component_pairs(2, 6) = reshape([1, 1, 2, 2, 3, 3, 1, 2, 1, 3, 2, 3], [2, 6])
 
-  !> Deformations at points, with the digits of small displacement gradients kept: arrays (point), (point, row, column).
+  !> Deformations at a point, with the digits of small displacement gradients kept: arrays (lane), (lane, row, column).
   type, public :: stretch_t
     !> h = F - 1.
-    real(wp), allocatable :: gradient(:, :, :)
+    real(wp) :: gradient(lanes, 3, 3)
     !> J = det F, J - 1 and ln J (0 where J is not above 0).
-    real(wp), allocatable :: jacobian(:), growth(:), log_jacobian(:)
+    real(wp) :: jacobian(lanes), growth(lanes), log_jacobian(lanes)
     !> J^(-2/3) (1 where J is not above 0).
-    real(wp), allocatable :: isochoric(:)
+    real(wp) :: isochoric(lanes)
     !> b = F Fᵀ, and its deviator from b - 1: no cancellation near the reference state.
-    real(wp), allocatable :: left_cauchy_green(:, :, :), deviator(:, :, :)
+    real(wp) :: left_cauchy_green(lanes, 3, 3), deviator(lanes, 3, 3)
     !> tr b.
-    real(wp), allocatable :: trace(:)
+    real(wp) :: trace(lanes)
   end type stretch_t
 
   !> A material law: a stored energy per reference volume.
@@ -39,47 +39,46 @@ module isomortar_solid_material_law
 
   abstract interface
     !> P Fᵀ, force per reference area turned to the current configuration: of an objective law the Kirchhoff stress J sigma,
-    !> `kirchhoff` (point, row, column) (theory 1.6).
+    !> `kirchhoff` (lane, row, column) (theory 1.6).
     pure subroutine stress_of(self, state, kirchhoff)
-      import :: material_t, stretch_t, wp
+      import :: lanes, material_t, stretch_t, wp
       implicit none
       class(material_t), intent(in) :: self
       type(stretch_t), intent(in) :: state
-      real(wp), intent(out) :: kirchhoff(size(state%jacobian), 3, 3)
+      real(wp), intent(out) :: kirchhoff(lanes, 3, 3)
     end subroutine stress_of
 
-    !> a_ijkl = F_jJ (dP_iJ / dF_kL) F_lL as `moduli` (point, j, l, pair of i and k), force per area: with spatial gradients g of
+    !> a_ijkl = F_jJ (dP_iJ / dF_kL) F_lL as `moduli` (lane, j, l, pair of i and k), force per area: with spatial gradients g of
     !> control points a and b K_ik = g_jᵃ a_ijkl g_lᵇ (theory 1.8).
     pure subroutine tangent_of(self, state, moduli)
-      import :: material_t, stretch_t, wp
+      import :: lanes, material_t, stretch_t, wp
       implicit none
       class(material_t), intent(in) :: self
       type(stretch_t), intent(in) :: state
-      real(wp), intent(out) :: moduli(size(state%jacobian), 3, 3, 6)
+      real(wp), intent(out) :: moduli(lanes, 3, 3, 6)
     end subroutine tangent_of
   end interface
 
 contains
 
-  !> Stretches of displacement gradients `h` (point, row, column), F - 1. J - 1 is summed from the invariants of h (theory 1.4).
+  !> Stretches of displacement gradients `h` (lane, row, column), F - 1. J - 1 is summed from the invariants of h (theory 1.4).
   pure subroutine stretch(h, self)
-    real(wp), intent(in) :: h(:, :, :)
-    type(stretch_t), intent(inout) :: self
-    integer :: i, k, q
+    real(wp), intent(in) :: h(lanes, 3, 3)
+    type(stretch_t), intent(out) :: self
+    integer :: i, k, l
 
-    call reserve(self, size(h, 1))
     associate (b => self%left_cauchy_green, e => self%deviator)
-      self%gradient(:, :, :) = h
-      call determinants(size(h, 1), self%gradient, self%growth)
-      self%growth(:) = self%growth + (h(:, 1, 1) + h(:, 2, 2) + h(:, 3, 3)) + (h(:, 1, 1) * h(:, 2, 2) - h(:, 1, 2) * h(:, 2, 1) &
+      self%gradient = h
+      call determinants(h, self%growth)
+      self%growth = self%growth + (h(:, 1, 1) + h(:, 2, 2) + h(:, 3, 3)) + (h(:, 1, 1) * h(:, 2, 2) - h(:, 1, 2) * h(:, 2, 1) &
         + h(:, 2, 2) * h(:, 3, 3) - h(:, 2, 3) * h(:, 3, 2) + h(:, 1, 1) * h(:, 3, 3) - h(:, 1, 3) * h(:, 3, 1))
-      self%jacobian(:) = 1.0_wp + self%growth
-      do q = 1, size(h, 1) ! one by one: vector functions have fewer digits, and none where numbers are not rounded to nearest
-        self%log_jacobian(q) = 0.0_wp
-        self%isochoric(q) = 1.0_wp
-        if (self%jacobian(q) > 0.0_wp) then
-          self%log_jacobian(q) = log1p(self%growth(q))
-          self%isochoric(q) = exp(-2.0_wp / 3.0_wp * self%log_jacobian(q))
+      self%jacobian = 1.0_wp + self%growth
+      do l = 1, lanes ! one by one: vector functions have fewer digits, and none where numbers are not rounded to nearest
+        self%log_jacobian(l) = 0.0_wp
+        self%isochoric(l) = 1.0_wp
+        if (self%jacobian(l) > 0.0_wp) then
+          self%log_jacobian(l) = log1p(self%growth(l))
+          self%isochoric(l) = exp(-2.0_wp / 3.0_wp * self%log_jacobian(l))
         end if
       end do
       do k = 1, 3
@@ -90,26 +89,12 @@ contains
           b(:, k, i) = b(:, i, k)
         end do
       end do
-      self%trace(:) = e(:, 1, 1) + e(:, 2, 2) + e(:, 3, 3)
+      self%trace = e(:, 1, 1) + e(:, 2, 2) + e(:, 3, 3)
       do i = 1, 3
         e(:, i, i) = e(:, i, i) - self%trace / 3.0_wp
       end do
-      self%trace(:) = 3.0_wp + self%trace
+      self%trace = 3.0_wp + self%trace
     end associate
   end subroutine stretch
-
-  !> Make room for m points.
-  pure subroutine reserve(self, m)
-    type(stretch_t), intent(inout) :: self
-    integer, intent(in) :: m
-
-    if (allocated(self%jacobian)) then
-      if (size(self%jacobian) == m) return
-      deallocate (self%gradient, self%jacobian, self%growth, self%log_jacobian, self%isochoric)
-      deallocate (self%left_cauchy_green, self%deviator, self%trace)
-    end if
-    allocate (self%gradient(m, 3, 3), self%jacobian(m), self%growth(m), self%log_jacobian(m), self%isochoric(m))
-    allocate (self%left_cauchy_green(m, 3, 3), self%deviator(m, 3, 3), self%trace(m))
-  end subroutine reserve
 
 end module isomortar_solid_material_law

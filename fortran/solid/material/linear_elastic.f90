@@ -1,6 +1,6 @@
 !> Hooke's solid of small strain, P = (A1 - 2/3 A2) tr e 1 + 2 A2 e with e = sym(F - 1). Not objective: for small turns alone.
 module isomortar_solid_material_linear_elastic
-  use isomortar_base_kinds, only: wp
+  use isomortar_base_kinds, only: lanes, wp
   use isomortar_solid_material_law, only: component_pairs, material_t, stretch_t
   implicit none
   private
@@ -19,8 +19,8 @@ contains
   pure subroutine stress(self, state, kirchhoff)
     class(linear_elastic_t), intent(in) :: self
     type(stretch_t), intent(in) :: state
-    real(wp), intent(out) :: kirchhoff(size(state%jacobian), 3, 3)
-    real(wp) :: p(size(state%jacobian), 3, 3)
+    real(wp), intent(out) :: kirchhoff(lanes, 3, 3)
+    real(wp) :: p(lanes, 3, 3)
     integer :: i, k
 
     associate (h => state%gradient)
@@ -42,8 +42,8 @@ contains
   pure subroutine tangent(self, state, moduli)
     class(linear_elastic_t), intent(in) :: self
     type(stretch_t), intent(in) :: state
-    real(wp), intent(out) :: moduli(size(state%jacobian), 3, 3, 6)
-    real(wp) :: f(size(state%jacobian), 3, 3)
+    real(wp), intent(out) :: moduli(lanes, 3, 3, 6)
+    real(wp) :: f(lanes, 3, 3)
     integer :: i, j, k, l, pair
 
     f = state%gradient

@@ -1,6 +1,6 @@
 !> The compressible neo-Hookean solid of Abaqus and CalculiX: U = A1/2 (J - 1)^2.
 module isomortar_solid_material_neo_hookean_j
-  use isomortar_base_kinds, only: wp
+  use isomortar_base_kinds, only: lanes, wp
   use isomortar_solid_material_law, only: material_t, stretch_t
   use isomortar_solid_material_split, only: split_stress, split_tangent
   implicit none
@@ -20,7 +20,7 @@ contains
   pure subroutine stress(self, state, kirchhoff)
     class(neo_hookean_j_t), intent(in) :: self
     type(stretch_t), intent(in) :: state
-    real(wp), intent(out) :: kirchhoff(size(state%jacobian), 3, 3)
+    real(wp), intent(out) :: kirchhoff(lanes, 3, 3)
 
     call split_stress(state, self%bulk * state%jacobian * state%growth, self%shear, kirchhoff)
   end subroutine stress
@@ -29,8 +29,8 @@ contains
   pure subroutine tangent(self, state, moduli)
     class(neo_hookean_j_t), intent(in) :: self
     type(stretch_t), intent(in) :: state
-    real(wp), intent(out) :: moduli(size(state%jacobian), 3, 3, 6)
-    real(wp) :: slope(size(state%jacobian))
+    real(wp), intent(out) :: moduli(lanes, 3, 3, 6)
+    real(wp) :: slope(lanes)
 
     slope = self%bulk * state%jacobian * (state%jacobian + state%growth)
     call split_tangent(state, self%bulk * state%jacobian * state%growth, slope, self%shear, moduli)

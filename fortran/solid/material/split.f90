@@ -1,8 +1,8 @@
 !> Neo-Hookean energies that split into volume and shape, W = U(J) + A2/2 (J^(-2/3) tr C - 3): what laws of that kind share.
 !>
-!> - `state`: the deformations. `spherical` (point): J U', force per area. `shear`: A2, the same.
+!> - `state`: the deformations. `spherical` (lane): J U', force per area. `shear`: A2, the same.
 module isomortar_solid_material_split
-  use isomortar_base_kinds, only: wp
+  use isomortar_base_kinds, only: lanes, wp
   use isomortar_solid_material_law, only: component_pairs, stretch_t
   implicit none
   private
@@ -11,12 +11,12 @@ module isomortar_solid_material_split
 
 contains
 
-  !> Kirchhoff stresses J U' 1 + A2 J^(-2/3) dev b, force per area: `stress` (point, row, column) (theory 1.6).
+  !> Kirchhoff stresses J U' 1 + A2 J^(-2/3) dev b, force per area: `stress` (lane, row, column) (theory 1.6).
   pure subroutine split_stress(state, spherical, shear, stress)
     type(stretch_t), intent(in) :: state
-    real(wp), intent(in) :: spherical(size(state%jacobian)), shear
-    real(wp), intent(out) :: stress(size(state%jacobian), 3, 3)
-    real(wp) :: scale(size(state%jacobian))
+    real(wp), intent(in) :: spherical(lanes), shear
+    real(wp), intent(out) :: stress(lanes, 3, 3)
+    real(wp) :: scale(lanes)
     integer :: i, k
 
     scale = shear * state%isochoric
@@ -29,12 +29,12 @@ contains
   end subroutine split_stress
 
   !> The `moduli` c1 delta_ij delta_kl + c2 delta_il delta_jk + c3 delta_ik b_jl - c4 (b_ij delta_kl + delta_ij b_kl), force per
-  !> area, as (point, j, l, pair of i and k). `slope` (point) is J (J U')' (theory 1.9, 1.10).
+  !> area, as (lane, j, l, pair of i and k). `slope` (lane) is J (J U')' (theory 1.9, 1.10).
   pure subroutine split_tangent(state, spherical, slope, shear, moduli)
     type(stretch_t), intent(in) :: state
-    real(wp), intent(in) :: spherical(size(state%jacobian)), slope(size(state%jacobian)), shear
-    real(wp), intent(out) :: moduli(size(state%jacobian), 3, 3, 6)
-    real(wp) :: c(size(state%jacobian), 4)
+    real(wp), intent(in) :: spherical(lanes), slope(lanes), shear
+    real(wp), intent(out) :: moduli(lanes, 3, 3, 6)
+    real(wp) :: c(lanes, 4)
     integer :: i, j, k, l, pair
 
     c(:, 3) = shear * state%isochoric
