@@ -2,9 +2,9 @@
 !>
 !> A function of an element is B_a = u_a1 v_a2 w_a3. Kind D = 1 is its value, D = 2, 3, 4 its derivatives by the three
 !> parameters. `interpolate` and `integrate`, its transpose, do the same for `lanes` elements side by side, which run fastest.
-!> The contractions of `integrate_pairs` take the first index of an array away and append the new one as the last, so that after
-!> three of them the indices have gone round; of the kinds that are left on the way the first is the value and the second the
-!> derivative along the direction that is next.
+!> The contractions of `integrate_pairs` take the last index of an array away and put the new one in front, so that nothing is copied
+!> in between: after w, v, u the indices have gone round. Of the kinds that are left on the way the last is the derivative along the
+!> direction that is next, and pairs of kinds are stored in the order of `pair_of_kinds`: those that are summed stand together.
 !>
 !> - `u`, `v`, `w`: functions of the three directions in the elements, or their pairs, at their points. `fields`: how many fields.
 !> - `first`: the first kind of those there are, 1, or 2 where there are derivatives alone.
@@ -17,7 +17,7 @@ module isomortar_nurbs_tensor_product
   implicit none
   private
 
-  public :: integrate, integrate_pairs, interpolate, line_pairs, room_for_lines, side_by_side
+  public :: integrate, integrate_pairs, interpolate, line_pairs, pair_of_kinds, room_for_lines, side_by_side
 
   !> Functions of one direction in elements side by side, at their points.
   type, public :: lines_t
@@ -29,13 +29,13 @@ module isomortar_nurbs_tensor_product
     real(wp), allocatable :: of_function(:, :, :, :)
   end type lines_t
 
-  !> Products of two functions of one direction at its points, for integrals of pairs; point and derivatives run fastest.
+  !> Products of two functions of one direction at its points, for integrals of pairs; points run faster than derivatives.
   type, public :: line_pairs_t
-    !> With value or derivative of either function, shape (points * 2 * 2, functions**2); that of the first runs faster.
+    !> With value or derivative of either function, shape (functions**2, points * 2 * 2); that of the first runs faster.
     real(wp), allocatable :: either(:, :)
-    !> With value or derivative of the first, of the second function, shape (points * 2, functions**2).
+    !> With value or derivative of the first, of the second function, shape (functions**2, points * 2).
     real(wp), allocatable :: first(:, :), second(:, :)
-    !> With the values, shape (points, functions**2).
+    !> With the values, shape (functions**2, points).
     real(wp), allocatable :: values(:, :)
   end type line_pairs_t
 
@@ -277,69 +277,89 @@ contains
 
     n = size(line%values, 1)
     m = size(line%weight)
-    allocate (self%either(4 * m, n**2), self%first(2 * m, n**2), self%second(2 * m, n**2), self%values(m, n**2))
+    allocate (self%either(n**2, 4 * m), self%first(n**2, 2 * m), self%second(n**2, 2 * m), self%values(n**2, m))
     do b = 1, n
       do a = 1, n
         ab = a + n * (b - 1)
         do second = 0, 1
           do first = 0, 1
             associate (place => (first + 2 * second) * m)
-              self%either(place + 1:place + m, ab) = line%values(a - 1, first, :) * line%values(b - 1, second, :)
+              self%either(ab, place + 1:place + m) = line%values(a - 1, first, :) * line%values(b - 1, second, :)
             end associate
           end do
         end do
-        self%values(:, ab) = self%either(:m, ab)
-        self%first(:, ab) = self%either(:2 * m, ab)
-        self%second(:m, ab) = self%either(:m, ab)
-        self%second(m + 1:, ab) = self%either(2 * m + 1:3 * m, ab)
+        self%values(ab, :) = self%either(ab, :m)
+        self%first(ab, :) = self%either(ab, :2 * m)
+        self%second(ab, :m) = self%either(ab, :m)
+        self%second(ab, m + 1:) = self%either(ab, 2 * m + 1:3 * m)
       end do
     end do
   end subroutine tabulate
 
-  !> Sum over points and kinds of `densities` times pairs of functions: from (points, field, kind, kind) to `sums` (field, u, v, w),
-  !> where each of u, v, w runs over pairs of functions, the first faster.
+  !> Where the pair of the kinds d and e stands among those of `kinds` by `kinds`, from 1: of value and last derivative, 1, k, the
+  !> pairs 11, k1, 1k, kk; of each other one i then 1i, ki; then i1, ik; then the others.
+  pure integer function pair_of_kinds(d, e, kinds) result(place)
+    integer, intent(in) :: d, e, kinds
+    logical :: inner(2)
+
+    inner = [d, e] > 1 .and. [d, e] < kinds
+    if (all(inner)) then
+      place = 4 * (kinds - 1) + d - 1 + (kinds - 2) * (e - 2)
+    else if (inner(1)) then
+      place = 2 * (kinds + d) - 3 + merge(1, 0, e == kinds)
+    else if (inner(2)) then
+      place = 2 * e + 1 + merge(1, 0, d == kinds)
+    else
+      place = 1 + merge(1, 0, d == kinds) + merge(2, 0, e == kinds)
+    end if
+  end function pair_of_kinds
+
+  !> Sum over points and kinds of `densities` times pairs of functions: from (field, points, pair of kinds) to `sums` (u, v, w,
+  !> field), where each of u, v, w runs over pairs of functions, the first faster.
   pure subroutine integrate_pairs(u, v, w, fields, densities, sums)
     type(line_pairs_t), intent(in) :: u, v, w
     integer, intent(in) :: fields
-    real(wp), intent(in) :: densities(size(u%values, 1) * size(v%values, 1) * size(w%values, 1) * fields, 4, 4)
-    real(wp), intent(out) :: sums(fields * size(u%values, 2) * size(v%values, 2) * size(w%values, 2))
-    real(wp), allocatable :: one(:, :, :), two(:, :, :)
+    real(wp), intent(in) :: densities(fields * size(u%values, 2) * size(v%values, 2) * size(w%values, 2), 16)
+    real(wp), intent(out) :: sums(size(u%values, 1) * size(v%values, 1) * size(w%values, 1) * fields)
+    real(wp), allocatable :: one(:, :), two(:, :)
 
-    allocate (one(size(v%values, 1) * size(w%values, 1) * fields * size(u%values, 2), 3, 3))
-    allocate (two(size(w%values, 1) * fields * size(u%values, 2) * size(v%values, 2), 2, 2))
-    call gather_pairs(u, 4, size(one, 1) / size(u%values, 2), densities, one)
-    call gather_pairs(v, 3, size(two, 1) / size(v%values, 2), one, two)
-    call gather_pairs(w, 2, size(sums) / size(w%values, 2), two, sums)
+    allocate (one(size(w%values, 1) * fields * size(u%values, 2) * size(v%values, 2), 9))
+    allocate (two(size(v%values, 1) * size(w%values, 1) * fields * size(u%values, 2), 4))
+    call gather_pairs(w, 4, size(densities, 1) / size(w%values, 2), densities, one)
+    call gather_pairs(v, 3, size(one, 1) / size(v%values, 2), one, two)
+    call gather_pairs(u, 2, size(two, 1) / size(u%values, 2), two, sums)
   end subroutine integrate_pairs
 
   !> One direction of `integrate_pairs`.
   pure subroutine gather_pairs(line, kinds, rest, source, target)
     type(line_pairs_t), intent(in) :: line
     integer, intent(in) :: kinds, rest
-    real(wp), intent(in) :: source(size(line%values, 1), rest, kinds, kinds)
-    real(wp), intent(out) :: target(rest, size(line%values, 2), kinds - 1, kinds - 1)
-    real(wp), allocatable :: beside(:, :), both(:, :)
-    integer :: d, e, m
+    real(wp), intent(in) :: source(rest * size(line%values, 2), kinds**2)
+    real(wp), intent(out) :: target(size(line%values, 1) * rest, (kinds - 1)**2)
+    integer :: d, e
 
-    allocate (beside(rest, 2 * size(line%values, 1)), both(rest, 4 * size(line%values, 1)))
-    m = size(line%values, 1) ! few: copies run down the rest, one short copy for each of which costs more than the products
-    both(:, :m) = transpose(source(:, :, 1, 1))
-    both(:, m + 1:2 * m) = transpose(source(:, :, 2, 1))
-    both(:, 2 * m + 1:3 * m) = transpose(source(:, :, 1, 2))
-    both(:, 3 * m + 1:) = transpose(source(:, :, 2, 2))
-    target(:, :, 1, 1) = matmul(both, line%either)
+    call contract(line%either, rest, source(:, 1:4), target(:, 1))
     do d = 2, kinds - 1
-      beside(:, :m) = transpose(source(:, :, 1, d + 1))
-      beside(:, m + 1:) = transpose(source(:, :, 2, d + 1))
-      target(:, :, 1, d) = matmul(beside, line%first)
-      beside(:, :m) = transpose(source(:, :, d + 1, 1))
-      beside(:, m + 1:) = transpose(source(:, :, d + 1, 2))
-      target(:, :, d, 1) = matmul(beside, line%second)
+      associate (pair => pair_of_kinds(1, d, kinds))
+        call contract(line%first, rest, source(:, pair:pair + 1), target(:, pair_of_kinds(1, d, kinds - 1)))
+      end associate
+      associate (pair => pair_of_kinds(d, 1, kinds))
+        call contract(line%second, rest, source(:, pair:pair + 1), target(:, pair_of_kinds(d, 1, kinds - 1)))
+      end associate
       do e = 2, kinds - 1
-        beside(:, :m) = transpose(source(:, :, e + 1, d + 1))
-        target(:, :, e, d) = matmul(beside(:, :m), line%values)
+        call contract(line%values, rest, source(:, pair_of_kinds(d, e, kinds)), target(:, pair_of_kinds(d, e, kinds - 1)))
       end do
     end do
   end subroutine gather_pairs
+
+  !> Sum over the last index of `source`, the columns of a `table` of `line_pairs_t`; the `rest` of its indices stay.
+  pure subroutine contract(table, rest, source, target)
+    real(wp), contiguous, intent(in) :: table(:, :)
+    integer, intent(in) :: rest
+    real(wp), intent(in) :: source(rest, size(table, 2))
+    real(wp), intent(out) :: target(size(table, 1), rest)
+
+    target = matmul(table, transpose(source))
+  end subroutine contract
 
 end module isomortar_nurbs_tensor_product

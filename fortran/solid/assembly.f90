@@ -221,7 +221,7 @@ contains
   pure subroutine add_row(nodes, weight, at, a, count, block, columns, tangent)
     integer, intent(in) :: nodes(:), at(3), a, count(3), columns(:)
     real(wp), intent(in) :: weight(:)
-    real(wp), intent(in) :: block(6, count(1), count(1), count(2), count(2), count(3), count(3))
+    real(wp), intent(in) :: block(count(1), count(1), count(2), count(2), count(3), count(3), 6)
     real(wp), intent(inout) :: tangent(:, :, :)
     integer :: b, b1, b2, b3, i, k, pair
     real(wp) :: both
@@ -236,8 +236,8 @@ contains
             do pair = 1, 6
               i = component_pairs(1, pair)
               k = component_pairs(2, pair)
-              target(k, i) = target(k, i) + both * block(pair, at(1), b1, at(2), b2, at(3), b3)
-              if (i /= k) target(i, k) = target(i, k) + both * block(pair, b1, at(1), b2, at(2), b3, at(3))
+              target(k, i) = target(k, i) + both * block(at(1), b1, at(2), b2, at(3), b3, pair)
+              if (i /= k) target(i, k) = target(i, k) + both * block(b1, at(1), b2, at(2), b3, at(3), pair)
             end do
           end associate
         end do

@@ -7,7 +7,7 @@ module isomortar_solid_element
   use isomortar_base_kinds, only: lanes, wp
   use isomortar_base_predicate, only: is_balanced, is_symmetric
   use isomortar_base_status, only: status_folded, status_ok
-  use isomortar_nurbs_tensor_product, only: integrate, integrate_pairs, interpolate, line_pairs_t
+  use isomortar_nurbs_tensor_product, only: integrate, integrate_pairs, interpolate, line_pairs_t, pair_of_kinds
   use isomortar_solid_body, only: body_t, bundle_t, geometry_t, slopes_at
   use isomortar_solid_material_law, only: component_pairs, material_t, stretch, stretch_t
   use isomortar_solid_points, only: cofactors, least
@@ -28,8 +28,8 @@ module isomortar_solid_element
   type, public :: room_t
     !> Densities of forces, (lane, component, kind, point), and these integrated, (lane, control point, component).
     real(wp), allocatable :: forces(:, :, :, :), sums(:, :, :)
-    !> Densities of tangents by element, (point, pair of components, kind, kind, lane).
-    real(wp), allocatable :: tangents(:, :, :, :, :)
+    !> Densities of tangents by element, (pair of components, point, pair of kinds, lane).
+    real(wp), allocatable :: tangents(:, :, :, :)
   end type room_t
 
 contains
@@ -74,7 +74,7 @@ contains
     associate (m => size(bundle%values, 4), n => size(bundle%weight, 2))
       if (.not. allocated(room%sums)) allocate (room%forces(lanes, 3, bundle%first:4, m), room%sums(lanes, n, 3))
       if (.not. with_tangents .or. allocated(room%tangents)) return
-      allocate (room%tangents(m, 6, 4, 4, lanes), source=0.0_wp) ! kinds that there are not stay zero
+      allocate (room%tangents(6, m, 16, lanes), source=0.0_wp) ! kinds that there are not stay zero
     end associate
   end subroutine make_room
 
@@ -158,7 +158,7 @@ contains
     type(geometry_t), intent(in) :: geometry
     type(sample_t), intent(in) :: sample
     class(material_t), intent(in) :: material
-    real(wp), contiguous, intent(inout) :: tangents(:, :, :, :, :)
+    real(wp), contiguous, intent(inout) :: tangents(:, :, :, :)
     real(wp) :: along(lanes, 3), moduli(lanes, 3, 3, 6), density(lanes)
     integer :: d, e, j, l, pair
 
@@ -177,8 +177,8 @@ contains
           end do
           do d = first, merge(e, 4, pair <= 3) ! K_ii is symmetric
             density = g(:, 1, d) * along(:, 1) + g(:, 2, d) * along(:, 2) + g(:, 3, d) * along(:, 3)
-            tangents(q, pair, d, e, :) = density
-            if (pair <= 3) tangents(q, pair, e, d, :) = density
+            tangents(pair, q, pair_of_kinds(d, e, 4), :) = density
+            if (pair <= 3) tangents(pair, q, pair_of_kinds(e, d, 4), :) = density
           end do
         end do
       end do
@@ -202,7 +202,7 @@ contains
   end subroutine element_residuals
 
   !> The tangents K_ik, F/L, of `component_pairs` without the weights of the control points: `tangents` (numbers, elements),
-  !> as (pair, u, v, w), where each of `u`, `v`, `w`, by element of the directions, runs over pairs of functions (theory 1.8).
+  !> as (u, v, w, pair), where each of `u`, `v`, `w`, by element of the directions, runs over pairs of functions (theory 1.8).
   pure subroutine element_tangents(u, v, w, bundle, room, tangents)
     type(line_pairs_t), intent(in) :: u(:), v(:), w(:)
     type(bundle_t), intent(in) :: bundle
@@ -212,7 +212,7 @@ contains
 
     do l = 1, bundle%many
       associate (at => bundle%place(:, l))
-        call integrate_pairs(u(at(1)), v(at(2)), w(at(3)), 6, room%tangents(:, :, :, :, l), tangents(:, l))
+        call integrate_pairs(u(at(1)), v(at(2)), w(at(3)), 6, room%tangents(:, :, :, l), tangents(:, l))
       end associate
     end do
   end subroutine element_tangents
