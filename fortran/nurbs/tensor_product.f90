@@ -2,9 +2,9 @@
 !>
 !> A function of an element is B_a = u_a1 v_a2 w_a3. Kind D = 1 is its value, D = 2, 3, 4 its derivatives by the three
 !> parameters. `interpolate` and `integrate`, its transpose, do the same for `lanes` elements side by side, which run fastest.
-!> The contractions of `integrate_pairs` take the last index of an array away and put the new one in front, so that nothing is copied
-!> in between: after w, v, u the indices have gone round. Of the kinds that are left on the way the last is the derivative along the
-!> direction that is next, and pairs of kinds are stored in the order of `pair_of_kinds`: those that are summed stand together.
+!> The contractions of `integrate_pairs` take the last index of an array away and put the new one in front, so that nothing is
+!> copied in between: after w, v, u the indices have gone round. Of the kinds that are left on the way the last is the derivative
+!> along the direction that is next, and pairs of kinds are in the order of `pair_of_kinds`: those that are summed stand together.
 !>
 !> - `u`, `v`, `w`: functions of the three directions in the elements, or their pairs, at their points. `fields`: how many fields.
 !> - `first`: the first kind of those there are, 1, or 2 where there are derivatives alone.

@@ -175,57 +175,76 @@ contains
     end do
   end subroutine add_forces
 
-  !> Add the tangents of a batch's first `many` elements, shares of the rows at the same time. `count`: functions by direction,
-  !> `lacking` a row that has no block where one is to be added, 0 without any.
+  !> Add the tangents of a batch's first `many` elements, shares of the rows at the same time, each row for all of its elements at
+  !> once: it stays in the cache. `count`: functions by direction, `lacking`: a row that has no block where one is to be added, 0
+  !> without any.
   subroutine add_blocks(pattern, batch, many, count, tangent, lacking)
     type(pattern_t), intent(in) :: pattern
     type(batch_t), intent(in) :: batch
     integer, intent(in) :: many, count(3)
     real(wp), intent(inout) :: tangent(:, :, :)
     integer, intent(out) :: lacking
-    integer, allocatable :: columns(:)
-    integer :: a, a1, a2, a3, k, shares, share
+    integer, allocatable :: columns(:), first(:), next(:, :)
+    integer :: a, k, row, share, shares, turn
 
     shares = 1
 !$  shares = omp_get_max_threads()
     lacking = 0
-    !$omp parallel do default(none) private(a, a1, a2, a3, columns, k) shared(batch, count, many, pattern, shares, tangent) &
-    !$omp reduction(max: lacking)
+    allocate (first(size(pattern%start) - 1), next(size(batch%nodes, 1), many))
+    call list_rows(batch%nodes(:, :many), first, next)
+    !$omp parallel do default(none) private(a, columns, k, row, turn) &
+    !$omp shared(batch, count, first, many, next, pattern, shares, tangent) reduction(max: lacking)
     do share = 0, shares - 1
       allocate (columns(size(pattern%start) - 1), source=0)
-      do k = 1, many
-        associate (nodes => batch%nodes(:, k))
-          a = 0
-          do a3 = 1, count(3)
-            do a2 = 1, count(2)
-              do a1 = 1, count(1)
-                a = a + 1
-                if (modulo(nodes(a), shares) /= share) cycle
-                call mark_row(pattern, nodes(a), columns)
-                if (lacks(pattern, nodes(a), columns, nodes)) then
-                  lacking = max(lacking, nodes(a))
-                  cycle
-                end if
-                call add_row(nodes, batch%weight(:, k), [a1, a2, a3], a, count, batch%tangents(:, k), columns, tangent)
-              end do
-            end do
-          end do
-        end associate
+      do turn = 0, size(next) - 1
+        row = batch%nodes(1 + modulo(turn, size(next, 1)), 1 + turn / size(next, 1))
+        if (modulo(row, shares) /= share .or. first(row) /= turn) cycle
+        call mark_row(pattern, row, columns)
+        k = turn
+        do while (k >= 0)
+          a = 1 + modulo(k, size(next, 1))
+          associate (element => 1 + k / size(next, 1))
+            if (lacks(pattern, row, columns, batch%nodes(:, element))) then
+              lacking = max(lacking, row)
+            else
+              call add_row(batch%nodes(:, element), batch%weight(:, element), a, count, batch%tangents(:, element), columns, &
+                tangent)
+            end if
+            k = next(a, element)
+          end associate
+        end do
       end do
       deallocate (columns)
     end do
     !$omp end parallel do
   end subroutine add_blocks
 
-  !> Add one row of blocks of an element's tangent, as `element_tangents` gives it: that of function a, in the directions `at`.
-  pure subroutine add_row(nodes, weight, at, a, count, block, columns, tangent)
-    integer, intent(in) :: nodes(:), at(3), a, count(3), columns(:)
+  !> Where a row stands among the `nodes` (control points, elements): the `first` place (rows) and the `next` after each, -1 after
+  !> the last, all counted from 0 through the elements in their order.
+  pure subroutine list_rows(nodes, first, next)
+    integer, intent(in) :: nodes(:, :)
+    integer, intent(out) :: first(:), next(:, :)
+    integer :: a, k
+
+    first = -1
+    do k = size(nodes, 2), 1, -1
+      do a = size(nodes, 1), 1, -1
+        next(a, k) = first(nodes(a, k))
+        first(nodes(a, k)) = a - 1 + size(nodes, 1) * (k - 1)
+      end do
+    end do
+  end subroutine list_rows
+
+  !> Add one row of blocks of an element's tangent, as `element_tangents` gives it: that of function a.
+  pure subroutine add_row(nodes, weight, a, count, block, columns, tangent)
+    integer, intent(in) :: nodes(:), a, count(3), columns(:)
     real(wp), intent(in) :: weight(:)
     real(wp), intent(in) :: block(count(1), count(1), count(2), count(2), count(3), count(3), 6)
     real(wp), intent(inout) :: tangent(:, :, :)
-    integer :: b, b1, b2, b3, i, k, pair
+    integer :: at(3), b, b1, b2, b3, i, k, pair
     real(wp) :: both
 
+    at = 1 + modulo((a - 1) / [1, count(1), count(1) * count(2)], count)
     b = 0
     do b3 = 1, count(3)
       do b2 = 1, count(2)

@@ -163,7 +163,7 @@ contains
     integer :: d, e, j, l, pair
 
     call material%tangent(sample%state, moduli)
-    do l = 1, merge(lanes, 0, contracts)
+    do l = 1, lanes
       if (contracts) call require(is_symmetric(moduli(l, :, :, 1)), "take_tangents: a_1j1l is symmetric, the law has an energy")
       if (contracts) call require(is_symmetric(moduli(l, :, :, 2)), "take_tangents: so is a_2j2l")
       if (contracts) call require(is_symmetric(moduli(l, :, :, 3)), "take_tangents: so is a_3j3l")

@@ -69,7 +69,7 @@ contains
     if (allocated(geometry%weighting)) densities(:, 1, :) = geometry%volume * geometry%weighting(:, 1, :)
     call integrate(bundle%u, bundle%v, bundle%w, 1, densities, 1, shares, bundle%lines)
     shares = bundle%weight * shares
-    do l = 1, merge(lanes, 0, contracts)
+    do l = 1, lanes
       if (contracts) call require(sums_to(shares(l, :), sum(geometry%volume(l, :))), "take_shares: they sum to its volume")
     end do
   end subroutine take_shares
