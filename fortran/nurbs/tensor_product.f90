@@ -45,9 +45,9 @@ module isomortar_nurbs_tensor_product
     integer :: first, kinds
     !> How many sums there are, two ways.
     integer :: counts(2)
-    !> How far the next number is: both ways, along the line between them, and of the next kind. On the side of the control points
-    !> and on that of the quadrature points.
-    integer :: coarse(4), fine(4)
+    !> On the side of the control points and on that of the quadrature points, how far the next number is: one way, along the line,
+    !> the other way, and of the next kind; and how many numbers there are.
+    integer :: coarse(4), fine(4), numbers(2)
   end type stage_t
 
 contains
@@ -93,18 +93,22 @@ contains
     type(lines_t), intent(in) :: u, v, w
     integer, intent(in) :: fields, first
     type(stage_t) :: stage(3)
-    integer :: mu, mv, nu, nv, nw
+    integer :: layer, mu, mv, mw, nu, nv, nw, point, second, third
 
     mu = size(u%weight, 2)
     mv = size(v%weight, 2)
+    mw = size(w%weight, 2)
     nu = size(u%at_point, 2)
     nv = size(v%at_point, 2)
     nw = size(w%at_point, 2)
-    stage(1) = stage_t(1, 1, [nv * nw * fields, 1], [nu, 1, 0, 0], [mu, 1, 0, mu * nv * nw * fields])
-    stage(2) = stage_t(1, 2, [mu, nw * fields], [1, mu, mu * nv, mu * nv * nw * fields], [1, mu, mu * mv, mu * mv * nw * fields])
-    associate (point => fields * (5 - first), layer => mu * mv)
-      stage(3) = stage_t(first, 3, [layer, fields], [1, layer, layer * nw, layer * nw * fields], [point, layer * point, 1, fields])
-    end associate
+    second = mu * nv * nw * fields
+    third = mu * mv * nw * fields
+    layer = mu * mv
+    point = fields * (5 - first)
+    stage(1) = stage_t(1, 1, [nv * nw * fields, 1], [nu, 1, 0, 0], [mu, 1, 0, second], [nu * nv * nw * fields, 2 * second])
+    stage(2) = stage_t(1, 2, [mu, nw * fields], [1, mu, mu * nv, second], [1, mu, layer, third], [2 * second, 3 * third])
+    stage(3) = stage_t(first, 3, [layer, fields], [1, layer, layer * nw, third], [point, layer * point, 1, fields], &
+      [3 * third, point * layer * mw])
   end function stages
 
   !> Fields and their derivatives at all points: from `coefficients` (lanes, u, v, w, field) of the control points to `values`
@@ -129,8 +133,8 @@ contains
   pure subroutine spread_line(line, stage, source, target)
     type(lines_t), intent(in) :: line
     type(stage_t), intent(in) :: stage
-    real(wp), intent(in) :: source(lanes, 0:*)
-    real(wp), intent(inout) :: target(lanes, 0:*)
+    real(wp), intent(in) :: source(lanes, 0:stage%numbers(1) - 1)
+    real(wp), intent(inout) :: target(lanes, 0:stage%numbers(2) - 1)
     integer :: d, place, q
 
     do q = 1, size(line%weight, 2)
@@ -166,8 +170,8 @@ contains
   pure subroutine gather_line(line, stage, source, target)
     type(lines_t), intent(in) :: line
     type(stage_t), intent(in) :: stage
-    real(wp), intent(in) :: source(lanes, 0:*)
-    real(wp), intent(inout) :: target(lanes, 0:*)
+    real(wp), intent(in) :: source(lanes, 0:stage%numbers(2) - 1)
+    real(wp), intent(inout) :: target(lanes, 0:stage%numbers(1) - 1)
     integer :: a, d, place
 
     do a = 1, size(line%at_point, 2)
@@ -187,9 +191,9 @@ contains
   !> the columns and `jump` of the sums, `total`.
   pure subroutine sum_columns(counts, columns, step, shares, total, jump)
     integer, intent(in) :: counts(2), step(4), jump(4)
-    real(wp), intent(in) :: columns(lanes, 0:*)
     real(wp), contiguous, intent(in) :: shares(:, :)
-    real(wp), intent(inout) :: total(lanes, 0:*)
+    real(wp), intent(in) :: columns(lanes, 0:dot_product(step(:3), [counts(1), size(shares, 2), counts(2)] - 1))
+    real(wp), intent(inout) :: total(lanes, 0:dot_product(jump(:3), [counts(1), 1, counts(2)] - 1))
     integer :: b, c, next, r, t
 
     next = step(2)
@@ -230,9 +234,9 @@ contains
   !> Add the columns from number `from` on to such sums, two at a time: the sums are read and written less often.
   pure subroutine add_columns(from, counts, columns, step, shares, total, jump)
     integer, intent(in) :: from, counts(2), step(4), jump(4)
-    real(wp), intent(in) :: columns(lanes, 0:*)
     real(wp), contiguous, intent(in) :: shares(:, :)
-    real(wp), intent(inout) :: total(lanes, 0:*)
+    real(wp), intent(in) :: columns(lanes, 0:dot_product(step(:3), [counts(1), size(shares, 2), counts(2)] - 1))
+    real(wp), intent(inout) :: total(lanes, 0:dot_product(jump(:3), [counts(1), 1, counts(2)] - 1))
     integer :: a, b, c, next, r, t
 
     next = step(2)
@@ -296,7 +300,7 @@ contains
     end do
   end subroutine tabulate
 
-  !> Where the pair of the kinds d and e stands among those of `kinds` by `kinds`, from 1: of value and last derivative, 1, k, the
+  !> Where the pair of kinds `d` and `e` stands among those of `kinds` by `kinds`, from 1: of value and last derivative, 1, k, the
   !> pairs 11, k1, 1k, kk; of each other one i then 1i, ki; then i1, ik; then the others.
   pure integer function pair_of_kinds(d, e, kinds) result(place)
     integer, intent(in) :: d, e, kinds

@@ -201,8 +201,10 @@ contains
     end do
   end subroutine element_residuals
 
-  !> The tangents K_ik, F/L, of `component_pairs` without the weights of the control points: `tangents` (numbers, elements),
-  !> as (u, v, w, pair), where each of `u`, `v`, `w`, by element of the directions, runs over pairs of functions (theory 1.8).
+  !> The tangents K_ik, F/L, of `component_pairs` without the weights of the control points: `tangents` (numbers, elements), as (u,
+  !> v, w, pair), where each of u, v, w runs over pairs of functions (theory 1.8).
+  !>
+  !> - `u` (elements), `v` (elements), `w` (elements): pairs of functions of the elements of each direction.
   pure subroutine element_tangents(u, v, w, bundle, room, tangents)
     type(line_pairs_t), intent(in) :: u(:), v(:), w(:)
     type(bundle_t), intent(in) :: bundle
