@@ -98,3 +98,25 @@ def test_a_folded_element_is_named_with_its_jacobian() -> None:
             _bindings.add_body(turned, MATERIAL.arrays, REFERENCE, np.zeros_like(REFERENCE))
         with pytest.raises(FoldedElementError, match=told):
             _bindings.control_volumes(turned)
+
+
+@pytest.mark.parametrize("element", range(6))
+@pytest.mark.parametrize("often", [True, False])
+def test_the_folded_element_among_those_beside_it_is_named(element: int, often: bool) -> None:
+    """One of six in a row, which are computed four side by side; of two that fold the first one."""
+    patch = mesh(box((0.0, 0.0, 0.0), (6.0, 1.0, 1.0)), ("L", "L", "L"), (1, 1, 1), (6, 1, 1))
+    reference = patch.control_points
+    arrays = patch_arrays(patch, np.arange(len(reference), dtype=np.int32))
+    # An element lies between x = element and element + 1: its far end goes behind its near one, and the elements beyond with it.
+    beyond = reference[:, 0] > element + 0.5
+    turned = reference - np.outer(beyond, [1.5, 0.0, 0.0])
+    also = turned - np.outer(reference[:, 0] > 4.5, [2.0, 0.0, 0.0])
+    for folded, first in ((turned, element), (also, min(element, 4))):
+        forces = np.zeros_like(reference)
+        with pytest.raises(FoldedElementError, match=rf"^element {first} is folded \(J = -\d"):
+            _bindings.add_body(BodyArrays(arrays, (2, 2, 2), reference, often), MATERIAL.arrays, folded, forces)
+        told = rf"^element {first} is .* reference"
+        with pytest.raises(FoldedElementError, match=told):
+            _bindings.add_body(BodyArrays(arrays, (2, 2, 2), folded, often), MATERIAL.arrays, reference, forces)
+        with pytest.raises(FoldedElementError, match=told):
+            _bindings.control_volumes(BodyArrays(arrays, (2, 2, 2), folded, often))

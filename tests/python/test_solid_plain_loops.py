@@ -23,12 +23,12 @@ from isomortar.model.numbering import patch_arrays
 MATERIAL = Material(10.0, 0.3)
 
 
-def rational_body(order: tuple[int, int, int], elements: tuple[int, int, int]) -> Patch:
-    """A distorted box with weights between 0.4 and 2.5."""
+def distorted_body(order: tuple[int, int, int], elements: tuple[int, int, int], spread: float) -> Patch:
+    """A distorted box with weights between exp(-spread) and exp(spread)."""
     rng = np.random.default_rng(5)
     patch = mesh(box((0.0, 0.0, 0.0), (1.0, 0.7, 1.2)), ("N", "N", "N"), order, elements)
     shaken = patch.control_points + 0.03 * rng.standard_normal(patch.control_points.shape)
-    return replace(patch, control_points=shaken, weights=np.exp(rng.uniform(-0.9, 0.9, patch.weights.shape)))
+    return replace(patch, control_points=shaken, weights=np.exp(rng.uniform(-spread, spread, patch.weights.shape)))
 
 
 def line(direction: Direction, element: int, points: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -70,9 +70,15 @@ def plain_forces(samples: list[tuple[float, np.ndarray]], positions: np.ndarray)
     return forces
 
 
-@pytest.mark.parametrize(("order", "elements"), [((3, 1, 2), (2, 2, 1)), ((1, 4, 1), (1, 2, 2)), ((2, 2, 5), (1, 1, 2))])
-def test_forces_and_tangent(order: tuple[int, int, int], elements: tuple[int, int, int]) -> None:
-    patch = rational_body(order, elements)
+#: Elements are computed four side by side: rows of one to seven, and with order 5 more than a batch of tangents.
+BODIES = [((3, 1, 2), (2, 2, 1)), ((1, 4, 1), (1, 3, 2)), ((2, 2, 5), (1, 1, 2)), ((1, 2, 1), (1, 1, 1)), ((2, 1, 1), (3, 1, 1))]
+BODIES += [((1, 1, 3), (1, 5, 1)), ((1, 1, 1), (1, 1, 7)), ((2, 2, 5), (3, 3, 1))]
+
+
+@pytest.mark.parametrize("spread", [0.9, 0.0], ids=["rational", "polynomial"])
+@pytest.mark.parametrize(("order", "elements"), BODIES)
+def test_forces_and_tangent(order: tuple[int, int, int], elements: tuple[int, int, int], spread: float) -> None:
+    patch = distorted_body(order, elements, spread)
     n = len(patch.control_points)
     points = (order[0] + 2, order[1] + 1, order[2] + 1)
     arrays = patch_arrays(patch, np.arange(n, dtype=np.int32))
@@ -91,3 +97,5 @@ def test_forces_and_tangent(order: tuple[int, int, int], elements: tuple[int, in
     step = 1e-30
     slope = plain_forces(samples, positions + 1j * step * along).imag / step
     assert np.linalg.norm(tangent @ along.ravel() - slope.ravel()) < 1e-13 * np.linalg.norm(slope)
+    volume = sum(volume for volume, _ in samples)
+    assert abs(_bindings.control_volumes(body).sum() - volume) < 1e-13 * volume
