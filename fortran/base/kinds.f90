@@ -10,7 +10,7 @@ module isomortar_base_kinds
   integer, parameter, public :: ip = int32
   !> Kind of positions in a sparse matrix, and of handles.
   integer, parameter, public :: lp = int64
-  !> Elements that are computed side by side: as many as a processor's register holds numbers.
+  !> Elements that are computed side by side: as many as a register of AVX2 holds numbers.
   integer, parameter, public :: lanes = 4
 
 end module isomortar_base_kinds

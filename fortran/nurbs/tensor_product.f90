@@ -1,14 +1,14 @@
 !> Sums over the control points or the quadrature points of elements, one direction after the other (sum factorisation).
 !>
 !> A function of an element is B_a = u_a1 v_a2 w_a3. Kind D = 1 is its value, D = 2, 3, 4 its derivatives by the three
-!> parameters. `interpolate` and `integrate`, its transpose, do the same for `lanes` elements side by side, which run fastest.
+!> parameters. `interpolate` and `integrate`, its transpose, take `lanes` elements side by side, which run fastest.
 !> The contractions of `integrate_pairs` take the last index of an array away and put the new one in front, so that nothing is
 !> copied in between: after w, v, u the indices have gone round. Of the kinds that are left on the way the last is the derivative
 !> along the direction that is next, and pairs of kinds are in the order of `pair_of_kinds`: those that are summed stand together.
 !>
 !> - `u`, `v`, `w`: functions of the three directions in the elements, or their pairs, at their points. `fields`: how many fields.
 !> - `first`: the first kind of those there are, 1, or 2 where there are derivatives alone.
-!> - `room` (numbers): `room_for_lines` of them at least, for what is on the way.
+!> - `room` (numbers): `room_for_lines` or `room_for_pairs` of them at least, for what is on the way.
 module isomortar_nurbs_tensor_product
   use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: lanes, wp
@@ -17,7 +17,7 @@ module isomortar_nurbs_tensor_product
   implicit none
   private
 
-  public :: integrate, integrate_pairs, interpolate, line_pairs, pair_of_kinds, room_for_lines, side_by_side
+  public :: integrate, integrate_pairs, interpolate, line_pairs, pair_of_kinds, room_for_lines, room_for_pairs, side_by_side
 
   !> Functions of one direction in elements side by side, at their points.
   type, public :: lines_t
@@ -188,7 +188,7 @@ contains
   end subroutine gather_line
 
   !> Sums of columns of numbers times their shares, of which every lane has its own. `counts`: as of stage_t, and so are `step` of
-  !> the columns and `jump` of the sums, `total`.
+  !> the columns and `jump` of the sums, `total`. Up to four columns are summed in registers and written once, others then added.
   pure subroutine sum_columns(counts, columns, step, shares, total, jump)
     integer, intent(in) :: counts(2), step(4), jump(4)
     real(wp), contiguous, intent(in) :: shares(:, :)
@@ -318,37 +318,53 @@ contains
     end if
   end function pair_of_kinds
 
+  !> How many numbers `integrate_pairs` needs for so many fields on the way.
+  pure integer function room_for_pairs(u, v, w, fields) result(numbers)
+    type(lines_t), intent(in) :: u, v, w
+    integer, intent(in) :: fields
+
+    associate (mu => size(u%weight, 2), mv => size(v%weight, 2), nv => size(v%at_point, 2), nw => size(w%at_point, 2))
+      numbers = fields * nw**2 * mu * (9 * mv + 4 * nv**2)
+    end associate
+  end function room_for_pairs
+
   !> Sum over points and kinds of `densities` times pairs of functions: from (field, points, pair of kinds) to `sums` (u, v, w,
   !> field), where each of u, v, w runs over pairs of functions, the first faster.
-  pure subroutine integrate_pairs(u, v, w, fields, densities, sums)
+  pure subroutine integrate_pairs(u, v, w, fields, densities, first, sums, room)
     type(line_pairs_t), intent(in) :: u, v, w
-    integer, intent(in) :: fields
+    integer, intent(in) :: fields, first
     real(wp), intent(in) :: densities(fields * size(u%values, 2) * size(v%values, 2) * size(w%values, 2), 16)
     real(wp), intent(out) :: sums(size(u%values, 1) * size(v%values, 1) * size(w%values, 1) * fields)
-    real(wp), allocatable :: one(:, :), two(:, :)
+    real(wp), contiguous, intent(inout) :: room(:)
 
-    allocate (one(size(w%values, 1) * fields * size(u%values, 2) * size(v%values, 2), 9))
-    allocate (two(size(v%values, 1) * size(w%values, 1) * fields * size(u%values, 2), 4))
-    call gather_pairs(w, 4, size(densities, 1) / size(w%values, 2), densities, one)
-    call gather_pairs(v, 3, size(one, 1) / size(v%values, 2), one, two)
-    call gather_pairs(u, 2, size(two, 1) / size(u%values, 2), two, sums)
+    associate (mu => size(u%values, 2), mv => size(v%values, 2), pv => size(v%values, 1), pw => size(w%values, 1))
+      associate (two => 1 + 9 * pw * fields * mu * mv)
+        call gather_pairs(w, first, 4, fields * mu * mv, densities, room)
+        call gather_pairs(v, 1, 3, pw * fields * mu, room, room(two:))
+        call gather_pairs(u, 1, 2, pv * pw * fields, room(two:), sums)
+      end associate
+    end associate
   end subroutine integrate_pairs
 
   !> One direction of `integrate_pairs`.
-  pure subroutine gather_pairs(line, kinds, rest, source, target)
+  pure subroutine gather_pairs(line, first, kinds, rest, source, target)
     type(line_pairs_t), intent(in) :: line
-    integer, intent(in) :: kinds, rest
+    integer, intent(in) :: first, kinds, rest
     real(wp), intent(in) :: source(rest * size(line%values, 2), kinds**2)
     real(wp), intent(out) :: target(size(line%values, 1) * rest, (kinds - 1)**2)
-    integer :: d, e
+    integer :: d, e, m, without
 
-    call contract(line%either, rest, source(:, 1:4), target(:, 1))
+    m = size(line%values, 2)
+    without = first - 1 ! values, which come first
+    call contract(line%either(:, 1 + 3 * m * without:), rest, source(:, 1 + 3 * without:4), target(:, 1))
     do d = 2, kinds - 1
       associate (pair => pair_of_kinds(1, d, kinds))
-        call contract(line%first, rest, source(:, pair:pair + 1), target(:, pair_of_kinds(1, d, kinds - 1)))
+        call contract(line%first(:, 1 + m * without:), rest, source(:, pair + without:pair + 1), &
+          target(:, pair_of_kinds(1, d, kinds - 1)))
       end associate
       associate (pair => pair_of_kinds(d, 1, kinds))
-        call contract(line%second, rest, source(:, pair:pair + 1), target(:, pair_of_kinds(d, 1, kinds - 1)))
+        call contract(line%second(:, 1 + m * without:), rest, source(:, pair + without:pair + 1), &
+          target(:, pair_of_kinds(d, 1, kinds - 1)))
       end associate
       do e = 2, kinds - 1
         call contract(line%values, rest, source(:, pair_of_kinds(d, e, kinds)), target(:, pair_of_kinds(d, e, kinds - 1)))

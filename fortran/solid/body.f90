@@ -44,7 +44,7 @@ module isomortar_solid_body
     !> Derivatives of the reference position by the parameters, and of these by it: (lane, component, parameter, point), L/P and
     !> P/L.
     real(wp), allocatable :: map(:, :, :, :), inverse(:, :, :, :)
-    !> Quadrature weight times reference volume, (lane, point), L^3.
+    !> Quadrature weight times reference volume, (lane, point), L^3; where any is folded determinants alone.
     real(wp), allocatable :: volume(:, :)
     !> 1/W, and the derivatives of W by the parameters over W, of the sum W of functions times weights: (lane, 4, point); of a
     !> rational body alone.
@@ -203,7 +203,7 @@ contains
   end subroutine take_weighting
 
   !> The map from the parameters to the reference positions, `references` (3, control points of the patch), of elements whose
-  !> weighting is known, its inverse, and in place of the volumes and `smallest` its determinant (theory 1.3).
+  !> weighting is known, its inverse, its determinants where volumes will be, and their `smallest` (theory 1.3).
   pure subroutine take_map(references, bundle, geometry)
     real(wp), intent(in) :: references(:, :)
     type(bundle_t), intent(inout) :: bundle

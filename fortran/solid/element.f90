@@ -6,8 +6,9 @@ module isomortar_solid_element
   use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: lanes, wp
   use isomortar_base_predicate, only: is_balanced, is_symmetric
-  use isomortar_base_status, only: status_folded, status_ok
-  use isomortar_nurbs_tensor_product, only: integrate, integrate_pairs, interpolate, line_pairs_t, pair_of_kinds
+  use isomortar_base_status, only: status_folded, status_ok, status_out_of_memory
+  use isomortar_nurbs_tensor_product, only: integrate, integrate_pairs, interpolate, line_pairs_t, pair_of_kinds, &
+    room_for_pairs
   use isomortar_solid_body, only: body_t, bundle_t, geometry_t, slopes_at
   use isomortar_solid_material_law, only: component_pairs, material_t, stretch, stretch_t
   use isomortar_solid_points, only: cofactors, least
@@ -24,12 +25,14 @@ module isomortar_solid_element
     type(stretch_t) :: state
   end type sample_t
 
-  !> A thread keeps it from bundle to bundle: to ask for memory anew each time takes a tenth as long as the forces.
+  !> A thread keeps it from bundle to bundle: to ask for memory anew each time takes as long as a part of the forces.
   type, public :: room_t
     !> Densities of forces, (lane, component, kind, point), and these integrated, (lane, control point, component).
     real(wp), allocatable :: forces(:, :, :, :), sums(:, :, :)
     !> Densities of tangents by element, (pair of components, point, pair of kinds, lane).
     real(wp), allocatable :: tangents(:, :, :, :)
+    !> For what is on the way when these are integrated.
+    real(wp), allocatable :: pairs(:)
   end type room_t
 
 contains
@@ -37,7 +40,7 @@ contains
   !> Evaluate elements at all their quadrature points: the densities of forces in the room and, `with_tangents`, those of tangents.
   !>
   !> - `body`: that they are of. `positions` (3, control points): of all control points, L.
-  !> - `smallest`: least J of each. `status`: whether any is folded (isomortar_base_status).
+  !> - `smallest`: least J of each. `status`: whether any is folded, or memory ran out (isomortar_base_status).
   pure subroutine sample_elements(body, bundle, geometry, positions, material, with_tangents, room, smallest, status)
     type(body_t), intent(in) :: body
     type(bundle_t), intent(inout) :: bundle
@@ -51,10 +54,11 @@ contains
     type(sample_t) :: sample
     integer :: q
 
-    call make_room(bundle, with_tangents, room)
+    smallest = huge(1.0_wp)
+    call make_room(bundle, with_tangents, room, status)
+    if (status /= status_ok) return
     call take_displacements(body, positions, bundle)
     call interpolate(bundle%u, bundle%v, bundle%w, 3, bundle%coefficients, bundle%first, bundle%values, bundle%lines)
-    smallest = huge(1.0_wp)
     do q = 1, size(geometry%volume, 2)
       call take_sample(q, bundle, geometry, sample)
       smallest = least(smallest, sample%state%jacobian)
@@ -65,20 +69,25 @@ contains
     status = merge(status_ok, status_folded, all(smallest > 0.0_wp))
   end subroutine sample_elements
 
-  !> Make room for the first elements of a body: the others are like them.
-  pure subroutine make_room(bundle, with_tangents, room)
+  !> Make room for the first elements of a body: the others are like them. `status`: whether there is.
+  pure subroutine make_room(bundle, with_tangents, room, status)
     type(bundle_t), intent(in) :: bundle
     logical, intent(in) :: with_tangents
     type(room_t), intent(inout) :: room
+    integer, intent(out) :: status
+    integer :: failed
 
+    failed = 0
     associate (m => size(bundle%values, 4), n => size(bundle%weight, 2))
-      if (.not. allocated(room%sums)) allocate (room%forces(lanes, 3, bundle%first:4, m), room%sums(lanes, n, 3))
-      if (.not. with_tangents .or. allocated(room%tangents)) return
-      allocate (room%tangents(6, m, 16, lanes), source=0.0_wp) ! kinds that there are not stay zero
+      if (.not. allocated(room%sums)) allocate (room%forces(lanes, 3, bundle%first:4, m), room%sums(lanes, n, 3), stat=failed)
+      if (failed == 0 .and. with_tangents .and. .not. allocated(room%pairs)) then
+        allocate (room%tangents(6, m, 16, lanes), room%pairs(room_for_pairs(bundle%u, bundle%v, bundle%w, 6)), stat=failed)
+      end if
     end associate
+    status = merge(status_ok, status_out_of_memory, failed == 0)
   end subroutine make_room
 
-  !> Displacements of the control points times their weights as `coefficients` of the bundle.
+  !> Displacements of the control points times their weights as `coefficients` of the bundle (theory 1.3).
   pure subroutine take_displacements(body, positions, bundle)
     type(body_t), intent(in) :: body
     real(wp), intent(in) :: positions(:, :)
@@ -208,13 +217,13 @@ contains
   pure subroutine element_tangents(u, v, w, bundle, room, tangents)
     type(line_pairs_t), intent(in) :: u(:), v(:), w(:)
     type(bundle_t), intent(in) :: bundle
-    type(room_t), intent(in) :: room
+    type(room_t), intent(inout) :: room
     real(wp), intent(out) :: tangents(:, :)
     integer :: l
 
     do l = 1, bundle%many
       associate (at => bundle%place(:, l))
-        call integrate_pairs(u(at(1)), v(at(2)), w(at(3)), 6, room%tangents(:, :, :, l), tangents(:, l))
+        call integrate_pairs(u(at(1)), v(at(2)), w(at(3)), 6, room%tangents(:, :, :, l), bundle%first, tangents(:, l), room%pairs)
       end associate
     end do
   end subroutine element_tangents

@@ -111,12 +111,12 @@ def test_the_folded_element_among_those_beside_it_is_named(element: int, often: 
     beyond = reference[:, 0] > element + 0.5
     turned = reference - np.outer(beyond, [1.5, 0.0, 0.0])
     also = turned - np.outer(reference[:, 0] > 4.5, [2.0, 0.0, 0.0])
-    for folded, first in ((turned, element), (also, min(element, 4))):
-        forces = np.zeros_like(reference)
-        with pytest.raises(FoldedElementError, match=rf"^element {first} is folded \(J = -\d"):
-            _bindings.add_body(BodyArrays(arrays, (2, 2, 2), reference, often), MATERIAL.arrays, folded, forces)
-        told = rf"^element {first} is .* reference"
-        with pytest.raises(FoldedElementError, match=told):
-            _bindings.add_body(BodyArrays(arrays, (2, 2, 2), folded, often), MATERIAL.arrays, reference, forces)
-        with pytest.raises(FoldedElementError, match=told):
-            _bindings.control_volumes(BodyArrays(arrays, (2, 2, 2), folded, often))
+    for folded, first, jacobian in ((turned, element, -0.5), (also, min(element, 4), {4: -2.5, 5: -1}.get(element, -0.5))):
+        body, mirrored = (BodyArrays(arrays, (2, 2, 2), points, often) for points in (reference, folded))
+        forces, told = np.zeros_like(reference), rf"^element {first} is folded \(J = {jacobian}\)"
+        with pytest.raises(FoldedElementError, match=told + "$"):
+            _bindings.add_body(body, MATERIAL.arrays, folded, forces)
+        with pytest.raises(FoldedElementError, match=rf"^element {first} is .* reference"):
+            _bindings.add_body(mirrored, MATERIAL.arrays, reference, forces)
+        with pytest.raises(FoldedElementError, match=rf"^element {first} is .* reference"):
+            _bindings.control_volumes(mirrored)
