@@ -133,8 +133,11 @@ contains
 
     turns = max(1, batch_room / (lanes * threads * merge(6 * n**2, 3 * n, with_tangent)))
     elements = lanes * min(bundles, max(smallest_batch, threads * turns))
-    allocate (batch%nodes(n, elements), batch%weight(n, elements), batch%forces(3, n, elements), &
-      batch%smallest_jacobian(elements), batch%status(elements), stat=failed)
+    allocate (batch%smallest_jacobian(elements), stat=failed)
+    if (failed == 0) allocate (batch%status(elements), stat=failed)
+    if (failed == 0) allocate (batch%nodes(n, elements), stat=failed)
+    if (failed == 0) allocate (batch%weight(n, elements), stat=failed)
+    if (failed == 0) allocate (batch%forces(3, n, elements), stat=failed)
     if (failed == 0 .and. with_tangent) allocate (batch%tangents(6 * n**2, elements), stat=failed)
     status = merge(status_ok, status_out_of_memory, failed == 0)
   end subroutine reserve

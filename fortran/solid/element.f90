@@ -79,9 +79,11 @@ contains
 
     failed = 0
     associate (m => size(bundle%values, 4), n => size(bundle%weight, 2))
-      if (.not. allocated(room%sums)) allocate (room%forces(lanes, 3, bundle%first:4, m), room%sums(lanes, n, 3), stat=failed)
-      if (failed == 0 .and. with_tangents .and. .not. allocated(room%pairs)) then
-        allocate (room%tangents(6, m, 16, lanes), room%pairs(room_for_pairs(bundle%u, bundle%v, bundle%w, 6)), stat=failed)
+      if (.not. allocated(room%forces)) allocate (room%forces(lanes, 3, bundle%first:4, m), stat=failed)
+      if (failed == 0 .and. .not. allocated(room%sums)) allocate (room%sums(lanes, n, 3), stat=failed)
+      if (failed == 0 .and. with_tangents .and. .not. allocated(room%tangents)) then
+        allocate (room%tangents(6, m, 16, lanes), stat=failed)
+        if (failed == 0) allocate (room%pairs(room_for_pairs(bundle%u, bundle%v, bundle%w, 6)), stat=failed)
       end if
     end associate
     status = merge(status_ok, status_out_of_memory, failed == 0)

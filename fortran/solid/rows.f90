@@ -38,7 +38,9 @@ contains
 
     shares = 1
 !$  shares = omp_get_max_threads()
-    allocate (self%first(rows), self%next(functions, elements), self%columns(rows, 0:shares - 1), stat=failed)
+    allocate (self%first(rows), stat=failed)
+    if (failed == 0) allocate (self%next(functions, elements), stat=failed)
+    if (failed == 0) allocate (self%columns(rows, 0:shares - 1), stat=failed)
     status = merge(status_ok, status_out_of_memory, failed == 0)
     if (failed /= 0) return
     self%first(:) = -1
