@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import tomllib
 from pathlib import Path
+from typing import Any
 
 import pytest
 from forked import program
+from fuzz import scenes
+from fuzz.base_scenes import TEXTS
 from fuzz.child import Wrong, ending_of, tried
 
 from isomortar import Scene
+from isomortar.scene.schema import SceneTable
 
 
 @pytest.mark.parametrize(("code", "kind"), [(0, "right"), (1, "stopped"), (2, "refused")])
@@ -29,3 +34,26 @@ def test_a_fault_of_the_program_is_wrong(monkeypatch: pytest.MonkeyPatch) -> Non
     assert ending.kind == "wrong"
     assert "a fault of the program" in ending.said
     assert "no such key" in ending.said
+
+
+@pytest.mark.parametrize("text", TEXTS, ids=[tomllib.loads(text)["name"] for text in TEXTS])
+@pytest.mark.parametrize("number", [0, 1], ids=["units", "order"])
+def test_scenes_that_are_changed_are_right_unchanged(text: str, number: int, tmp_path: Path) -> None:
+    assert scenes.judged(text.encode(), number, tmp_path).kind == "right"
+
+
+def test_the_unit_of_every_number_of_a_scene_is_known() -> None:
+    """A key that is new stays as it is in other units, so its scene is another one there: that took fuzzed plates for faults."""
+    scaled = {*scenes.LENGTHS, *scenes.STRESSES, *scenes.LOADS, "young", "moment", "symmetry"}
+    schema = SceneTable.model_json_schema()
+    tables = [*schema["$defs"].values(), schema]
+    keys = {key for table in tables for key, field in table.get("properties", {}).items() if _is_real(field)}
+    assert keys <= scaled | scenes.PURE
+    assert keys >= scenes.PURE
+    assert not scaled & scenes.PURE
+
+
+def _is_real(field: Any) -> bool:
+    parts = [part for key in ("anyOf", "prefixItems") for part in field.get(key, ())]
+    parts += [field[key] for key in ("items", "additionalProperties") if isinstance(field.get(key), dict)]
+    return field.get("type") == "number" or any(map(_is_real, parts))

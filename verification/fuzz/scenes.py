@@ -26,7 +26,13 @@ LENGTH, MODULUS = 4.0**-7, 4.0**9
 #: Powers of the unit of length in the keys that hold one.
 LENGTHS = {
     "lower": 1, "upper": 1, "centre": 1, "half_width": 1, "bottom": 1, "rise": 1, "top": 1, "inner": 1, "outer": 1, "width": 1, "point": 1,
-    "translate": 1, "control_points": 1, "reference_area": 2, "elastic_slip": 1, "smoothing": 1, "x": 1, "y": 1, "z": 1,
+    "radius": 1, "translate": 1, "control_points": 1, "reference_area": 2, "elastic_slip": 1, "smoothing": 1, "x": 1, "y": 1, "z": 1,
+}  # fmt: skip
+#: Keys that hold numbers without a unit.
+PURE = {
+    "friction", "normal", "tangent", "axis", "angles", "latitudes", "rotate", "knots", "weights", "poisson", "penalty_normal",
+    "penalty_tangential", "penalty_growth", "penalty_growth_max", "newton_tolerance", "augmentation_tolerance", "complementarity_tolerance",
+    "path_tolerance", "compression", "loads",
 }  # fmt: skip
 #: Keys of contacts that hold stresses.
 STRESSES = ("cohesion", "traction_max", "smoothing")
@@ -40,15 +46,14 @@ ROUND_OFF, OF_TOLERANCE = 1e-9, 1e2
 LOOSEST = 1e-4
 
 
-def judged(number: int, folder: Path) -> Ending:
-    """Run the scene of a number, look at what it left, and at a run of it in other units or another order."""
-    text = mutated(number)
+def judged(text: bytes, number: int, folder: Path) -> Ending:
+    """Run a scene, look at what it left, and at a run of it in other units, or of an odd number in another order."""
     ending = _run(text, folder, "scene")
     if ending.kind != "right":
         return ending
     with Results(folder / "scene.h5") as results:
         _look(results)
-        twin = _twin(tomllib.loads(text.decode()), number)
+        twin = twin_of(tomllib.loads(text.decode()), number)
         if twin is not None and _tolerance(results) <= LOOSEST and not _leaves(results):
             data, length, modulus = twin
             other = _run(dump(data).encode(), folder, "twin")
@@ -152,7 +157,7 @@ def _close(one: FloatArray, other: FloatArray, share: float, nothing: float = 0.
     return bool(np.all(np.abs(one - other) <= share * max(np.abs(one).max(initial=0.0), np.abs(other).max(initial=0.0)) + nothing))
 
 
-def _twin(data: Any, number: int) -> tuple[Any, float, float] | None:
+def twin_of(data: Any, number: int) -> tuple[Any, float, float] | None:
     """The scene in other units, or with its tables in another order; the factors of length and modulus. None: nothing to learn."""
     if any(abs(table[key]) > ORDINARY or 0 < abs(table[key]) < 1 / ORDINARY for table, key in numbers(data)):
         return None
@@ -174,6 +179,7 @@ def _twin(data: Any, number: int) -> tuple[Any, float, float] | None:
                 load[key] = np.multiply(load[key], MODULUS * LENGTH**power).tolist()
     for support in twin.get("supports", {}).values():  # of x, y and z lengths are scaled already
         support.update({"force": {axis: size * MODULUS * LENGTH for axis, size in support["force"].items()}} if "force" in support else {})
+        support.update({"moment": support["moment"] * MODULUS * LENGTH**3} if "moment" in support else {})
     return twin, LENGTH, MODULUS
 
 
@@ -203,7 +209,7 @@ def _compare(results: Results, twin: Results, length: float, modulus: float) -> 
 def endings(first: int, count: int) -> Iterator[tuple[int, Ending]]:
     """How the scenes of some numbers end."""
     for number in range(first, first + count):
-        yield number, tried(lambda folder, number=number: judged(number, folder))  # type: ignore[misc]
+        yield number, tried(lambda folder, number=number: judged(mutated(number), number, folder))  # type: ignore[misc]
 
 
 @case(
