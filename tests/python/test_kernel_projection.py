@@ -9,6 +9,7 @@ import pytest
 
 from isomortar import _bindings
 from isomortar._bindings import FaceArrays, Projections, SlaveArrays
+from isomortar._codes import WORK
 from isomortar.geometry.primitives import box, ring
 from isomortar.geometry.refinement import mesh
 from isomortar.model.numbering import patch_arrays
@@ -63,6 +64,32 @@ def test_the_same_point_from_any_start_on_the_side_of_the_point(order: int, elem
         found, gap = project(order, elements, points, starts)
         np.testing.assert_allclose(gap, RADIUS - distance, rtol=0, atol=1e-14)
         np.testing.assert_allclose(found.xi, exact.xi, rtol=0, atol=1e-13)
+
+
+@pytest.mark.parametrize("had", [0, 1])
+def test_a_search_that_begins_at_other_feet_is_shorter_and_ends_the_same(had: int) -> None:
+    """Slips count from the origin all the same, of points that had a foot there; a point that had none in `near` begins there too."""
+    points, distance = scattered(40, seed=4)
+    points[:, ::2] *= (RADIUS + 0.1 * (distance - 0.6))[:, None] / distance[:, None]  # near the face: no other element is searched
+    master, control_points = cylinder(3, 12)
+    slave = SlaveArrays.of_points(np.arange(len(points), dtype=np.int32) + np.int32(len(control_points)))
+    moved = [points + way * np.array([0.3, 0.1, 0.2]) for way in (0.0, 0.01, 0.01001)]
+    whole = [np.ascontiguousarray(np.concatenate([control_points, there])) for there in moved]
+    first = _bindings.project_points(slave, master, whole[0], np.zeros((40, 2)), np.zeros(40, dtype=np.int32))
+    near = _bindings.project_points(slave, master, whole[1], first.xi, first.found)
+    near = replace(near, found=np.where(np.arange(40) < 5, 0, near.found).astype(np.int32))
+    flags, counts = np.full(40, had, dtype=np.int32), np.zeros((2, 8), dtype=np.int64)
+    one = _bindings.project_points(slave, master, whole[2], first.xi, flags, counts=counts[0])
+    other = _bindings.project_points(slave, master, whole[2], first.xi, flags, counts=counts[1], near=near)
+    np.testing.assert_allclose(other.xi, one.xi, rtol=0, atol=1e-13)
+    assert np.array_equal(other.element, one.element)
+    assert np.array_equal(other.found, one.found)
+    assert np.array_equal(other.origin, first.xi)
+    assert np.array_equal(other.slips, flags)
+    np.testing.assert_allclose(other.slip, had * (other.xi - first.xi), rtol=0, atol=1e-15)
+    cold, evaluations = WORK.index("cold projections"), WORK.index("evaluations to order 2")
+    assert counts[:, cold].tolist() == ([0, 0] if had else [40, 5])
+    assert counts[1, evaluations] < 0.8 * counts[0, evaluations]
 
 
 def project_on_roof(points: np.ndarray, starts: np.ndarray | None = None) -> Projections:

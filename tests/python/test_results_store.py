@@ -148,6 +148,7 @@ def test_every_row_of_every_curve_is_that_of_its_step(tmp_path: Path, states: st
             assert np.array_equal(values, [s.timings.get(name, np.nan) for s in steps], equal_nan=True)
         for name, counts in results.counters().items():
             assert np.array_equal(counts, [s.counters.get(name, -1) for s in steps])
+        assert np.array_equal(results.augmentations(), [len(s.augmentations) for s in steps])
 
 
 def test_work_that_an_older_file_does_not_hold_is_not_a_number(tmp_path: Path) -> None:

@@ -82,7 +82,7 @@ def curves(results: Results) -> dict[str, Any]:
         "tangents": results.counters()["factorisations"].sum(),
         **{counter: results.counters()[counter] for counter in ("factorisations", "solves")},
         **{work: results.curve(work, contact=contact.contact.name) for work in ("friction_work", "spurious_work")},
-        "augmentations": sum(len(results.step(int(step)).augmentations) for step in results.steps),
+        "augmentations": results.augmentations().sum(),
         "cuts": results.curve("cuts").sum(),
         "seconds": results.timings()["total"].sum(),
     }

@@ -21,8 +21,9 @@ def project_points(
     had: IntArray,
     with_friction: bool = True,
     counts: LongArray | None = None,
+    near: Projections | None = None,
 ) -> Projections:
-    """Project every slave quadrature point, from `origin` where `had` is 1, from a coarse search elsewhere.
+    """Project every slave quadrature point: from its foot in `near`, else from `origin` where `had` is 1, else from a coarse search.
 
     `origin` is also where the slip increment is counted from, zero where it is not wanted. What is done is added to `counts`, shape (8,),
     one number each of `_codes.WORK`.
@@ -36,9 +37,12 @@ def project_points(
     q = len(slave.area)
     check.finite("origin", check.array("origin", origin, np.float64, q, 2))
     check.array("had", had, np.int32, q)
-    xi, counts = origin.copy(), check_counts(counts)
+    xi, started, counts = origin.copy(), had, check_counts(counts)
+    if near is not None:
+        check_projections(near, slave, master)
+        xi, started = np.where(near.found[:, None] != 0, near.xi, origin), np.maximum(near.found, had)
     element, fixed, found, doubt, slip, slips, status, place = _kernel.project_points(
-        handles.slave(slave), handles.master(master), positions.T, had, origin.T, had,
+        handles.slave(slave), handles.master(master), positions.T, started, origin.T, had,
         check.flag("with_friction", with_friction), counts, xi.T,
     )  # fmt: skip
     if status:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import fields, is_dataclass, replace
+from functools import cache
 from typing import Any
 
 import h5py
@@ -158,7 +159,13 @@ def _read_body(group: h5py.Group) -> Body:
 
 def _read_plain(group: h5py.Group, kinds: dict[str, Any]) -> dict[str, Any]:
     there = {name: kind for name, kind in kinds.items() if name in group.attrs or name not in _LATER}
-    return {name: TypeAdapter(kind).validate_json(bytes(group.attrs[name])) for name, kind in there.items()}
+    return {name: _reader_of(kind).validate_json(bytes(group.attrs[name])) for name, kind in there.items()}
+
+
+@cache
+def _reader_of(kind: Any) -> TypeAdapter[Any]:
+    """What reads values of a type: made once, which takes longer than all that it reads."""
+    return TypeAdapter(kind)
 
 
 def _dataset(group: h5py.Group, name: str, quantity: Quantity, data: Any) -> h5py.Dataset:

@@ -220,6 +220,11 @@ class Results:
         """What was done, by name, over the recorded load steps; -1 where a step did not tell (docs/method.md, "What a run costs")."""
         return self._read(lambda file: {name: data[()] for name, data in file["counters"].items()})
 
+    def augmentations(self) -> NDArray[np.int64]:
+        """How many augmentations each recorded load step took; one an increment where multipliers are unknowns."""
+        made = self._read(lambda file: file["log/augmentations"]["step"])
+        return np.array([np.count_nonzero(made == step) for step in self.steps], dtype=np.int64)
+
     def contact(self, name: str) -> ContactHistory:
         """Control values of a contact pair over the kept states."""
         contact = _named(self.problem.contacts, name, "contact")

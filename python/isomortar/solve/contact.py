@@ -94,6 +94,7 @@ class PairMechanics:
         self.pair = pair
         self._feet = Feet(pair, origin)
         self._separation = Separation(pair)
+        self._near: Projections | None = None  # feet of the last positions that were looked at in the increment
         self.friction = pair.contact.friction_law
         self.summed = settings.slip_sum == "paper" and self.friction.acts
         self.reach = Reach(pair, self.summed, settings.method == "uzawa")
@@ -115,6 +116,7 @@ class PairMechanics:
 
     def begin(self, supports: Supports, start: FloatArray, begun: ContactState, time: float) -> None:
         """Begin a load increment from positions `start` with state `begun` to a load time."""
+        self._near = None
         self.reach.begin()
         self.held = held_by(supports, self.pair, start, time)
         self._separation.begin(start, bool(np.any(begun.pressure != 0.0)))
@@ -138,6 +140,9 @@ class PairMechanics:
     def kinematics(self, positions: FloatArray, start: ContactState) -> Kinematics:
         """Project and integrate the control quantities; slips count from `start`. What is out of reach is put off.
 
+        The nearest point is searched for from the last one that was found in the increment, which saves a half of the search. Feet along
+        averaged normals are followed from `start`: they are several, and an iterate that goes astray must not lead to another one.
+
         Raises
         ------
         LostProjectionError
@@ -152,10 +157,11 @@ class PairMechanics:
         with self._ledger.phase("projection"):
             try:
                 projections = _bindings.project_points(
-                    pair.slave, pair.master, positions, start.projection, start.projected, self.friction.acts, counts
+                    pair.slave, pair.master, positions, start.projection, start.projected, self.friction.acts, counts, self._near
                 )
             except LostProjectionError as error:
                 raise self._feet.named(error, positions) from error
+        self._near = None if pair.contact.averaged else projections
         with self._ledger.phase("contact"):
             control = _bindings.control_quantities(pair.slave, pair.master, positions, projections, self.friction.acts, counts)
         return Kinematics(projections, self.held.mirrored(control))
