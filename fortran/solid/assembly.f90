@@ -8,7 +8,7 @@ module isomortar_solid_assembly
   use isomortar_base_predicate, only: is_compressed, is_index
   use isomortar_base_status, only: status_folded, status_folded_initially, status_ok, status_out_of_memory, status_pattern
   use isomortar_nurbs_patch, only: element_count
-  use isomortar_nurbs_tensor_product, only: line_pairs, line_pairs_t
+  use isomortar_nurbs_pairs, only: line_pairs, line_pairs_t
   use isomortar_solid_body, only: body_t, bundle_count, bundle_t, geometry_t, take_bundle, take_geometry
   use isomortar_solid_element, only: element_residuals, element_tangents, room_t, sample_elements
   use isomortar_solid_material_law, only: material_t

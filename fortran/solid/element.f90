@@ -7,8 +7,8 @@ module isomortar_solid_element
   use isomortar_base_kinds, only: lanes, wp
   use isomortar_base_predicate, only: is_balanced, is_symmetric
   use isomortar_base_status, only: status_folded, status_ok, status_out_of_memory
-  use isomortar_nurbs_tensor_product, only: integrate, integrate_pairs, interpolate, line_pairs_t, pair_of_kinds, &
-    room_for_pairs
+  use isomortar_nurbs_pairs, only: integrate_pairs, line_pairs_t, pair_of_kinds, room_for_pairs
+  use isomortar_nurbs_tensor_product, only: integrate, interpolate
   use isomortar_solid_body, only: body_t, bundle_t, geometry_t, slopes_at
   use isomortar_solid_material_law, only: component_pairs, material_t, stretch, stretch_t
   use isomortar_solid_points, only: cofactors, least
@@ -75,7 +75,7 @@ contains
     logical, intent(in) :: with_tangents
     type(room_t), intent(inout) :: room
     integer, intent(out) :: status
-    integer :: failed
+    integer :: failed, functions(3), points(3)
 
     failed = 0
     associate (m => size(bundle%values, 4), n => size(bundle%weight, 2))
@@ -83,7 +83,9 @@ contains
       if (failed == 0 .and. .not. allocated(room%sums)) allocate (room%sums(lanes, n, 3), stat=failed)
       if (failed == 0 .and. with_tangents .and. .not. allocated(room%tangents)) then
         allocate (room%tangents(6, m, 16, lanes), stat=failed)
-        if (failed == 0) allocate (room%pairs(room_for_pairs(bundle%u, bundle%v, bundle%w, 6)), stat=failed)
+        functions = [size(bundle%u%at_point, 2), size(bundle%v%at_point, 2), size(bundle%w%at_point, 2)]
+        points = [size(bundle%u%weight, 2), size(bundle%v%weight, 2), size(bundle%w%weight, 2)]
+        if (failed == 0) allocate (room%pairs(room_for_pairs(functions, points, 6)), stat=failed)
       end if
     end associate
     status = merge(status_ok, status_out_of_memory, failed == 0)
