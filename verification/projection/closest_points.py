@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from shapes import cylinder_sector, turned_sector
@@ -10,6 +10,7 @@ from shapes import cylinder_sector, turned_sector
 from isomortar import _bindings
 from isomortar._arguments import LongArray
 from isomortar._bindings import FaceArrays, Projections, SlaveArrays
+from isomortar._codes import WORK
 from isomortar.geometry.patch import FloatArray, Patch
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, Shown, case
@@ -17,6 +18,8 @@ from isomortar.model.numbering import patch_arrays, same_points
 
 #: Doubts: statuses of isomortar_base_status.
 LOST, NOT_THE_ONLY_ONE = 3, 4
+#: Number of what a search does most among the counts.
+_SEARCHED = WORK.index("evaluations to order 2")
 RADIUS, INNER, MAJOR, TURN = 0.7, 0.3, 2.0, 1.2
 SECTION = (-0.5, 0.8)
 #: Coarse patch, and the face that is projected onto.
@@ -59,17 +62,19 @@ class Surface:
         nodes, values = _bindings.surface_functions(arrays, "uvw".index(self.face[0]) + 1, int(self.face[1]), np.ascontiguousarray(xi))
         return values, self.patch.control_points[self.patch.face_points(self.face)][nodes]
 
-    def project(self, targets: FloatArray, starts: FloatArray | None = None, counts: LongArray | None = None) -> Projections:
+    def project(
+        self, targets: FloatArray, starts: FloatArray | None = None, counts: LongArray | None = None, near: Projections | None = None
+    ) -> Projections:
         """The kernel's projections: each target is a slave of one quadrature point; without starts from its coarse search.
 
-        What that takes is added to `counts`.
+        What that takes is added to `counts`; the search begins at feet that are `near`.
         """
         n, own = len(targets), len(self.patch.weights)
         slave = SlaveArrays.of_points(np.arange(own, own + n, dtype=np.int32))
         positions = np.ascontiguousarray(np.concatenate([self.patch.control_points, targets]))
         had = np.full(n, starts is not None, dtype=np.int32)
         origin = np.zeros((n, 2)) if starts is None else np.ascontiguousarray(starts)
-        return _bindings.project_points(slave, self.master(), positions, origin, had, counts=counts)
+        return _bindings.project_points(slave, self.master(), positions, origin, had, counts=counts, near=near)
 
     def master(self) -> FaceArrays:
         """The face as the kernel's master."""
@@ -123,6 +128,45 @@ def exact_foot(shape: str, order: int) -> dict[str, float]:
         worst = float(np.maximum(worst, np.linalg.norm(face.points(projections.xi) - feet, axis=1).max()))
         found.append(projections.found)
     return {"foot": worst, "found": float(np.mean(found))}
+
+
+@case(
+    claim="A search that begins at feet of other positions ends at the same feet, sooner, and slips count from the start all the same.",
+    tier="gate",
+    grid={"shape": list(PATCHES), "order": [2, 3, 4], "had": [0, 1]},
+    bounds=lambda **settings: {
+        "foot": Bound(at_most=2e-14, reason="round-off: of the surface's points; Newton's method ends below it"),
+        "found": Bound(at_least=1.0, at_most=1.0, reason="definition: every target has its foot inside the patch"),
+        "slip": Bound(at_most=1e-15, reason="definition: from the start, zero without one; one subtraction"),
+        "cold": Bound(
+            at_most=10.0 * (1 - settings["had"]), reason="definition: targets without a foot of either kind are searched for on all elements"
+        ),
+        "evaluations": Bound(
+            at_most=0.8 if settings["had"] else 1.0, reason="theory: Newton's method squares its error, and begins with a hundredth of it"
+        ),
+    },
+)
+def from_other_feet(shape: str, order: int, had: int) -> dict[str, float]:
+    """Targets that have moved on from feet which are known but for the first ten, and far from where slips count."""
+    face = surface(shape, "N", order)
+    low, high = face.ends
+    random = np.random.default_rng(order)
+    places = [low + (random.uniform(0.25, 0.6, (1, 2)) + random.uniform(0.0, 0.1, (40, 2))) * (high - low)]
+    places += [places[0] + move * (high - low) for move in (0.1, 0.101)]
+    feet = [face.points(xi) for xi in places]
+    off = random.uniform(-0.1, 0.1, (40, 1))
+    start, near, _ = (face.project(foot + off * normal(shape, foot)) for foot in feet)
+    near = replace(near, found=np.where(np.arange(40) < 10, 0, near.found).astype(np.int32))
+    counts, targets = np.zeros((2, len(WORK)), dtype=np.int64), feet[2] + off * normal(shape, feet[2])
+    found = [face.project(targets, start.xi if had else None, count, other) for count, other in zip(counts, (None, near), strict=True)]
+    slip = had * (found[1].xi - start.xi)
+    return {
+        "foot": float(np.max([np.linalg.norm(face.points(one.xi) - feet[2], axis=1) for one in found])),
+        "found": float(np.mean([one.found for one in found])),
+        "slip": float(np.abs(found[1].slip - slip).max()),
+        "cold": float(counts[1, WORK.index("cold projections")]),
+        "evaluations": float(counts[1, _SEARCHED] / counts[0, _SEARCHED]),
+    }
 
 
 @case(
