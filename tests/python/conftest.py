@@ -35,3 +35,20 @@ def unhashed():
     clear()
     yield clear
     clear()
+
+
+@pytest.fixture
+def invoke(tmp_path, monkeypatch, capsys):
+    """Runs a command line in an empty folder; exit code, stdout, stderr."""
+    from isomortar import cli  # within: as above
+
+    monkeypatch.chdir(tmp_path)
+
+    def invoke(*words):
+        monkeypatch.setattr(sys, "argv", ["isomortar", *words])
+        with pytest.raises(SystemExit) as ended:
+            cli.main()
+        printed = capsys.readouterr()
+        return int(ended.value.code or 0), printed.out, printed.err
+
+    return invoke
