@@ -139,7 +139,8 @@ def exact_foot(shape: str, order: int) -> dict[str, float]:
         "found": Bound(at_least=1.0, at_most=1.0, reason="definition: every target has its foot inside the patch"),
         "slip": Bound(at_most=1e-15, reason="definition: from the start, zero without one; one subtraction"),
         "cold": Bound(
-            at_most=10.0 * (1 - settings["had"]), reason="definition: targets without a foot of either kind are searched for on all elements"
+            at_most=10.0 * (1 - settings["had"]),
+            reason="definition: targets without a foot of either kind are searched for on all elements",
         ),
         "evaluations": Bound(
             at_most=0.8 if settings["had"] else 1.0, reason="theory: Newton's method squares its error, and begins with a hundredth of it"
