@@ -18,7 +18,12 @@ _MARK = b"isomortar results file; SHA-256 of all bytes from 512 on: "
 
 def sealed(content: bytes) -> bytes:
     """The content of a results file with the seal in its first bytes, which are free for it."""
-    return _seal(hashlib.sha256(memoryview(content)[SEAL_SIZE:]).hexdigest()) + content[SEAL_SIZE:]
+    return seal(memoryview(content)[SEAL_SIZE:]) + content[SEAL_SIZE:]
+
+
+def seal(content: bytes | memoryview) -> bytes:
+    """The first bytes of a results file, before its content."""
+    return _with_digest(hashlib.sha256(content).hexdigest())
 
 
 def is_marked(path: Path) -> bool:
@@ -30,8 +35,7 @@ def is_marked(path: Path) -> bool:
 def is_whole(path: Path) -> bool:
     """Whether each byte of a file is the one that was written, by its seal."""
     with path.open("rb") as file:
-        seal = file.read(SEAL_SIZE)
-        return seal == _seal(hashlib.file_digest(file, "sha256").hexdigest())
+        return file.read(SEAL_SIZE) == _with_digest(hashlib.file_digest(file, "sha256").hexdigest())
 
 
 def read(path: Path) -> bytes:
@@ -51,7 +55,7 @@ def read(path: Path) -> bytes:
     return content
 
 
-def _seal(digest: str) -> bytes:
+def _with_digest(digest: str) -> bytes:
     return (_MARK + digest.encode() + b"\n").ljust(SEAL_SIZE, b"\0")
 
 
@@ -94,8 +98,8 @@ def make_folder(path: Path) -> None:
         raise ResultsError(f"folder {path} cannot be made: {error.strerror or error}") from error
 
 
-def replace(path: Path, content: bytes) -> None:
-    """Put a whole file in the place of another, or of none: whatever happens meanwhile, the name stands for one of them.
+def replace(path: Path, *parts: bytes) -> None:
+    """Put a whole file, given in parts, in the place of another, or of none: whatever happens meanwhile, the name stands for one of them.
 
     Raises
     ------
@@ -106,7 +110,7 @@ def replace(path: Path, content: bytes) -> None:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with fresh.open("wb") as file:
-            file.write(content)
+            file.writelines(parts)
             file.flush()
             os.fsync(file.fileno())
         fresh.replace(path)

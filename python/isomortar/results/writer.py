@@ -15,7 +15,7 @@ from isomortar.model.entities import Contact, Problem
 from isomortar.results import layout
 from isomortar.results.datasets import Datasets
 from isomortar.results.definition import differences, is_longer, write_problem, write_stages
-from isomortar.results.files import SEAL_SIZE, read, replace, sealed
+from isomortar.results.files import SEAL_SIZE, read, replace, seal
 from isomortar.results.reader import Results
 from isomortar.solve.record import AugmentationRecord, ContactRates, Observer, Rates, State, StepResult
 
@@ -94,7 +94,8 @@ class ResultsWriter(Observer):
     def _store(self) -> None:
         """Put the file as it is in memory in the place of that on the disk."""
         self._file.flush()
-        replace(self.path, sealed(bytes(SEAL_SIZE) + self._file.id.get_file_image()))
+        image = self._file.id.get_file_image()
+        replace(self.path, seal(image), image)
 
     def _begin(self, scene_text: str, version: str) -> None:
         file, make = self._file, self._datasets.make
