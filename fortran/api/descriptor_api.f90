@@ -129,6 +129,7 @@ subroutine keep_slave(shape_nodes, shape_values, shape_slopes, nshape, test_node
   use isomortar_api_descriptors, only: descriptor_t, keep
   use isomortar_base_kinds, only: wp
   use isomortar_base_status, only: status_out_of_memory
+  use isomortar_contact_slave, only: weigh_functions
   implicit none
   integer(c_int), intent(in) :: nshape, ntest, tests, nelements, nquad, npoints
   integer(c_int), intent(in) :: shape_nodes(nshape, nelements), test_nodes(ntest, nelements)
@@ -150,6 +151,7 @@ subroutine keep_slave(shape_nodes, shape_values, shape_slopes, nshape, test_node
     if (failed == 0) allocate (slave%test%nodes(ntest, nelements), stat=failed)
     if (failed == 0) allocate (slave%test%values(ntest, nquad), stat=failed)
     if (failed == 0) allocate (slave%area(nquad), stat=failed)
+    if (failed == 0) allocate (slave%whole(tests), stat=failed)
     if (failed == 0) allocate (slave%point(npoints), stat=failed)
     if (failed /= 0) return
     slave%shape%count = npoints
@@ -163,6 +165,7 @@ subroutine keep_slave(shape_nodes, shape_values, shape_slopes, nshape, test_node
     slave%per_element = nquad / nelements
     slave%area(:) = real(area, wp)
     slave%point(:) = point + 1
+    call weigh_functions(slave)
   end associate
   call keep(descriptor, handle, status)
 end subroutine keep_slave

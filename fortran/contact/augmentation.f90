@@ -16,7 +16,7 @@ module isomortar_contact_augmentation
   use isomortar_contact_friction_return_map, only: metric_matrix, return_map, state_open, state_stick
   use isomortar_contact_rows, only: row_metric, row_slip, row_slip_sum, rows_of, rows_t
   use isomortar_contact_sample, only: multipliers_t
-  use isomortar_contact_slave, only: integrate_functions, slave_t
+  use isomortar_contact_slave, only: slave_t
   use isomortar_sparse_blocks, only: lacks, mark_row, pattern_t
   implicit none
   private
@@ -67,26 +67,24 @@ contains
     logical, intent(in) :: summed
     type(response_t), intent(out) :: response
     real(wp), intent(out) :: field_slip(:, :)
-    real(wp), allocatable :: slips(:, :), totals(:, :), present(:, :), whole(:, :)
+    real(wp), allocatable :: slips(:, :), totals(:, :)
 
     associate (n => slave%test%count)
       allocate (response%multipliers%pressure(n), response%multipliers%traction(2, n), response%multipliers%active(n), &
         response%state(n), response%pressure_slope(n), response%traction_slope(2, 6, n))
-      allocate (slips(2, n), totals(2, n), whole(1, n), present(1, size(slave%area)))
+      allocate (slips(2, n), totals(2, n))
     end associate
     if (contracts) call require(size(control%weight) == slave%test%count, "respond: control quantities are the slave's")
     if (contracts) call require(size(law%bears) == slave%test%count, "respond: the law is one of its control points")
     field_slip = 0.0_wp
-    present = 1.0_wp
-    call integrate_functions(slave, present, whole)
     if (summed) then
-      call pressures(control, law, whole(1, :), response)
+      call pressures(control, law, slave%whole, response)
       slips = 0.0_wp
       where (spread(response%multipliers%active, 1, 2)) slips = control%slip / spread(control%weight, 1, 2)
       call integrate_slip_sum(slave, control%point_metric, slips, field_slip, totals)
-      call augmented_multipliers(control, law, whole(1, :), response, totals)
+      call augmented_multipliers(control, law, slave%whole, response, totals)
     else
-      call augmented_multipliers(control, law, whole(1, :), response)
+      call augmented_multipliers(control, law, slave%whole, response)
     end if
     associate (values => response%multipliers)
       if (contracts) call require(.not. any(values%pressure < 0.0_wp), "respond: pressures press")

@@ -172,16 +172,23 @@ contains
     type(slave_t), intent(in) :: slave
     real(wp), intent(in) :: present(:)
     type(control_t), intent(inout) :: control
-    real(wp) :: share
-    integer :: a, e, i, q
+    real(wp) :: share(size(slave%test%nodes, 1)), sums(size(share), 0:3)
+    integer :: a, e, k, q
 
-    do q = 1, size(slave%area)
-      e = (q - 1) / slave%per_element + 1
-      do a = 1, size(slave%test%nodes, 1)
-        i = slave%test%nodes(a, e)
-        share = slave%test%values(a, q)**2 * slave%area(q) * present(q)
-        control%square(i) = control%square(i) + share
-        control%metric(:, i) = control%metric(:, i) + share * control%point_metric(:, q)
+    do e = 1, size(slave%test%nodes, 2)
+      sums = 0.0_wp
+      do q = (e - 1) * slave%per_element + 1, e * slave%per_element
+        share = slave%test%values(:, q)**2 * slave%area(q) * present(q)
+        sums(:, 0) = sums(:, 0) + share
+        do k = 1, 3
+          sums(:, k) = sums(:, k) + share * control%point_metric(k, q)
+        end do
+      end do
+      do a = 1, size(share)
+        associate (i => slave%test%nodes(a, e))
+          control%square(i) = control%square(i) + sums(a, 0)
+          control%metric(:, i) = control%metric(:, i) + sums(a, 1:)
+        end associate
       end do
     end do
   end subroutine integrate_squares
@@ -195,15 +202,19 @@ contains
     real(wp), intent(in) :: point_metric(:, :), control_slip(:, :)
     real(wp), intent(out) :: field_slip(:, :), totals(:, :)
     real(wp), allocatable :: fields(:, :)
+    real(wp) :: slips(2, size(slave%test%nodes, 1))
     integer :: e, q
 
     if (contracts) call require(size(control_slip, 2) == slave%test%count, "integrate_slip_sum: functions are the slave's")
     allocate (fields(2, size(slave%area)))
-    do q = 1, size(slave%area)
-      e = (q - 1) / slave%per_element + 1
-      field_slip(:, q) = matmul(control_slip(:, slave%test%nodes(:, e)), slave%test%values(:, q))
-      fields(1, q) = point_metric(1, q) * field_slip(1, q) + point_metric(2, q) * field_slip(2, q)
-      fields(2, q) = point_metric(2, q) * field_slip(1, q) + point_metric(3, q) * field_slip(2, q)
+    do e = 1, size(slave%test%nodes, 2)
+      slips = control_slip(:, slave%test%nodes(:, e))
+      do q = (e - 1) * slave%per_element + 1, e * slave%per_element
+        field_slip(1, q) = dot_product(slips(1, :), slave%test%values(:, q))
+        field_slip(2, q) = dot_product(slips(2, :), slave%test%values(:, q))
+        fields(1, q) = point_metric(1, q) * field_slip(1, q) + point_metric(2, q) * field_slip(2, q)
+        fields(2, q) = point_metric(2, q) * field_slip(1, q) + point_metric(3, q) * field_slip(2, q)
+      end do
     end do
     call integrate_functions(slave, fields, totals)
   end subroutine integrate_slip_sum

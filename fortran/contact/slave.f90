@@ -12,7 +12,7 @@ module isomortar_contact_slave
   implicit none
   private
 
-  public :: integrate_functions, slave_normal, slave_position, slave_tables, slave_tangents
+  public :: integrate_functions, slave_normal, slave_position, slave_tables, slave_tangents, weigh_functions
 
   !> Functions on a slave face, given by element and quadrature point.
   type, public :: functions_t
@@ -39,6 +39,8 @@ module isomortar_contact_slave
     real(wp) :: outward
     !> Quadrature weight times reference area of each quadrature point.
     real(wp), allocatable :: area(:)
+    !> <R^I> over all of them, shape (test functions): what a constraint weighs where all points have a foot.
+    real(wp), allocatable :: whole(:)
     !> Global number of each control point.
     integer, allocatable :: point(:)
   end type slave_t
@@ -131,24 +133,44 @@ contains
     if (contracts) call require(is_unit(normal), "slave_normal: it is a unit vector")
   end function slave_normal
 
+  !> Integrate the test functions of a slave whose other components are given: its `whole`, for which there is room.
+  pure subroutine weigh_functions(slave)
+    type(slave_t), intent(inout) :: slave
+    integer :: a, q
+
+    slave%whole(:) = 0.0_wp
+    do q = 1, size(slave%area)
+      associate (nodes => slave%test%nodes(:, (q - 1) / slave%per_element + 1))
+        do a = 1, size(nodes)
+          slave%whole(nodes(a)) = slave%whole(nodes(a)) + slave%test%values(a, q) * slave%area(q)
+        end do
+      end associate
+    end do
+  end subroutine weigh_functions
+
   !> <R^I f> (theory 2.8) for every test function, of `fields` (field, points) at the quadrature points: `totals` (field, test
   !> functions).
   pure subroutine integrate_functions(slave, fields, totals)
     type(slave_t), intent(in) :: slave
     real(wp), intent(in) :: fields(:, :)
     real(wp), intent(out) :: totals(:, :)
-    integer :: a, e, q
+    real(wp) :: share(size(slave%test%nodes, 1)), sums(size(share), size(fields, 1))
+    integer :: a, e, k, q
 
     if (contracts) call require(size(slave%area) == slave%per_element * size(slave%test%nodes, 2), "integrate_functions: all")
     if (contracts) call require(size(fields, 2) == size(slave%area), "integrate_functions: fields are given at all points")
     if (contracts) call require(all(shape(totals) == [size(fields, 1), slave%test%count]), "integrate_functions: there is room")
     totals = 0.0_wp
-    do q = 1, size(slave%area)
-      e = (q - 1) / slave%per_element + 1
-      do a = 1, size(slave%test%nodes, 1)
-        associate (total => totals(:, slave%test%nodes(a, e)))
-          total = total + slave%test%values(a, q) * slave%area(q) * fields(:, q)
-        end associate
+    do e = 1, size(slave%test%nodes, 2)
+      sums = 0.0_wp
+      do q = (e - 1) * slave%per_element + 1, e * slave%per_element
+        share = slave%test%values(:, q) * slave%area(q)
+        do k = 1, size(fields, 1)
+          sums(:, k) = sums(:, k) + share * fields(k, q)
+        end do
+      end do
+      do a = 1, size(share)
+        totals(:, slave%test%nodes(a, e)) = totals(:, slave%test%nodes(a, e)) + sums(a, :)
       end do
     end do
   end subroutine integrate_functions
