@@ -25,6 +25,7 @@ from isomortar.model.rational import QUADRATURE_TOLD, points_enough
 from isomortar.scene import Scene
 from isomortar.scene.source import bundled_scenes
 from isomortar.solve.advice import by_default
+from isomortar.solve.doubtful_meshes import of_meshes
 from isomortar.solve.doubts import doubts
 from isomortar.solve.record import Observer
 from isomortar.solve.simulation import Simulation
@@ -106,6 +107,27 @@ def test_locking_is_told_by_order_and_ratio(family: str, order: int, sound: floa
     assert warnings(scene, material(sound, family, order)) == []
     (said,) = warnings(scene, material(locks, family, order))
     assert f"Poisson's ratio {locks:g} elements of order {order} lock" in said
+
+
+@pytest.mark.parametrize(("order", "sound", "tall"), [(7, 4.3e5, 4.4e5), (10, 1.57e5, 1.61e5), (4, 1.15e6, 1.17e6)])
+@pytest.mark.parametrize("face", ["w0", "u0"])
+def test_tall_bodies_of_high_orders_are_told_of_lost_digits(order: int, sound: float, tall: float, face: str) -> None:
+    """By the height behind the face in contact, whichever it is; wide ones are as they were."""
+    said = []
+    for height in (sound, tall, 1.0 / tall):
+        upper = [1.0, 1.0, height] if face == "w0" else [height, 1.0, 1.0]
+        normal = [0, 0, 1] if face == "w0" else [1, 0, 0]
+        text = f"""
+format = 1
+bodies.block = {{ geometry = {{ kind = "box", lower = [0, 0, 0], upper = {upper} }}, mesh = {{ order = {order}, elements = [1, 1, 1] }} }}
+contacts.floor = {{ slave = "block.{face}", plane.normal = {normal} }}
+supports.top.face = "block.{face[0]}1"
+stages = [{{ name = "press", steps = 1, motions.top.translate = {[-0.1 * n for n in normal]} }}]
+"""
+        problem = Scene.from_toml(text).problem()
+        said.append([words for words in of_meshes(problem) if "round-off of its positions" in words])
+    assert [len(words) for words in said] == [0, 1, 0]
+    assert f"times as tall as block.{face}, a face in contact, is wide, and that of order {order}: " in said[1][0]
 
 
 def rational(contrast: float) -> Body:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import comb
 
 import numpy as np
 
@@ -17,6 +18,9 @@ SLENDER = 20.0
 GRADED = 3.0
 #: Bending stiffness over the right one above which a body of order 1 hardly bends.
 BENDS = 2.0
+#: Share of a pressure that the last bits of a tall body's positions may make of it; and what those pressures that were off by more were off
+#: by at most, as a share of the estimate: columns of heights to 1e6 and orders to 10.
+LOST, OF_ESTIMATE = 1e-3, 0.3
 #: Shares that solvers may leave open: more shows in the second digit of forces, and is told.
 LOOSE = {"newton_tolerance": 1e-4, "augmentation_tolerance": 0.01}
 #: Settings that one method alone looks at.
@@ -42,6 +46,8 @@ def of_meshes(problem: Problem) -> Iterator[str]:
     for contact in problem.contacts:
         yield from _one_element(problem, contact)
         yield from _few_contact_points(problem, contact)
+        for face in contact.slave.faces:
+            yield from _tall(problem.body(face.body), face)
     yield from _loose(problem)
     yield from _without_effect(problem)
 
@@ -56,6 +62,21 @@ def _slender(body: Body) -> Iterator[str]:
             f"body {body.name!r}: its elements are {lengths[shortest]:.2g} long along {'uvw'[shortest]} and {lengths[longest]:.2g} along "
             f"{'uvw'[longest]}, on average. bodies.{body.name}.mesh.elements, {elements}, are along u, v, w: take fewer along "
             f"{'uvw'[shortest]}, or more along {'uvw'[longest]}"
+        )
+
+
+def _tall(body: Body, face: Face) -> Iterator[str]:
+    """A slave so tall behind its face that the last bits of its positions are pressures there (theory 9.6)."""
+    axis = "uvw".index(face.face[0])
+    *wide, tall = (float(np.sum(element_lengths(body.patch)[k])) for k in (*(k for k in range(3) if k != axis), axis))
+    orders = [direction.order for k, direction in enumerate(body.patch.directions) if k != axis]
+    condition = float(np.prod([comb(2 * order + 1, order) for order in orders]))
+    lost = OF_ESTIMATE * np.finfo(float).eps * (tall / min(wide)) ** 2 * condition**0.25
+    if not body.rigid and lost > LOST:
+        yield (
+            f"body {body.name!r} is {tall / min(wide):.1g} times as tall as {face.words}, a face in contact, is wide, and that of order "
+            f"{max(orders)}: round-off of its positions may be {lost:.1g} of the pressures there. Take a lower order, or a body that is "
+            "less tall"
         )
 
 

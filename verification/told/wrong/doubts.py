@@ -29,6 +29,8 @@ SLIT = SLIT.replace("WEIGHTS", ", ".join(map(str, _RING.weights.tolist())))
 
 AVERAGED = PAIR.replace('master = "lower.w1"', 'master = "lower.w1"\nprojection = "averaged"')
 
+_TALL = PRESS.replace('"bowl", half_width = 0.5, bottom = 0.0, rise = 0.2, top = 0.8', '"box", lower = [0, 0, 0], upper = [1, 1, 1e6]')
+
 _FLOOR = PRESS[PRESS.index("[contacts.floor]") : PRESS.index("[supports.top]")]
 
 #: A block on a dome, whose pole is where it touches, and a bowl with its pole there, of quadratic Lagrange elements.
@@ -188,6 +190,7 @@ DOUBTFUL = {
     "half a model": (PAIR.replace("-0.4, -0.4, 0.0]", "0, -0.4, 0]"), "[-1, -1, -1]", "[0, -1, -1]", "as halves of a whole do"),
     "half a ring": (_HALF, "", "", 'supports with components = ["x"] to arch.u0, arch.u1'),
     "slender elements": (PRESS, "elements = [2, 2, 1]", "elements = [2, 2, 40]", "take fewer along w, or more along u"),
+    "tall": (_TALL, "elements = [2, 2, 1]", "order = 7, elements = [1, 1, 1]", "round-off of its positions"),
     "one element": (PRESS, "elements = [2, 2, 1]", "elements = [1, 1, 1]", "the slave face block.w0 is a single element"),
     "graded away": (PRESS, "elements = [2, 2, 1]", "elements = [2, 2, 3], grading = [1, 1, 0.2]", "mesh.grading along w above 1"),
     "graded away from a last face": (
