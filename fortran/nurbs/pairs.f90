@@ -9,7 +9,6 @@
 !> - `first`: the first kind of those there are, 1, or 2 where there are derivatives alone.
 !> - `room` (numbers): `room_for_pairs` of them at least, for what is on the way.
 module isomortar_nurbs_pairs
-  use isomortar_base_contract, only: contracts, require
   use isomortar_base_kinds, only: wp
   use isomortar_nurbs_patch, only: line_rule_t
   implicit none

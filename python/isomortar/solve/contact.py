@@ -94,7 +94,7 @@ class PairMechanics:
         self.pair = pair
         self._feet = Feet(pair, origin)
         self._separation = Separation(pair)
-        self._near: Projections | None = None  # feet of the last positions that were looked at in the increment
+        self._near: Projections | None = None  # feet of the last positions in the increment where something touched
         self.friction = pair.contact.friction_law
         self.summed = settings.slip_sum == "paper" and self.friction.acts
         self.reach = Reach(pair, self.summed, settings.method == "uzawa")
@@ -140,8 +140,8 @@ class PairMechanics:
     def kinematics(self, positions: FloatArray, start: ContactState) -> Kinematics:
         """Project and integrate the control quantities; slips count from `start`. What is out of reach is put off.
 
-        The nearest point is searched for from the last one that was found in the increment, which saves a half of the search. Feet along
-        averaged normals are followed from `start`: they are several, and an iterate that goes astray must not lead to another one.
+        The nearest point is searched for from the last one in the increment where something touched, which saves half of the search. Feet
+        along averaged normals are followed from `start`: they are several, and an iterate that goes astray must not lead to another one.
 
         Raises
         ------
@@ -161,9 +161,10 @@ class PairMechanics:
                 )
             except LostProjectionError as error:
                 raise self._feet.named(error, positions) from error
-        self._near = None if pair.contact.averaged else projections
         with self._ledger.phase("contact"):
             control = _bindings.control_quantities(pair.slave, pair.master, positions, projections, self.friction.acts, counts)
+        if np.any(control.gap > 0.0) and not pair.contact.averaged:  # never out of reach: what is put off changes no bit
+            self._near = projections
         return Kinematics(projections, self.held.mirrored(control))
 
     def rests(self, kinematics: Kinematics, pressure: FloatArray, traction: FloatArray) -> bool:
