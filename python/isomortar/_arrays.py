@@ -83,6 +83,7 @@ class BodyArrays:
         check.kind("patch", self.patch, PatchArrays)
         check.gauss("gauss", self.gauss, 3)
         check.finite("reference", check.array("reference", self.reference, np.float64, None, 3))
+        check.flag("often", self.often)
         check.below("patch.point", self.patch.highest, len(self.reference), "control point")
 
 

@@ -1,4 +1,4 @@
-"""Corrections by kept factors learn from whole augmentations, and change what they cost alone."""
+"""Corrections by kept factors learn from the iterations before, and change what they cost alone."""
 
 from typing import Any
 
@@ -15,13 +15,14 @@ from isomortar.solve.secants import Secants
 from isomortar.solve.simulation import Simulation
 
 RANDOM = np.random.default_rng(7)
-TANGENT = np.diag(np.arange(1.0, 9.0)) + 0.1 * RANDOM.standard_normal((8, 8))
-KEPT = np.linalg.inv(TANGENT + 0.2 * RANDOM.standard_normal((8, 8)))
+SIZE = MAX_SECANTS + 4
+TANGENT = np.diag(np.arange(1.0, SIZE + 1.0)) + 0.1 * RANDOM.standard_normal((SIZE, SIZE))
+KEPT = np.linalg.inv(TANGENT + 0.1 * RANDOM.standard_normal((SIZE, SIZE)))
 
 
 def loaded(count: int) -> np.ndarray:
     """Some right-hand sides."""
-    return np.random.default_rng(3).standard_normal((count, 8))
+    return np.random.default_rng(3).standard_normal((count, SIZE))
 
 
 def taught(loads: np.ndarray) -> Secants:
@@ -32,7 +33,7 @@ def taught(loads: np.ndarray) -> Secants:
     return secants
 
 
-@pytest.mark.parametrize("count", [1, 3, 4])
+@pytest.mark.parametrize("count", [1, 3, MAX_SECANTS])
 def test_a_load_made_of_the_last_ones_is_solved_whole(count: int) -> None:
     loads = loaded(count)
     load = np.linspace(1.0, 2.0, count) @ loads
@@ -45,9 +46,10 @@ def test_what_is_across_all_that_is_known_is_left_as_it_is() -> None:
     np.testing.assert_allclose(taught(loads).improved(basis[5]), basis[5], atol=1e-14)
 
 
-def test_the_oldest_of_five_is_forgotten() -> None:
-    loads = loaded(5)
-    np.testing.assert_array_equal(taught(loads).improved(KEPT @ loads[2]), taught(loads[1:]).improved(KEPT @ loads[2]))
+def test_the_oldest_of_too_many_is_forgotten() -> None:
+    loads = loaded(MAX_SECANTS + 1)
+    np.testing.assert_array_equal(taught(loads).improved(KEPT @ loads[0]), taught(loads[1:]).improved(KEPT @ loads[0]))
+    assert np.abs(taught(loads).improved(KEPT @ loads[0]) - np.linalg.solve(TANGENT, loads[0])).max() > 1e-3
 
 
 def test_of_what_is_known_twice_the_last_one_counts() -> None:
@@ -74,7 +76,7 @@ def summed(results: list[StepResult], name: str) -> int:
     return sum(result.counters[name] for result in results)
 
 
-def test_augmentations_need_fewer_solves_and_come_to_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_iterations_need_fewer_solves_and_come_to_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
     one = list(Simulation(pressed()).run())
     monkeypatch.setattr(Secants, "improved", lambda _, correction: correction)
     other = list(Simulation(pressed()).run())

@@ -71,9 +71,9 @@ SQUARED = (1e-80, 1e80)
 #: Factors are kept as long as a solve with them leaves at most this share of the residual: it saves the tangents and their factors, most
 #: of an iteration, and three such solves gain two digits.
 KEPT_SHARE = 0.2
-#: So many augmentations correct solves with kept factors at most: two take a fifteenth more solves, eight as many and more tangents.
-MAX_SECANTS = 4
-#: An augmentation does so if this share of its first correction is in none of later ones: of less, round-off of the ways would count.
+#: So many steps correct solves with kept factors at most: eight take a few more solves, twenty as many and more tangents.
+MAX_SECANTS = 12
+#: A step does so if this share of what it changed is in none of later ones: of less, round-off would count.
 NEW_DIRECTION = 1e-3
 #: Iterations that find the active set: before, states may return and what is left may grow without an update being halved.
 ACTIVE_SET_ITERATIONS = 5

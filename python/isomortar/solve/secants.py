@@ -1,4 +1,4 @@
-"""What whole augmentations tell of a tangent by whose factors they were not solved."""
+"""What iterations with kept factors tell of the tangent that these factors are not of."""
 
 from __future__ import annotations
 
@@ -9,28 +9,40 @@ from isomortar.model import constants
 
 
 class Secants:
-    """Ways to balance, and the first corrections by kept factors where they began, of the last augmentations (theory 7.6)."""
+    """The last steps between iterates, and by how much each changed the correction by kept factors (theory 7.6)."""
 
     def __init__(self) -> None:
-        self._known: list[tuple[FloatArray, FloatArray]] = []
-        self._basis: list[tuple[FloatArray, FloatArray]] = []  # directions of corrections, orthonormal; what corrections along them lack
+        self._known: list[tuple[FloatArray, FloatArray]] = []  # changes, of length one, and what steps are more, the last one first
+        self._products = np.zeros((0, 0))  # of the changes with each other
+        self._chosen: list[int] = []  # changes that are no combination of later ones
 
-    def learn(self, way: FloatArray, correction: FloatArray) -> None:
-        """Take in a way to balance, and the correction where it began, both of any one shape."""
-        self._known = [(way, correction), *self._known[: constants.MAX_SECANTS - 1]]
-        self._basis = []
-        for its_way, begun in self._known:
-            along, missing = begun, its_way - begun
-            for unit, its_missing in self._basis:
-                share = _product(unit, along)
-                along, missing = along - share * unit, missing - share * its_missing
-            length = np.sqrt(_product(along, along))
-            if length > constants.NEW_DIRECTION * np.sqrt(_product(begun, begun)):
-                self._basis.append((along / length, missing / length))
+    def learn(self, step: FloatArray, change: FloatArray) -> None:
+        """Take in a step, and the correction before it less the one after it, both of any one shape."""
+        length = np.sqrt(_product(change, change))
+        if length == 0.0:
+            return
+        self._known = [(change / length, (step - change) / length), *self._known[: constants.MAX_SECANTS - 1]]
+        earlier = len(self._known) - 1
+        first = np.array(self._along(self._known[0][0]))
+        self._products = np.block([[first[:1, None], first[None, 1:]], [first[1:, None], self._products[:earlier, :earlier]]])
+        self._choose()
+
+    def _choose(self) -> None:
+        """Leave out changes that are next to a combination of later ones."""
+        across, self._chosen = self._products.copy(), []  # of what is across the changes that were chosen
+        for k in range(len(across)):
+            if across[k, k] > constants.NEW_DIRECTION**2:
+                self._chosen.append(k)
+                across -= np.outer(across[k], across[k]) / across[k, k]
 
     def improved(self, correction: FloatArray) -> FloatArray:
-        """A correction by kept factors, with ways in place of the corrections that it is made of (theory 7.6)."""
-        return correction + sum(_product(unit, correction) * missing for unit, missing in self._basis)
+        """A correction by kept factors, with steps in place of the changes that it is made of (theory 7.6)."""
+        along, chosen = np.array(self._along(correction)), self._chosen
+        shares = np.linalg.solve(self._products[np.ix_(chosen, chosen)], along[chosen])
+        return correction + sum(share * self._known[k][1] for k, share in zip(chosen, shares, strict=True))
+
+    def _along(self, vector: FloatArray) -> list[float]:
+        return [_product(change, vector) for change, _ in self._known]
 
 
 def _product(a: FloatArray, b: FloatArray) -> float:

@@ -29,14 +29,11 @@ class _PositionNewton(Newton[Iterate, FloatArray]):
     def __init__(self, equilibrium: Equilibrium, start: State, scales: Scales) -> None:
         super().__init__(equilibrium, start, scales)
         self._secants = Secants()
-        self._begun: tuple[FloatArray, FloatArray] | None = None  # positions, and the first correction there by the present factors
+        self._last: tuple[FloatArray, FloatArray] | None = None  # positions with these laws, and the correction there by the present factors
 
     def held(self, laws: Sequence[Law], positions: FloatArray) -> Iterate:
         """The first iterate with these laws, at the start of the increment or where the last augmentation ended."""
-        if self._begun is not None:
-            begun, correction = self._begun
-            self._secants.learn(positions - begun, correction)
-        self._laws, self._begun = laws, None
+        self._laws, self._last = laws, None
         return self._evaluate(positions)
 
     def closing(self, laws: Sequence[Law], positions: FloatArray, nearest: Sequence[FloatArray]) -> Iterate:
@@ -59,14 +56,19 @@ class _PositionNewton(Newton[Iterate, FloatArray]):
         return self._evaluate(self._equilibrium.moved(iterate.balance.positions, share * correction))
 
     def _correct(self, iterate: Iterate, prescribed: FloatArray | None) -> tuple[Iterate, FloatArray, tuple[str, ...]]:
-        self._secants, self._begun = Secants(), None
-        increment = np.zeros_like(iterate.balance.positions) if prescribed is None else prescribed
-        return iterate, self._equilibrium.correction(iterate.balance, self._laws, increment), ()
+        moves = prescribed is not None and bool(np.any(prescribed))
+        increment = prescribed if prescribed is not None else np.zeros_like(iterate.balance.positions)
+        correction = self._equilibrium.correction(iterate.balance, self._laws, increment)
+        self._secants = Secants()
+        self._last = None if moves else (iterate.balance.positions, correction)  # motions of supports correct no forces
+        return iterate, correction, ()
 
     def _correct_again(self, iterate: Iterate) -> FloatArray:
-        correction = self._equilibrium.kept_correction(iterate.balance)
-        if self._begun is None:
-            self._begun = iterate.balance.positions, correction
+        positions, correction = iterate.balance.positions, self._equilibrium.kept_correction(iterate.balance)
+        if self._last is not None:
+            before, its_correction = self._last
+            self._secants.learn(positions - before, its_correction - correction)
+        self._last = positions, correction
         return self._secants.improved(correction)
 
     def _update(self, iterate: Iterate, correction: FloatArray, iteration: int) -> tuple[Iterate, tuple[str, ...]]:
