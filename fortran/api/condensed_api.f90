@@ -3,7 +3,7 @@
 ! - `handle`: a pattern that was analysed, and the factors of the last matrix of that pattern; `sparse_release` frees it.
 ! - `n`, `nnz`: numbers of the bodies' unknowns, of the entries of their stiffness. `trailing`: unknowns of faces and others.
 ! - `status`, `place`: how it ended (isomortar_base_status); where all slots are taken, their number, else -1.
-! `condensed_factorise` and `condensed_solve` run without Python's lock: one call at a time for one handle.
+! `condensed_factorise`, `condensed_renew` and `condensed_solve` run without Python's lock: one call at a time for one handle.
 
 !> Order the bodies' unknowns for little fill.
 !>
@@ -59,7 +59,23 @@ recursive subroutine condensed_factorise(handle, nnz, trailing, values, added, r
   call factorise_bodies(handle, values, added, rcond_min, rcond, status)
 end subroutine condensed_factorise
 
-!> Solve with the factors of the last `condensed_factorise`.
+!> Factorise what is added on faces and beyond anew, with the stiffness of the last `condensed_factorise`, whose factors stay.
+!>
+!> - `added`, `rcond_min`, `rcond`: as there.
+recursive subroutine condensed_renew(handle, trailing, added, rcond_min, rcond, status)
+  use iso_c_binding, only: c_double, c_int, c_int64_t
+  use isomortar_sparse_condensation, only: factorise_faces
+  implicit none
+  !f2py threadsafe
+  integer(c_int64_t), intent(in) :: handle, trailing
+  real(c_double), intent(in) :: added(trailing, trailing), rcond_min
+  real(c_double), intent(out) :: rcond
+  integer(c_int), intent(out) :: status
+
+  call factorise_faces(handle, added, rcond_min, rcond, status)
+end subroutine condensed_renew
+
+!> Solve with the factors of the last `condensed_factorise` or `condensed_renew`.
 !>
 !> - `b`, `x`: right-hand side and solution, `n` unknowns: those of bodies, then others.
 recursive subroutine condensed_solve(handle, n, b, x, status)

@@ -6,12 +6,12 @@ module isomortar_sparse_condensation
   use, intrinsic :: iso_c_binding, only: c_double, c_int, c_int64_t
   use isomortar_base_status, only: status_library, status_ok, status_out_of_memory, status_singular, status_stale_handle
   use isomortar_sparse_cholmod, only: cholesky_done, cholesky_indefinite, cholesky_order, cholesky_out_of_memory
-  use isomortar_sparse_condensed, only: condense, eliminate_condensed, is_condensed, substitute_condensed
+  use isomortar_sparse_condensed, only: condense, eliminate_condensed, eliminate_faces, is_condensed, substitute_condensed
   use isomortar_sparse_handles, only: free_slot, handle_of, slot_of, slots, table
   implicit none
   private
 
-  public :: order_bodies, analyse_bodies, factorise_bodies, solve_bodies
+  public :: order_bodies, analyse_bodies, factorise_bodies, factorise_faces, solve_bodies
 
 contains
 
@@ -87,10 +87,39 @@ contains
     if (.not. is_condensed(table(slot)%condensed)) return
 
     call eliminate_condensed(table(slot)%condensed, values, added, rcond, code)
-    status = status_of(code)
-    ! Written so that a condition that is not a number counts as singular too.
-    if (status == status_ok .and. .not. rcond >= rcond_min) status = status_singular
+    status = judged(code, rcond, rcond_min)
   end subroutine factorise_bodies
+
+  !> The same with what is `added` anew, and the stiffness of the last `factorise_bodies`, whose factors stay.
+  recursive subroutine factorise_faces(handle, added, rcond_min, rcond, status)
+    integer(c_int64_t), intent(in) :: handle
+    real(c_double), contiguous, intent(in) :: added(:, :)
+    real(c_double), intent(in) :: rcond_min
+    real(c_double), intent(out) :: rcond
+    integer, intent(out) :: status
+
+    integer(c_int64_t) :: slot
+    integer(c_int) :: code
+
+    rcond = 0
+    slot = slot_of(handle)
+    status = status_stale_handle
+    if (slot == slots) return
+    if (.not. allocated(table(slot)%condensed%schur)) return
+
+    call eliminate_faces(table(slot)%condensed, added, rcond, code)
+    status = judged(code, rcond, rcond_min)
+  end subroutine factorise_faces
+
+  !> Our status for factors: singular too where the reciprocal condition is below the smallest that passes, or not a number.
+  pure recursive function judged(code, rcond, rcond_min) result(status)
+    integer(c_int), intent(in) :: code
+    real(c_double), intent(in) :: rcond, rcond_min
+    integer :: status
+
+    status = status_of(code)
+    if (status == status_ok .and. .not. rcond >= rcond_min) status = status_singular
+  end function judged
 
   !> Solve with the factors of the last `factorise_bodies`: `b` (size), `x` (size): unknowns, then others.
   recursive subroutine solve_bodies(handle, b, x, status)

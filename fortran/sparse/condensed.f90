@@ -19,7 +19,7 @@ module isomortar_sparse_condensed
   implicit none
   private
 
-  public :: condense, eliminate_condensed, forget_condensed, is_condensed, substitute_condensed
+  public :: condense, eliminate_condensed, eliminate_faces, forget_condensed, is_condensed, substitute_condensed
 
   !> What the diagonals of faces grow by, of themselves, so that K is definite where contact alone holds them.
   real(c_double), parameter :: face_share = 1
@@ -29,8 +29,11 @@ module isomortar_sparse_condensed
     type(c_ptr) :: body = c_null_ptr
     !> Unknowns of K, and how many of them are of faces.
     integer :: unknowns = 0, faces = 0
-    !> L_ff, and the LU factors of the complement with their pivots; not allocated without factors.
-    real(c_double), allocatable :: corner(:, :), complement(:, :)
+    !> L_ff, the lower triangle of the Schur complement of K, and the least pivot of K; not allocated without factors of K.
+    real(c_double), allocatable :: corner(:, :), schur(:, :)
+    real(c_double) :: least = 0
+    !> LU factors of that with what is added, with their pivots; not allocated without factors.
+    real(c_double), allocatable :: complement(:, :)
     integer(c_int), allocatable :: pivot(:)
   end type condensed_t
 
@@ -85,58 +88,69 @@ contains
     real(c_double), intent(out) :: rcond
     integer(c_int), intent(out) :: code
     real(c_double), allocatable :: shift(:)
-    real(c_double) :: least
-    integer(c_int) :: failure, n
+    integer(c_int) :: failure
 
-    if (contracts) call require(size(added, 1) == size(added, 2), "eliminate_condensed: the trailing block is square")
-    if (contracts) call require(size(added, 1) >= self%faces, "eliminate_condensed: faces and more")
     rcond = 0
-    n = size(added, 1)
     call forget_numbers(self)
     code = cholesky_out_of_memory
     allocate (self%corner(self%faces, self%faces), stat=failure)
-    if (failure == 0) allocate (self%complement(n, n), stat=failure)
-    if (failure == 0) allocate (self%pivot(n), stat=failure)
+    if (failure == 0) allocate (self%schur(self%faces, self%faces), stat=failure)
     if (failure == 0) allocate (shift(self%faces), stat=failure)
-    if (failure == 0) code = cholesky_factorise(self%body, values, face_share, self%corner, shift, least)
+    if (failure == 0) code = cholesky_factorise(self%body, values, face_share, self%corner, shift, self%least)
     if (code /= cholesky_done) then
       call forget_numbers(self)
       return
     end if
-    rcond = least
-    if (n == 0) return
-    call complement_faces(self, added, shift, failure)
+    call complement_body(self%corner, shift, self%schur)
+    call eliminate_faces(self, added, rcond, code)
+  end subroutine eliminate_condensed
+
+  !> The lower triangle of the `schur` complement (faces, faces) of K on the faces: without the `shift` (faces) that their diagonal
+  !> had, of whose complement `corner` (faces, faces) is the factor (theory 5.12).
+  recursive subroutine complement_body(corner, shift, schur)
+    real(c_double), contiguous, intent(in) :: corner(:, :), shift(:)
+    real(c_double), contiguous, intent(inout) :: schur(:, :)
+    integer(c_int) :: n
+    integer :: k
+
+    n = size(shift)
+    if (n > 0) call dsyrk("L", "N", n, n, 1.0_c_double, corner, n, 0.0_c_double, schur, n) ! of a leading dimension above zero
+    do k = 1, n
+      schur(k, k) = schur(k, k) - shift(k)
+    end do
+  end subroutine complement_body
+
+  !> Factorise with another C and the K of the last factors, which there must be; ends as `eliminate_condensed`.
+  recursive subroutine eliminate_faces(self, added, rcond, code)
+    type(condensed_t), intent(inout) :: self
+    real(c_double), contiguous, intent(in) :: added(:, :)
+    real(c_double), intent(out) :: rcond
+    integer(c_int), intent(out) :: code
+    integer :: failure, k, n
+
+    if (contracts) call require(size(added, 1) == size(added, 2), "eliminate_faces: the trailing block is square")
+    if (contracts) call require(size(added, 1) >= self%faces, "eliminate_faces: faces and more")
+    if (contracts) call require(allocated(self%schur), "eliminate_faces: K is factorised")
+    rcond = 0
+    n = size(added, 1)
+    code = cholesky_out_of_memory
+    if (allocated(self%complement)) deallocate (self%complement, self%pivot)
+    allocate (self%complement(n, n), self%pivot(n), stat=failure)
     if (failure /= 0) then
-      code = cholesky_out_of_memory
       call forget_numbers(self)
       return
     end if
-    call eliminate_dense(self%complement, self%pivot)
-    rcond = min(least, pivots_apart(self%complement))
-  end subroutine eliminate_condensed
-
-  !> The Schur complement of K on the faces, with what is added and without the `shift` (faces) of their diagonal (theory 5.12).
-  !>
-  !> - `failure`: not zero where memory ran out.
-  recursive subroutine complement_faces(self, added, shift, failure)
-    type(condensed_t), intent(inout) :: self
-    real(c_double), contiguous, intent(in) :: added(:, :), shift(:)
-    integer(c_int), intent(out) :: failure
-    real(c_double), allocatable :: product(:, :)
-    integer :: k
-
+    code = cholesky_done
     self%complement(:, :) = added
-    allocate (product(self%faces, self%faces), stat=failure)
-    if (failure /= 0 .or. self%faces == 0) return
-    associate (n => int(self%faces, c_int))
-      call dsyrk("L", "N", n, n, 1.0_c_double, self%corner, n, 0.0_c_double, product, n)
-      do k = 1, n
-        product(k, k) = product(k, k) - shift(k)
-        self%complement(k:n, k) = self%complement(k:n, k) + product(k:, k)
-        self%complement(k, k + 1:n) = self%complement(k, k + 1:n) + product(k + 1:, k)
-      end do
-    end associate
-  end subroutine complement_faces
+    do k = 1, self%faces
+      associate (column => self%schur(k:, k))
+        self%complement(k:self%faces, k) = self%complement(k:self%faces, k) + column
+        self%complement(k, k + 1:self%faces) = self%complement(k, k + 1:self%faces) + column(2:)
+      end associate
+    end do
+    call eliminate_dense(self%complement, self%pivot)
+    rcond = min(self%least, pivots_apart(self%complement))
+  end subroutine eliminate_faces
 
   !> Solve with the factors (theory 5.12): `b` (size), `x` (size): unknowns of K, then multipliers.
   recursive subroutine substitute_condensed(self, b, x, code)
@@ -165,11 +179,12 @@ contains
     x(self%unknowns + 1:) = trailing(self%faces + 1:, 1)
   end subroutine substitute_condensed
 
-  !> Free the factors on the faces; without them there is nothing to solve with.
+  !> Free the factors on the faces and of K; without them there is nothing to solve with.
   pure recursive subroutine forget_numbers(self)
     type(condensed_t), intent(inout) :: self
 
     if (allocated(self%corner)) deallocate (self%corner)
+    if (allocated(self%schur)) deallocate (self%schur)
     if (allocated(self%complement)) deallocate (self%complement)
     if (allocated(self%pivot)) deallocate (self%pivot)
   end subroutine forget_numbers

@@ -6,6 +6,7 @@ import threading
 import weakref
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -109,10 +110,13 @@ class BodyFactors(ABC):
         Estimate of the reciprocal condition of the last matrix; NaN before the first.
     compression : float
         What the factor of K may leave out; 0: nothing.
+    renews : bool
+        Whether factors of K may stay where C alone is another (`renew`).
     """
 
     factor_entries: int
     compression: float = 0.0
+    renews: ClassVar[bool] = False
 
     def __init__(self, pattern: SymmetricPattern, on_face: NDArray[np.bool_], order: LongArray) -> None:
         n = len(pattern)
@@ -120,12 +124,16 @@ class BodyFactors(ABC):
         if not np.array_equal(np.sort(check.array("order", order, np.int64, n)), np.arange(n)):
             raise InputError(f"is no order of the unknowns 0 to {n - 1}", "order")
         self.faces, self.rcond = int(np.count_nonzero(on_face)), float("nan")
-        self._pattern, self._others = pattern, -1
+        self._pattern, self._others, self._held = pattern, -1, False
         self._lock = threading.Lock()
 
     @abstractmethod
     def _eliminate(self, values: FloatArray, added: FloatArray, rcond_min: float) -> None:
         """Factorise what is checked."""
+
+    def _eliminate_faces(self, added: FloatArray, rcond_min: float) -> None:
+        """Factorise another C that is checked, with the K of before."""
+        raise NotImplementedError
 
     @abstractmethod
     def _substitute(self, b: FloatArray) -> FloatArray:
@@ -154,17 +162,41 @@ class BodyFactors(ABC):
             Wrong type or shape of an argument.
         """
         check.array("values", values, np.float64, len(self._pattern.indices))
+        self._check_added(added, rcond_min)
+        check_finite(values, self._pattern.indptr)
+        with self._lock:
+            self._others, self._held = -1, False
+            self._eliminate(values, added, rcond_min)
+            self._others, self._held = len(added) - self.faces, True
+
+    def renew(self, added: FloatArray, *, rcond_min: float = 1e-13) -> None:
+        """Factorise ``K + C`` for another C, with the K of the last `factorise`, whose factors stay.
+
+        Parameters
+        ----------
+        added, rcond_min
+            As there; others may be more or fewer.
+
+        Raises
+        ------
+        SingularSystemError, KernelError, InputError
+            As there; KernelError also where no K is factorised.
+        """
+        self._check_added(added, rcond_min)
+        with self._lock:
+            if not self._held:
+                raise KernelError("no matrix is factorised: the last one was refused, or there was none")
+            self._others = -1
+            self._eliminate_faces(added, rcond_min)
+            self._others = len(added) - self.faces
+
+    def _check_added(self, added: FloatArray, rcond_min: float) -> None:
         check.array("added", added.T if isinstance(added, np.ndarray) else added, np.float64, None, None)
         if added.shape[0] != added.shape[1] or len(added) < self.faces:
             raise InputError(f"has shape {added.shape}; allowed: square, of {self.faces} unknowns of faces and others", "added")
         check.real("rcond_min", rcond_min, lambda value: 0 <= value < 1, "a number from 0 to below 1")
-        check_finite(values, self._pattern.indptr)
         if not np.isfinite(added).all():
             raise KernelError("what is added to the matrix is not finite", -1)
-        with self._lock:
-            self._others = -1
-            self._eliminate(values, added, rcond_min)
-            self._others = len(added) - self.faces
 
     def solve(self, b: FloatArray) -> FloatArray:
         """Solve ``(K + C) x = b`` with the factors of the last `factorise`.
@@ -218,6 +250,8 @@ class CondensedFactors(BodyFactors):
         Floating-point operations of a factorisation of K.
     """
 
+    renews: ClassVar[bool] = True
+
     def __init__(self, pattern: SymmetricPattern, on_face: NDArray[np.bool_], order: LongArray) -> None:
         super().__init__(pattern, on_face, order)
         self._handle, self.flops, entries, place, status = _kernel.condensed_analyse(
@@ -230,6 +264,10 @@ class CondensedFactors(BodyFactors):
 
     def _eliminate(self, values: FloatArray, added: FloatArray, rcond_min: float) -> None:
         self.rcond, status = _kernel.condensed_factorise(self._handle, values, added, rcond_min)
+        _check_status(status, -1)
+
+    def _eliminate_faces(self, added: FloatArray, rcond_min: float) -> None:
+        self.rcond, status = _kernel.condensed_renew(self._handle, added, rcond_min)
         _check_status(status, -1)
 
     def _substitute(self, b: FloatArray) -> FloatArray:

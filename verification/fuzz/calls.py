@@ -24,7 +24,7 @@ from isomortar.scene import Scene
 from isomortar.solve.simulation import Simulation
 
 #: Those of factors.
-_FACTORS = ("analyse", "factorise", "solve", "order", "condense", "factorise_condensed", "solve_condensed")
+_FACTORS = ("analyse", "factorise", "solve", "order", "condense", "factorise_condensed", "renew_condensed", "solve_condensed")
 #: Every routine of the kernel's interface.
 ROUTINES = (
     *("add_body", "material_stress", "surface_functions", "slave_tables", "project_points", "control_quantities", "augmented_multipliers"),
@@ -126,6 +126,11 @@ def _condensed() -> dict[str, tuple[Callable[..., Any], dict[str, Any]]]:
     def factorise_condensed(values: Any, added: Any, rcond_min: Any) -> Any:
         return condense(start, column, on_face, rows).factorise(values, added, rcond_min=rcond_min)
 
+    def renew_condensed(added: Any, rcond_min: Any) -> Any:
+        factors = condense(start, column, on_face, rows)
+        factors.factorise(values, np.eye(2, order="F"))
+        return factors.renew(added, rcond_min=rcond_min)
+
     def solve_condensed(b: Any) -> Any:
         factors = condense(start, column, on_face, rows)
         factors.factorise(values, added)
@@ -135,6 +140,7 @@ def _condensed() -> dict[str, tuple[Callable[..., Any], dict[str, Any]]]:
         "order": (order, {"indptr": start, "indices": column, "ordering": "amd"}),
         "condense": (condense, {"indptr": start, "indices": column, "on_face": on_face, "order": rows}),
         "factorise_condensed": (factorise_condensed, {"values": values, "added": added, "rcond_min": 1e-13}),
+        "renew_condensed": (renew_condensed, {"added": added, "rcond_min": 1e-13}),
         "solve_condensed": (solve_condensed, {"b": np.ones(4)}),
     }
 

@@ -152,6 +152,55 @@ def _solves(bodies: CondensedFactors, right: FloatArray) -> bool:
 
 
 @case(
+    claim="Where contact alone is another, bodies keep their factors: the same solutions to the last bit, with more multipliers or fewer.",
+    tier="gate",
+    grid={"others": (0, OTHERS, 30)},
+    bounds={
+        "difference": Bound(0.0, 0.0, "definition: the same operations on the same numbers"),
+        "near": Bound(at_most=0.0, reason="definition: the reciprocal condition, of the smallest pivot of both"),
+        "another": Bound(at_least=1e-3, reason="definition: another contact has another solution"),
+        "stale": Bound(0.0, 0.0, "definition: renewed with no bodies, or with some that were refused"),
+    },
+)
+def contact_alone(others: int) -> dict[str, float]:
+    """Largest differences of solutions and conditions from those of factors made anew, and how often there should have been none."""
+    random = np.random.default_rng(16)
+    (matrix, on_face), block = body(random), added(random)
+    again = np.asfortranarray(10.0 * np.eye(FACES + others) + random.standard_normal((FACES + others,) * 2))
+    right = random.standard_normal(matrix.shape[0] + others)
+    kept, anew = factors(matrix, on_face), factors(matrix, on_face)
+    stale = _renews(kept, block)
+    kept.factorise(matrix.data, block)
+    first = kept.solve(np.resize(right, matrix.shape[0] + OTHERS))
+    for one in (block, again):
+        kept.renew(one)
+    anew.factorise(matrix.data, again)
+    solution, near = kept.solve(right), abs(kept.rcond - anew.rcond)
+    inside = sparse.csr_array(matrix - sparse.diags_array(3.0 * ~on_face * matrix.diagonal()))
+    inside.sort_indices()
+    try:
+        kept.factorise(inside.data, block)
+        stale += 1
+    except SingularSystemError:
+        stale += _renews(kept, block)
+    unknowns = matrix.shape[0]
+    return {
+        "difference": float(np.abs(solution - anew.solve(right)).max()),
+        "near": near,
+        "another": float(np.abs(solution[:unknowns] - first[:unknowns]).max() / np.abs(solution).max()),
+        "stale": float(stale),
+    }
+
+
+def _renews(bodies: CondensedFactors, block: FloatArray) -> bool:
+    try:
+        bodies.renew(block)
+    except KernelError:
+        return False
+    return True
+
+
+@case(
     claim="How near a system is to a singular one is told by the pivots of what is dense: the smallest over the largest, in any unit.",
     tier="gate",
     grid={"unit": (2.0**-501, 0.5, 2.0**499)},
@@ -205,7 +254,7 @@ def nearness_within() -> dict[str, float]:
     tier="gate",
     bounds={
         name: Bound(at_least=STALE, at_most=STALE, reason="definition: the handle is stale")
-        for name in ("factorised", "solved", "released twice")
+        for name in ("factorised", "renewed", "solved", "released twice")
     },
 )
 def handles_of_bodies() -> dict[str, float]:
@@ -217,6 +266,7 @@ def handles_of_bodies() -> dict[str, float]:
     kernel.sparse_release(handle)
     return {
         "factorised": float(kernel.condensed_factorise(handle, matrix.data, np.eye(FACES, order="F"), 0.0)[-1]),
+        "renewed": float(kernel.condensed_renew(handle, np.eye(FACES, order="F"), 0.0)[-1]),
         "solved": float(kernel.condensed_solve(handle, np.ones(2 * LENGTH))[-1]),
         "released twice": float(kernel.sparse_release(handle)),
     }

@@ -86,22 +86,24 @@ class Border:
 
 
 def solve_bordered(
-    equilibrium: Equilibrium, balance: Balance, laws: Sequence[Law], targets: Sequence[Response], prescribed: FloatArray | None
+    equilibrium: Equilibrium,
+    balance: Balance,
+    laws: Sequence[Law],
+    targets: Sequence[Response],
+    prescribed: FloatArray | None,
+    stand: bool = False,
 ) -> tuple[Correction, list[Border | None]]:
     """Newton's correction, with given increments of the prescribed positions (theory 5.4, 6.3).
 
-    `balance.responses` hold the current multipliers, `targets` what the contact conditions make of them.
+    `balance.responses` hold the current multipliers, `targets` what the contact conditions make of them. The bodies' tangent may `stand`
+    as it was.
 
     Raises
     ------
     SingularSystemError
     """
-    with equilibrium.ledger.phase("solid"):
-        _, solid = equilibrium.solid.forces_and_tangent(balance.positions)
-    equilibrium.ledger.counts["solid tangents"] += 1
     unknowns = equilibrium.supports.equation
-    sources, values = equilibrium.load_tangents(balance.positions)
-    sources, values = [equilibrium.solid_source, *sources], [solid, *values]
+    sources, values = equilibrium.body_tangents(balance.positions, stand)
     size = len(equilibrium.supports.free)
     borders: list[Border | None] = []
     for k, target in enumerate(targets):

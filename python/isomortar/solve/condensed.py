@@ -57,8 +57,6 @@ class Bodies:
     ----------
     pattern : SymmetricPattern
         The same.
-    places : ndarray of int64
-        Of the entries of the source in it.
     on_face : ndarray of bool, shape (unknowns,)
         Unknowns that contact acts on.
     """
@@ -67,12 +65,15 @@ class Bodies:
         self._ledger, self._engine = ledger, engine
         with ledger.phase("factor"):
             self.pattern = SymmetricPattern(among.indptr.astype(np.int64), among.indices.astype(np.int64))
-            self.places = _bindings.find_places(
+            self._places = _bindings.find_places(
                 solid.pattern, solid.row_of, solid.column_of, False, self.pattern.indptr, self.pattern.indices
             )
             rivals = [self.pattern.fill_reducing(ordering) for ordering in orderings(len(self.pattern))]
         ledger.counts["analyses"] += len(rivals)
         self._order = min(rivals, key=lambda rival: rival[1])[0]
+        self._values, shape = np.zeros(len(self.pattern.indices)), (len(self.pattern),) * 2
+        self._matrix = sparse.csr_array((self._values, self.pattern.indices, self.pattern.indptr), shape=shape)
+        self._gathered: FloatArray | None = None  # the blocks that the values are of
         self._analyse(np.zeros(len(self.pattern), dtype=bool))
 
     def act_on(self, on_face: BoolArray) -> None:
@@ -82,6 +83,7 @@ class Bodies:
 
     def _analyse(self, on_face: BoolArray) -> None:
         self._factors: BodyFactors | None = None  # they go before others come
+        self._factorised = False
         with self._ledger.phase("factor"):
             analysed = CondensedFactors(self.pattern, on_face, self._order)
         self.on_face, self._faces, self._flops = on_face, float(analysed.faces), analysed.flops
@@ -96,6 +98,29 @@ class Bodies:
             with self._ledger.phase("factor"):
                 self._factors = self._engine(self.pattern, self.on_face, self._order)
         return self._factors
+
+    def factorise(self, blocks: FloatArray, added: FloatArray) -> None:
+        """Factorise with what contact adds; the bodies' factors stay where the blocks of their stiffness are the same array as before.
+
+        Raises
+        ------
+        SingularSystemError
+        """
+        stands = self._gathered is blocks and self._factorised and self.factors.renews
+        if self._gathered is not blocks:
+            self._values[:] = 0.0
+            _bindings.add_values(self._places, blocks, self._values)
+            self._gathered = blocks
+        self._factorised = False
+        if stands:
+            self.factors.renew(added)
+        else:
+            self.factors.factorise(self._values, added)
+        self._factorised = True
+
+    def product(self, vector: FloatArray) -> FloatArray:
+        """The stiffness that was factorised last times a vector, both of shape (unknowns,)."""
+        return np.asarray(self._matrix @ vector)
 
     def condense(self, others: int) -> bool:
         """Whether what is dense, with so many unknowns more than faces have, is worth its operations (theory 5.13)."""
@@ -130,13 +155,11 @@ class CondensedSystem(CheckedSystem):
         super().__init__(ledger)
         self._bodies, self._make_general = bodies, general
         self._general: LinearSystem | None = None
-        unknowns, column = len(bodies.pattern), bodies.pattern.indices
+        unknowns = len(bodies.pattern)
         self._trailing = np.concatenate([np.flatnonzero(bodies.on_face), np.arange(unknowns, size)])
         number = np.full(size, -1, dtype=np.int64)
         number[self._trailing] = np.arange(len(self._trailing))
         self._places = [_dense_places(source, number, len(self._trailing)) for source in sources[1:]]
-        self._values = np.zeros(len(column))
-        self._stiffness = sparse.csr_array((self._values, column, bodies.pattern.indptr), shape=(unknowns, unknowns))
         self._added = np.zeros((len(self._trailing),) * 2, order="F")
 
     def begin(self) -> None:
@@ -161,16 +184,18 @@ class CondensedSystem(CheckedSystem):
     def _factorise(self, sources: Sequence[FloatArray]) -> None:
         """By parts (theory 5.11)."""
         with self._ledger.phase("factor"):
-            self._values[:] = 0.0
-            _bindings.add_values(self._bodies.places, sources[0], self._values)
             self._added[:] = 0.0
             flat = self._added.reshape(-1, order="F")
             for places, source in zip(self._places, sources[1:], strict=True):
                 _bindings.add_values(places, source, flat)
-            self._bodies.factors.factorise(self._values, self._added)
+            self._bodies.factorise(sources[0], self._added)
         self._ledger.counts["factorisations"] += 1
-        self._ledger.largest("system non-zeros", len(self._values) + self._added.size)
+        self._ledger.largest("system non-zeros", len(self._bodies.pattern.indices) + self._added.size)
         self._ledger.largest("factor non-zeros", self._bodies.factors.factor_entries + self._added.size)
+
+    def by_bodies(self, step: FloatArray) -> FloatArray | None:
+        """See `CheckedSystem.by_bodies`."""
+        return self._bodies.product(step) if self._general is None and self._bodies.factors.renews else None
 
     @property
     def rcond(self) -> float:
@@ -219,7 +244,7 @@ class CondensedSystem(CheckedSystem):
             return self._general._product(solution)
         product = np.zeros_like(solution)
         unknowns = len(self._bodies.pattern)
-        product[:unknowns] = self._stiffness @ solution[:unknowns]
+        product[:unknowns] = self._bodies.product(solution[:unknowns])
         # Not by `@`: NumPy's threads would stay awake afterwards.
         product[self._trailing] += np.einsum("ij,j->i", self._added, solution[self._trailing])
         return product

@@ -91,6 +91,7 @@ class Equilibrium:
         self.loads = Loads(problem, self.numbering)
         self.time = 0.0
         self._known: tuple[FloatArray, State, FloatArray, tuple[Kinematics, ...]] | None = None
+        self._stiffness = np.zeros((0, 3, 3))
         self._engine = engine_of(problem.settings)
         self.orderings: dict[int, Ordering] = {}
         self._stand(0)
@@ -222,13 +223,36 @@ class Equilibrium:
         depth = constants.SUNK * self.numbering.size
         return any(pair.bear(k, depth) for pair, k in zip(self.pairs, balance.kinematics, strict=True))
 
-    def tangents(self, balance: Balance, laws: Sequence[Law]) -> tuple[list[Source], list[FloatArray]]:
-        """Solid and condensed contact tangents as sources of the linear system, with their values."""
+    def body_tangents(self, positions: FloatArray, stand: bool) -> tuple[list[Source], list[FloatArray]]:
+        """Tangents of solids and of loads on them, as sources of the linear system with their values; those of solids may `stand`."""
+        if not stand:
+            with self.ledger.phase("solid"):
+                self._stiffness = self.solid.forces_and_tangent(positions)[1]
+            self.ledger.counts["solid tangents"] += 1
         with self.ledger.phase("solid"):
-            _, solid = self.solid.forces_and_tangent(balance.positions)
-        self.ledger.counts["solid tangents"] += 1
-        sources, values = self.load_tangents(balance.positions)
-        sources, values = [self.solid_source, *sources], [solid, *values]
+            of_loads = list(self.loads.tangents(positions, self.time))
+        equation = self.supports.equation
+        sources = [self.solid_source, *(Source(pattern, equation, equation) for pattern, _ in of_loads)]
+        return sources, [self._stiffness, *(-values for _, values in of_loads)]
+
+    def left_by_bodies(self, before: Balance, after: Balance) -> float:
+        """What the bodies' tangent of the last solve missed of their forces on the way from one iterate to the next (theory 5.24).
+
+        A share of what was out of balance; infinite where these factors can not stay while others come for contact.
+        """
+        free, supports = self.supports.free, self.supports
+        out = float(np.linalg.norm(before.unbalanced.ravel()[free]))
+        if self._system is None or len(supports.copies) or out == 0.0:
+            return np.inf
+        made = self._system.by_bodies((after.positions - before.positions).ravel()[free])
+        if made is None:
+            return np.inf
+        change = supports.gathered(after.internal - before.internal, before.positions).ravel()[free]
+        return float(np.linalg.norm(change - made)) / out
+
+    def tangents(self, balance: Balance, laws: Sequence[Law], stand: bool = False) -> tuple[list[Source], list[FloatArray]]:
+        """Tangents of solids (the last ones, where these `stand`), loads and condensed contact, as sources with their values."""
+        sources, values = self.body_tangents(balance.positions, stand)
         for pair, law, kinematics, response in zip(self.pairs, laws, balance.kinematics, balance.responses, strict=True):
             if not np.any(response.state):
                 continue
@@ -237,21 +261,17 @@ class Equilibrium:
             values.append(tangent)
         return sources, values
 
-    def load_tangents(self, positions: FloatArray) -> tuple[list[Source], list[FloatArray]]:
-        """What pressures on faces add to the tangent, as sources of the linear system with their values."""
-        with self.ledger.phase("solid"):
-            tangents, equation = list(self.loads.tangents(positions, self.time)), self.supports.equation
-        return [Source(pattern, equation, equation) for pattern, _ in tangents], [-values for _, values in tangents]
-
-    def correction(self, balance: Balance, laws: Sequence[Law], prescribed: FloatArray) -> FloatArray:
+    def correction(self, balance: Balance, laws: Sequence[Law], prescribed: FloatArray, stand: bool = False) -> FloatArray:
         """Newton's correction of all positions, with given increments of the prescribed ones, shape (control points, 3) (theory 5.4).
+
+        The bodies' tangent may `stand` as it was.
 
         Raises
         ------
         SingularSystemError
             Naming a body that nothing holds.
         """
-        sources, values = self.seen(*self.tangents(balance, laws), balance)
+        sources, values = self.seen(*self.tangents(balance, laws, stand), balance)
         right = balance.unbalanced.ravel()[self.supports.free]
         if np.any(prescribed):
             for source, block in zip(sources, values, strict=True):

@@ -163,9 +163,11 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
     def _reopened(self, iterate: _BorderedIterate) -> _BorderedIterate:
         return self._evaluate(iterate.balance.positions, iterate.multipliers) if self._equilibrium.bear(iterate.balance) else iterate
 
-    def _correct(self, iterate: _BorderedIterate, prescribed: FloatArray | None) -> tuple[_BorderedIterate, Correction, tuple[str, ...]]:
+    def _correct(
+        self, iterate: _BorderedIterate, prescribed: FloatArray | None, stand: bool
+    ) -> tuple[_BorderedIterate, Correction, tuple[str, ...]]:
         """The first solve has the prescribed increment; slips that would reverse stick instead, and it is repeated (theory 6.5)."""
-        correction = self._solved(iterate, prescribed)
+        correction = self._solved(iterate, prescribed, stand)
         if prescribed is None or "reversal" not in self._settings.measures:
             return iterate, correction, ()
         held, notes = [law.held for law in iterate.laws], tuple[str, ...]()
@@ -175,12 +177,13 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
                 break
             held = [np.maximum(h, r.astype(np.int32)) for h, r in zip(held, reversed_, strict=True)]
             iterate = self._evaluate(iterate.balance.positions, iterate.multipliers, self._margin, held)
-            correction = self._solved(iterate, prescribed)
+            correction = self._solved(iterate, prescribed, True)
             notes = (f"reversal of {sum(int(h.sum()) for h in held)}",)
         return iterate, correction, notes
 
-    def _solved(self, iterate: _BorderedIterate, prescribed: FloatArray | None) -> Correction:
-        correction, self._borders = solve_bordered(self._equilibrium, iterate.balance, iterate.laws, iterate.targets, prescribed)
+    def _solved(self, iterate: _BorderedIterate, prescribed: FloatArray | None, stand: bool) -> Correction:
+        solved = solve_bordered(self._equilibrium, iterate.balance, iterate.laws, iterate.targets, prescribed, stand)
+        correction, self._borders = solved
         return correction
 
     def _correct_again(self, iterate: _BorderedIterate) -> Correction:

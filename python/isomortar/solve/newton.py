@@ -11,7 +11,7 @@ from typing import Generic, TypeVar
 
 import numpy as np
 
-from isomortar.errors import ConvergenceError, FoldedElementError, LostProjectionError
+from isomortar.errors import ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
 from isomortar.solve.equilibrium import Balance, Equilibrium
@@ -19,8 +19,8 @@ from isomortar.solve.record import IterationRecord, State
 from isomortar.solve.scales import Scales
 from isomortar.solve.trail import Trail, states
 
-#: Note of an iteration that was solved with factors of an earlier tangent.
-KEPT_FACTORS = "kept factors"
+#: Notes of iterations that were solved with factors of an earlier tangent, and with those of an earlier tangent of the bodies.
+KEPT_FACTORS, KEPT_BODIES = "kept factors", "kept bodies"
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,8 @@ class Newton(ABC, Generic[Iterated, Corrected]):
     """Newton's method for one load increment; what its unknowns are, and how an update is shortened, say the methods of contact.
 
     Factors are kept for as long as solves with them leave a small share of what there was: at the end of a loop, and from one loop of an
-    increment to the next, the tangent changes little, and its factors are by far the dearest part of a solve.
+    increment to the next, the tangent changes little, and its factors are by far the dearest part of a solve. Those of the bodies are
+    kept within a loop where contact alone changes much.
 
     Parameters
     ----------
@@ -101,7 +102,7 @@ class Newton(ABC, Generic[Iterated, Corrected]):
         ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError
         """
         moves = prescribed is not None and bool(np.any(prescribed))
-        keep = self._keeps and self._factorised and not moves
+        keep, stand = self._keeps and self._factorised and not moves, False
         log, tangents = list[IterationRecord](), 0
         self._trail = Trail()
         for iteration in count():
@@ -117,10 +118,9 @@ class Newton(ABC, Generic[Iterated, Corrected]):
             if following is None:
                 if tangents == self._settings.max_iterations or not np.isfinite(iterate.merit):
                     break
-                iterate, correction, predicted = self._correct(iterate, None if tangents else prescribed)
-                following, shortened = self._update(iterate, correction, iteration)
-                notes, tangents = predicted + shortened, tangents + 1
-                self._factorised, moves = True, False
+                iterate, following, notes = self._by_tangent(iterate, None if tangents else prescribed, iteration, stand)
+                stand = self._keeps and self._equilibrium.left_by_bodies(iterate.balance, following.balance) <= constants.KEPT_SHARE
+                tangents, moves = tangents + 1, False
             keep = self._keeps and self._serve(iterate, following)
             iterate = following
         toggling = self._trail.toggling(self._equilibrium.pairs)
@@ -135,8 +135,11 @@ class Newton(ABC, Generic[Iterated, Corrected]):
         return iterate
 
     @abstractmethod
-    def _correct(self, iterate: Iterated, prescribed: FloatArray | None) -> tuple[Iterated, Corrected, tuple[str, ...]]:
-        """Newton's correction by a tangent of its own, what it corrects, and what acted; the first one has the prescribed increment."""
+    def _correct(self, iterate: Iterated, prescribed: FloatArray | None, stand: bool) -> tuple[Iterated, Corrected, tuple[str, ...]]:
+        """Newton's correction by a tangent of its own, what it corrects, and what acted; the first one has the prescribed increment.
+
+        The bodies' tangent may `stand` as it was.
+        """
 
     @abstractmethod
     def _correct_again(self, iterate: Iterated) -> Corrected:
@@ -153,6 +156,20 @@ class Newton(ABC, Generic[Iterated, Corrected]):
     def _serve(self, iterate: Iterated, following: Iterated) -> bool:
         """Whether factors that led from one iterate to the next are good enough for another solve."""
         return following.merit <= constants.KEPT_SHARE * iterate.merit
+
+    def _by_tangent(
+        self, iterate: Iterated, prescribed: FloatArray | None, iteration: int, stand: bool
+    ) -> tuple[Iterated, Iterated, tuple[str, ...]]:
+        """The iterate, the next one by its tangent, and what acted; where the bodies' tangent should `stand`, that leads somewhere."""
+        try:
+            iterate, correction, predicted = self._correct(iterate, prescribed, stand)
+            self._factorised = True
+            following, shortened = self._update(iterate, correction, iteration)
+        except (FoldedElementError, LostProjectionError, SingularSystemError):
+            if not stand:
+                raise
+            return self._by_tangent(iterate, prescribed, iteration, False)
+        return iterate, following, predicted + shortened + ((KEPT_BODIES,) if stand else ())
 
     def _by_kept_factors(self, iterate: Iterated) -> Iterated | None:
         """The next iterate with the factors of an earlier tangent; None if these do not serve."""

@@ -77,6 +77,10 @@ class CheckedSystem(ABC):
             `place` is an equation that nothing holds.
         """
 
+    def by_bodies(self, step: FloatArray) -> FloatArray | None:  # noqa: ARG002
+        """The bodies' stiffness that was factorised last times a step of their unknowns; None where its factors can not stay alone."""
+        return None
+
     @property
     @abstractmethod
     def ordering(self) -> Ordering | None:

@@ -55,10 +55,10 @@ class _PositionNewton(Newton[Iterate, FloatArray]):
     def _moved(self, iterate: Iterate, correction: FloatArray, share: float) -> Iterate:
         return self._evaluate(self._equilibrium.moved(iterate.balance.positions, share * correction))
 
-    def _correct(self, iterate: Iterate, prescribed: FloatArray | None) -> tuple[Iterate, FloatArray, tuple[str, ...]]:
+    def _correct(self, iterate: Iterate, prescribed: FloatArray | None, stand: bool) -> tuple[Iterate, FloatArray, tuple[str, ...]]:
         moves = prescribed is not None and bool(np.any(prescribed))
         increment = prescribed if prescribed is not None else np.zeros_like(iterate.balance.positions)
-        correction = self._equilibrium.correction(iterate.balance, self._laws, increment)
+        correction = self._equilibrium.correction(iterate.balance, self._laws, increment, stand)
         self._secants = Secants()
         self._last = None if moves else (iterate.balance.positions, correction)  # motions of supports correct no forces
         return iterate, correction, ()
