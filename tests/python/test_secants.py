@@ -13,6 +13,7 @@ from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.record import StepResult
 from isomortar.solve.secants import Secants
 from isomortar.solve.simulation import Simulation
+from isomortar.solve.uzawa import _PositionNewton
 
 RANDOM = np.random.default_rng(7)
 SIZE = MAX_SECANTS + 4
@@ -117,3 +118,28 @@ def test_what_is_known_of_one_tangent_is_not_used_with_another(monkeypatch: pyte
     results = list(Simulation(pressed()).run())
     assert most[0] > MAX_SECANTS
     assert summed(results, "factorisations") > len(results)
+
+
+def test_the_step_by_a_tangent_is_learnt_where_supports_stood(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Within one augmentation: of a correction that has a motion of supports in it forces are not made."""
+    events: list[str] = []
+    tangent, kept, learn, held = Equilibrium.correction, Equilibrium.kept_correction, Secants.learn, _PositionNewton.held
+
+    def corrected(equilibrium: Equilibrium, balance: Any, laws: Any, prescribed: FloatArray, *more: Any) -> FloatArray:
+        events.append("moved" if np.any(prescribed) else "tangent")
+        return tangent(equilibrium, balance, laws, prescribed, *more)
+
+    def heard(name: str, function: Any) -> Any:
+        return lambda *arguments: (events.append(name), function(*arguments))[1]
+
+    monkeypatch.setattr(Equilibrium, "correction", corrected)
+    monkeypatch.setattr(Equilibrium, "kept_correction", heard("kept", kept))
+    monkeypatch.setattr(Secants, "learn", heard("learn", learn))
+    monkeypatch.setattr(_PositionNewton, "held", heard("held", held))
+    list(Simulation(pressed()).run())
+    said = " ".join(events)
+    assert "tangent kept learn" in said
+    assert "moved tangent" in said
+    assert "moved kept learn" not in said
+    assert "tangent kept kept" not in said
+    assert "held kept learn" not in said

@@ -150,9 +150,9 @@ class Factors:
     def begun(self) -> None:
         self.increment += 1
 
-    def solved(self, equilibrium, balance, laws, targets, prescribed):
+    def solved(self, equilibrium, balance, laws, targets, prescribed, stand):
         self.made_of = self.increment, [target.state.tobytes() for target in targets]
-        correction, self.borders = bordered.solve_bordered(equilibrium, balance, laws, targets, prescribed)
+        correction, self.borders = bordered.solve_bordered(equilibrium, balance, laws, targets, prescribed, stand)
         return correction, self.borders
 
     def kept(self, equilibrium, balance, targets, borders):

@@ -45,7 +45,7 @@ def ending(routine: Callable[..., Any], arguments: dict[str, Any], name: str, ma
 
 
 @case(
-    claim="No argument of the kernel's routines, and no part of one, takes a value of another kind: each is refused by a sentence that names it.",
+    claim="No argument of the kernel's routines, and no part of one, takes a value of another kind: each is refused by name.",
     grid={"master": tuple(MASTERS)},
     bounds={"refused": Bound(at_least=0.97, at_most=1.0, reason="definition: flags take True, real numbers whole ones and large ones")},
 )

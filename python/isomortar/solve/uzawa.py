@@ -29,7 +29,7 @@ class _PositionNewton(Newton[Iterate, FloatArray]):
     def __init__(self, equilibrium: Equilibrium, start: State, scales: Scales) -> None:
         super().__init__(equilibrium, start, scales)
         self._secants = Secants()
-        self._last: tuple[FloatArray, FloatArray] | None = None  # positions with these laws, and the correction there by the present factors
+        self._last: tuple[FloatArray, FloatArray] | None = None  # positions with these laws, and the correction there by these factors
 
     def held(self, laws: Sequence[Law], positions: FloatArray) -> Iterate:
         """The first iterate with these laws, at the start of the increment or where the last augmentation ended."""
