@@ -120,7 +120,7 @@ contains
     end do
   end subroutine complement_body
 
-  !> Factorise with another C and the K of the last factors, which there must be; ends as `eliminate_condensed`.
+  !> Factorise with another C and the K of the last factors, which there must be (theory 5.12); ends as `eliminate_condensed`.
   recursive subroutine eliminate_faces(self, added, rcond, code)
     type(condensed_t), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: added(:, :)
@@ -135,7 +135,8 @@ contains
     n = size(added, 1)
     code = cholesky_out_of_memory
     if (allocated(self%complement)) deallocate (self%complement, self%pivot)
-    allocate (self%complement(n, n), self%pivot(n), stat=failure)
+    allocate (self%complement(n, n), stat=failure)
+    if (failure == 0) allocate (self%pivot(n), stat=failure)
     if (failure /= 0) then
       call forget_numbers(self)
       return

@@ -172,6 +172,10 @@ stages = [{ name = "onto", steps = 4, motions.top.translate = [-0.9, 0, 0] }]
 
 
 def test_a_slave_that_comes_onto_its_master_from_beside() -> None:
-    """A row of quadrature points is over the edge, a tenth deep: far more conditions than points."""
+    """A row of quadrature points is over the edge, a tenth deep: far more conditions than points.
+
+    Either that is singular, or no active set is found; what is to be done is the same.
+    """
     said = error(FROM_BESIDE)
-    assert "the slave goes over an edge of its master; 324 of its 324 quadrature points are beside the master" in said
+    assert "beside the master" in said
+    assert "Refine the slave, use a larger master, end the motion earlier, or bring the slave onto its master from above" in said

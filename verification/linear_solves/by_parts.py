@@ -169,7 +169,7 @@ def contact_alone(others: int) -> dict[str, float]:
     again = np.asfortranarray(10.0 * np.eye(FACES + others) + random.standard_normal((FACES + others,) * 2))
     right = random.standard_normal(matrix.shape[0] + others)
     kept, anew = factors(matrix, on_face), factors(matrix, on_face)
-    stale = _renews(kept, block)
+    stale = int(_renews(kept, block))
     kept.factorise(matrix.data, block)
     first = kept.solve(np.resize(right, matrix.shape[0] + OTHERS))
     for one in (block, again):

@@ -22,7 +22,7 @@ bodies.block = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1]
 contacts.floor = { slave = "block.w0", plane.point = [0, 0, -0.1], friction = 0 }
 supports.top.face = "block.w1"
 stages = [{ name = "press", steps = 1, motions.top.translate = [0, 0, -0.95] }]
-solver = { method = "uzawa", max_iterations = 4 }
+solver = { method = "uzawa", max_iterations = 3 }
 """
 
 

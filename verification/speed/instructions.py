@@ -33,7 +33,9 @@ WORK = {
     "contact": (
         *("control_quantities_", "augmented_multipliers_", "friction_radius_", "contact_forces_", "contact_blocks_", "multiplier_rows_"),
     ),
-    "factors": ("condensed_order_", "condensed_analyse_", "condensed_factorise_", "condensed_renew_", "sparse_analyse_", "sparse_factorise_"),
+    "factors": (
+        *("condensed_order_", "condensed_analyse_", "condensed_factorise_", "condensed_renew_", "sparse_analyse_", "sparse_factorise_"),
+    ),
     "solves": ("condensed_solve_", "sparse_solve_"),
 }
 OTHERS = (
