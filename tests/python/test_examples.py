@@ -42,5 +42,5 @@ def test_the_notebook_runs(tmp_path: Path) -> None:
     assert len(bars) == 1
     assert '<progress value="5" max="5">' in bars[0]
     forces = ast.literal_eval(re.sub(r"np\.float64\(([^)]*)\)", r"\1", shown[-1]["data"]["text/plain"]))
-    assert list(forces) == [0.0, 0.3, 0.6]
-    assert 0.0 > forces[0.0] > forces[0.3] > forces[0.6]
+    assert list(forces) == [0.0, 0.02, 0.3]
+    assert 0.0 > forces[0.0] > forces[0.02] > forces[0.3]
