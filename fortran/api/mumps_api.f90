@@ -78,7 +78,24 @@ subroutine mumps_factorise(handle, nnz, trailing, values, added, rcond_min, rcon
   call factorise_distributed(handle, values, added, rcond_min, rcond, factor_entries, place, status)
 end subroutine mumps_factorise
 
-!> Solve with the factors of the last `mumps_factorise`.
+!> Factorise what is added on faces and beyond anew, with the stiffness of the last `mumps_factorise`, whose factors stay.
+!>
+!> - `added`, `rcond_min`, `rcond`: as there.
+subroutine mumps_renew(handle, trailing, added, rcond_min, rcond, status)
+  use iso_c_binding, only: c_double, c_int, c_int64_t
+  use isomortar_sparse_distributed, only: renew_distributed
+  implicit none
+  !f2py threadsafe
+  integer(c_int), intent(in) :: handle
+  integer(c_int64_t), intent(in) :: trailing
+  real(c_double), intent(in) :: added(trailing, trailing), rcond_min
+  real(c_double), intent(out) :: rcond
+  integer(c_int), intent(out) :: status
+
+  call renew_distributed(handle, added, rcond_min, rcond, status)
+end subroutine mumps_renew
+
+!> Solve with the factors of the last `mumps_factorise` or `mumps_renew`.
 !>
 !> - `b`, `x`: right-hand side and solution, `n` unknowns: those of bodies, then others.
 subroutine mumps_solve(handle, n, b, x, place, status)

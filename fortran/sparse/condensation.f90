@@ -121,7 +121,7 @@ contains
     if (status == status_ok .and. .not. rcond >= rcond_min) status = status_singular
   end function judged
 
-  !> Solve with the factors of the last `factorise_bodies`: `b` (size), `x` (size): unknowns, then others.
+  !> Solve with the last factors: `b` (size), `x` (size): unknowns, then others.
   recursive subroutine solve_bodies(handle, b, x, status)
     integer(c_int64_t), intent(in) :: handle
     real(c_double), contiguous, intent(in) :: b(:)

@@ -17,7 +17,7 @@ module isomortar_sparse_distributed
   implicit none
   private
 
-  public :: analyse_distributed, factorise_distributed, release_distributed, solve_distributed
+  public :: analyse_distributed, factorise_distributed, release_distributed, renew_distributed, solve_distributed
 
   !> Per cent of memory more than MUMPS estimates, first and at most: doubled where it does not suffice.
   integer, parameter :: spare = 30, most_spare = 1000
@@ -31,6 +31,8 @@ module isomortar_sparse_distributed
     integer, pointer :: row(:) => null(), column(:) => null(), order(:) => null(), face(:) => null()
     real(c_double), pointer :: lower(:) => null(), schur(:) => null(), right(:) => null(), reduced(:) => null()
     real(c_double), allocatable :: scale(:)
+    !> The least pivot of K.
+    real(c_double) :: least = 0
     !> LU factors of the complement with their pivots; not allocated without factors.
     real(c_double), allocatable :: complement(:, :)
     integer(c_int), allocatable :: pivot(:)
@@ -155,7 +157,6 @@ contains
     real(c_double), intent(out) :: rcond, factor_entries
     integer(c_int64_t), intent(out) :: place
     integer, intent(out) :: status
-    integer :: failure
 
     rcond = 0
     factor_entries = 0
@@ -167,21 +168,43 @@ contains
     associate (self => table(handle))
       if (allocated(self%complement)) deallocate (self%complement)
       if (allocated(self%pivot)) deallocate (self%pivot)
-      call eliminate_inner(self, handle, values, rcond, factor_entries, place, status)
-      if (status /= status_ok) return
-      allocate (self%complement(size(added, 1), size(added, 2)), stat=failure)
-      if (failure == 0) allocate (self%pivot(size(added, 1)), stat=failure)
-      if (failure == 0) call complement_schur(self, added)
       if (associated(self%schur)) deallocate (self%schur)
-      status = status_out_of_memory
+      call eliminate_inner(self, handle, values, self%least, factor_entries, place, status)
+    end associate
+    if (status == status_ok) call renew_distributed(handle, added, rcond_min, rcond, status)
+  end subroutine factorise_distributed
+
+  !> The same with what is `added` anew, and the stiffness of the last `factorise_distributed`, whose factors stay.
+  subroutine renew_distributed(handle, added, rcond_min, rcond, status)
+    integer(c_int), intent(in) :: handle
+    real(c_double), contiguous, intent(in) :: added(:, :)
+    real(c_double), intent(in) :: rcond_min
+    real(c_double), intent(out) :: rcond
+    integer, intent(out) :: status
+    integer :: failure
+
+    rcond = 0
+    status = status_stale_handle
+    if (.not. is_taken(handle)) return
+    if (.not. associated(table(handle)%schur)) return
+    if (contracts) call require(size(added, 1) == size(added, 2), "renew_distributed: the trailing block is square")
+    if (contracts) call require(size(added, 1) >= table(handle)%faces, "renew_distributed: faces and more")
+    status = status_out_of_memory
+    associate (self => table(handle))
+      if (allocated(self%complement)) deallocate (self%complement)
+      if (allocated(self%pivot)) deallocate (self%pivot)
+      allocate (self%complement(size(added, 1), size(added, 2)), stat=failure)
       if (failure /= 0) return
+      allocate (self%pivot(size(added, 1)), stat=failure)
+      if (failure /= 0) return
+      call complement_schur(self, added)
       call eliminate_dense(self%complement, self%pivot)
-      rcond = min(rcond, pivots_apart(self%complement))
+      rcond = min(self%least, pivots_apart(self%complement))
     end associate
     ! Written so that a condition that is not a number counts as singular too.
     status = status_ok
     if (.not. rcond >= rcond_min) status = status_singular
-  end subroutine factorise_distributed
+  end subroutine renew_distributed
 
   !> Have the ranks eliminate what is within the bodies; more memory is tried where the estimate was short.
   subroutine eliminate_inner(self, handle, values, rcond, factor_entries, place, status)

@@ -6,7 +6,6 @@ import threading
 import weakref
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -110,13 +109,10 @@ class BodyFactors(ABC):
         Estimate of the reciprocal condition of the last matrix; NaN before the first.
     compression : float
         What the factor of K may leave out; 0: nothing.
-    renews : bool
-        Whether factors of K may stay where C alone is another (`renew`).
     """
 
     factor_entries: int
     compression: float = 0.0
-    renews: ClassVar[bool] = False
 
     def __init__(self, pattern: SymmetricPattern, on_face: NDArray[np.bool_], order: LongArray) -> None:
         n = len(pattern)
@@ -124,16 +120,16 @@ class BodyFactors(ABC):
         if not np.array_equal(np.sort(check.array("order", order, np.int64, n)), np.arange(n)):
             raise InputError(f"is no order of the unknowns 0 to {n - 1}", "order")
         self.faces, self.rcond = int(np.count_nonzero(on_face)), float("nan")
-        self._pattern, self._others, self._held = pattern, -1, False
+        self._pattern, self._others = pattern, -1
         self._lock = threading.Lock()
 
     @abstractmethod
     def _eliminate(self, values: FloatArray, added: FloatArray, rcond_min: float) -> None:
         """Factorise what is checked."""
 
+    @abstractmethod
     def _eliminate_faces(self, added: FloatArray, rcond_min: float) -> None:
         """Factorise another C that is checked, with the K of before."""
-        raise NotImplementedError
 
     @abstractmethod
     def _substitute(self, b: FloatArray) -> FloatArray:
@@ -165,9 +161,9 @@ class BodyFactors(ABC):
         self._check_added(added, rcond_min)
         check_finite(values, self._pattern.indptr)
         with self._lock:
-            self._others, self._held = -1, False
+            self._others = -1
             self._eliminate(values, added, rcond_min)
-            self._others, self._held = len(added) - self.faces, True
+            self._others = len(added) - self.faces
 
     def renew(self, added: FloatArray, *, rcond_min: float = 1e-13) -> None:
         """Factorise ``K + C`` for another C, with the K of the last `factorise`, whose factors stay.
@@ -180,15 +176,18 @@ class BodyFactors(ABC):
         Raises
         ------
         SingularSystemError, KernelError, InputError
-            As there; KernelError also where no K is factorised.
+            As there; KernelError also where nothing is factorised.
         """
         self._check_added(added, rcond_min)
         with self._lock:
-            if not self._held:
-                raise KernelError("no matrix is factorised: the last one was refused, or there was none")
+            self._check_factorised()
             self._others = -1
             self._eliminate_faces(added, rcond_min)
             self._others = len(added) - self.faces
+
+    def _check_factorised(self) -> None:
+        if self._others < 0:
+            raise KernelError("no matrix is factorised: the last one was refused, or there was none")
 
     def _check_added(self, added: FloatArray, rcond_min: float) -> None:
         check.array("added", added.T if isinstance(added, np.ndarray) else added, np.float64, None, None)
@@ -199,7 +198,7 @@ class BodyFactors(ABC):
             raise KernelError("what is added to the matrix is not finite", -1)
 
     def solve(self, b: FloatArray) -> FloatArray:
-        """Solve ``(K + C) x = b`` with the factors of the last `factorise`.
+        """Solve ``(K + C) x = b`` with the factors of the last `factorise` or `renew`.
 
         Parameters
         ----------
@@ -217,8 +216,7 @@ class BodyFactors(ABC):
             Wrong type or shape of `b`.
         """
         with self._lock:
-            if self._others < 0:
-                raise KernelError("no matrix is factorised: the last one was refused, or there was none")
+            self._check_factorised()
             check.array("b", b, np.float64, len(self._pattern) + self._others)
             finite = np.isfinite(b)
             if not finite.all():
@@ -249,8 +247,6 @@ class CondensedFactors(BodyFactors):
     flops : float
         Floating-point operations of a factorisation of K.
     """
-
-    renews: ClassVar[bool] = True
 
     def __init__(self, pattern: SymmetricPattern, on_face: NDArray[np.bool_], order: LongArray) -> None:
         super().__init__(pattern, on_face, order)

@@ -173,6 +173,11 @@ class DistributedFactors(BodyFactors):
         _check_status(status, place)
         self.factor_entries = int(entries)
 
+    def _eliminate_faces(self, added: FloatArray, rcond_min: float) -> None:
+        with _one_task:
+            self.rcond, status = self._kernel.mumps_renew(self._handle, added, rcond_min)
+        _check_status(status, -1)
+
     def _substitute(self, b: FloatArray) -> FloatArray:
         with _one_task:
             x, place, status = self._kernel.mumps_solve(self._handle, b)

@@ -78,6 +78,21 @@ def test_solutions_are_those_of_the_whole_matrix(faces, others):
 
 
 @built
+@pytest.mark.parametrize("others", [0, 6, 20])
+def test_bodies_keep_their_factors_where_contact_alone_is_another(others):
+    matrix, on_face, added = body(others=6)
+    again = np.asfortranarray(10.0 * np.eye(40 + others) + RANDOM.standard_normal((40 + others,) * 2))
+    right = RANDOM.standard_normal(matrix.shape[0] + others)
+    found = distributed(matrix, on_face)
+    with pytest.raises(KernelError, match="no matrix is factorised"):
+        found.renew(added)
+    found.factorise(matrix.data, added)
+    for _ in range(2):  # what was added before is not there any more
+        found.renew(again)
+        np.testing.assert_allclose(found.solve(right), np.linalg.solve(whole(matrix, on_face, again), right), rtol=1e-9, atol=1e-11)
+
+
+@built
 def test_the_complement_on_the_faces_is_that_of_cholmod():
     """Where contact adds a unit matrix, solutions on the faces are columns of the inverse of the complement and that."""
     matrix, on_face, _ = body(faces=30, others=0)

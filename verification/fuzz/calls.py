@@ -56,7 +56,8 @@ MASTERS = {
 }
 _INTEGERS = (-1, 0, 1, 2, 7, 63, 65, 1000, 2**31 - 1, -(2**31), 2**40)
 _REALS = (0.0, -1.0, 1.0, 1e300, -1e300, 5e-324, float("nan"), float("inf"), float("-inf"))
-_STRANGERS: tuple[Any, ...] = (None, "x", [], (), {}, 2.5, True, 1j, -1, 0, 10**30, float("nan"), float("inf"), 1e300)
+#: What no argument is: nothing, text, containers, numbers that are none or of another kind.
+STRANGERS: tuple[Any, ...] = (None, "x", [], (), {}, 2.5, True, 1j, -1, 0, 10**30, float("nan"), float("inf"), 1e300)
 
 
 @functools.cache
@@ -180,7 +181,7 @@ def _changed(value: Any, chance: random.Random) -> Any:
         return chance.choice((_retyped, _reshaped, _resized, _rearranged, _other_entry, _other_entry, _other_entry, _shuffled))(
             value, chance
         )
-    return chance.choice(_STRANGERS)
+    return chance.choice(STRANGERS)
 
 
 def _retyped(value: Any, chance: random.Random) -> Any:

@@ -82,7 +82,7 @@ def by_multigrid(library: Any, system: System) -> dict[str, float]:
 def by_factors(system: System) -> dict[str, float]:
     """CPU seconds of a factorisation and of a solution by it."""
     factors = system.analysed()
-    factor = cpu_seconds(lambda: factors.factorise(system.values))[0]
+    factor = cpu_seconds(lambda: system.factorise(factors))[0]
     return {"factor": factor, "by factors": cpu_seconds(lambda: factors.solve(system.right))[0]}
 
 

@@ -47,6 +47,15 @@ class System:
         general.factorise(self.values)
         return general.matrix()
 
+    def factorise(self, factors: CheckedSystem) -> None:
+        """Gather and factorise anew: with one of two copies after the other, as bodies keep their factors of the very same array."""
+        self._copies.reverse()
+        factors.factorise(self._copies[0])
+
+    @cached_property
+    def _copies(self) -> list[list[FloatArray]]:
+        return [self.values, [value.copy() for value in self.values]]
+
     @property
     def definite(self) -> bool:
         """Whether it is a solid's alone: symmetric and positive definite."""

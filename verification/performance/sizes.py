@@ -72,5 +72,5 @@ def first_step(mesh: Mesh) -> Step:
     equilibrium = simulation.equilibrium
     bodies = equilibrium._bodies
     assert bodies, "something was factorised"
-    tangents, solves = step.counters["factorisations"], step.counters["solves"]
+    tangents, solves = step.counters["solid tangents"], step.counters["solves"]
     return Step(len(equilibrium.supports.free), bodies.factors.faces, dict(step.timings), tangents, solves, peak_memory())

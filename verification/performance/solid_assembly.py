@@ -42,12 +42,12 @@ def solid_assembly(quick: bool) -> Iterator[Row]:
     elements = (3, 3, 2) if quick else (12, 12, 6)
     for order, seconds in REFERENCE.items():
         found = solid_system(order, elements)
-        equilibrium, values, system = found.equilibrium, found.values, found.analysed()
+        equilibrium, system = found.equilibrium, found.analysed()
         positions = deformed(equilibrium)
         # Copies: the tangent of positions that are the very same is kept, not assembled.
         tangent = cpu_seconds(lambda solid=equilibrium.solid, x=positions: solid.forces_and_tangent(x.copy()))[0]  # type: ignore[misc]
         forces = cpu_seconds(lambda solid=equilibrium.solid, x=positions: solid.forces(x))[0]  # type: ignore[misc]
-        factor = cpu_seconds(lambda system=system, values=values: system.factorise(values))[0]  # type: ignore[misc]
+        factor = cpu_seconds(lambda found=found, system=system: found.factorise(system))[0]  # type: ignore[misc]
         rate = dgemm_rate()
         size: Row = {"order": order, "elements": "x".join(map(str, elements)), "unknowns": len(equilibrium.supports.free)}
         times = {"forces": forces, "tangent": tangent, "factor": factor, "dgemm": rate, "like dgemm": tangent * rate}

@@ -55,7 +55,7 @@ class Isomortar(Solver):
 
     def factorise(self) -> None:
         """Gather and factorise."""
-        self._factors.factorise(self.system.values)
+        self.system.factorise(self._factors)
 
     def solve(self, right: FloatArray) -> FloatArray:
         """Solve, with refinement where that is called for."""

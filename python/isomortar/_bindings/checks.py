@@ -69,9 +69,11 @@ def check_law(law: Law, slave: SlaveArrays) -> None:
     check.array("law.held", law.held, np.int32, n)
     check.flag("law.summed", law.summed)
     check.flag("law.forgiving", law.forgiving)
+    least = 0.0
     if law.stretch is not None:
         check.array("law.stretch", law.stretch, np.float64, n, 2)
-        check.real("law.elastic_slip", law.elastic_slip, lambda value: value > 0, "a number above 0")
+        least = float(np.finfo(np.float64).tiny)
+    check.real("law.elastic_slip", law.elastic_slip, lambda value: value >= least, "a number above 0; 0 where nothing is stretched")
     check.real("law.smoothing", law.smoothing, lambda value: value >= 0, "a number from 0")
     check.real("law.slip_margin", law.slip_margin, lambda value: 0 <= value <= 1, "a number from 0 to 1")
 

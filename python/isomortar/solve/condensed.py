@@ -106,7 +106,7 @@ class Bodies:
         ------
         SingularSystemError
         """
-        stands = self._gathered is blocks and self._factorised and self.factors.renews
+        stands = self._gathered is blocks and self._factorised
         if self._gathered is not blocks:
             self._values[:] = 0.0
             _bindings.add_values(self._places, blocks, self._values)
@@ -195,7 +195,7 @@ class CondensedSystem(CheckedSystem):
 
     def by_bodies(self, step: FloatArray) -> FloatArray | None:
         """See `CheckedSystem.by_bodies`."""
-        return self._bodies.product(step) if self._general is None and self._bodies.factors.renews else None
+        return self._bodies.product(step) if self._general is None else None
 
     @property
     def rcond(self) -> float:

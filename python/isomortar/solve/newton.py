@@ -116,6 +116,7 @@ class Newton(ABC, Generic[Iterated, Corrected]):
                 iterate, keep = reopened, False
             following, notes = self._by_kept_factors(iterate) if keep else None, (KEPT_FACTORS,)
             if following is None:
+                stand = stand and not keep  # what these factors have not solved, a part of them would not either
                 if tangents == self._settings.max_iterations or not np.isfinite(iterate.merit):
                     break
                 iterate, following, notes = self._by_tangent(iterate, None if tangents else prescribed, iteration, stand)
@@ -160,7 +161,7 @@ class Newton(ABC, Generic[Iterated, Corrected]):
     def _by_tangent(
         self, iterate: Iterated, prescribed: FloatArray | None, iteration: int, stand: bool
     ) -> tuple[Iterated, Iterated, tuple[str, ...]]:
-        """The iterate, the next one by its tangent, and what acted; where the bodies' tangent should `stand`, that leads somewhere."""
+        """The iterate, the next one by its tangent, and what acted; where that of the bodies that `stand` leads nowhere, by one anew."""
         try:
             iterate, correction, predicted = self._correct(iterate, prescribed, stand)
             self._factorised = True

@@ -15,7 +15,7 @@ PHASES = ("solid", "projection", "contact", "factor", "solve")
 #: What is counted, by name. Orders are those of derivatives.
 COUNTERS = {
     "solid residuals": "internal forces of all bodies, those that are at hand still included",
-    "solid tangents": "tangents of all bodies, those that are at hand still included",
+    "solid tangents": "tangents of all bodies, but for those that stand where contact alone has another",
     "solid points": "quadrature points of bodies, each time that a stress is computed there",
     "contact tangents": "tangents of contacts",
     "contact points": "quadrature points of contacts, each time that a foot or kinematics are computed there",
@@ -28,7 +28,7 @@ COUNTERS = {
         if name.startswith("evaluations")
     },
     "analyses": "orderings of linear systems",
-    "factorisations": "factors of linear systems",
+    "factorisations": "factors of linear systems, those of faces alone included",
     "solves": "solutions of linear systems",
     "system non-zeros": "entries of the largest linear system",
     "factor non-zeros": "entries of the largest factors, dense blocks of faces included",

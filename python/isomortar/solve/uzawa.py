@@ -28,17 +28,18 @@ class _PositionNewton(Newton[Iterate, FloatArray]):
 
     def __init__(self, equilibrium: Equilibrium, start: State, scales: Scales) -> None:
         super().__init__(equilibrium, start, scales)
+        self._closes = False  # whether the first iterate has constraints closed whatever they bear
         self._secants = Secants()
         self._last: tuple[FloatArray, FloatArray] | None = None  # positions with these laws, and the correction there by these factors
 
     def held(self, laws: Sequence[Law], positions: FloatArray) -> Iterate:
         """The first iterate with these laws, at the start of the increment or where the last augmentation ended."""
-        self._laws, self._last = laws, None
+        self._laws, self._last, self._closes = laws, None, False
         return self._evaluate(positions)
 
     def closing(self, laws: Sequence[Law], positions: FloatArray, nearest: Sequence[FloatArray]) -> Iterate:
         """The same where constraints with a pressure in `nearest`, one array a pair, are closed whatever they bear (theory 6.8)."""
-        self._laws = laws
+        self._laws, self._closes = laws, True
 
         def respond(k: int, kinematics: Kinematics) -> Response:
             pair, law = self._equilibrium.pairs[k], laws[k]
@@ -60,7 +61,8 @@ class _PositionNewton(Newton[Iterate, FloatArray]):
         increment = prescribed if prescribed is not None else np.zeros_like(iterate.balance.positions)
         correction = self._equilibrium.correction(iterate.balance, self._laws, increment, stand)
         self._secants = Secants()
-        self._last = None if moves else (iterate.balance.positions, correction)  # motions of supports correct no forces
+        self._last = None if moves or self._closes else (iterate.balance.positions, correction)  # not of these laws' forces alone
+        self._closes = False
         return iterate, correction, ()
 
     def _correct_again(self, iterate: Iterate) -> FloatArray:
