@@ -91,6 +91,8 @@ contains
   end subroutine factorise_bodies
 
   !> The same with what is `added` anew, and the stiffness of the last `factorise_bodies`, whose factors stay.
+  !>
+  !> - `rcond`: estimate of the reciprocal condition; below `rcond_min` the status is singular.
   recursive subroutine factorise_faces(handle, added, rcond_min, rcond, status)
     integer(c_int64_t), intent(in) :: handle
     real(c_double), contiguous, intent(in) :: added(:, :)

@@ -120,7 +120,9 @@ contains
     end do
   end subroutine complement_body
 
-  !> Factorise with another C and the K of the last factors, which there must be (theory 5.12); ends as `eliminate_condensed`.
+  !> Factorise with another C and the K of the last factors, which there must be (theory 5.12).
+  !>
+  !> - `rcond`: as of `eliminate_condensed`.
   recursive subroutine eliminate_faces(self, added, rcond, code)
     type(condensed_t), intent(inout) :: self
     real(c_double), contiguous, intent(in) :: added(:, :)

@@ -175,6 +175,8 @@ contains
   end subroutine factorise_distributed
 
   !> The same with what is `added` anew, and the stiffness of the last `factorise_distributed`, whose factors stay.
+  !>
+  !> - `rcond`: estimate of the reciprocal condition; below `rcond_min` the status is singular.
   subroutine renew_distributed(handle, added, rcond_min, rcond, status)
     integer(c_int), intent(in) :: handle
     real(c_double), contiguous, intent(in) :: added(:, :)
