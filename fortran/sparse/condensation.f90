@@ -90,7 +90,7 @@ contains
     status = judged(code, rcond, rcond_min)
   end subroutine factorise_bodies
 
-  !> The same with what is `added` anew, and the stiffness of the last `factorise_bodies`, whose factors stay.
+  !> The same with what is `added` (trailing, trailing) anew, and the stiffness of the last `factorise_bodies`, whose factors stay.
   !>
   !> - `rcond`: estimate of the reciprocal condition; below `rcond_min` the status is singular.
   recursive subroutine factorise_faces(handle, added, rcond_min, rcond, status)
