@@ -174,7 +174,7 @@ contains
     if (status == status_ok) call renew_distributed(handle, added, rcond_min, rcond, status)
   end subroutine factorise_distributed
 
-  !> The same with other things `added` (trailing, trailing), and the stiffness of the last `factorise_distributed` with its factors.
+  !> The same with what is `added` (trailing, trailing) anew, and the factors of the stiffness of the last `factorise_distributed`.
   !>
   !> - `rcond`: estimate of the reciprocal condition; below `rcond_min` the status is singular.
   subroutine renew_distributed(handle, added, rcond_min, rcond, status)
