@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from sanitizers.memory import FAULT, FILE, SOUND
 
 ROOT = Path(__file__).parents[2]
 
@@ -35,6 +36,11 @@ def test_a_part_that_fails_keeps_no_other_from_being_run(nightly, tmp_path):
     assert "All is well" in page
     assert "Nights before" in page
     assert len(nightly.Journal(tmp_path / "history.jsonl").entries) == 2
+
+
+def test_the_fault_that_sanitizers_must_see_fits_the_sources():
+    assert (ROOT / FILE).read_text().count(SOUND) == 1
+    assert SOUND != FAULT
 
 
 def test_parts_are_commands_that_there_are(nightly):

@@ -13,11 +13,11 @@ from sanitizers import tools, work
 import isomortar
 from isomortar.harness import Bound, case, skip
 
-#: A fault that every tool must see, or its silence is worth nothing: one entry too many is read.
-_FILE, _SOUND, _FAULT = (
+#: A fault that every tool must see, or its silence is worth nothing: one column too many is read.
+FILE, SOUND, FAULT = (
     "fortran/solid/assembly.f90",
-    "do a = 1, size(element%nodes)\n      residual",
-    "do a = 1, size(element%nodes) + 1\n      residual",
+    "do k = 1, many\n      do a = 1, size(batch%nodes, 1)\n        residual",
+    "do k = 1, size(batch%nodes, 2) + 1\n      do a = 1, size(batch%nodes, 1)\n        residual",
 )
 
 
@@ -54,9 +54,9 @@ def memory(tool: str) -> dict[str, float]:
         if reports:
             raise AssertionError(f"{len(reports)} reports:\n" + "\n".join(sorted(set(reports))[:20]))
         done = {name: float(number) for name, number in json.loads(counts.read_text()).items()}
-        file = sources / _FILE
+        file = sources / FILE
         text = file.read_text()
-        assert text.count(_SOUND) == 1, "the fault is planted in one place"
-        file.write_text(text.replace(_SOUND, _FAULT))
+        assert text.count(SOUND) == 1, "the fault is planted in one place"
+        file.write_text(text.replace(SOUND, FAULT))
         planted, _ = tools.watched(chosen, tools.build(chosen, sources), package, program, words)
     return {"reports": float(len(reports)), "reports of a planted fault": float(len(planted)), **done}
