@@ -61,10 +61,10 @@ class Watched:
             self.missed = np.inf  # a loop begins with a tangent of its own
             return solve(*arguments)
 
-        def by_tangent(newton: Any, iterate: Any, prescribed: Any, iteration: int, stand: bool) -> Any:
-            assert stand == (self.missed <= constants.KEPT_SHARE)
-            self.stood += stand
-            return tangent(newton, iterate, prescribed, iteration, stand)
+        def by_tangent(newton: Any, iterate: Any, prescribed: Any, iteration: int, keep_bodies: bool) -> Any:
+            assert keep_bodies == (self.missed <= constants.KEPT_SHARE)
+            self.stood += keep_bodies
+            return tangent(newton, iterate, prescribed, iteration, keep_bodies)
 
         def by_kept(*arguments: Any) -> Any:
             found = kept(*arguments)
@@ -145,11 +145,11 @@ def test_kept_bodies_that_lead_nowhere_are_given_up(monkeypatch: pytest.MonkeyPa
     """The same iteration with a tangent of its own, and no load increment cut."""
     corrected, tried = _PositionNewton._correct, [0]
 
-    def correct(newton: Any, iterate: Any, prescribed: FloatArray | None, stand: bool) -> Any:
-        if stand:
+    def correct(newton: Any, iterate: Any, prescribed: FloatArray | None, keep_bodies: bool) -> Any:
+        if keep_bodies:
             tried[0] += 1
             raise FoldedElementError("element 1 is folded", 1)
-        return corrected(newton, iterate, prescribed, stand)
+        return corrected(newton, iterate, prescribed, keep_bodies)
 
     monkeypatch.setattr(_PositionNewton, "_correct", correct)
     results = list(Simulation(pressed('solver.method="uzawa"')).run())

@@ -91,11 +91,11 @@ def solve_bordered(
     laws: Sequence[Law],
     targets: Sequence[Response],
     prescribed: FloatArray | None,
-    stand: bool = False,
+    keep_bodies: bool = False,
 ) -> tuple[Correction, list[Border | None]]:
     """Newton's correction, with given increments of the prescribed positions (theory 5.4, 6.3).
 
-    `balance.responses` hold the current multipliers, `targets` what the contact conditions make of them. The bodies' tangent may `stand`
+    `balance.responses` hold the current multipliers, `targets` what the contact conditions make of them. The bodies' tangent may stay
     as it was.
 
     Raises
@@ -103,7 +103,7 @@ def solve_bordered(
     SingularSystemError
     """
     unknowns = equilibrium.supports.equation
-    sources, values = equilibrium.body_tangents(balance.positions, stand)
+    sources, values = equilibrium.body_tangents(balance.positions, keep_bodies)
     size = len(equilibrium.supports.free)
     borders: list[Border | None] = []
     for k, target in enumerate(targets):

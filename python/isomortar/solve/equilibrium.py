@@ -223,9 +223,9 @@ class Equilibrium:
         depth = constants.SUNK * self.numbering.size
         return any(pair.bear(k, depth) for pair, k in zip(self.pairs, balance.kinematics, strict=True))
 
-    def body_tangents(self, positions: FloatArray, stand: bool) -> tuple[list[Source], list[FloatArray]]:
-        """Tangents of solids and of loads on them, as sources of the linear system with their values; those of solids may `stand`."""
-        if not stand:
+    def body_tangents(self, positions: FloatArray, keep_bodies: bool) -> tuple[list[Source], list[FloatArray]]:
+        """Tangents of solids and of loads on them, as sources of the linear system with their values; those of solids may stay."""
+        if not keep_bodies:
             with self.ledger.phase("solid"):
                 self._stiffness = self.solid.forces_and_tangent(positions)[1]
             self.ledger.counts["solid tangents"] += 1
@@ -250,9 +250,9 @@ class Equilibrium:
         change = supports.gathered(after.internal - before.internal, before.positions).ravel()[free]
         return float(np.linalg.norm(change - made)) / out
 
-    def tangents(self, balance: Balance, laws: Sequence[Law], stand: bool = False) -> tuple[list[Source], list[FloatArray]]:
-        """Tangents of solids (the last ones, where these `stand`), loads and condensed contact, as sources with their values."""
-        sources, values = self.body_tangents(balance.positions, stand)
+    def tangents(self, balance: Balance, laws: Sequence[Law], keep_bodies: bool = False) -> tuple[list[Source], list[FloatArray]]:
+        """Tangents of solids (the last ones, where bodies are kept), loads and condensed contact, as sources with their values."""
+        sources, values = self.body_tangents(balance.positions, keep_bodies)
         for pair, law, kinematics, response in zip(self.pairs, laws, balance.kinematics, balance.responses, strict=True):
             if not np.any(response.state):
                 continue
@@ -261,17 +261,17 @@ class Equilibrium:
             values.append(tangent)
         return sources, values
 
-    def correction(self, balance: Balance, laws: Sequence[Law], prescribed: FloatArray, stand: bool = False) -> FloatArray:
+    def correction(self, balance: Balance, laws: Sequence[Law], prescribed: FloatArray, keep_bodies: bool = False) -> FloatArray:
         """Newton's correction of all positions, with given increments of the prescribed ones, shape (control points, 3) (theory 5.4).
 
-        The bodies' tangent may `stand` as it was.
+        The bodies' tangent may stay as it was.
 
         Raises
         ------
         SingularSystemError
             Naming a body that nothing holds.
         """
-        sources, values = self.seen(*self.tangents(balance, laws, stand), balance)
+        sources, values = self.seen(*self.tangents(balance, laws, keep_bodies), balance)
         right = balance.unbalanced.ravel()[self.supports.free]
         if np.any(prescribed):
             for source, block in zip(sources, values, strict=True):

@@ -164,10 +164,10 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
         return self._evaluate(iterate.balance.positions, iterate.multipliers) if self._equilibrium.bear(iterate.balance) else iterate
 
     def _correct(
-        self, iterate: _BorderedIterate, prescribed: FloatArray | None, stand: bool
+        self, iterate: _BorderedIterate, prescribed: FloatArray | None, keep_bodies: bool
     ) -> tuple[_BorderedIterate, Correction, tuple[str, ...]]:
         """The first solve has the prescribed increment; slips that would reverse stick instead, and it is repeated (theory 6.5)."""
-        correction = self._solved(iterate, prescribed, stand)
+        correction = self._solved(iterate, prescribed, keep_bodies)
         if prescribed is None or "reversal" not in self._settings.measures:
             return iterate, correction, ()
         held, notes = [law.held for law in iterate.laws], tuple[str, ...]()
@@ -181,8 +181,8 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
             notes = (f"reversal of {sum(int(h.sum()) for h in held)}",)
         return iterate, correction, notes
 
-    def _solved(self, iterate: _BorderedIterate, prescribed: FloatArray | None, stand: bool) -> Correction:
-        solved = solve_bordered(self._equilibrium, iterate.balance, iterate.laws, iterate.targets, prescribed, stand)
+    def _solved(self, iterate: _BorderedIterate, prescribed: FloatArray | None, keep_bodies: bool) -> Correction:
+        solved = solve_bordered(self._equilibrium, iterate.balance, iterate.laws, iterate.targets, prescribed, keep_bodies)
         correction, self._borders = solved
         return correction
 

@@ -102,7 +102,7 @@ class Newton(ABC, Generic[Iterated, Corrected]):
         ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError
         """
         moves = prescribed is not None and bool(np.any(prescribed))
-        keep, stand = self._keeps and self._factorised and not moves, False
+        keep, keep_bodies = self._keeps and self._factorised and not moves, False
         log, tangents = list[IterationRecord](), 0
         self._trail = Trail()
         for iteration in count():
@@ -116,13 +116,12 @@ class Newton(ABC, Generic[Iterated, Corrected]):
                 iterate, keep = reopened, False
             following, notes = self._by_kept_factors(iterate) if keep else None, (KEPT_FACTORS,)
             if following is None:
-                stand = stand and not keep  # what these factors have not solved, a part of them would not either
                 if tangents == self._settings.max_iterations or not np.isfinite(iterate.merit):
                     break
-                iterate, following, notes = self._by_tangent(iterate, None if tangents else prescribed, iteration, stand)
-                stand = self._keeps and self._equilibrium.left_by_bodies(iterate.balance, following.balance) <= constants.KEPT_SHARE
+                iterate, following, notes = self._by_tangent(iterate, None if tangents else prescribed, iteration, keep_bodies)
                 tangents, moves = tangents + 1, False
             keep = self._keeps and self._serve(iterate, following)
+            keep_bodies = self._keeps and not keep and self._bodies_serve(iterate, following)  # no part, where the whole is not enough
             iterate = following
         toggling = self._trail.toggling(self._equilibrium.pairs)
         raise ConvergenceError(f"Newton's method stopped at {iterate.left} after {iteration} iterations{toggling}")
@@ -136,10 +135,10 @@ class Newton(ABC, Generic[Iterated, Corrected]):
         return iterate
 
     @abstractmethod
-    def _correct(self, iterate: Iterated, prescribed: FloatArray | None, stand: bool) -> tuple[Iterated, Corrected, tuple[str, ...]]:
+    def _correct(self, iterate: Iterated, prescribed: FloatArray | None, keep_bodies: bool) -> tuple[Iterated, Corrected, tuple[str, ...]]:
         """Newton's correction by a tangent of its own, what it corrects, and what acted; the first one has the prescribed increment.
 
-        The bodies' tangent may `stand` as it was.
+        The bodies' tangent may stay as it was.
         """
 
     @abstractmethod
@@ -158,19 +157,23 @@ class Newton(ABC, Generic[Iterated, Corrected]):
         """Whether factors that led from one iterate to the next are good enough for another solve."""
         return following.merit <= constants.KEPT_SHARE * iterate.merit
 
+    def _bodies_serve(self, iterate: Iterated, following: Iterated) -> bool:
+        """Whether the bodies' part of factors that led from one iterate to the next is good enough for another tangent (theory 5.24)."""
+        return self._equilibrium.left_by_bodies(iterate.balance, following.balance) <= constants.KEPT_SHARE
+
     def _by_tangent(
-        self, iterate: Iterated, prescribed: FloatArray | None, iteration: int, stand: bool
+        self, iterate: Iterated, prescribed: FloatArray | None, iteration: int, keep_bodies: bool
     ) -> tuple[Iterated, Iterated, tuple[str, ...]]:
-        """The iterate, the next one by its tangent, and what acted; where that of the bodies that `stand` leads nowhere, by one anew."""
+        """The iterate, the next one by its tangent, and what acted; where that of the bodies was kept and leads nowhere, by one anew."""
         try:
-            iterate, correction, predicted = self._correct(iterate, prescribed, stand)
+            iterate, correction, predicted = self._correct(iterate, prescribed, keep_bodies)
             self._factorised = True
             following, shortened = self._update(iterate, correction, iteration)
         except (FoldedElementError, LostProjectionError, SingularSystemError):
-            if not stand:
+            if not keep_bodies:
                 raise
             return self._by_tangent(iterate, prescribed, iteration, False)
-        return iterate, following, predicted + shortened + ((KEPT_BODIES,) if stand else ())
+        return iterate, following, predicted + shortened + ((KEPT_BODIES,) if keep_bodies else ())
 
     def _by_kept_factors(self, iterate: Iterated) -> Iterated | None:
         """The next iterate with the factors of an earlier tangent; None if these do not serve."""

@@ -56,10 +56,10 @@ class _PositionNewton(Newton[Iterate, FloatArray]):
     def _moved(self, iterate: Iterate, correction: FloatArray, share: float) -> Iterate:
         return self._evaluate(self._equilibrium.moved(iterate.balance.positions, share * correction))
 
-    def _correct(self, iterate: Iterate, prescribed: FloatArray | None, stand: bool) -> tuple[Iterate, FloatArray, tuple[str, ...]]:
+    def _correct(self, iterate: Iterate, prescribed: FloatArray | None, keep_bodies: bool) -> tuple[Iterate, FloatArray, tuple[str, ...]]:
         moves = prescribed is not None and bool(np.any(prescribed))
         increment = prescribed if prescribed is not None else np.zeros_like(iterate.balance.positions)
-        correction = self._equilibrium.correction(iterate.balance, self._laws, increment, stand)
+        correction = self._equilibrium.correction(iterate.balance, self._laws, increment, keep_bodies)
         self._secants = Secants()
         self._last = None if moves or self._closes else (iterate.balance.positions, correction)  # not of these laws' forces alone
         self._closes = False
