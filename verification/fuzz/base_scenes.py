@@ -99,8 +99,8 @@ penalty_normal = 100.0
 penalty_tangential = 10.0
 penalty_growth = 2.0
 penalty_growth_max = 200.0
-augmentation_tolerance = 0.001
-max_augmentations = 40
+augmentation_tolerance = 1e-5
+max_augmentations = 60
 max_iterations = 20
 max_cuts = 3
 """
