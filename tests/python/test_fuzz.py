@@ -37,7 +37,7 @@ def test_a_fault_of_the_program_is_wrong(monkeypatch: pytest.MonkeyPatch) -> Non
 
 
 @pytest.mark.parametrize("text", TEXTS, ids=[tomllib.loads(text)["name"] for text in TEXTS])
-@pytest.mark.parametrize("number", [0, 1], ids=["units", "order"])
+@pytest.mark.parametrize("number", [0, 1, 2, 3], ids=["units", "order", "never-kept", "other-method"])
 def test_scenes_that_are_changed_are_right_unchanged(text: str, number: int, tmp_path: Path) -> None:
     assert scenes.judged(text.encode(), number, tmp_path).kind == "right"
 

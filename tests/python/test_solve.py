@@ -150,9 +150,9 @@ class Factors:
     def begun(self) -> None:
         self.increment += 1
 
-    def solved(self, equilibrium, balance, laws, targets, prescribed, stand):
+    def solved(self, equilibrium, balance, laws, targets, prescribed, keep_bodies):
         self.made_of = self.increment, [target.state.tobytes() for target in targets]
-        correction, self.borders = bordered.solve_bordered(equilibrium, balance, laws, targets, prescribed, stand)
+        correction, self.borders = bordered.solve_bordered(equilibrium, balance, laws, targets, prescribed, keep_bodies)
         return correction, self.borders
 
     def kept(self, equilibrium, balance, targets, borders):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from matplotlib.collections import PolyCollection
+from matplotlib.collections import PathCollection
 from output import exported
 from output.records import load_steps
 
@@ -44,7 +44,7 @@ def coloured(field: str) -> dict[str, float]:
     *_, mises, ratio = exported.stressed(problem.bodies[0], motion[None])[0]
     exact = {"stress": mises, "J": ratio, "displacement": np.linalg.norm(exported.SHIFT)}[field]
     low, high = figure.axes[1].get_ylim()
-    drawn = np.concatenate([c.get_facecolor() for c in figure.axes[0].collections if isinstance(c, PolyCollection)])
+    drawn = np.concatenate([c.get_facecolor() for c in figure.axes[0].collections if isinstance(c, PathCollection)])
     alone = field == "J"  # a range of one value, which is drawn wider
     return {
         "range": float(np.abs([0.5 * (low + high) - exact] if alone else [low, high - exact]).max()),

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import PolyCollection
+from matplotlib.collections import PathCollection
 from matplotlib.colors import to_rgb
 from output.records import load_steps
 
@@ -78,7 +78,7 @@ def last_left(boxes: dict[str, FloatArray], frame: FloatArray, place: FloatArray
 
 def drawn_at(axes: Axes, places: FloatArray) -> list[FloatArray | None]:
     """The colour of the last polygon that was painted over each place; None: there is none."""
-    (collection,) = (c for c in axes.collections if isinstance(c, PolyCollection))
+    (collection,) = (c for c in axes.collections if isinstance(c, PathCollection))
     colours, paths = np.asarray(collection.get_facecolor()), collection.get_paths()
     outlines = [np.asarray(path.vertices) for path in paths]
     four = [number for number, outline in enumerate(outlines) if len(outline) == 5]  # the first again; lines have fewer

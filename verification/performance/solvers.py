@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from abc import ABC, abstractmethod
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -127,7 +129,10 @@ class Mumps(Solver):
 
     def __init__(self, system: System) -> None:
         super().__init__(system)
-        self._context: Any = import_module("mumps").Context()
+        mumps: Any = import_module("mumps")
+        if re.search(r"/libmpi(_\w+)?\.so", Path("/proc/self/maps").read_text()):
+            raise ImportError("the MUMPS that is found is for MPI, and ends a process that mpirun did not start")
+        self._context = mumps.Context()
         self._context.set_matrix(sparse.coo_matrix(system.matrix), symmetric=system.definite)
 
     def analyse(self) -> None:

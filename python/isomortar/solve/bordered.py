@@ -95,8 +95,8 @@ def solve_bordered(
 ) -> tuple[Correction, list[Border | None]]:
     """Newton's correction, with given increments of the prescribed positions (theory 5.4, 6.3).
 
-    `balance.responses` hold the current multipliers, `targets` what the contact conditions make of them. The bodies' tangent may stay
-    as it was.
+    `balance.responses` hold the current multipliers, `targets` what the contact conditions make of them. With `keep_bodies` the
+    bodies' tangent stays as it was.
 
     Raises
     ------

@@ -224,7 +224,7 @@ class Equilibrium:
         return any(pair.bear(k, depth) for pair, k in zip(self.pairs, balance.kinematics, strict=True))
 
     def body_tangents(self, positions: FloatArray, keep_bodies: bool) -> tuple[list[Source], list[FloatArray]]:
-        """Tangents of solids and of loads on them, as sources of the linear system with their values; those of solids may stay."""
+        """Tangents of solids and of loads on them, as sources of the system with their values; with `keep_bodies` those of solids stay."""
         if not keep_bodies:
             with self.ledger.phase("solid"):
                 self._stiffness = self.solid.forces_and_tangent(positions)[1]
@@ -264,7 +264,7 @@ class Equilibrium:
     def correction(self, balance: Balance, laws: Sequence[Law], prescribed: FloatArray, keep_bodies: bool = False) -> FloatArray:
         """Newton's correction of all positions, with given increments of the prescribed ones, shape (control points, 3) (theory 5.4).
 
-        The bodies' tangent may stay as it was.
+        With `keep_bodies` the bodies' tangent stays as it was.
 
         Raises
         ------

@@ -102,8 +102,9 @@ class Newton(ABC, Generic[Iterated, Corrected]):
         ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError
         """
         moves = prescribed is not None and bool(np.any(prescribed))
-        keep, keep_bodies = self._keeps and self._factorised and not moves, False
+        keep = self._keeps and self._factorised and not moves
         log, tangents = list[IterationRecord](), 0
+        led: tuple[Iterated, Iterated] | None = None  # from where to where by the last tangent
         self._trail = Trail()
         for iteration in count():
             self._trail.add(iterate.balance)
@@ -118,10 +119,10 @@ class Newton(ABC, Generic[Iterated, Corrected]):
             if following is None:
                 if tangents == self._settings.max_iterations or not np.isfinite(iterate.merit):
                     break
+                keep_bodies = not keep and self._bodies_serve(led)  # nor a part of factors that did not serve
                 iterate, following, notes = self._by_tangent(iterate, None if tangents else prescribed, iteration, keep_bodies)
-                tangents, moves = tangents + 1, False
+                tangents, moves, led = tangents + 1, False, (iterate, following)
             keep = self._keeps and self._serve(iterate, following)
-            keep_bodies = self._keeps and not keep and self._bodies_serve(iterate, following)  # no part, where the whole is not enough
             iterate = following
         toggling = self._trail.toggling(self._equilibrium.pairs)
         raise ConvergenceError(f"Newton's method stopped at {iterate.left} after {iteration} iterations{toggling}")
@@ -138,7 +139,7 @@ class Newton(ABC, Generic[Iterated, Corrected]):
     def _correct(self, iterate: Iterated, prescribed: FloatArray | None, keep_bodies: bool) -> tuple[Iterated, Corrected, tuple[str, ...]]:
         """Newton's correction by a tangent of its own, what it corrects, and what acted; the first one has the prescribed increment.
 
-        The bodies' tangent may stay as it was.
+        With `keep_bodies` the bodies' tangent stays as it was.
         """
 
     @abstractmethod
@@ -157,9 +158,12 @@ class Newton(ABC, Generic[Iterated, Corrected]):
         """Whether factors that led from one iterate to the next are good enough for another solve."""
         return following.merit <= constants.KEPT_SHARE * iterate.merit
 
-    def _bodies_serve(self, iterate: Iterated, following: Iterated) -> bool:
-        """Whether the bodies' part of factors that led from one iterate to the next is good enough for another tangent (theory 5.24)."""
-        return self._equilibrium.left_by_bodies(iterate.balance, following.balance) <= constants.KEPT_SHARE
+    def _bodies_serve(self, led: tuple[Iterated, Iterated] | None) -> bool:
+        """Whether the bodies' part of factors that led from one iterate to another is good enough for another tangent (theory 5.24)."""
+        if led is None or not self._keeps:
+            return False
+        before, after = led
+        return self._equilibrium.left_by_bodies(before.balance, after.balance) <= constants.KEPT_SHARE
 
     def _by_tangent(
         self, iterate: Iterated, prescribed: FloatArray | None, iteration: int, keep_bodies: bool
