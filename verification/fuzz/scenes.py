@@ -45,9 +45,9 @@ ORDINARY = 1e12
 ROUND_OFF, OF_TOLERANCE = 1e-9, 1e2
 #: How augmentations come nearly as far as the monolithic method does, or give up soon.
 AUGMENTED = {
-    **{"method": "uzawa", "augmentation_tolerance": 1e-7, "max_augmentations": 200, "max_cuts": 3},
-    **{"penalty_growth": 2.0, "penalty_growth_max": 1e3},
-}
+    "method": "uzawa", "augmentation_tolerance": 1e-7, "max_augmentations": 200, "max_cuts": 3, "penalty_growth": 2.0,
+    "penalty_growth_max": 1e3,
+}  # fmt: skip
 #: The loosest tolerance at which anything can be said of the numbers.
 LOOSEST = 1e-4
 

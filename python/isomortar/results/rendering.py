@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PathCollection, PolyCollection
+from matplotlib.path import Path
 from numpy.typing import NDArray
 
 from isomortar.geometry.patch import FloatArray
@@ -128,7 +130,7 @@ class Canvas:
         """Paint all that was added, and show the part of it between `limits`, or all of it."""
         depth = np.concatenate(self._depths)
         order = np.argsort(depth)
-        shapes = [shape for group in self._shapes for shape in PolyCollection(group[..., :2]).get_paths()]  # one by one takes far longer
+        shapes = [outline for group in self._shapes for outline in _outlines(group)]
         colours = np.concatenate(self._colours)[order]
         widths = np.concatenate(self._widths)[order]
         collection = PathCollection([shapes[i] for i in order], facecolors=colours, edgecolors=colours, linewidths=widths)
@@ -144,6 +146,12 @@ class Canvas:
         self._depths.append(shapes[..., 2].mean(axis=1) + nearer)
         self._colours.append(np.column_stack([np.clip(colours, 0, 1), np.full(len(colours), opacity)]))
         self._widths.append(np.full(len(shapes), width))
+
+
+def _outlines(corners: FloatArray) -> list[Path]:
+    """Closed outlines of polygons (n, k, 3) in a picture; made all at once, which takes a fraction of the time."""
+    places: Any = corners[..., :2]  # the types of Matplotlib do not know of arrays here
+    return list(PolyCollection(places).get_paths())
 
 
 def _corners(places: FloatArray) -> FloatArray:
