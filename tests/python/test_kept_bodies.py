@@ -51,10 +51,10 @@ def loops(results: list[StepResult]) -> Iterator[tuple[IterationRecord, ...]]:
 
 
 class Watched:
-    """How often bodies were kept, and that they were where a share at most was missed by them: what was measured last, if anything was."""
+    """How often bodies were kept: where they missed a share at most of what was out of balance, and the whole factors were not refused."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.missed, self.kept, self.refused = np.inf, 0, 0
+        self.missed, self.wanting, self.kept, self.refused = np.inf, False, 0, 0
         solve, tangent, kept, measured = Newton.solve, Newton._by_tangent, Newton._by_kept_factors, Equilibrium.left_by_bodies
 
         def solving(*arguments: Any) -> Any:
@@ -62,14 +62,14 @@ class Watched:
             return solve(*arguments)
 
         def by_tangent(newton: Any, iterate: Any, prescribed: Any, iteration: int, keep_bodies: bool) -> Any:
-            assert keep_bodies == (self.missed <= constants.KEPT_SHARE)
-            self.missed, self.kept = np.inf, self.kept + keep_bodies
+            assert keep_bodies == (self.missed <= constants.KEPT_SHARE and not self.wanting)
+            self.missed, self.wanting, self.kept = np.inf, False, self.kept + keep_bodies
             return tangent(newton, iterate, prescribed, iteration, keep_bodies)
 
         def by_kept(*arguments: Any) -> Any:
             found = kept(*arguments)
-            if found is None:  # the factors of the whole did not serve
-                self.missed, self.refused = np.inf, self.refused + 1
+            self.wanting = found is None
+            self.refused += self.wanting
             return found
 
         def left(equilibrium: Equilibrium, before: Balance, after: Balance) -> float:
