@@ -2,6 +2,12 @@
 
 from __future__ import annotations
 
+import os
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from typing import IO
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
@@ -88,17 +94,37 @@ def _residual(random: np.random.Generator, matrix: sparse.csr_array, on_face: ND
     claim="Systems with next to nothing on faces are solved to round-off as well: no unknown there, one, two, with a multiplier or none.",
     tier="gate",
     grid={"faces": (0, 1, 2), "others": (0, 1)},
-    bounds={"residual": Bound(at_most=2e-15, reason="round-off: as of systems with more")},
+    bounds={
+        "residual": Bound(at_most=2e-15, reason="round-off: as of systems with more"),
+        "printed": Bound(0.0, 0.0, "definition: libraries that are asked for nothing complain on the terminal"),
+    },
 )
 def next_to_nothing_on_faces(faces: int, others: int) -> dict[str, float]:
-    """Largest residual over the sizes of the matrix and of the solution, of ten bodies."""
+    """Largest residual over the sizes of the matrix and of the solution, of ten bodies; bytes that went to the terminal meanwhile."""
     random, residuals = np.random.default_rng(17), []
-    for _ in range(10):
-        matrix = body(random)[0]
-        on_face = random.permutation(np.arange(matrix.shape[0]) < faces)
-        block = np.asfortranarray(10.0 * np.eye(faces + others) + random.standard_normal((faces + others,) * 2))
-        residuals.append(_residual(random, matrix, on_face, block, "amd"))
-    return {"residual": float(np.max(residuals))}
+    with _terminal() as terminal:
+        for _ in range(10):
+            matrix = body(random)[0]
+            on_face = random.permutation(np.arange(matrix.shape[0]) < faces)
+            block = np.asfortranarray(10.0 * np.eye(faces + others) + random.standard_normal((faces + others,) * 2))
+            residuals.append(_residual(random, matrix, on_face, block, "amd"))
+        printed = os.fstat(terminal.fileno()).st_size
+    return {"residual": float(np.max(residuals)), "printed": float(printed)}
+
+
+@contextmanager
+def _terminal() -> Iterator[IO[bytes]]:
+    """A file in the place of the terminal, for libraries too."""
+    with tempfile.TemporaryFile() as file:
+        kept = [os.dup(end) for end in (1, 2)]
+        try:
+            for end in (1, 2):
+                os.dup2(file.fileno(), end)
+            yield file
+        finally:
+            for end, was in zip((1, 2), kept, strict=True):
+                os.dup2(was, end)
+                os.close(was)
 
 
 def _refused(matrix: sparse.csr_array, on_face: NDArray[np.bool_], block: FloatArray) -> bool:
@@ -228,11 +254,12 @@ def _renews(bodies: CondensedFactors, block: FloatArray) -> bool:
     bounds={
         "error": Bound(
             at_most=1e-15, reason="round-off: pivots are powers of two; so are twice the diagonal and its root, so that all sums are exact"
-        )
+        ),
+        "of none": Bound(0.0, 0.0, "definition: a pivot that is zero is as near as can be"),
     },
 )
 def nearness_to_singular(unit: float) -> dict[str, float]:
-    """Largest relative error of the estimate, of diagonal systems with pivots up to twelve decades apart."""
+    """Largest relative error of the estimate, of diagonal systems with pivots twelve decades apart; the estimate where one is zero."""
     random, error = np.random.default_rng(12), 0.0
     alone = sparse.csr_array(unit * sparse.eye_array(8))
     for least in (-2, -10, -20, -40):
@@ -240,7 +267,15 @@ def nearness_to_singular(unit: float) -> dict[str, float]:
         found = factors(alone, np.ones(8, dtype=bool))
         found.factorise(alone.data, np.asfortranarray(np.diag(unit * (pivots - 1.0))))
         error = float(np.maximum(error, abs(found.rcond * 2.0 ** (1 - least) - 1.0)))
-    return {"error": error}
+    return {"error": error, "of none": _estimate(alone, unit)}
+
+
+def _estimate(alone: sparse.csr_array, unit: float) -> float:
+    """The estimate of a system with a pivot that is zero, which is refused."""
+    found = factors(alone, np.ones(8, dtype=bool))
+    with suppress(SingularSystemError):
+        found.factorise(alone.data, np.asfortranarray(np.diag(unit * (np.arange(8.0) - 1.0))))
+    return found.rcond
 
 
 @case(
