@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 from forked import program
-from fuzz import scenes
+from fuzz import scenes, twins
 from fuzz.base_scenes import TEXTS
 from fuzz.child import Wrong, ending_of, tried
 
@@ -44,13 +44,13 @@ def test_scenes_that_are_changed_are_right_unchanged(text: str, number: int, tmp
 
 def test_the_unit_of_every_number_of_a_scene_is_known() -> None:
     """A key that is new stays as it is in other units, so its scene is another one there: that took fuzzed plates for faults."""
-    scaled = {*scenes.LENGTHS, *scenes.STRESSES, *scenes.LOADS, "young", "moment", "symmetry"}
+    scaled = {*twins.LENGTHS, *twins.STRESSES, *twins.LOADS, "young", "moment", "symmetry"}
     schema = SceneTable.model_json_schema()
     tables = [*schema["$defs"].values(), schema]
     keys = {key for table in tables for key, field in table.get("properties", {}).items() if _is_real(field)}
-    assert keys <= scaled | scenes.PURE
-    assert keys >= scenes.PURE
-    assert not scaled & scenes.PURE
+    assert keys <= scaled | twins.PURE
+    assert keys >= twins.PURE
+    assert not scaled & twins.PURE
 
 
 def _is_real(field: Any) -> bool:

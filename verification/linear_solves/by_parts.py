@@ -255,7 +255,7 @@ def _renews(bodies: CondensedFactors, block: FloatArray) -> bool:
         "error": Bound(
             at_most=1e-15, reason="round-off: pivots are powers of two; so are twice the diagonal and its root, so that all sums are exact"
         ),
-        "of none": Bound(0.0, 0.0, "definition: a pivot that is zero is as near as can be"),
+        "of zero": Bound(0.0, 0.0, "definition: a pivot that is zero is as near as can be"),
     },
 )
 def nearness_to_singular(unit: float) -> dict[str, float]:
@@ -267,10 +267,10 @@ def nearness_to_singular(unit: float) -> dict[str, float]:
         found = factors(alone, np.ones(8, dtype=bool))
         found.factorise(alone.data, np.asfortranarray(np.diag(unit * (pivots - 1.0))))
         error = float(np.maximum(error, abs(found.rcond * 2.0 ** (1 - least) - 1.0)))
-    return {"error": error, "of none": _estimate(alone, unit)}
+    return {"error": error, "of zero": _estimate_of_zero(alone, unit)}
 
 
-def _estimate(alone: sparse.csr_array, unit: float) -> float:
+def _estimate_of_zero(alone: sparse.csr_array, unit: float) -> float:
     """The estimate of a system with a pivot that is zero, which is refused."""
     found = factors(alone, np.ones(8, dtype=bool))
     with suppress(SingularSystemError):
