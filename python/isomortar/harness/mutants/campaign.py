@@ -95,6 +95,7 @@ class Campaign:
         self._crew = Crew([Bench(package, frozen, folder / f"bench{i + 1}") for i in range(jobs)])
         self._scouts = Crew([Bench(package, frozen, folder / f"scout{i + 1}", self._workshop.scout) for i in range(jobs)])
         self._ran: dict[str, Lines] = {}
+        self._numbers: dict[str, int] = {}
 
     def __enter__(self) -> Campaign:
         return self
@@ -106,7 +107,8 @@ class Campaign:
     def run(self, planted: Sequence[Fault], drawn: Iterable[Fault], sample: int, most: float) -> Tally:
         """Attack the planted faults with the whole gate, and the first `sample` of those drawn that are distinct.
 
-        The latter are given up when cells that take `most` CPU seconds on the sound program are green.
+        The latter are given up when cells that take `most` CPU seconds on the sound program are green, and all that are newer than an
+        earlier finding.
 
         Raises
         ------
@@ -138,9 +140,10 @@ class Campaign:
                 measurement, lines = without_lines(scout.measure(self._workshop.scouted, cell, TIMEOUTS[cell.tier]))
                 red = [sentence(check) for check in judge(cell, measurement, self._lookup) if check.state != "passed"]
                 known = {"cell": cell.name, "seconds": measurement.cpu_seconds, "red": next(iter(red), ""), "lines": lines}
+                known["number"] = len(self._sound.entries)
                 if measurement.lasts:
                     self._sound.put(key, known)
-            self._ran[cell.name] = known["lines"]
+            self._ran[cell.name], self._numbers[cell.name] = known["lines"], known.get("number", 0)
             return known["seconds"], known["red"]
 
         seconds, unused = {}, []
@@ -188,11 +191,11 @@ class Campaign:
             fault, program = item
             limit = math.inf if fault.name else most
             able = self._able(fault)
-            finding = self._remembered(program)
-            if finding.killer is None and not gate.is_whole(finding, able) and gate.cost(finding.passed) < limit:
+            finding, newer = self._remembered(program)
+            if finding.killer is None and gate.left(able, finding.passed, limit, newer):
                 built = self._workshop.build(fault)
                 assert built is not None
-                finding = gate.attack(bench, built, fault.file, able, finding.passed, limit)
+                finding = gate.attack(bench, built, fault.file, able, finding.passed, limit, newer)
                 self._remember(program, finding)
                 shutil.rmtree(built)
             gate.learn(fault.folder, finding)
@@ -210,12 +213,16 @@ class Campaign:
 
     def _remember(self, program: str, finding: Finding) -> None:
         entry = {"killer": finding.killer, "found": finding.found, "passed": {name: self._keys[name] for name in finding.passed}}
-        self._findings.put(program, entry | {"killer key": self._keys[finding.killer] if finding.killer else None})
+        known = {"killer key": self._keys[finding.killer] if finding.killer else None, "cells": len(self._sound.entries)}
+        self._findings.put(program, entry | known)
 
-    def _remembered(self, program: str) -> Finding:
-        """What earlier runs found with cells that are still the same."""
-        entry = self._findings.get(program) or {"killer": None, "passed": {}}
+    def _remembered(self, program: str) -> tuple[Finding, set[str]]:
+        """What earlier runs found with cells that are still the same, and the cells that are newer than that."""
+        entry = self._findings.get(program)
+        if entry is None:
+            return Finding(None, "", ()), set()
+        newer = {name for name, number in self._numbers.items() if number >= entry.get("cells", math.inf)}
         passed = tuple(name for name, key in entry["passed"].items() if self._keys.get(name) == key)
         if entry["killer"] and self._keys.get(entry["killer"]) == entry["killer key"]:
-            return Finding(entry["killer"], entry["found"], passed)
-        return Finding(None, "", passed)
+            return Finding(entry["killer"], entry["found"], passed), newer
+        return Finding(None, "", passed), newer

@@ -82,8 +82,17 @@ class Gate:
                 counts.update((folder, name) for name in names)
                 counts.update((folder, self._case[name]) for name in names)
 
-    def attack(self, bench: Bench, program: Path, file: str, able: Set[str], passed: Collection[str], most: float) -> Finding:
-        """Measure and judge cells until one is red, none is left, or those that passed cost `most`.
+    def attack(
+        self,
+        bench: Bench,
+        program: Path,
+        file: str,
+        able: Set[str],
+        passed: Collection[str],
+        most: float,
+        newer: Set[str] = frozenset(),
+    ) -> Finding:
+        """Measure and judge cells until one is red or none is `left`, those that are `newer` first.
 
         `passed` are cells that the program passed before. `file` is where in the sources the fault is, `able` are cells that it may
         change.
@@ -94,8 +103,8 @@ class Gate:
             A cell ended without numbers, and does so on the sound program too: that is the machine's fault.
         """
         done = [name for name in passed if name in self._cells]
-        while self.cost(done) < most and (left := self._cells.keys() & able - set(done)):
-            name = self._most_promising(left, done, file)
+        while left := self.left(able, done, most, newer):
+            name = self._most_promising(left & newer or left, done, file)
             measurement, red = self._red(bench, program, name)
             if red:
                 if measurement.ending != "measured" and (too := self._red(bench, self._sound, name)[1]):
@@ -112,6 +121,11 @@ class Gate:
         measurement = bench.measure(program, cell, max(_PATIENCE * self._seconds[name], _LEAST_SECONDS))
         red = [check for check in judge(cell, measurement, self._lookup) if check.state != "passed"]
         return measurement, sentence(red[0]) if red else ""
+
+    def left(self, able: Set[str], passed: Collection[str], most: float, newer: Set[str]) -> set[str]:
+        """Cells that a program has yet to meet: once those that passed cost `most`, only such as are `newer` than what was found before."""
+        left = self._cells.keys() & able - set(passed)
+        return left if self.cost(passed) < most else left & newer
 
     def is_whole(self, finding: Finding, able: Set[str]) -> bool:
         """Whether no cell is left that could tell more."""
