@@ -28,6 +28,8 @@ from isomortar.harness.mutants.score import Classification, Score, Share, read_c
 ROOT = Path(__file__).parents[2]
 TEXT = "!> Doubles - it.\nfunction twice(x)\n  real :: x, twice\n  twice = 2 * x - 1\n  twice = 2 * x - 1\nend function\n"
 SOURCES = {"solid/twice.f90": TEXT}
+
+
 def planted(folder: Path, **changes: str) -> Path:
     entry = {"name": "n", "file": "solid/twice.f90", "old": "real :: x, twice", "new": "integer :: x, twice", "why": "w"} | changes
     path = folder / "planted.toml"
