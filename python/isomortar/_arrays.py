@@ -118,6 +118,9 @@ class FrictionArrays:
         return self.law != FRICTION_LAWS["none"]
 
 
+NO_FRICTION = FrictionArrays(FRICTION_LAWS["none"], np.zeros(0))
+
+
 @dataclass(frozen=True, eq=False)
 class PlaneArrays:
     """A rigid plane as a master: a point of it, its normal and a direction in it, each of shape (3,)."""

@@ -5,6 +5,7 @@ Arguments are checked, status codes become exceptions. Arrays are laid out as `_
 
 from isomortar._arguments import FloatArray, IntArray, LongArray
 from isomortar._arrays import (
+    NO_FRICTION,
     AveragedFaceArrays,
     BodyArrays,
     Control,
@@ -29,7 +30,8 @@ from isomortar._bindings.solid import add_body, control_volumes, material_stress
 from isomortar._bindings.system import add_values, find_places, squares_times
 
 __all__ = [
-    "AveragedFaceArrays", "BodyArrays", "Control", "FaceArrays", "FloatArray", "FrictionArrays", "FunctionArrays", "IntArray", "Law",
+    "NO_FRICTION", "AveragedFaceArrays", "BodyArrays", "Control", "FaceArrays", "FloatArray", "FrictionArrays", "FunctionArrays",
+    "IntArray", "Law",
     "LongArray", "MasterArrays", "MaterialArrays", "PatchArrays", "Pattern", "PlaneArrays", "Projections", "Response", "SlaveArrays",
     "add_body", "add_values", "augmented_multipliers",
     "condense_multipliers", "contact_blocks", "contact_forces", "control_quantities",

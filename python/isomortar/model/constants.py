@@ -84,6 +84,8 @@ MERIT_GROWTH = 2.0
 #: Share of the cone within which a trial counts as slip at the start of an increment (theory 6.5): what slid is off its cone by no more
 #: than the tolerances of the last increment, and is not to stick for that.
 SLIP_MARGIN = 1e-6
+#: How often what loads close first is closed anew where all of it has opened again: each time it is nearer.
+MAX_CLOSINGS = 5
 #: How often the first solve is repeated with reversed slips held: each repetition may find more of them; the loop settles the rest.
 MAX_REVERSALS = 2
 #: Forces of a body are round-off below so many times what the last bits of its positions make of them (0.2 to 1.2 times were seen).

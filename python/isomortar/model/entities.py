@@ -10,7 +10,7 @@ from typing import Annotated, Literal, get_args
 import numpy as np
 from pydantic import Field
 
-from isomortar._arrays import FRICTION_LAWS, LAWS, FrictionArrays, MaterialArrays, MaterialLaw
+from isomortar._arrays import FRICTION_LAWS, LAWS, NO_FRICTION, FrictionArrays, MaterialArrays, MaterialLaw
 from isomortar.geometry.patch import FACES, Closed, FloatArray, Patch
 from isomortar.model.values import TABLE, Count, Point, Positive, Real
 
@@ -212,7 +212,7 @@ class Contact:
     def friction_law(self) -> FrictionArrays:
         """Its law of friction, as the kernel takes it: the simplest one that is the same."""
         if self.friction == self.cohesion == 0.0:
-            return FrictionArrays(FRICTION_LAWS["none"], np.zeros(0))
+            return NO_FRICTION
         if self.cohesion == 0.0 and self.traction_max is None:
             return FrictionArrays(FRICTION_LAWS["coulomb"], np.array([self.friction]))
         largest = np.finfo(np.float64).max if self.traction_max is None else self.traction_max

@@ -8,7 +8,7 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from isomortar._bindings import Law, Response
+from isomortar._bindings import NO_FRICTION, Law, Response
 from isomortar._codes import PointState
 from isomortar.errors import ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError
 from isomortar.geometry.patch import FloatArray
@@ -100,12 +100,18 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
 
         What supports push along a plane slides; what they keep still there sticks, or its traction would grow with the pressure.
         """
-        pairs, positions = self._equilibrium.pairs, self._start.positions
-        multipliers = []
-        closed = self._equilibrium.closed(self._start, [self._scales] * len(pairs))
-        for pair, contact, pressure in zip(pairs, self._start.contacts, closed, strict=True):
-            multipliers.append((contact.pressure if pressure is None else pressure, pair.sliding(contact)))
-        return self._evaluate(positions, multipliers, self._margin, [pair.held.still for pair in pairs])
+        parts = zip(self._equilibrium.pairs, self._start.contacts, strict=True)
+        return self._begun(self._start.positions, [(contact.pressure, pair.sliding(contact)) for pair, contact in parts])
+
+    def _begun(self, positions: FloatArray, multipliers: Sequence[Multipliers]) -> _BorderedIterate:
+        """An iterate in which that is closed, without friction, which loads close first (theory 6.8)."""
+        pairs = self._equilibrium.pairs
+        closed = self._nearest(positions, [self._scales] * len(pairs))
+        given = [(p if p_closed is None else p_closed, t) for (p, t), p_closed in zip(multipliers, closed, strict=True)]
+        return self._evaluate(positions, given, self._margin, [pair.held.still for pair in pairs], self._loads_closed)
+
+    def _closed_anew(self, iterate: _BorderedIterate) -> _BorderedIterate:
+        return self._begun(iterate.balance.positions, iterate.multipliers)
 
     def ahead(self, positions: FloatArray, length: float) -> _BorderedIterate:
         """The first iterate at positions ahead of the start, with multipliers that went on by a length at their rates (theory 6.7)."""
@@ -124,9 +130,17 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
         ]
 
     def _evaluate(
-        self, positions: FloatArray, multipliers: Sequence[Multipliers], margin: float = 0.0, held: Sequence[np.ndarray] | None = None
+        self,
+        positions: FloatArray,
+        multipliers: Sequence[Multipliers],
+        margin: float = 0.0,
+        held: Sequence[np.ndarray] | None = None,
+        smooth: Sequence[bool] | None = None,
     ) -> _BorderedIterate:
-        """An iterate; multipliers of constraints that turn out inactive are set to zero (theory 6.2)."""
+        """An iterate; multipliers of constraints that turn out inactive are set to zero (theory 6.2).
+
+        Pairs that are `smooth` have no friction in it.
+        """
         laws, targets = list[Law](), list[Response]()
 
         def respond(k: int, kinematics: Kinematics) -> Response:
@@ -136,6 +150,8 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
             law = replace(
                 law, slip_margin=margin, forgiving="forgiving" in self._settings.measures, held=law.held if held is None else held[k]
             )
+            if smooth and smooth[k]:
+                law = replace(law, friction=NO_FRICTION)
             target = pair.respond(kinematics, law)
             active = target.state > 0
             law = replace(law, pressure=np.where(active, pressure, 0.0), traction=np.where(active[:, None], traction, 0.0))
@@ -176,7 +192,7 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
             if not any(r.any() for r in reversed_):
                 break
             held = [np.maximum(h, r.astype(np.int32)) for h, r in zip(held, reversed_, strict=True)]
-            iterate = self._evaluate(iterate.balance.positions, iterate.multipliers, self._margin, held)
+            iterate = self._evaluate(iterate.balance.positions, iterate.multipliers, self._margin, held, self._loads_closed)
             correction = self._solved(iterate, prescribed, True)
             notes = (f"reversal of {sum(int(h.sum()) for h in held)}",)
         return iterate, correction, notes

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import count
 from typing import Generic, TypeVar
@@ -80,6 +80,7 @@ class Newton(ABC, Generic[Iterated, Corrected]):
         self._settings = equilibrium.problem.settings
         self._keeps = "keeping" in self._settings.measures
         self._factorised = False
+        self._loads_closed: list[bool] = []  # which pairs loads closed first
 
     def solve(
         self, iterate: Iterated, prescribed: FloatArray | None, observe: Callable[[IterationRecord], None], notes: tuple[str, ...] = ()
@@ -120,12 +121,30 @@ class Newton(ABC, Generic[Iterated, Corrected]):
                 if tangents == self._settings.max_iterations or not np.isfinite(iterate.merit):
                     break
                 keep_bodies = not keep and self._bodies_serve(led)  # nor a part of factors that did not serve
+                if 0 < tangents <= constants.MAX_CLOSINGS and self._opened(iterate):
+                    iterate, keep_bodies = self._closed_anew(iterate), False
                 iterate, following, notes = self._by_tangent(iterate, None if tangents else prescribed, iteration, keep_bodies)
                 tangents, moves, led = tangents + 1, False, (iterate, following)
             keep = self._keeps and self._serve(iterate, following)
             iterate = following
         toggling = self._trail.toggling(self._equilibrium.pairs)
         raise ConvergenceError(f"Newton's method stopped at {iterate.left} after {iteration} iterations{toggling}")
+
+    def _nearest(self, positions: FloatArray, penalties: Sequence[float | Scales]) -> list[FloatArray | None]:
+        """Pressures that close what loads close first, from some positions on; None of pairs that they do not close (theory 6.8)."""
+        closed = self._equilibrium.closed(replace(self._start, positions=positions), penalties)
+        self._loads_closed = [pressure is not None for pressure in closed]
+        return closed
+
+    def _opened(self, iterate: Iterated) -> bool:
+        """Whether all that loads closed is open again, so that there is no tangent."""
+        responses = zip(iterate.balance.responses, self._loads_closed, strict=False)  # none where they closed nothing
+        closed = [response for response, by_loads in responses if by_loads]
+        return bool(closed) and not any(np.any(response.state) for response in closed)
+
+    @abstractmethod
+    def _closed_anew(self, iterate: Iterated) -> Iterated:
+        """The same positions with that closed which is nearest there (theory 6.8)."""
 
     def _converged(self, iterate: Iterated) -> bool:
         """Whether nothing is left to solve (theory 5.6)."""

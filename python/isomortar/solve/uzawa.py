@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from isomortar._bindings import Law, Response
+from isomortar._bindings import NO_FRICTION, Law, Response
 from isomortar.errors import ConvergenceError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
@@ -33,21 +33,32 @@ class _PositionNewton(Newton[Iterate, FloatArray]):
         self._last: tuple[FloatArray, FloatArray] | None = None  # positions with these laws, and the correction there by these factors
 
     def held(self, laws: Sequence[Law], positions: FloatArray) -> Iterate:
-        """The first iterate with these laws, at the start of the increment or where the last augmentation ended."""
+        """The first iterate with these laws, where the last augmentation ended."""
         self._laws, self._last, self._closes = laws, None, False
         return self._evaluate(positions)
 
-    def closing(self, laws: Sequence[Law], positions: FloatArray, nearest: Sequence[FloatArray]) -> Iterate:
-        """The same where constraints with a pressure in `nearest`, one array a pair, are closed whatever they bear (theory 6.8)."""
-        self._laws, self._closes = laws, True
+    def first(self, laws: Sequence[Law], positions: FloatArray) -> Iterate:
+        """The same at the start of an increment, with that closed which loads close first."""
+        self.held(laws, positions)
+        return self._closing(positions)
+
+    def _closing(self, positions: FloatArray) -> Iterate:
+        """An iterate in which that is closed, whatever it bears and without friction, which loads close first (theory 6.8)."""
+        nearest = self._nearest(positions, [float(law.penalties[0]) for law in self._laws])
+        self._closes = any(self._loads_closed)
 
         def respond(k: int, kinematics: Kinematics) -> Response:
-            pair, law = self._equilibrium.pairs[k], laws[k]
-            closed = pair.respond(kinematics, replace(law, pressure=law.pressure + nearest[k]))
-            return replace(closed, pressure=closed.pressure - np.where(closed.state > 0, nearest[k], 0.0))
+            pair, law, pressure = self._equilibrium.pairs[k], self._laws[k], nearest[k]
+            if pressure is None:
+                return pair.respond(kinematics, law)
+            closed = pair.respond(kinematics, replace(law, pressure=law.pressure + pressure, friction=NO_FRICTION))
+            return replace(closed, pressure=closed.pressure - np.where(closed.state > 0, pressure, 0.0))
 
         balance = self._equilibrium.forces(positions, self._start, respond)
         return Iterate(balance, self._residual(balance))
+
+    def _closed_anew(self, iterate: Iterate) -> Iterate:
+        return self._closing(iterate.balance.positions)
 
     def _evaluate(self, positions: FloatArray) -> Iterate:
         balance = self._equilibrium.balance(positions, self._start, self._laws)
@@ -104,7 +115,7 @@ class Uzawa(Method):
         newton = _PositionNewton(equilibrium, start, scales)
         positions, records, orders, growth = start.positions, [], [], 1.0
         for augmentation in range(1, self._settings.max_augmentations + 1):
-            first = self._first(newton, laws, start) if augmentation == 1 else newton.held(laws, positions)
+            first = newton.first(laws, positions) if augmentation == 1 else newton.held(laws, positions)
             found = newton.solve(first, prescribed, partial(self._observer.iteration, step, time, augmentation))
             orders.append(found.order)
             balance = found.iterate.balance
@@ -128,14 +139,6 @@ class Uzawa(Method):
             f"{np.max(distances):.2e} off the contact conditions (solver.augmentation_tolerance is "
             f"{self._settings.augmentation_tolerance:g}; larger penalties need fewer augmentations)"
         )
-
-    def _first(self, newton: _PositionNewton, laws: list[Law], start: State) -> Iterate:
-        """The first iterate of an increment."""
-        closed = self._equilibrium.closed(start, [float(law.penalties[0]) for law in laws])
-        if any(pressure is not None for pressure in closed):
-            given = [np.zeros_like(law.pressure) if p is None else p for p, law in zip(closed, laws, strict=True)]
-            return newton.closing(laws, start.positions, given)
-        return newton.held(laws, start.positions)
 
     def _changes(self, laws: list[Law], balance: Balance) -> tuple[float, float]:
         """Relative change of pressures and of tractions by the last augmentation (theory 7.3; the paper's mixed norm: twice the same).
