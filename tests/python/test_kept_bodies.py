@@ -220,3 +220,17 @@ def test_factors_that_were_refused_do_not_stay() -> None:
         with pytest.raises(SingularSystemError):
             bodies.factorise(blocks, np.eye(30, order="F"))
     assert made == ["bodies", "bodies"]
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_kept_factors_that_are_no_good_are_followed_by_a_tangent(monkeypatch: pytest.MonkeyPatch, method: str) -> None:
+    settings = (f'solver.method="{method}"',)
+    (*_, sound) = Simulation(pressed(*settings)).run()
+
+    def useless(*_: Any) -> FloatArray:
+        raise SingularSystemError("digits are lost", -1)
+
+    monkeypatch.setattr(Equilibrium, "solve_again", useless)
+    (*_, found) = Simulation(pressed(*settings)).run()
+    assert found.cuts == 0
+    assert np.abs(found.state.positions - sound.state.positions).max() < 1e-6

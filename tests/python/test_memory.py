@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import gc
 import resource
 import subprocess
 import sys
 import time
+import weakref
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +18,7 @@ from isomortar.geometry.patch import Direction
 from isomortar.model import checks, memory
 from isomortar.scene import Scene
 from isomortar.solve import doubts as doubting
+from isomortar.solve.condensed import CondensedSystem
 from isomortar.solve.simulation import Simulation
 from isomortar.solve.system import LinearSystem
 
@@ -84,3 +87,17 @@ def test_the_limit_of_the_process_counts(tmp_path: Path) -> None:
     assert done.returncode == 2
     assert "bodies.block.mesh: Gauss points, tangent and factors would take about" in done.stderr
     assert "there are 2.15 GB" in done.stderr
+
+
+def test_factors_go_with_their_simulation() -> None:
+    """And do not wait for Python to look for cycles: it sees none of the kernel's memory."""
+    simulation = Simulation(Scene.load("press", ["bodies.block.mesh.elements=[6,6,3]", "stages.press.steps=1"]).problem())
+    assert [result.step for result in simulation.run()] == [1]
+    assert isinstance(simulation.equilibrium._system, CondensedSystem)
+    gone = weakref.ref(simulation.equilibrium)
+    gc.disable()
+    try:
+        del simulation
+        assert gone() is None
+    finally:
+        gc.enable()

@@ -70,6 +70,19 @@ def off_conditions(
     )
 
 
+def between(
+    pair: PairMechanics, positions: FloatArray, kinematics: Kinematics, one: Response, other: Response, scales: Scales
+) -> tuple[float, float]:
+    """Relative distance of a converged response from another one, both known to round-off of gaps, slips and forces (theory 5.9)."""
+    present = kinematics.control.weight[kinematics.control.weight > 0]
+    if not present.size:
+        return 0.0, 0.0
+    law = pair.law(pair.parameters(kinematics.control, scales), other.pressure, other.traction)
+    forces = constants.LEFT_OPEN * float(scales.round_off[pair.pair.pieces].max()) / median(present)
+    normal, tangential = round_off(pair, positions, law, other, forces)
+    return apart(pair, kinematics.control, (one.pressure, one.traction), (other.pressure, other.traction), (2.0 * normal, 2.0 * tangential))
+
+
 def ratio(change: float, size: float) -> float:
     """Square root of a ratio of squares; 0 where nothing changes, infinite where there was nothing before (theory 5.8)."""
     if change == 0.0:

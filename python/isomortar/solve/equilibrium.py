@@ -355,10 +355,10 @@ class Equilibrium:
         free = len(self.supports.free)
         if self._solid_entries is None:
             self._solid_entries = entries(sources[:1], free)
-        known = self._solid_entries
+        known, ledger, orderings = self._solid_entries, self.ledger, self.orderings
 
-        def general() -> LinearSystem:
-            return LinearSystem(size, sources, self.ledger, known, self.orderings.get(len(sources)))
+        def general() -> LinearSystem:  # without `self`: in a cycle factors would stay until Python looks for cycles
+            return LinearSystem(size, sources, ledger, known, orderings.get(len(sources)))
 
         if free == 0:  # multipliers alone
             return general()

@@ -200,10 +200,9 @@ class Newton(ABC, Generic[Iterated, Corrected]):
 
     def _by_kept_factors(self, iterate: Iterated) -> Iterated | None:
         """The next iterate with the factors of an earlier tangent; None if these do not serve."""
-        correction = self._correct_again(iterate)
         try:
-            following = self._moved(iterate, correction, 1.0)
-        except (FoldedElementError, LostProjectionError):
+            following = self._moved(iterate, self._correct_again(iterate), 1.0)
+        except (FoldedElementError, LostProjectionError, SingularSystemError):
             return None
         return following if self._serve(iterate, following) else None
 

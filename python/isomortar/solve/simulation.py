@@ -17,7 +17,7 @@ from isomortar.model.symmetry import of_whole
 from isomortar.solve.advice import StepAdvice, advice_on_problem
 from isomortar.solve.behind import Behind
 from isomortar.solve.causes import causes
-from isomortar.solve.distances import apart, largest
+from isomortar.solve.distances import between, largest
 from isomortar.solve.doubts import doubts
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.extrapolation import with_rates
@@ -175,14 +175,15 @@ class Simulation:
     def _distance(self, whole: Balance, halves: Balance) -> float:
         """Largest relative distance between the pressures, or the tractions, of two solutions of an increment (theory 5.9)."""
         pairs = zip(self.equilibrium.pairs, halves.kinematics, whole.responses, halves.responses, strict=True)
-        return float(np.max(largest(apart(pair, k.control, (a.pressure, a.traction), (b.pressure, b.traction)) for pair, k, a, b in pairs)))
+        scales = self.equilibrium.measures.scales(halves.positions)
+        return float(np.max(largest(between(pair, halves.positions, k, a, b, scales) for pair, k, a, b in pairs)))
 
     def _grow(self, increment: float, parts: Sequence[Increment]) -> None:
         """The next load increment, a share of the longest: longer after few linear solves, shorter after many tangents."""
         if max(part.iterations for part in parts) <= constants.EASY_ITERATIONS:
             self._increment = min(1.0, 2.0 * increment)
         elif max(part.tangents for part in parts) >= constants.HARD_TANGENTS:
-            self._increment = 0.5 * increment
+            self._increment = max(0.5 * increment, 0.5**self.problem.settings.max_cuts)
         else:
             self._increment = min(1.0, max(increment, self._increment))
 
