@@ -105,7 +105,7 @@ def groove(method: str) -> dict[str, float]:
 
 
 @case(
-    claim="Pressures that are round-off have no path error: a block comes back to bearing nothing, or slides without a load, without a cut.",
+    claim="Pressures of round-off have no path error: a block comes back to bearing nothing, or slides without a load, without a cut.",
     tier="gate",
     grid={"motion": tuple(_MOTIONS), "method": ("monolithic", "uzawa")},
     bounds={
