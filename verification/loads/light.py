@@ -42,6 +42,15 @@ supports.back = { face = "ring.w1", components = ["y"] }
 loads.own = { body = "ring", weight = [0, 0, -0.05] }
 stages = [{ name = "lay", steps = 1 }]
 """
+#: A block on an incline, which has nothing but friction to hold it: weight that pushes it along by 0.36 of what it presses with.
+_INCLINE = """
+format = 1
+bodies.block.geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }
+bodies.block.mesh = { order = 2, elements = [2, 2, 2] }
+contacts.c = { slave = "block.w0", friction = 0.4, plane = { point = [0, 0, 0], normal = [0, 0, 1] } }
+loads.own = { body = "block", weight = [0.108, 0, -0.3] }
+stages = [{ name = "lay", steps = 1 }]
+"""
 #: A block on a plane that is pressed and comes back to where it began, or is slid without a load; increments are solved in halves, too.
 _BACK = """
 format = 1
@@ -102,6 +111,18 @@ def groove(method: str) -> dict[str, float]:
         "sides": float(max(abs(left[2] - right[2]), abs(left[0] + right[0])) / weight),
         "cuts": float(step.cuts),
     }
+
+
+@case(
+    claim="A block that its weight lays on an incline, and nothing but friction holds, rests there.",
+    tier="gate",
+    grid={"method": ("monolithic", "uzawa")},
+    bounds={"balance": Bound(at_most=1e-8, reason="definition: contact bears the weight, to the tolerance of balance")} | _CUTS,
+)
+def incline(method: str) -> dict[str, float]:
+    """Relative difference of contact and weight; cuts of the load increment."""
+    (step,) = _computed(_INCLINE, method)
+    return {"balance": float(np.abs(step.contacts[0].force_slave + [0.108, 0.0, -0.3]).max() / 0.3), "cuts": float(step.cuts)}
 
 
 @case(

@@ -101,17 +101,18 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
         What supports push along a plane slides; what they keep still there sticks, or its traction would grow with the pressure.
         """
         parts = zip(self._equilibrium.pairs, self._start.contacts, strict=True)
-        return self._begun(self._start.positions, [(contact.pressure, pair.sliding(contact)) for pair, contact in parts])
+        return self._begun(self._start.positions, [(contact.pressure, pair.sliding(contact)) for pair, contact in parts], smooth=False)
 
-    def _begun(self, positions: FloatArray, multipliers: Sequence[Multipliers]) -> _BorderedIterate:
-        """An iterate in which that is closed, without friction, which loads close first (theory 6.8)."""
+    def _begun(self, positions: FloatArray, multipliers: Sequence[Multipliers], smooth: bool) -> _BorderedIterate:
+        """An iterate in which that is closed which loads close first (theory 6.8)."""
         pairs = self._equilibrium.pairs
         closed = self._nearest(positions, [self._scales] * len(pairs))
         given = [(p if p_closed is None else p_closed, t) for (p, t), p_closed in zip(multipliers, closed, strict=True)]
-        return self._evaluate(positions, given, self._margin, [pair.held.still for pair in pairs], self._loads_closed)
+        still = [pair.held.still for pair in pairs]
+        return self._evaluate(positions, given, self._margin, still, self._loads_closed if smooth else None)
 
     def _closed_anew(self, iterate: _BorderedIterate) -> _BorderedIterate:
-        return self._begun(iterate.balance.positions, iterate.multipliers)
+        return self._begun(iterate.balance.positions, iterate.multipliers, smooth=True)
 
     def ahead(self, positions: FloatArray, length: float) -> _BorderedIterate:
         """The first iterate at positions ahead of the start, with multipliers that went on by a length at their rates (theory 6.7)."""
@@ -150,7 +151,7 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
             law = replace(
                 law, slip_margin=margin, forgiving="forgiving" in self._settings.measures, held=law.held if held is None else held[k]
             )
-            if smooth and smooth[k]:
+            if smooth is not None and smooth[k]:
                 law = replace(law, friction=NO_FRICTION)
             target = pair.respond(kinematics, law)
             active = target.state > 0
@@ -192,7 +193,7 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
             if not any(r.any() for r in reversed_):
                 break
             held = [np.maximum(h, r.astype(np.int32)) for h, r in zip(held, reversed_, strict=True)]
-            iterate = self._evaluate(iterate.balance.positions, iterate.multipliers, self._margin, held, self._loads_closed)
+            iterate = self._evaluate(iterate.balance.positions, iterate.multipliers, self._margin, held)
             correction = self._solved(iterate, prescribed, True)
             notes = (f"reversal of {sum(int(h.sum()) for h in held)}",)
         return iterate, correction, notes

@@ -144,7 +144,7 @@ class Newton(ABC, Generic[Iterated, Corrected]):
 
     @abstractmethod
     def _closed_anew(self, iterate: Iterated) -> Iterated:
-        """The same positions with that closed which is nearest there (theory 6.8)."""
+        """The same positions with that closed, without friction, which is nearest there (theory 6.8)."""
 
     def _converged(self, iterate: Iterated) -> bool:
         """Whether nothing is left to solve (theory 5.6)."""

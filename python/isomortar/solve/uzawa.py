@@ -40,10 +40,10 @@ class _PositionNewton(Newton[Iterate, FloatArray]):
     def first(self, laws: Sequence[Law], positions: FloatArray) -> Iterate:
         """The same at the start of an increment, with that closed which loads close first."""
         self.held(laws, positions)
-        return self._closing(positions)
+        return self._closing(positions, smooth=False)
 
-    def _closing(self, positions: FloatArray) -> Iterate:
-        """An iterate in which that is closed, whatever it bears and without friction, which loads close first (theory 6.8)."""
+    def _closing(self, positions: FloatArray, smooth: bool) -> Iterate:
+        """An iterate in which that is closed, whatever it bears, which loads close first (theory 6.8)."""
         nearest = self._nearest(positions, [float(law.penalties[0]) for law in self._laws])
         self._closes = any(self._loads_closed)
 
@@ -51,14 +51,15 @@ class _PositionNewton(Newton[Iterate, FloatArray]):
             pair, law, pressure = self._equilibrium.pairs[k], self._laws[k], nearest[k]
             if pressure is None:
                 return pair.respond(kinematics, law)
-            closed = pair.respond(kinematics, replace(law, pressure=law.pressure + pressure, friction=NO_FRICTION))
+            friction = NO_FRICTION if smooth else law.friction
+            closed = pair.respond(kinematics, replace(law, pressure=law.pressure + pressure, friction=friction))
             return replace(closed, pressure=closed.pressure - np.where(closed.state > 0, pressure, 0.0))
 
         balance = self._equilibrium.forces(positions, self._start, respond)
         return Iterate(balance, self._residual(balance))
 
     def _closed_anew(self, iterate: Iterate) -> Iterate:
-        return self._closing(iterate.balance.positions)
+        return self._closing(iterate.balance.positions, smooth=True)
 
     def _evaluate(self, positions: FloatArray) -> Iterate:
         balance = self._equilibrium.balance(positions, self._start, self._laws)
