@@ -29,6 +29,7 @@ from isomortar.results.writer import ResultsWriter
 from isomortar.scene import Scene
 from isomortar.solve import doubts, pulling
 from isomortar.solve.advice import StepAdvice
+from isomortar.solve.inside_out import InsideOut
 from isomortar.solve.simulation import Simulation
 from isomortar.solve.snapping import Snapping
 from results_samples import problem, step_result
@@ -133,6 +134,17 @@ def along_the_way(_: pytest.MonkeyPatch) -> Told:
     snapping.look(here, turned, 0.125)
     (yield "snaps", *snapping.after_step(3))
     assert list(snapping.after_step(4)) == []
+    inside_out, flat = InsideOut(tilting), here * [1.0, 1.0, 0.2]
+    yield "cut, as it falls into itself", refusal(partial(inside_out.look, here, flat, 0.5))
+    assert list(inside_out.after_step(2)) == []
+    inside_out.look(here, flat, 0.125)
+    (yield "falls into itself", *inside_out.after_step(3))
+    inside_out.look(here, flat, 0.125)
+    assert list(inside_out.after_step(4)) == []
+    inside_out, corner = InsideOut(tilting), here * [1.0, 1.0, 0.45]
+    corner[(corner @ [1.0, 1.0, 5.0]).argmin()] += 0.3
+    inside_out.look(here * [1.0, 1.0, 0.45], corner, 0.125)
+    (yield "inside out", *inside_out.after_step(3))
     (yield "never closed", *[list(StepAdvice(problem(), 0, nothing).at_the_end({}))[1]])
     (yield "never closed, though inside", *[list(StepAdvice(problem(), 0, nothing).at_the_end({"ground": 0.05}))[1]])
     text = PLATE.replace("THICKNESS", "1e-4").replace("TIP", '[supports.tip]\nface = "b.u1"\ncomponents = ["z"]')

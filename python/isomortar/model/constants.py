@@ -19,7 +19,21 @@ NEAR_ORIGIN = 16.0
 LARGEST_TURN = 36.0
 #: Share of the longest load increment down to which one is cut in which a moment lets its plate turn by more: a plate that comes far in
 #: a load step does so little by little, and an eighth of half a turn is less; one that snaps does so however short the increment.
+#: So is one in which a body falls into itself.
 SHORT_OF_SNAPPING = 0.125
+#: J at the Gauss points of a body below which it is looked at between them (theory 5.25): where it was turned inside out there, these came
+#: to 0.14 or less, and bodies that are pressed as usual stay above 0.6, and are not looked at.
+LOOKED_BETWEEN = 0.5
+#: Where elements are looked at, by direction: bounds, middles and quarters. At bounds and middles alone, two of those five stay above 0.3,
+#: and one comes to its hardly negative J later.
+PLACES_BETWEEN = (0.0, 0.25, 0.5, 0.75, 1.0)
+#: A body falls whose least J was above this share of one, and comes to less than this share of that in one increment: those five came from
+#: 0.50 to 0.88 to at most 0.08 of that; what is pressed by large steps mostly keeps more than 0.4.
+FALLEN = 0.25
+#: Share of the largest volume of an element, by its coordinates, below which a place has none: at poles, and where two edges are one line.
+NO_VOLUME = 0.01
+#: Places of a body that are looked at in one go: some ten megabytes, whatever its number of elements.
+MOST_AT_ONCE = 100_000
 
 #: Angle between the normals of both sides, in radians, above which a C0 line of a master is a kink: joints of arcs are as smooth as their
 #: digits, and where normals turn by less, those that are averaged differ from the own ones by next to nothing.

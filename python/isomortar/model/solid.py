@@ -48,6 +48,7 @@ class Solid:
         self.pattern = pattern_of(sparse.csr_array(total))
         rows = np.repeat(np.arange(numbering.count), np.diff(self.pattern.start))
         self._last: tuple[FloatArray, FloatArray, FloatArray] | None = None
+        self._smallest: tuple[FloatArray, list[float]] | None = None
         self.diagonal = np.flatnonzero(rows == self.pattern.column)
         self._arrays = {body.name: numbering.body_arrays(body, often=True) for body in self._bodies if not body.raised}
         try:
@@ -59,7 +60,9 @@ class Solid:
             ) from error
 
     def smallest_jacobians(self, positions: FloatArray) -> list[float]:
-        """The smallest J = det F at a quadrature point of each deformable body; see `forces`."""
+        """The smallest J = det F at a quadrature point of each deformable body; see `forces`. Those of the last positions are kept."""
+        if self._smallest is not None and self._smallest[0] is positions:
+            return self._smallest[1]
         return self._add(np.zeros_like(positions), positions, None)
 
     def forces(self, positions: FloatArray) -> FloatArray:
@@ -89,7 +92,9 @@ class Solid:
 
     def _add(self, forces: FloatArray, positions: FloatArray, tangent: FloatArray | None) -> list[float]:
         """Add forces and tangent; the smallest J of each deformable body."""
-        return [self._add_body(body, forces, positions, tangent) for body in self._bodies]
+        found = [self._add_body(body, forces, positions, tangent) for body in self._bodies]
+        self._smallest = positions, found
+        return found
 
     def _add_body(self, body: Body, forces: FloatArray, positions: FloatArray, tangent: FloatArray | None) -> float:
         """Add forces and tangent of a body; its smallest J."""

@@ -21,6 +21,7 @@ from isomortar.solve.distances import between, largest
 from isomortar.solve.doubts import doubts
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.extrapolation import with_rates
+from isomortar.solve.inside_out import InsideOut
 from isomortar.solve.lost import LostDigits
 from isomortar.solve.method import Increment, Method
 from isomortar.solve.monolithic import Monolithic
@@ -77,7 +78,7 @@ class Simulation:
         self._extrapolates = problem.settings.method == "monolithic" and "extrapolation" in problem.settings.measures
         self._lost, self._pulling, self._sharing = LostDigits(self.equilibrium), Pulling(self.equilibrium), Sharing(self.equilibrium)
         self._small_strains, self._unseen = SmallStrains(self.equilibrium), Unseen(self.equilibrium)
-        self._snapping = Snapping(self.equilibrium)
+        self._snapping, self._inside_out = Snapping(self.equilibrium), InsideOut(self.equilibrium)
         self._of_stages = [watch for watch in (Passing(self.equilibrium.problem), Behind(self.equilibrium.problem)) if watch.needed]
         self._step = resume_from.step if resume_from else 0
         self._increment = resume_from.next_increment if resume_from else 1.0
@@ -129,6 +130,8 @@ class Simulation:
             try:
                 parts = self._advance(state, time, target, step)
                 self._snapping.look(state.positions, parts[-1].balance.positions, increment / longest)
+                with self.ledger.phase("solid"):
+                    self._inside_out.look(state.positions, parts[-1].balance.positions, increment / longest)
             except _REASONS_TO_CUT as error:
                 self._cut(step, state, target, increment, longest, error)
                 cuts += 1
@@ -146,6 +149,7 @@ class Simulation:
         self._warn(self._sharing.after_step(result))
         self._warn(self._small_strains.after_step(parts[-1].balance, step))
         self._warn(self._snapping.after_step(step))
+        self._warn(self._inside_out.after_step(step))
         self._unseen.after_step(parts[-1].balance)
         if self._of_stages and self._ends_stage(step):
             deformed = self.equilibrium.numbering.deformed(state.positions)
