@@ -15,8 +15,8 @@ PACKAGE = Path(isomortar.__file__).parent
 PLACE = PACKAGE / "model" / "constants.py"
 #: Modules that refuse, warn or explain: their thresholds stand with their sentences.
 JUDGES = {
-    "advice", "behind", "causes", "checks", "contact_checks", "doubtful_edges", "doubtful_meshes", "doubtful_motions", "doubtful_sizes",
-    "doubtful_turns", "doubts", "left_out", "lost", "meeting", "memory", "passing", "pulling",
+    "advice", "astray", "behind", "causes", "checks", "contact_checks", "doubtful_edges", "doubtful_meshes", "doubtful_motions",
+    "doubtful_sizes", "doubtful_turns", "doubts", "left_out", "lost", "meeting", "memory", "passing", "pulling",
     "rational", "singular", "sliding", "small_strains", "stance",
 }  # fmt: skip
 #: Numbers that stand for something else.

@@ -12,6 +12,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from told.astray import STRETCHING, TURNING
+from told.astray import run as astray
 from told.behind import DOWN
 from told.behind import SCENE as FLOOR
 from told.given_up import all_told, without_digits
@@ -160,6 +162,8 @@ def along_the_way(_: pytest.MonkeyPatch) -> Told:
     observer = Warned()
     list(Simulation(Scene.from_toml(FLOOR, overrides=[DOWN]).problem(), observer).run())
     yield "behind", observer.said[-1]
+    for name, text in {"turning coordinates": TURNING, "stretching coordinates": STRETCHING}.items():
+        yield name, next(said for said in astray(text)[0] if ("degrees" in said) == (text == TURNING))
 
 
 def _before_the_first_step(simulation: Simulation, number: int = 0) -> str:

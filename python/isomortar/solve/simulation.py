@@ -15,6 +15,7 @@ from isomortar.model.entities import Problem
 from isomortar.model.moments import moment
 from isomortar.model.symmetry import of_whole
 from isomortar.solve.advice import StepAdvice, advice_on_problem
+from isomortar.solve.astray import Astray
 from isomortar.solve.behind import Behind
 from isomortar.solve.causes import causes
 from isomortar.solve.distances import between, largest
@@ -78,7 +79,7 @@ class Simulation:
         self._extrapolates = problem.settings.method == "monolithic" and "extrapolation" in problem.settings.measures
         self._lost, self._pulling, self._sharing = LostDigits(self.equilibrium), Pulling(self.equilibrium), Sharing(self.equilibrium)
         self._small_strains, self._unseen = SmallStrains(self.equilibrium), Unseen(self.equilibrium)
-        self._snapping, self._inside_out = Snapping(self.equilibrium), InsideOut(self.equilibrium)
+        self._snapping, self._inside_out, self._astray = Snapping(self.equilibrium), InsideOut(self.equilibrium), Astray(self.equilibrium)
         self._of_stages = [watch for watch in (Passing(self.equilibrium.problem), Behind(self.equilibrium.problem)) if watch.needed]
         self._step = resume_from.step if resume_from else 0
         self._increment = resume_from.next_increment if resume_from else 1.0
@@ -150,6 +151,7 @@ class Simulation:
         self._warn(self._small_strains.after_step(parts[-1].balance, step))
         self._warn(self._snapping.after_step(step))
         self._warn(self._inside_out.after_step(step))
+        self._warn(self._astray.after_step(parts[-1].balance, step))
         self._unseen.after_step(parts[-1].balance)
         if self._of_stages and self._ends_stage(step):
             deformed = self.equilibrium.numbering.deformed(state.positions)

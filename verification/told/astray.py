@@ -1,0 +1,107 @@
+"""What is said of friction that a master's coordinates lead astray: where they turn along the way, or stretch within a slave element."""
+
+from __future__ import annotations
+
+import re
+from itertools import product
+
+import numpy as np
+from told.runs import Heard
+
+from isomortar.harness import Bound, case
+from isomortar.scene import Scene
+from isomortar.solve.simulation import Simulation
+
+#: A block that is dragged along y, straight on, over a face at z = 0.
+SCENE = """
+format = 1
+materials.m = { young = 10, poisson = 0.3 }
+bodies.a = { geometry = { kind = "box", lower = [0.25, -0.25, 0], upper = [0.75, 0.25, 0.4] }, mesh = { order = 2, elements = [2, 2, 1] } }
+bodies.b = MASTER
+contacts.c = { slave = "a.w0", master = "b.FACE", friction = 0.3, projection = "closest" }
+supports.top.face = "a.w1"
+stages = [{ name = "p", steps = 1, motions.top.translate = [0, 0, -0.05] }, { name = "s", steps = 1, motions.top.translate = [0, 0.4, 0] }]
+"""
+_RING = '{ kind = "ring", inner = 0.15, outer = 1.5, width = 0.3, centre = [0, 0, -0.15], axis = "z" }'
+_BOX = '{ kind = "box", lower = [-1.5, -1.5, -0.3], upper = [1.5, 1.5, 0] }'
+
+
+def scene(geometry: str, face: str) -> str:
+    """That of a rigid master."""
+    return SCENE.replace(
+        "MASTER", f"{{ rigid = true, geometry = {geometry}, mesh = {{ order = [2, 2, 1], elements = [8, 3, 1] }} }}"
+    ).replace("FACE", face)
+
+
+def weighted(weight: float) -> str:
+    """That of a rigid block of one element, of which the weights in the middle of its top, and below, are this."""
+    points = [[x, y, z] for z, y, x in product((-0.3, 0.0), (-1.5, 0.0, 1.5), (-1.5, 0.0, 1.5))]
+    weights = [weight if x == y == 0.0 else 1.0 for x, y, _ in points]
+    knots = [[0, 0, 0, 1, 1, 1], [0, 0, 0, 1, 1, 1], [0, 0, 1, 1]]
+    patch = f"{{ order = [2, 2, 1], knots = {knots}, control_points = {points}, weights = {weights} }}"
+    return SCENE.replace("MASTER", f"{{ rigid = true, patch = {patch} }}").replace("FACE", "w1")
+
+
+#: The ring's end, on which circles and rays are coordinates; a flat face with straight ones; one whose coordinates stretch.
+TURNING, STRAIGHT, STRETCHING = scene(_RING, "w0"), scene(_BOX, "w1"), weighted(30.0)
+BESIDE = re.compile(r"contact '(\w+)', load step (\d+): slips are .* off by (\S+) degrees, and so is the direction of friction")
+BORNE = re.compile(r"contact '(\w+)', load step (\d+): its tractions are (\S+) % more than the law of friction takes them for")
+
+
+def run(text: str, changes: tuple[str, ...] = ()) -> tuple[list[str], float]:
+    """What is said of friction in a run, and by how many degrees the force of friction is off the way of the block at its end."""
+    heard = Heard()
+    *_, last = Simulation(Scene.from_toml(text, overrides=changes).problem(), heard).run()
+    force = last.contacts[0].force_master
+    return [said for said in heard.said if BESIDE.search(said) or BORNE.search(said)], float(np.degrees(np.arctan2(-force[0], force[1])))
+
+
+@case(
+    claim="Friction on a master whose coordinates turn along the way is told of, once, and by about as much as it is off; with "
+    "twenty load steps, along averaged normals, without friction and on straight coordinates nothing is said.",
+    tier="gate",
+    bounds={
+        "said": Bound(1.0, 1.0, "definition: sentences of the ring's end in two load steps"),
+        "step": Bound(2.0, 2.0, "definition: the first load step that drags"),
+        "told over true": Bound(
+            at_least=0.8, at_most=1.6, reason="definition: a mean over points that move much, of a force that all make; two digits"
+        ),
+        "true": Bound(at_least=5.0, reason="definition: or there is nothing to tell of"),
+        "true, in twenty": Bound(at_most=2.9, reason="definition: what is not told"),
+        "others": Bound(0.0, 0.0, "definition: sentences of the other scenes"),
+    },
+)
+def turning() -> dict[str, float]:
+    """What is said of the ring's end, and how far off the force is; how much is said of five others."""
+    said, _ = run(TURNING, ("stages.s.steps=2",))
+    (only,), off = run(TURNING)
+    found = BESIDE.search(only)
+    assert found is not None
+    finer, left = run(TURNING, ("stages.s.steps=20",))
+    others = [run(TURNING, ('contacts.c.projection="averaged"',)), run(TURNING, ("contacts.c.friction=0",)), run(STRAIGHT)]
+    others += [run(STRAIGHT, ("stages.s.motions.top.translate=[0.4, 0.4, 0]",))]
+    return {
+        "said": float(len(said)),
+        "step": float(found[2]),
+        "told over true": float(found[3]) / abs(off),
+        "true": abs(off),
+        "true, in twenty": abs(left),
+        "others": float(len(finer) + sum(len(words) for words, _ in others)),
+    }
+
+
+@case(
+    claim="Tractions on a master whose coordinates stretch within a slave element are told to be more than the law takes them for, "
+    "once; not with a finer slave, and of equal weights nothing is said.",
+    tier="gate",
+    bounds={
+        "said": Bound(1.0, 1.0, "definition: sentences of the uneven master"),
+        "others": Bound(0.0, 0.0, "definition: sentences of the same with a finer slave, and all with equal weights"),
+    },
+)
+def stretching() -> dict[str, float]:
+    """How much is said."""
+    said, finer = (
+        [text for text in run(STRETCHING, changes)[0] if BORNE.search(text)] for changes in ((), ("bodies.a.mesh.elements=[8, 8, 1]",))
+    )
+    return {"said": float(len(said)), "others": float(len(finer) + len(run(weighted(1.0))[0]))}
