@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 
+from isomortar import _bindings
+from isomortar.errors import LostProjectionError
 from isomortar.geometry.patch import Direction, FloatArray, Patch
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
@@ -55,6 +58,10 @@ stages = [{{ name = "down", steps = 1, motions.top.translate = [0, -0.02, 0] }}]
 HALF, ELEMENTS, HEIGHT = 1.0, 24, 0.9
 #: How high a small block is above a flat element.
 HOVER = 0.05
+#: Largest gaps of feet as shares of the diagonal of a master's face, closed and open, and the least cosine between normals (theory 3.30).
+DEEP, WIDE, FACING = 0.1, 0.5, 0.2
+#: Gaps over the largest closed one, or, below zero, over the largest open one; and cosines.
+GAPS, COSINES = (-1.3, -1.001, -0.999, -0.3, 0.0, 0.999, 1.001, 1.3, 3.0), (1.0, 0.201, 0.199, 0.0, -0.201, -1.0)
 
 
 def trough() -> Problem:
@@ -235,3 +242,57 @@ def far_corner(corner: int) -> dict[str, float]:
         "gap": float(np.abs(kinematics.control.gap / kinematics.control.weight + HOVER).max()),
         "foot": float(np.abs(feet[:, :2] - places(pair, start.positions)[:, :2]).max()),
     }
+
+
+def over_a_cube() -> Problem:
+    """A tiny block on top of a cube, which is deeper than feet are looked for."""
+    line = Direction("N", 1, np.repeat([0.0, 1.0], 2))
+
+    def block(lower: tuple[float, float, float], upper: tuple[float, float, float]) -> Patch:
+        x, y, z = (a.ravel(order="F") for a in np.meshgrid(*zip(lower, upper, strict=True), indexing="ij"))
+        return Patch((line, line, line), np.column_stack([x, y, z]), np.ones(8))
+
+    tiny, cube = block((-1e-6, -1e-6, 0.0), (1e-6, 1e-6, 2e-6)), block((-0.45, -0.55, -1.0), (0.6, 0.5, 0.0))
+    cube = mesh(cube, ("L", "L", "L"), (1, 1, 1), (3, 2, 1))
+    bodies = tuple(Body(name, patch, Material(), (2, 2, 2)) for name, patch in (("tiny", tiny), ("cube", cube)))
+    contact = Contact("interface", Face("tiny", "w0"), Face("cube", "w1"), 0.0, (2, 2), projection="averaged")
+    return Problem("cube", bodies, (contact,), (), ())
+
+
+@case(
+    claim="A foot along averaged normals is one only where it is neither too deep, nor too far, and the sides face each other: all three, "
+    "whether it was followed or is found; what was there before and is too deep now has passed through.",
+    bounds={
+        "accepted": Bound(0.0, 0.0, "definition: one of the three does not hold"),
+        "refused": Bound(0.0, 0.0, "definition: all three hold"),
+        "passed": Bound(0.0, 0.0, "definition: what had a foot and is too deep is told, nothing else is"),
+        "kinds": Bound(6.0, 6.0, "definition: too deep, too far or neither, each facing and not: all that there is"),
+    },
+)
+def all_three() -> dict[str, float]:
+    """Points with a foot that has no right to be one, and without one that has; wrong refusals; combinations of the three."""
+    equilibrium = Equilibrium(over_a_cube(), Ledger())
+    pair, start = equilibrium.pairs[0].pair, equilibrium.numbering.reference
+    moved, size = equilibrium.numbering.points["tiny"], float(np.hypot(1.05, 1.05))
+    n = len(pair.slave.area)
+    none, had, xi = np.zeros(n, dtype=np.int32), np.ones(n, dtype=np.int32), np.full((n, 2), 0.5)
+    near = _bindings.project_points(pair.slave, pair.master, start, xi, none)
+    accepted = refused = passed = 0
+    kinds = set()
+    for gap, cosine in product(GAPS, COSINES):
+        deep, wide, facing = gap > 1.0, gap < -1.0, cosine > FACING
+        kinds.add((deep, wide, facing))
+        sine, positions = np.sqrt(1.0 - cosine**2), start.copy()
+        positions[moved] = start[moved] @ np.array([[1.0, 0.0, 0.0], [0.0, cosine, sine], [0.0, -sine, cosine]])
+        positions[moved, 2] -= gap * size * (DEEP if gap > 0.0 else WIDE)
+        for before, known in ((none, None), (none, near), (had, None)):
+            lost = False
+            try:
+                feet = _bindings.project_points(pair.slave, pair.master, positions, near.xi, before, near=known)
+            except LostProjectionError:
+                lost = True
+            passed += lost != (deep and before is had)
+            if not lost:
+                accepted += int(np.count_nonzero(feet.found)) if deep or wide or not facing else 0
+                refused += int(np.count_nonzero(feet.found == 0)) if not deep and not wide and facing else 0
+    return {"accepted": float(accepted), "refused": float(refused), "passed": float(passed), "kinds": float(len(kinds))}

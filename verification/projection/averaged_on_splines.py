@@ -1,4 +1,4 @@
-"""Averaged normals on splines whose knots are graded or repeated, against their definition, written down anew with SciPy's splines."""
+"""Averaged normals on splines with weights, and graded or repeated knots, against their definition, written down anew with SciPy's."""
 
 from __future__ import annotations
 
@@ -49,6 +49,16 @@ def block_over_splines(order: int, knots: str) -> Problem:
     bodies = tuple(Body(name, patch, Material(), (3, 3, 2)) for name, patch in (("slave", slave), ("master", master)))
     contact = Contact("interface", Face("slave", "w0"), Face("master", "w1"), 0.3, (4, 4), projection="averaged")
     return Problem("splines", bodies, (contact,), (), ())
+
+
+def slave_tangents(patch: Patch, points: FloatArray, counts: tuple[int, int]) -> FloatArray:
+    """Tangents of the slave's face w0 at its quadrature points, shape (points, 2, 3)."""
+    one, two = (
+        d.boundaries[:-1, None] + np.diff(d.boundaries)[:, None] * (np.polynomial.legendre.leggauss(n)[0] + 1.0) / 2.0
+        for d, n in zip(patch.face_directions("w0"), counts, strict=True)
+    )
+    grid = np.stack(np.broadcast_arrays(one[None, :, None, :], two[:, None, :, None]), axis=-1).reshape(-1, 2)
+    return np.stack([functions @ points for functions in Surface(patch, "w0").functions(grid)[1:]], axis=1)
 
 
 class Master:
@@ -114,25 +124,28 @@ class Master:
 
 
 @case(
-    claim="Along averaged normals of splines, with graded knots and with kinks, feet, gaps and climbs over many elements are what their "
-    "definition says.",
+    claim="Along averaged normals of splines whose weights differ, with graded knots and with kinks, feet, gaps, slips and climbs over "
+    "many elements are what their definition says.",
     grid={"order": (2, 3), "knots": list(INNER)},
     bounds={
         "xi": Bound(at_most=1e-12, reason="round-off: normals beside a line are evaluated 1e-13 from it; steps converge quadratically"),
         "gap": Bound(at_most=1e-12, reason="round-off: likewise"),
+        "slip": Bound(at_most=1e-12, reason="round-off: likewise, of where feet are now, and were, by the functions alone"),
+        "metric": Bound(at_most=1e-12, reason="round-off: of the slave's own tangents, wherever feet are"),
         "climb": Bound(at_most=1e-4, reason="quadrature: one Gauss point more than the orders together; unit normals are no polynomials"),
         "excluded": Bound(0.0, 0.0, "definition: the same points have a foot"),
         "elements": Bound(at_least=8.0, reason="definition: feet are in many elements, or little is compared"),
     },
 )
 def averaged_on_splines(order: int, knots: str) -> dict[str, float]:
-    """Largest differences over the largest value; points that one has a foot for; elements that have one."""
+    """Largest differences over the largest value; points that one alone has a foot for; elements that have one."""
     problem = block_over_splines(order, knots)
     equilibrium = Equilibrium(problem, Ledger())
     (pair,), numbering = equilibrium.pairs, equilibrium.numbering
     functions, area = areas(problem)
     slave, patch = problem.body("slave").patch, problem.body("master").patch
-    x = functions @ numbering.reference[numbering.points["slave"][slave.face_points("w0")]]
+    own = numbering.reference[numbering.points["slave"][slave.face_points("w0")]]
+    x = functions @ own
     master = Master(patch, numbering.reference[numbering.points["master"][patch.face_points("w1")]])
     before = np.random.default_rng(6).uniform(0.0, 1.0, (len(x), 2))
     n = len(pair.pair.slave.point)
@@ -140,11 +153,17 @@ def averaged_on_splines(order: int, knots: str) -> dict[str, float]:
     kinematics = pair.kinematics(numbering.reference, start)
     xi, gap = master.feet(x)
     found = np.isfinite(gap)  # where the master falls away beside its edge there may be none
+    tangents = slave_tangents(slave, own, problem.contacts[0].quadrature)
+    metric = tangents @ tangents.swapaxes(1, 2)
+    now, then = (master.surface.functions(place)[0] @ master.points for place in (np.where(found[:, None], xi, before), before))
+    slips = np.linalg.solve(metric, (tangents @ (now - then)[..., None]))[..., 0]
     climbs = np.array([master.climb(old, new) if there else 0.0 for old, new, there in zip(before, xi, found, strict=True)])
     places = np.column_stack([np.searchsorted(line, column[found]) for line, column in zip(master.lines, xi.T, strict=True)])
     return {
         "xi": float(np.abs(kinematics.projections.xi - xi)[found].max()),
         "gap": relative(kinematics.control.gap, functions.T @ (area * np.where(found, gap, 0.0))),
+        "slip": relative(kinematics.control.slip, functions.T @ (area[:, None] * slips)),
+        "metric": relative(kinematics.control.metric, (functions**2).T @ (area[:, None] * metric[:, [0, 0, 1], [0, 1, 1]])),
         "climb": relative(find_climbs(pair.pair.slave, pair.pair.master, numbering.reference, kinematics.projections), climbs),
         "excluded": float(np.count_nonzero((kinematics.projections.found > 0) != found)),
         "elements": float(len(np.unique(places, axis=0))),

@@ -9,6 +9,8 @@ from projection.closest_points import Surface
 from projection.nearest import exhaustive
 from shapes import dome
 
+from isomortar import _bindings
+from isomortar._bindings import Response, SlaveArrays
 from isomortar.geometry.patch import Direction, FloatArray, Patch
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
@@ -216,6 +218,59 @@ def at_a_vertex(kind: str, raised: float) -> dict[str, float]:
         "pole": float(np.linalg.norm(surface.points(within.xi) - pole, axis=1).max()),
         "nearer": float(np.maximum(0.0, exhaustive(surface, around, surface.project(around).xi).max())),
         "fixed": float(np.mean(within.fixed)),
+    }
+
+
+@case(
+    claim="Of a point whose foot is a pole's vertex the kernel says how far away that is, on which side, how coordinates have changed, the "
+    "shortest way round, and that these have no length; pressures push along the line between the two, tractions do nothing. At either end "
+    "of either direction.",
+    tier="gate",
+    grid={"way": ["high first", "low first", "high second", "low second"], "raised": [-0.1, 0.1]},
+    bounds={
+        "others": Bound(0.0, 0.0, "definition: all have a foot, which is the vertex, and stays it"),
+        "gap": Bound(at_most=1e-15, reason="round-off: of distances of some tenths"),
+        "slip": Bound(at_most=1e-15, reason="round-off: of differences of coordinates, and of a period"),
+        "weight": Bound(0.0, 0.0, reason="definition: every target has an area of one, and a function of its own that is one"),
+        "metric": Bound(0.0, 0.0, reason="definition: round a vertex coordinates have no length"),
+        "forces": Bound(at_most=1e-14, reason="round-off: of unit vectors between points that are a hundredth apart, and of their sums"),
+        "elsewhere": Bound(0.0, 0.0, reason="definition: the foot is one control point, which no other bears"),
+    },
+)
+def said_of_a_vertex(way: str, raised: float) -> dict[str, float]:
+    """Targets without that foot; largest errors of what is integrated, and of forces; those on other control points. Out of it, and in."""
+    surface, random, n = turned(face("N2", "v1", raised), way), np.random.default_rng(11), 24
+    own = len(surface.patch.weights)
+    corners = surface.patch.control_points[surface.patch.face_points(surface.face)]
+    pole = corners[np.argmin(np.linalg.norm(corners[:, :2], axis=1))]
+    angle, share, length = random.uniform(0.0, 2 * np.pi, n), random.uniform(0.0, 0.1, n), random.uniform(0.01, 0.2, n)
+    arm = np.column_stack([share * np.cos(angle), share * np.sin(angle), np.full(n, np.sign(raised))])
+    arm *= (length / np.linalg.norm(arm, axis=1))[:, None]
+    slave, master = SlaveArrays.of_points(np.arange(own, own + n, dtype=np.int32)), surface.master()
+    positions = np.ascontiguousarray(np.concatenate([surface.patch.control_points, pole + arm]))
+    low, high = surface.ends
+    origin = low + random.uniform(0.0, 1.0, (n, 2)) * (high - low)
+    feet = _bindings.project_points(slave, master, positions, origin, np.ones(n, dtype=np.int32))
+    control = _bindings.control_quantities(slave, master, positions, feet)
+    there = np.all(surface.points(feet.xi) == pole, axis=1) & (feet.found == 1) & (feet.followed == 1) & np.all(feet.fixed == 1, axis=1)
+    round_it = 0 if way.endswith("second") else 1
+    expected = feet.xi - origin
+    period = (high - low)[round_it]
+    expected[:, round_it] -= period * np.round(expected[:, round_it] / period)
+    pressure, forces = random.uniform(0.5, 1.5, n), np.zeros_like(positions)
+    state, none = 1 + np.arange(n, dtype=np.int32) % 2, np.zeros((n, 6, 2))
+    response = Response(pressure, random.standard_normal((n, 2)), state, np.zeros(n), none, np.zeros((n, 2)))
+    _bindings.contact_forces(slave, master, positions, feet, response, forces)
+    at_pole = np.all(surface.patch.control_points == pole, axis=1)
+    push = -(pressure * np.sign(raised) / length)[:, None] * arm  # forces are those of a residual, against what pushes
+    return {
+        "others": float(np.count_nonzero(~there)),
+        "gap": float(np.abs(control.gap + np.sign(raised) * length).max()),
+        "slip": float(np.abs(control.slip - expected).max()),
+        "weight": float(np.abs([control.weight - 1.0, control.square - 1.0]).max()),
+        "metric": float(max(np.abs(control.metric).max(), np.abs(control.point_metric).max())),
+        "forces": float(max(np.abs(forces[own:] - push).max(), np.abs(forces[:own][at_pole].sum(axis=0) + push.sum(axis=0)).max() / n)),
+        "elsewhere": float(np.abs(forces[:own][~at_pole]).max()),
     }
 
 

@@ -9,19 +9,23 @@ from projection.averaged_on_splines import INNER, block_over_splines
 from projection.closest_points import Surface
 from projection.from_a_pole import cone, unequal
 from projection.in_extended_precision import FACES, targets_of
+from projection.poles import face as dome_face
+from projection.poles import turned
 
 from isomortar import _bindings
 from isomortar._arguments import LongArray
 from isomortar._bindings import Projections
 from isomortar._codes import WORK
 from isomortar.geometry.patch import FloatArray
-from isomortar.harness import Matches, case
+from isomortar.harness import Bound, Matches, case
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.record import ContactState
 from isomortar.solve.timing import Ledger
 
 #: Targets beside each master; how far warm starts are from where they end, as a share of the face; and by how much work may differ.
 TARGETS, NEAR, SHARE = 300, 1e-3, 5e-3
+#: Distance of targets from a pole, over the size of its surface.
+FAR = 1e8
 MASTERS: dict[str, Callable[[], Surface]] = {**FACES, "unequal cone": lambda: cone(2, unequal(2), np.array([0.0, 0.0, -2.0]))}
 _SAME = "reference: the same searches take the same work but for round-off, which leads one in hundreds another way; less is to be blessed"
 
@@ -57,6 +61,28 @@ def searches(master: str) -> dict[str, float]:
 def _searched(face: Surface, targets: FloatArray, start: FloatArray | None, name: str) -> tuple[Projections, dict[str, float]]:
     counts = np.zeros(len(WORK), dtype=np.int64)
     return face.project(targets, start, counts), _named(name, counts)
+
+
+@case(
+    claim="Feet beside a pole, of targets so far off that coordinates are known to round-off of the distance alone, take the same work at "
+    "whichever end of whichever direction the pole is.",
+    tier="gate",
+    bounds={
+        "work": Bound(at_most=0.02, reason="round-off: other coordinates, which lead one in hundreds another way"),
+        "missing": Bound(0.0, 0.0, "definition: round the pole there is no edge"),
+    },
+)
+def at_any_end() -> dict[str, float]:
+    """Most evaluations over the fewest, less one, of the four ends; targets without a foot."""
+    random, n = np.random.default_rng(5), TARGETS // 2
+    angle, off = random.uniform(0.0, 2 * np.pi, n), 10.0 ** random.uniform(-11.0, -0.5, n)
+    normals = np.column_stack([np.sin(off) * np.cos(angle), np.sin(off) * np.sin(angle), np.cos(off)])
+    targets, work, missing = FAR * random.uniform(0.5, 1.0, (n, 1)) * normals, [], 0
+    for way in ("high first", "low first", "high second", "low second"):
+        feet, counts = _searched(turned(dome_face("N2"), way), targets, None, "none")
+        work.append(counts["none: evaluations to order 2"])
+        missing += int(np.count_nonzero(feet.found == 0))
+    return {"work": max(work) / min(work) - 1.0, "missing": float(missing)}
 
 
 @case(

@@ -44,6 +44,8 @@ PLACES = (
     "corner: before",
     "corner: behind",
 )
+#: Where the bowl is over the master's lines before it slides: in the middle of its elements, or, along the second direction, beside them.
+MIDDLE, ACROSS = "centre = [0.03, 0.02]", "centre = [0.03, 0.1]"
 #: How far from a line, as a share of an element; and lengths of directions, of which some hundredths are off there.
 OFF, SHORT = 1e-8, 1e-6
 #: How much nearer than that a point is put to where it is wanted.
@@ -77,6 +79,9 @@ def posed(master: str, place: str, friction: float) -> Posed:
     """The bowl in an uneven master, slid from where it was."""
     family, order = MASTERS[master]
     scene = _SCENE.format(order=order, elements=3).replace('"L"', f'"{family}"').replace("friction = 0.3", f"friction = {friction}")
+    if place == "from elements beside":
+        assert MIDDLE in scene
+        scene = scene.replace(MIDDLE, ACROSS)  # elsewhere its elements begin on the master's, and all points of one come from one
     problem = at_few_points(Scene.from_toml(scene).problem())
     problem = replace(
         problem,
@@ -169,7 +174,11 @@ def averaged(master: str, place: str, state: str) -> dict[str, float]:
 
 
 def there(pose: Posed, place: str) -> float:
-    """Points without a foot, elements that points of one came from beside the first, points at next to a line, or points with a foot."""
+    """Points without a foot, elements that points of a slave's came from beside the first, points at next to a line, or with a foot.
+
+    Points of one slave element that are in one of the master, and came from others that differ in one direction alone, count; of both
+    directions that with fewer.
+    """
     pair = pose.equilibrium.pairs[0]
     projections = pair.kinematics(pose.positions, pose.start).projections
     if place == "over the rim":
@@ -186,8 +195,13 @@ def there(pose: Posed, place: str) -> float:
             np.column_stack([np.searchsorted(line, x) for x, line in zip(xi.T, lines, strict=True)])
             for xi in (projections.xi, pose.start.projection)
         )
-        pairs = np.unique(np.column_stack([now, then]), axis=0)
-        return float(np.min([len(np.unique(pairs[:, [0, 1, 2 + a]], axis=0)) - len(np.unique(now, axis=0)) for a in range(2)]))
+        slides = (projections.found > 0) & (projections.slips > 0)
+        own = np.arange(len(now)) // pair.pair.slave.per_element
+        kept = (np.column_stack([own, now, then[:, 1 - a]])[slides] for a in range(2))
+        parted = [
+            len(np.unique(np.column_stack([rows, then[slides, a]]), axis=0)) - len(np.unique(rows, axis=0)) for a, rows in enumerate(kept)
+        ]
+        return float(min(parted))
     near = [
         np.abs(xi[:, None] - line).min(axis=1) < 2.0 * OFF * np.diff(line).min() for xi, line in zip(projections.xi.T, lines, strict=True)
     ]
