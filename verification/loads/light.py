@@ -43,13 +43,14 @@ loads.own = { body = "ring", weight = [0, 0, -0.05] }
 stages = [{ name = "lay", steps = 1 }]
 """
 #: A block on an incline, which has nothing but friction to hold it: weight that pushes it along by 0.36 of what it presses with.
+WEIGHT = np.array([0.108, 0.0, -0.3])
 _INCLINE = """
 format = 1
-bodies.block.geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }
-bodies.block.mesh = { order = 2, elements = [2, 2, 2] }
-contacts.c = { slave = "block.w0", friction = 0.4, plane = { point = [0, 0, 0], normal = [0, 0, 1] } }
-loads.own = { body = "block", weight = [0.108, 0, -0.3] }
-stages = [{ name = "lay", steps = 1 }]
+bodies.block.geometry = {{ kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }}
+bodies.block.mesh = {{ order = 2, elements = [2, 2, 2] }}
+contacts.c = {{ slave = "block.w0", friction = 0.4, plane = {{ point = [0, 0, 0], normal = [0, 0, 1] }} }}
+loads.own = {{ body = "block", weight = {} }}
+stages = [{{ name = "lay", steps = 1 }}]
 """
 #: A block on a plane that is pressed and comes back to where it began, or is slid without a load; increments are solved in halves, too.
 _BACK = """
@@ -121,8 +122,8 @@ def groove(method: str) -> dict[str, float]:
 )
 def incline(method: str) -> dict[str, float]:
     """Relative difference of contact and weight; cuts of the load increment."""
-    (step,) = _computed(_INCLINE, method)
-    return {"balance": float(np.abs(step.contacts[0].force_slave + [0.108, 0.0, -0.3]).max() / 0.3), "cuts": float(step.cuts)}
+    (step,) = _computed(_INCLINE.format(WEIGHT.tolist()), method)
+    return {"balance": float(np.abs(step.contacts[0].force_slave + WEIGHT).max() / 0.3), "cuts": float(step.cuts)}
 
 
 @case(

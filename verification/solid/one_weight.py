@@ -32,7 +32,8 @@ def of_body(patch: Patch, often: bool) -> dict[str, FloatArray]:
 def of_faces(patch: Patch) -> dict[str, FloatArray]:
     """Functions of all six faces, to their third derivatives at random places, and at quadrature points with the areas of these."""
     arrays = patch_arrays(patch, np.arange(len(patch.weights), dtype=np.int32))
-    anywhere, at_points, xi = [], [], np.random.default_rng(4).uniform(0.0, 1.0, (20, 2))
+    anywhere, at_points = list[FloatArray](), list[FloatArray]()
+    xi = np.random.default_rng(4).uniform(0.0, 1.0, (20, 2))
     for axis, side in np.ndindex(3, 2):
         directions = patch.face_directions(f"{'uvw'[axis]}{side}")
         low, high = np.array([d.boundaries[[0, -1]] for d in directions]).T
