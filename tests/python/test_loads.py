@@ -8,6 +8,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from loads import light
 from told.wrong.loads import GOOD, HALVED, UNEVEN, WRONG
 
 from isomortar import run
@@ -19,6 +20,7 @@ from isomortar.program.getfem import GetFEM
 from isomortar.results.definition import read_problem, write_problem
 from isomortar.results.reader import Results
 from isomortar.scene import Scene
+from isomortar.solve.newton import CLOSED_ANEW
 from isomortar.solve.outlook import outlook
 from isomortar.solve.record import LoadResult
 from isomortar.solve.simulation import Simulation
@@ -117,3 +119,9 @@ def test_arrays_have_loads(tmp_path: Path) -> None:
             for quantity in ("force", "moment"):
                 expected = results.curve(quantity, load=load.name)
                 np.testing.assert_array_equal(arrays[f"load_{quantity}"].sel(load=load.name), expected)
+
+
+def test_what_is_closed_anew_is_told_in_the_log() -> None:
+    results = Simulation(Scene.from_toml(light._GROOVE).problem()).run()
+    notes = [note for result in results for loop in result.augmentations for record in loop.iterations for note in record.notes]
+    assert CLOSED_ANEW in notes

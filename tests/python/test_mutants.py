@@ -337,6 +337,13 @@ def test_a_survivor_whose_patience_is_spent_meets_what_is_new(tmp_path, monkeypa
     family("three")
     assert survivors() == ["mutants_three/held"]
     assert survivors() == []
+    for journal in (tmp_path / "work" / f"{name}.jsonl" for name in ("verdicts", "sound")):  # as they were kept before that was known
+        entries = [json.loads(line) for line in journal.read_text().splitlines()]
+        older = [{key: value for key, value in entry.items() if key not in ("cells", "number")} for entry in entries]
+        journal.write_text("".join(json.dumps(entry) + "\n" for entry in older))
+    assert survivors() == []
+    family("four")
+    assert survivors() == ["mutants_four/held"]
 
 
 def test_a_campaign_with_a_real_kernel(tmp_path, monkeypatch):

@@ -44,6 +44,13 @@ def weighted(weight: float) -> str:
 
 #: The ring's end, on which circles and rays are coordinates; a flat face with straight ones; one whose coordinates stretch.
 TURNING, STRAIGHT, STRETCHING = scene(_RING, "w0"), scene(_BOX, "w1"), weighted(30.0)
+#: Over the straight face's edge, round which feet go: that is no turn of coordinates.
+OVER_AN_EDGE = (
+    'contacts.c.master=["b.w1", "b.u1"]',
+    "bodies.b.mesh.order=2",
+    "stages.s.steps=2",
+    "stages.s.motions.top.translate=[0.9, 0.2, 0]",
+)
 BESIDE = re.compile(r"contact '(\w+)', load step (\d+): slips are .* off by (\S+) degrees, and so is the direction of friction")
 BORNE = re.compile(r"contact '(\w+)', load step (\d+): its tractions are (\S+) % more than the law of friction takes them for")
 
@@ -72,14 +79,14 @@ def run(text: str, changes: tuple[str, ...] = ()) -> tuple[list[str], float]:
     },
 )
 def turning() -> dict[str, float]:
-    """What is said of the ring's end, and how far off the force is; how much is said of five others."""
+    """What is said of the ring's end, and how far off the force is; how much is said of six others."""
     said, _ = run(TURNING, ("stages.s.steps=2",))
     (only,), off = run(TURNING)
     found = BESIDE.search(only)
     assert found is not None
     finer, left = run(TURNING, ("stages.s.steps=20",))
     others = [run(TURNING, ('contacts.c.projection="averaged"',)), run(TURNING, ("contacts.c.friction=0",)), run(STRAIGHT)]
-    others += [run(STRAIGHT, ("stages.s.motions.top.translate=[0.4, 0.4, 0]",))]
+    others += [run(STRAIGHT, ("stages.s.motions.top.translate=[0.4, 0.4, 0]",)), run(STRAIGHT, OVER_AN_EDGE)]
     return {
         "said": float(len(said)),
         "step": float(found[2]),

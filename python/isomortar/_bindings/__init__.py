@@ -31,8 +31,8 @@ from isomortar._bindings.system import add_values, find_places, squares_times
 
 __all__ = [
     "NO_FRICTION", "AveragedFaceArrays", "BodyArrays", "Control", "FaceArrays", "FloatArray", "FrictionArrays", "FunctionArrays",
-    "IntArray", "Law",
-    "LongArray", "MasterArrays", "MaterialArrays", "PatchArrays", "Pattern", "PlaneArrays", "Projections", "Response", "SlaveArrays",
+    "IntArray", "Law", "LongArray", "MasterArrays", "MaterialArrays", "PatchArrays", "Pattern", "PlaneArrays", "Projections",
+    "Response", "SlaveArrays",
     "add_body", "add_values", "augmented_multipliers",
     "condense_multipliers", "contact_blocks", "contact_forces", "control_quantities",
     "control_volumes", "find_climbs", "find_places", "friction_radius",

@@ -32,7 +32,7 @@ PLACES_BETWEEN = (0.0, 0.25, 0.5, 0.75, 1.0)
 FALLEN = 0.25
 #: Share of the largest volume of an element, by its coordinates, below which a place has none: at poles, and where two edges are one line.
 NO_VOLUME = 0.01
-#: Places of a body that are looked at in one go: some ten megabytes, whatever its number of elements.
+#: Places of a body that are looked at in one go: some ten megabytes, beside two kilobytes an element.
 MOST_AT_ONCE = 100_000
 
 #: Angle between the normals of both sides, in radians, above which a C0 line of a master is a kink: joints of arcs are as smooth as their
@@ -98,7 +98,7 @@ MERIT_GROWTH = 2.0
 #: Share of the cone within which a trial counts as slip at the start of an increment (theory 6.5): what slid is off its cone by no more
 #: than the tolerances of the last increment, and is not to stick for that.
 SLIP_MARGIN = 1e-6
-#: How often what loads close first is closed anew where all of it has opened again: each time it is nearer.
+#: How often in a Newton loop what loads close first is closed anew where all has opened again: each time it is nearer.
 MAX_CLOSINGS = 5
 #: How often the first solve is repeated with reversed slips held: each repetition may find more of them; the loop settles the rest.
 MAX_REVERSALS = 2

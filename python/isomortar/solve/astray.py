@@ -21,6 +21,8 @@ from isomortar.solve.metric import traction_norms
 BESIDE = 0.05
 #: How much tractions may be over what the law takes them for before it is told. Scenes of flat and dented masters are below 1.01.
 BORNE = 1.05
+#: Degrees by which the master's normal may turn along the way of a foot that is looked at: beyond, as round an edge, a chord is no way.
+BENT = 20.0
 
 
 class Astray:
@@ -43,7 +45,7 @@ class Astray:
                 yield (
                     f"contact {name!r}, load step {step}: slips are differences of the master's coordinates, which turn along the way: "
                     f"they are off by {np.degrees(2.0 * np.arcsin(0.5 * share)):.2g} degrees, and so is the direction of friction. "
-                    f"Take more load steps{_averaged(mechanics)} (docs/theory.md, 3.20)"
+                    f"Take more load steps{_averaged(mechanics)} (docs/theory.md, 9.7)"
                 )
             if borne > BORNE and (name, "borne") not in self._told:
                 self._told.add((name, "borne"))
@@ -77,10 +79,22 @@ def astray(mechanics: PairMechanics, balance: Balance, number: int) -> tuple[flo
     if not points.size:
         return 0.0, 0.0
     foot, tangents = _surface(pair, balance.positions, projections.xi[points])
-    before, _ = _surface(pair, balance.positions, projections.origin[points])
+    before, tangents_before = _surface(pair, balance.positions, projections.origin[points])
+    normals, normals_before = _normals(tangents), _normals(tangents_before)
+    plain = np.einsum("qi,qi->q", normals, normals_before) > np.cos(np.radians(BENT))  # and no number where there is no normal
+    points, foot, before, tangents = points[plain], foot[plain], before[plain], tangents[plain]
+    if not points.size:
+        return 0.0, 0.0
     area = pair.slave.area[points]
     share = _beside(_slips(projections, points, tangents), _along(foot - before, tangents), area, _least(balance.positions))
     return share, _borne(mechanics, balance, number, points, tangents)
+
+
+def _normals(tangents: FloatArray) -> FloatArray:
+    """Unit normals, shape (points, 3); not numbers where tangents are parallel, or have no length."""
+    across, lengths = np.cross(tangents[:, 0], tangents[:, 1]), np.linalg.norm(tangents, axis=2).prod(axis=1)
+    sizes = np.linalg.norm(across, axis=1)
+    return across / np.where(sizes > constants.CLEAR * lengths, sizes, np.nan)[:, None]
 
 
 def _borne(mechanics: PairMechanics, balance: Balance, number: int, points: IntArray, tangents: FloatArray) -> float:

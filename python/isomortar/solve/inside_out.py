@@ -33,14 +33,14 @@ class Least:
 
 
 class InsideOut:
-    """What is asked of the volume of bodies in a load increment; each is told of once."""
+    """What is asked of the volume of bodies in a load increment; of each body both are told once."""
 
     def __init__(self, equilibrium: Equilibrium) -> None:
         self._equilibrium = equilibrium
         self._places: dict[str, Places] = {}
         self._known: dict[str, tuple[FloatArray, Least]] = {}
-        self._found: dict[str, tuple[Least, Least]] = {}
-        self._told = set[str]()
+        self._found: dict[tuple[str, bool], tuple[Least, Least]] = {}
+        self._told = set[tuple[str, bool]]()
 
     def look(self, before: FloatArray, after: FloatArray, share: float) -> None:
         """Look at J of an increment, a share of the longest one, from positions to others (theory 5.25).
@@ -52,7 +52,7 @@ class InsideOut:
         """
         equilibrium = self._equilibrium
         may_cut = share > constants.SHORT_OF_SNAPPING and 0.5 * share >= 0.5**equilibrium.problem.settings.max_cuts
-        found: dict[str, tuple[Least, Least]] = {}
+        found: dict[tuple[str, bool], tuple[Least, Least]] = {}  # by body, and whether it is inside out
         for body, smallest in zip(equilibrium.problem.deformable, equilibrium.solid.smallest_jacobians(after), strict=True):
             if smallest > constants.LOOKED_BETWEEN or body.material.law == "linear-elastic":
                 continue
@@ -64,17 +64,17 @@ class InsideOut:
                     "maybe past an equilibrium"
                 )
             if falls or least.value <= 0.0:
-                found[body.name] = was, least
-        for name, pair in found.items():
-            self._found.setdefault(name, pair)
+                found[body.name, least.value <= 0.0] = was, least
+        for kind, pair in found.items():
+            self._found.setdefault(kind, pair)
 
     def after_step(self, step: int) -> Iterator[str]:
         """Warnings that the end of a load step gives rise to."""
-        for name, (was, least) in self._found.items():
-            if name in self._told:
+        for (name, inside_out), (was, least) in self._found.items():
+            if (name, inside_out) in self._told:
                 continue
-            self._told.add(name)
-            if least.value <= 0.0:
+            self._told.add((name, inside_out))
+            if inside_out:
                 yield (
                     f"body {name!r}, load step {step}: it is turned inside out between its Gauss points (J = {least.value:.2g}, "
                     f"{least.words}): nothing there resists it, and what it exerts is none of its law's. Take more load steps, finer "
@@ -120,7 +120,7 @@ class Places:
         """The smallest J = det F with the control points elsewhere, shape (control points of the patch, 3) (theory 5.25)."""
         best, where, count = np.inf, 0, 0
         for volumes, reference in zip(self._volumes(positions), self._reference, strict=True):
-            jacobians = np.min(volumes / reference, axis=(1, 3, 5))
+            jacobians = np.where(np.isfinite(reference), volumes / reference, np.inf).min(axis=(1, 3, 5))
             if jacobians.min() < best:
                 best, where = float(jacobians.min()), count + int(jacobians.argmin())
             count += jacobians.size

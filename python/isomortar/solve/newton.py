@@ -21,6 +21,8 @@ from isomortar.solve.trail import Trail, states
 
 #: Notes of iterations that were solved with factors of an earlier tangent, and with those of an earlier tangent of the bodies.
 KEPT_FACTORS, KEPT_BODIES = "kept factors", "kept bodies"
+#: Note of one whose tangent had that closed anew which loads close first.
+CLOSED_ANEW = "closed anew"
 
 
 @dataclass(frozen=True)
@@ -104,7 +106,7 @@ class Newton(ABC, Generic[Iterated, Corrected]):
         """
         moves = prescribed is not None and bool(np.any(prescribed))
         keep = self._keeps and self._factorised and not moves
-        log, tangents = list[IterationRecord](), 0
+        log, tangents, closings = list[IterationRecord](), 0, 0
         led: tuple[Iterated, Iterated] | None = None  # from where to where by the last tangent
         self._trail = Trail()
         for iteration in count():
@@ -121,9 +123,11 @@ class Newton(ABC, Generic[Iterated, Corrected]):
                 if tangents == self._settings.max_iterations or not np.isfinite(iterate.merit):
                     break
                 keep_bodies = not keep and self._bodies_serve(led)  # nor a part of factors that did not serve
-                if 0 < tangents <= constants.MAX_CLOSINGS and self._opened(iterate):
-                    iterate, keep_bodies = self._closed_anew(iterate), False
+                opened = tangents > 0 and closings < constants.MAX_CLOSINGS and self._opened(iterate)
+                if opened:
+                    iterate, keep_bodies, closings = self._closed_anew(iterate), False, closings + 1
                 iterate, following, notes = self._by_tangent(iterate, None if tangents else prescribed, iteration, keep_bodies)
+                notes = ((CLOSED_ANEW,) if opened else ()) + notes
                 tangents, moves, led = tangents + 1, False, (iterate, following)
             keep = self._keeps and self._serve(iterate, following)
             iterate = following
@@ -137,10 +141,8 @@ class Newton(ABC, Generic[Iterated, Corrected]):
         return closed
 
     def _opened(self, iterate: Iterated) -> bool:
-        """Whether all that loads closed is open again, so that there is no tangent."""
-        responses = zip(iterate.balance.responses, self._loads_closed, strict=False)  # none where they closed nothing
-        closed = [response for response, by_loads in responses if by_loads]
-        return bool(closed) and not any(np.any(response.state) for response in closed)
+        """Whether loads closed something and all is open again, so that there is no tangent."""
+        return any(self._loads_closed) and not iterate.balance.active
 
     @abstractmethod
     def _closed_anew(self, iterate: Iterated) -> Iterated:

@@ -181,7 +181,8 @@ class Simulation:
     def _distance(self, whole: Balance, halves: Balance) -> float:
         """Largest relative distance between the pressures, or the tractions, of two solutions of an increment (theory 5.9)."""
         pairs = zip(self.equilibrium.pairs, halves.kinematics, whole.responses, halves.responses, strict=True)
-        scales = self.equilibrium.measures.scales(halves.positions)
+        with self.ledger.phase("solid"):
+            scales = self.equilibrium.measures.scales(halves.positions)
         return float(np.max(largest(between(pair, halves.positions, k, a, b, scales) for pair, k, a, b in pairs)))
 
     def _grow(self, increment: float, parts: Sequence[Increment]) -> None:

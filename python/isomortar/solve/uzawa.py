@@ -34,18 +34,20 @@ class _PositionNewton(Newton[Iterate, FloatArray]):
 
     def held(self, laws: Sequence[Law], positions: FloatArray) -> Iterate:
         """The first iterate with these laws, where the last augmentation ended."""
-        self._laws, self._last, self._closes = laws, None, False
+        self._laws, self._last, self._closes, self._loads_closed = laws, None, False, []
         return self._evaluate(positions)
 
     def first(self, laws: Sequence[Law], positions: FloatArray) -> Iterate:
         """The same at the start of an increment, with that closed which loads close first."""
-        self.held(laws, positions)
+        self._laws, self._last = laws, None
         return self._closing(positions, smooth=False)
 
     def _closing(self, positions: FloatArray, smooth: bool) -> Iterate:
         """An iterate in which that is closed, whatever it bears, which loads close first (theory 6.8)."""
         nearest = self._nearest(positions, [float(law.penalties[0]) for law in self._laws])
         self._closes = any(self._loads_closed)
+        if not self._closes:
+            return self._evaluate(positions)
 
         def respond(k: int, kinematics: Kinematics) -> Response:
             pair, law, pressure = self._equilibrium.pairs[k], self._laws[k], nearest[k]

@@ -143,7 +143,7 @@ class Campaign:
                 known["number"] = len(self._sound.entries)
                 if measurement.lasts:
                     self._sound.put(key, known)
-            self._ran[cell.name], self._numbers[cell.name] = known["lines"], known.get("number", 0)
+            self._ran[cell.name], self._numbers[cell.name] = known["lines"], known.get("number", -1)
             return known["seconds"], known["red"]
 
         seconds, unused = {}, []
@@ -221,7 +221,7 @@ class Campaign:
         entry = self._findings.get(program)
         if entry is None:
             return Finding(None, "", ()), set()
-        newer = {name for name, number in self._numbers.items() if number >= entry.get("cells", math.inf)}
+        newer = {name for name, number in self._numbers.items() if number >= entry.get("cells", 0)}
         passed = tuple(name for name, key in entry["passed"].items() if self._keys.get(name) == key)
         if entry["killer"] and self._keys.get(entry["killer"]) == entry["killer key"]:
             return Finding(entry["killer"], entry["found"], passed), newer
