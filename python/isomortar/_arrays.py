@@ -118,6 +118,7 @@ class FrictionArrays:
         return self.law != FRICTION_LAWS["none"]
 
 
+#: The law of none.
 NO_FRICTION = FrictionArrays(FRICTION_LAWS["none"], np.zeros(0))
 
 

@@ -17,7 +17,7 @@ from isomortar.solve.feet import pole_elements
 from isomortar.solve.metric import traction_norms
 
 #: How far slips may point beside the ways of their feet, as a share of their lengths, before it is told: 2.9 degrees. Scenes of flat and
-#: dented masters are below 0.008.
+#: dented masters are below 0.015.
 BESIDE = 0.05
 #: How much tractions may be over what the law takes them for before it is told. Scenes of flat and dented masters are below 1.01.
 BORNE = 1.05

@@ -101,18 +101,20 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
         What supports push along a plane slides; what they keep still there sticks, or its traction would grow with the pressure.
         """
         parts = zip(self._equilibrium.pairs, self._start.contacts, strict=True)
-        return self._begun(self._start.positions, [(contact.pressure, pair.sliding(contact)) for pair, contact in parts], smooth=False)
+        return self._begun(
+            self._start.positions, [(contact.pressure, pair.sliding(contact)) for pair, contact in parts], frictionless=False
+        )
 
-    def _begun(self, positions: FloatArray, multipliers: Sequence[Multipliers], smooth: bool) -> _BorderedIterate:
+    def _begun(self, positions: FloatArray, multipliers: Sequence[Multipliers], frictionless: bool) -> _BorderedIterate:
         """An iterate in which that is closed which loads close first (theory 6.8)."""
         pairs = self._equilibrium.pairs
         closed = self._nearest(positions, [self._scales] * len(pairs))
         given = [(p if p_closed is None else p_closed, t) for (p, t), p_closed in zip(multipliers, closed, strict=True)]
         still = [pair.held.still for pair in pairs]
-        return self._evaluate(positions, given, self._margin, still, self._loads_closed if smooth else None)
+        return self._evaluate(positions, given, self._margin, still, self._loads_closed if frictionless else None)
 
     def _closed_anew(self, iterate: _BorderedIterate) -> _BorderedIterate:
-        return self._begun(iterate.balance.positions, iterate.multipliers, smooth=True)
+        return self._begun(iterate.balance.positions, iterate.multipliers, frictionless=True)
 
     def ahead(self, positions: FloatArray, length: float) -> _BorderedIterate:
         """The first iterate at positions ahead of the start, with multipliers that went on by a length at their rates (theory 6.7)."""
@@ -136,11 +138,11 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
         multipliers: Sequence[Multipliers],
         margin: float = 0.0,
         held: Sequence[np.ndarray] | None = None,
-        smooth: Sequence[bool] | None = None,
+        frictionless: Sequence[bool] | None = None,
     ) -> _BorderedIterate:
         """An iterate; multipliers of constraints that turn out inactive are set to zero (theory 6.2).
 
-        Pairs that are `smooth` have no friction in it.
+        Pairs that are `frictionless` have no friction in it.
         """
         laws, targets = list[Law](), list[Response]()
 
@@ -151,7 +153,7 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
             law = replace(
                 law, slip_margin=margin, forgiving="forgiving" in self._settings.measures, held=law.held if held is None else held[k]
             )
-            if smooth is not None and smooth[k]:
+            if frictionless is not None and frictionless[k]:
                 law = replace(law, friction=NO_FRICTION)
             target = pair.respond(kinematics, law)
             active = target.state > 0

@@ -40,9 +40,9 @@ class _PositionNewton(Newton[Iterate, FloatArray]):
     def first(self, laws: Sequence[Law], positions: FloatArray) -> Iterate:
         """The same at the start of an increment, with that closed which loads close first."""
         self._laws, self._last = laws, None
-        return self._closing(positions, smooth=False)
+        return self._closing(positions, frictionless=False)
 
-    def _closing(self, positions: FloatArray, smooth: bool) -> Iterate:
+    def _closing(self, positions: FloatArray, frictionless: bool) -> Iterate:
         """An iterate in which that is closed, whatever it bears, which loads close first (theory 6.8)."""
         nearest = self._nearest(positions, [float(law.penalties[0]) for law in self._laws])
         self._closes = any(self._loads_closed)
@@ -53,7 +53,7 @@ class _PositionNewton(Newton[Iterate, FloatArray]):
             pair, law, pressure = self._equilibrium.pairs[k], self._laws[k], nearest[k]
             if pressure is None:
                 return pair.respond(kinematics, law)
-            friction = NO_FRICTION if smooth else law.friction
+            friction = NO_FRICTION if frictionless else law.friction
             closed = pair.respond(kinematics, replace(law, pressure=law.pressure + pressure, friction=friction))
             return replace(closed, pressure=closed.pressure - np.where(closed.state > 0, pressure, 0.0))
 
@@ -61,7 +61,7 @@ class _PositionNewton(Newton[Iterate, FloatArray]):
         return Iterate(balance, self._residual(balance))
 
     def _closed_anew(self, iterate: Iterate) -> Iterate:
-        return self._closing(iterate.balance.positions, smooth=True)
+        return self._closing(iterate.balance.positions, frictionless=True)
 
     def _evaluate(self, positions: FloatArray) -> Iterate:
         balance = self._equilibrium.balance(positions, self._start, self._laws)
