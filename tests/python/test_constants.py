@@ -16,7 +16,7 @@ PLACE = PACKAGE / "model" / "constants.py"
 #: Modules that refuse, warn or explain: their thresholds stand with their sentences.
 JUDGES = {
     "advice", "astray", "behind", "causes", "checks", "contact_checks", "doubtful_edges", "doubtful_meshes", "doubtful_motions",
-    "doubtful_sizes", "doubtful_turns", "doubts", "left_out", "lost", "meeting", "memory", "passing", "pulling",
+    "doubtful_sizes", "doubtful_turns", "doubts", "left_out", "lost", "meeting", "memory", "narrow", "passing", "pulling",
     "rational", "singular", "sliding", "small_strains", "stance",
 }  # fmt: skip
 #: Numbers that stand for something else.

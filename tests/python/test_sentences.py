@@ -17,6 +17,7 @@ from told.astray import run as astray
 from told.behind import DOWN
 from told.behind import SCENE as FLOOR
 from told.given_up import all_told, without_digits
+from told.narrow import BALLS, STRIPS, depth, strip
 from told.passing import SCENE as BENT
 from told.word_by_word import KINDS as OF_SCENES
 from told.word_by_word import SENTENCES
@@ -164,6 +165,14 @@ def along_the_way(_: pytest.MonkeyPatch) -> Told:
     yield "behind", observer.said[-1]
     for name, text in {"turning coordinates": TURNING, "stretching coordinates": STRETCHING}.items():
         yield name, next(said for said in astray(text)[0] if ("degrees" in said) == (text == TURNING))
+    for name, (text, changes) in {
+        "narrow": strip(*STRIPS["N2 beside it"]),
+        "one row": (BALLS["one row"][0], (depth(0.05),)),
+        "one row of constraints": (BALLS["constraints at knots"][0], (*BALLS["constraints at knots"][1], depth(0.025))),
+    }.items():
+        observer = Warned()
+        list(Simulation(Scene.from_toml(text, overrides=changes).problem(), observer).run())
+        yield name, observer.said[-1]
 
 
 def _before_the_first_step(simulation: Simulation, number: int = 0) -> str:

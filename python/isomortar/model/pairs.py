@@ -27,6 +27,8 @@ class Pair:
         Tables of the slave side, from the reference configuration, by the contact's method of enforcement.
     carriers : csr_array, shape (test functions, slave control points)
         The slave's functions at what each constraint stands for.
+    places : ndarray, shape (test functions, 2)
+        Where on the slave face, by its coordinates, each constraint is.
     master : MasterArrays
     area : float
         Area of the slave face in the reference configuration.
@@ -56,7 +58,7 @@ class Pair:
     def __init__(self, contact: Contact, problem: Problem, numbering: Numbering) -> None:
         self.contact = contact
         side = slave_side(contact, problem, numbering)
-        self.slave, self.carriers = side.arrays, side.carriers
+        self.slave, self.carriers, self.places = side.arrays, side.carriers, side.places
         self.area = float(self.slave.area.sum())
         members = incidence(self.slave.test.nodes, self.slave.test.count)
         self.elements_of_point = sparse.csr_array(members.T)

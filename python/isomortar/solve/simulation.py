@@ -26,6 +26,7 @@ from isomortar.solve.inside_out import InsideOut
 from isomortar.solve.lost import LostDigits
 from isomortar.solve.method import Increment, Method
 from isomortar.solve.monolithic import Monolithic
+from isomortar.solve.narrow import Narrow
 from isomortar.solve.passing import Passing
 from isomortar.solve.pulling import Pulling
 from isomortar.solve.record import AugmentationRecord, ContactResult, LoadResult, Observer, Reaction, State, StepResult, history_bytes
@@ -80,6 +81,7 @@ class Simulation:
         self._lost, self._pulling, self._sharing = LostDigits(self.equilibrium), Pulling(self.equilibrium), Sharing(self.equilibrium)
         self._small_strains, self._unseen = SmallStrains(self.equilibrium), Unseen(self.equilibrium)
         self._snapping, self._inside_out, self._astray = Snapping(self.equilibrium), InsideOut(self.equilibrium), Astray(self.equilibrium)
+        self._narrow = Narrow(self.equilibrium)
         self._of_stages = [watch for watch in (Passing(self.equilibrium.problem), Behind(self.equilibrium.problem)) if watch.needed]
         self._step = resume_from.step if resume_from else 0
         self._increment = resume_from.next_increment if resume_from else 1.0
@@ -152,6 +154,7 @@ class Simulation:
         self._warn(self._snapping.after_step(step))
         self._warn(self._inside_out.after_step(step))
         self._warn(self._astray.after_step(parts[-1].balance, step))
+        self._warn(self._narrow.after_step(parts[-1].balance, step, self._ends_stage(step)))
         self._unseen.after_step(parts[-1].balance)
         if self._of_stages and self._ends_stage(step):
             deformed = self.equilibrium.numbering.deformed(state.positions)

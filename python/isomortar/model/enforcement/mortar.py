@@ -31,4 +31,4 @@ def side(face: SlaveFace) -> SlaveSide:
     count = len(face.point)
     functions = FunctionArrays(nodes, values, count)
     arrays = SlaveArrays(functions, functions, area, face.point, slopes, face.outward)
-    return MortarSide(arrays, sparse.csr_array(sparse.identity(count)))
+    return MortarSide(arrays, sparse.csr_array(sparse.identity(count)), face.control_places)

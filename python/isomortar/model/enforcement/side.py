@@ -25,10 +25,13 @@ class SlaveSide(ABC):
     arrays : SlaveArrays
     carriers : csr_array, shape (constraints, slave control points)
         Whose motion each constraint constrains: its own control point's (mortar), or that of the functions at its point.
+    places : ndarray, shape (constraints, 2)
+        Where on the face, by its coordinates, each constraint is: where its control point belongs (mortar), or at its point.
     """
 
     arrays: SlaveArrays
     carriers: sparse.csr_array
+    places: FloatArray
 
     @abstractmethod
     def on_control_points(self, values: FloatArray) -> FloatArray:
@@ -48,14 +51,11 @@ class PointSide(SlaveSide):
     ----------
     area : ndarray, shape (constraints,)
         Reference area that each point stands for.
-    places : ndarray, shape (constraints, 2)
-        Where on the face, by its coordinates, each point is.
     control_places : ndarray, shape (slave control points, 2)
         Where control points belong.
     """
 
     area: FloatArray
-    places: FloatArray
     control_places: FloatArray
 
     def on_control_points(self, values: FloatArray) -> FloatArray:
@@ -102,7 +102,7 @@ def pointwise(face: SlaveFace, coordinates: FloatArray, area: FloatArray) -> Poi
     test = FunctionArrays(constraint[:, None], np.ones((len(constraint), 1)), len(area))
     shared = (area / np.bincount(constraint))[constraint]
     arrays = SlaveArrays(shape, test, shared, face.point, slopes, face.outward)
-    return PointSide(arrays, functions_at(face, coordinates), area, coordinates, face.control_places)
+    return PointSide(arrays, functions_at(face, coordinates), coordinates, area, face.control_places)
 
 
 def _from_all_sides(face: SlaveFace, coordinates: FloatArray) -> tuple[FloatArray, IntArray]:

@@ -1,0 +1,158 @@
+"""Contact that is narrower than its slave can carry: one row of control points bears it, or the master is deep between those that do."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from isomortar._bindings import Projections
+from isomortar.geometry.patch import FloatArray
+from isomortar.model.entities import Body, Contact, Face, Problem
+from isomortar.model.pairs import Pair
+from isomortar.model.sheet import Sheet
+from isomortar.solve.contact import PairMechanics, PutOff
+from isomortar.solve.equilibrium import Balance, Equilibrium
+from isomortar.solve.feet import gaps
+
+#: Rows that bear contact below which it is told, in both directions, or in one with functions that have kinks: there forces of balls and
+#: cylinders on blocks were off by up to a third. A single row of smooth functions along a line cost less than 7 %, two rows a tenth, more
+#: rows less than 5 %. Rows count once at planes of symmetry, too: those of the image hardly matter down here.
+ROWS = 1.3
+#: Rows of a contact that is told up to which finer elements along that direction are advised, and share of all rows from which on they are
+#: not: an element across a strip is meant.
+ENOUGH, ALL = 2.5, 0.8
+#: Share of the force that what is deep between control points may cost before it is told, by its estimate (theory 9.10).
+COSTS = 0.1
+#: Depth over what forces press in up to which it costs nothing, and what is added below the line: fitted to the same scenes.
+FREE, ADDED = 0.5, 2.0
+#: Share of the largest force of a contact below which it opens, or hardly begins: its last row is no fault of the mesh.
+LIGHT = 0.1
+
+
+@dataclass(frozen=True)
+class Bearing:
+    """What bears a contact.
+
+    Attributes
+    ----------
+    rows : ndarray, shape (2,)
+        How many rows of constraints do along each coordinate of the slave face (theory 9.9).
+    of : tuple of int
+        How many rows there are.
+    kinks : tuple of bool
+        Whether functions of the face have kinks along each coordinate.
+    depth : float
+        Of the quadrature points, root of the mean square where there is pressure: averages of it are zero.
+    costs : float
+        Share of the force that this costs, by an estimate; below zero it costs nothing (theory 9.10).
+    """
+
+    rows: FloatArray
+    of: tuple[int, int]
+    kinks: tuple[bool, bool]
+    depth: float
+    costs: float
+
+    @property
+    def too_narrow(self) -> bool:
+        """Whether it is told."""
+        few = self.rows < ROWS
+        return bool(few.all() or np.any(few & self.kinks)) or self.costs > COSTS
+
+
+class Narrow:
+    """Warnings of contacts that are too narrow for their slaves at the end of a stage; each is given once a contact."""
+
+    def __init__(self, equilibrium: Equilibrium) -> None:
+        self._problem = equilibrium.problem
+        self._watched = dict(enumerate(equilibrium.pairs))
+        self._largest = np.zeros(len(equilibrium.pairs))
+
+    def after_step(self, balance: Balance, step: int, ends: bool) -> Iterator[str]:
+        """Warnings that the end of a load step gives rise to, if it `ends` a stage: all contact of round bodies is narrow at first."""
+        for number, mechanics in list(self._watched.items()):
+            kinematics = balance.kinematics[number]
+            if isinstance(kinematics, PutOff):
+                continue
+            force = float(forces(mechanics.pair, balance.responses[number].pressure, kinematics.projections).sum())
+            self._largest[number] = max(force, self._largest[number])
+            if not ends or force <= LIGHT * self._largest[number]:
+                continue
+            found = bearing(self._problem, mechanics, balance, number)
+            if found.too_narrow:
+                del self._watched[number]
+                yield _told(self._problem, mechanics.pair.contact, found, step)
+
+
+def forces(pair: Pair, pressure: FloatArray, projections: Projections) -> FloatArray:
+    """Forces of constraints, shape (n,): their pressures by the integrals of their functions over what has a foot."""
+    test, area = pair.slave.test, pair.slave.area * (projections.found > 0)
+    acting = (test.values * area[:, None]).reshape(pair.slave.elements, pair.slave.per_element, -1).sum(axis=1)
+    return np.asarray(pressure * np.bincount(test.nodes.ravel(), acting.ravel(), test.count))
+
+
+def bearing(problem: Problem, mechanics: PairMechanics, balance: Balance, number: int) -> Bearing:
+    """What bears a contact that is closed.
+
+    Parameters
+    ----------
+    problem : Problem
+    mechanics : PairMechanics
+        Of the contact.
+    balance : Balance
+    number : int
+        Of that contact.
+    """
+    borne = forces(mechanics.pair, balance.responses[number].pressure, balance.kinematics[number].projections)
+    depth, pressed = _between(problem, mechanics, balance, number)
+    ratio = depth / pressed if pressed > 0.0 else 0.0
+    first, second = (_sums(places, borne) for places in mechanics.pair.places.T)
+    rows = np.array([np.sum(sums) ** 2 / (sums @ sums) for sums in (first, second)])
+    u, v = (direction.order == 1 or direction.family == "L" for direction in Sheet.of(problem, mechanics.pair.contact.slave).directions)
+    return Bearing(rows, (len(first), len(second)), (u, v), depth, (ratio - FREE) / (ratio + ADDED))
+
+
+def _sums(places: FloatArray, borne: FloatArray) -> FloatArray:
+    """Forces by row: of the constraints at the same place along a coordinate."""
+    _, row = np.unique(places, return_inverse=True)
+    return np.bincount(row.ravel(), borne).astype(np.float64)
+
+
+def _between(problem: Problem, mechanics: PairMechanics, balance: Balance, number: int) -> tuple[float, float]:
+    """How deep quadrature points are where there is pressure, and how far that presses the bodies in, about (theory 9.10)."""
+    pair, projections = mechanics.pair, balance.kinematics[number].projections
+    pressure = abs(pair.field(balance.responses[number].pressure)) * (projections.found > 0)
+    acting = pair.slave.area * pressure
+    if not acting.any():
+        return 0.0, 0.0
+    depth = np.sqrt(acting @ np.square(gaps(pair, balance.positions, projections)) / acting.sum())
+    return float(depth), float(_softness(problem, pair.contact) * np.sqrt(problem.images * (acting @ pressure)))
+
+
+def _softness(problem: Problem, contact: Contact) -> float:
+    """Sum of (1 - nu^2) / E of both sides."""
+    sides = [side for side in (contact.slave, contact.master) if isinstance(side, Face)]
+    return sum(max(_soft(problem.body(face.body)) for face in side.faces) for side in sides)
+
+
+def _soft(body: Body) -> float:
+    return 0.0 if body.rigid else (1.0 - body.material.poisson**2) / body.material.young
+
+
+def _told(problem: Problem, contact: Contact, found: Bearing, step: int) -> str:
+    """The sentence."""
+    letters, what = Sheet.of(problem, contact.slave).letters, "control points" if contact.of_averages else "constraints"
+    least, deep = float(found.rows.min()), found.costs > COSTS
+    sides = list(zip(letters, found.rows, found.of, strict=True))
+    few = [letter for letter, rows, count in sides if rows <= max(ENOUGH, least) and rows < ALL * count] or list(letters)
+    between = f", and between these it is about {found.depth:.2g} inside its master or apart from it" if deep else ""
+    share = f"{100.0 * found.costs:.2g} %" if deep else "a fifth"
+    stage = problem.stages[problem.stage_of(step)].name
+    return (
+        f"contact {contact.name!r}, load step {step}, the last of stage {stage!r}: it is too narrow for its slave {contact.slave.words}: "
+        f"{found.rows[0]:.1f} of {found.of[0]} rows of {what} along {letters[0]} and {found.rows[1]:.1f} of {found.of[1]} along "
+        f"{letters[1]} bear it{between}. Forces may be off by about {share}, pressures by more. Take twice as many elements or more "
+        f"along {' and '.join(few)} (bodies.{contact.slave.body}.mesh.elements), or shorter ones there (mesh.grading)"
+    )

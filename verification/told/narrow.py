@@ -1,0 +1,227 @@
+"""What is said of contact that is narrower than its slave can carry, against forces of finer slaves; and that nothing is said of others."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+from told.runs import Heard
+
+from isomortar.harness import Bound, case
+from isomortar.scene import Scene
+from isomortar.solve.simulation import Simulation
+
+#: A block under something rigid, which is pressed into it.
+SCENE = """
+format = 1
+SYMMETRY
+materials.m = { young = 10, poisson = 0.3 }
+bodies.a = { geometry = BLOCK, mesh = { family = "N", order = 2, elements = 8 } }
+bodies.b = { rigid = true, geometry = PUNCH, mesh = { order = [2, ALONG, 1], elements = [8, 8, 1] } }
+contacts.c = { slave = "a.w1", master = "b.FACE", friction = 0, projection = "closest" }
+supports.base.face = "a.w0"
+supports.top.face = "b.TOP"
+SIDES
+stages = [{ name = "press", steps = 1, motions.top.translate = [0, 0, -0.02] }]
+"""
+Changes = tuple[str, ...]
+
+
+def _scene(**words: str) -> str:
+    text = SCENE
+    for word, value in words.items():
+        text = text.replace(word.upper(), value)
+    return text
+
+
+#: A strip below a cylinder, and below a flat block.
+STRIP = _scene(
+    symmetry="",
+    block='{ kind = "box", lower = [-1, 0, -1], upper = [1, 0.2, 0] }',
+    punch='{ kind = "ring", inner = 0.2, outer = 1, width = 0.4, centre = [AT, 0.1, 1], axis = "y" }',
+    along="1",
+    face="v1",
+    top="v0",
+    sides='supports.back = { face = "a.v0", components = ["y"] }\nsupports.front = { face = "a.v1", components = ["y"] }',
+)
+_PUNCH = next(line for line in STRIP.splitlines() if line.startswith("bodies.b"))
+FLAT = STRIP.replace(_PUNCH, 'bodies.b = { rigid = true, geometry = { kind = "box", lower = [-2, -1, 0], upper = [2, 1, 1] } }')
+FLAT = FLAT.replace("b.v1", "b.w0").replace("b.v0", "b.w1")
+#: A block below a bowl that is round as a ball of radius one, and a quarter of both.
+BALL = _scene(
+    symmetry="",
+    block='{ kind = "box", lower = [-1, -1, -1], upper = [1, 1, 0] }',
+    punch='{ kind = "bowl", centre = [0.05, 0.03], half_width = 1, bottom = 0, rise = 0.5, top = 1.5 }',
+    along="2",
+    face="w0",
+    top="w1",
+    sides="",
+)
+QUARTER = BALL.replace("[0.05, 0.03]", "[0, 0]").replace("format = 1", "format = 1\nsymmetry = { x = 0.0, y = 0.0 }")
+NARROW = re.compile(
+    r"contact '(?P<contact>\w+)', load step (?P<step>\d+), the last of stage '\w+': it is too narrow for its slave \S+: (?P<rows>\S+) of "
+    r"\d+ rows of (control points|constraints) along \w and \S+ of \d+ along \w bear it.*\. Forces may be off by about (?P<share>.+), "
+    r"pressures by more\. Take twice as many elements or more along (?P<along>\w|\w and \w) \("
+)
+
+
+def depth(way: float) -> str:
+    """A change of how deep it is pressed in."""
+    return f"stages.press.motions.top.translate=[0, 0, {-way}]"
+
+
+def run(text: str, changes: Changes = ()) -> tuple[list[re.Match[str]], float]:
+    """What is said of narrow contact in a run, and the force at its end."""
+    heard = Heard()
+    *_, last = Simulation(Scene.from_toml(text, overrides=changes).problem(), heard).run()
+    return [found for said in heard.said if (found := NARROW.search(said))], abs(float(last.contacts[0].force_slave[2]))
+
+
+def strip(family: str, order: int, elements: int, at: float) -> tuple[str, Changes]:
+    """That of the strip below a cylinder."""
+    across = 1 if family == "L" else min(order, 2)
+    mesh = (f'family="{family}"', f"order=[{order}, {across}, {order}]", f"elements=[{elements}, 1, {max(1, elements // 2)}]")
+    return STRIP.replace("AT", str(at)), tuple(f"bodies.a.mesh.{words}" for words in mesh)
+
+
+#: Strips that do not carry contact which is 0.02 deep: family, order, elements, and where the cylinder is.
+STRIPS: dict[str, tuple[str, int, int, float]] = {
+    "N1": ("N", 1, 8, 0.125),
+    "N2 on a knot": ("N", 2, 8, 0.0),
+    "N2 beside it": ("N", 2, 6, 1 / 6),
+    "N3": ("N", 3, 8, 0.125),
+    "N4": ("N", 4, 8, 0.125),
+}
+
+
+@case(
+    claim="Contact of a cylinder that elements of each order are too long for is told, once, along the direction that is too coarse, and "
+    "by about as much as the force is off; of a slave with four times as many elements, whose force is right, nothing is said.",
+    tier="gate",
+    grid={"slave": tuple(STRIPS)},
+    bounds={
+        "said": Bound(1.0, 1.0, "definition: sentences of the coarse slave"),
+        "along": Bound(1.0, 1.0, "definition: that it is to be refined along u alone, at load step 1"),
+        "off": Bound(at_least=0.3, reason="definition: share of the force that is missing: or there is nothing to tell of"),
+        "told over off": Bound(at_least=0.7, at_most=1.5, reason="definition: an estimate, of which the first digit counts"),
+        "others": Bound(0.0, 0.0, "definition: sentences of the fine slave"),
+        "left": Bound(at_most=0.05, reason="definition: what the force of the fine slave is off by"),
+    },
+)
+def strips(slave: str) -> dict[str, float]:
+    """What is said of a coarse strip and of a fine one, and how far they are off one of order 2 and 40 elements."""
+    family, order, elements, at = STRIPS[slave]
+    _, true = run(*strip("N", 2, 40, at))
+    said, force = run(*strip(family, order, elements, at))
+    others, right = run(*strip(family, order, 4 * elements, at))
+    off = 1.0 - force / true
+    return {
+        "said": float(len(said)),
+        "along": float(all((words["step"], words["along"]) == ("1", "u") for words in said)),
+        "off": off,
+        "told over off": 0.01 * float(said[0]["share"].removesuffix(" %")) / off if said else 0.0,
+        "others": float(len(others)),
+        "left": abs(right / true - 1.0),
+    }
+
+
+#: Balls on blocks that do not carry their contact: scene, changes, depth, and whether an estimate is told; else one row bears it.
+EXCHANGED = ('contacts.c.slave="b.w0"', 'contacts.c.master="a.w1"')
+BALLS: dict[str, tuple[str, Changes, float, bool]] = {
+    "closest": (BALL, (), 0.025, True),
+    "averaged": (BALL, ('contacts.c.projection="averaged"',), 0.025, True),
+    "uzawa": (BALL, ('solver.method="uzawa"',), 0.025, True),
+    "exchanged": (BALL, EXCHANGED, 0.05, True),
+    "a quarter": (QUARTER, ("bodies.a.mesh.elements=[4, 4, 4]",), 0.025, True),
+    "one row": (QUARTER, (), 0.05, False),
+    "constraints at knots": (QUARTER, ('contacts.c.enforcement="knots"',), 0.025, False),
+}
+#: What makes of each a contact that is carried.
+DEEP = (depth(0.15), "stages.press.steps=3", "bodies.a.mesh.elements=[12, 12, 4]", "bodies.b.mesh.elements=[12, 12, 1]")
+
+
+@case(
+    claim="Contact of a ball that elements are too long for is told, once, with closest points and averaged normals, by both methods, of "
+    "a slave that is the ball and of a quarter of all; with a deeper contact of finer elements nothing is said.",
+    tier="gate",
+    grid={"scene": tuple(BALLS)},
+    bounds={
+        "said": Bound(1.0, 1.0, "definition: sentences of the shallow contact"),
+        "rows": Bound(at_most=2.0, reason="definition: that bear it, along either direction"),
+        "off": Bound(at_least=0.1, reason="definition: share of the force that is missing: or there is nothing to tell of"),
+        "told over off": Bound(at_least=0.6, at_most=1.6, reason="definition: an estimate, of which the first digit counts"),
+        "others": Bound(0.0, 0.0, "definition: sentences of the deep contact"),
+    },
+)
+def balls(scene: str) -> dict[str, float]:
+    """What is said, and how far the force is off that of a quarter of 16 x 16 elements."""
+    text, changes, way, estimated = BALLS[scene]
+    _, true = run(QUARTER, (depth(way), "bodies.a.mesh.elements=[16, 16, 6]"))
+    said, force = run(text, (*changes, depth(way)))
+    others, _ = run(QUARTER, (*changes, *DEEP))
+    off, told = abs(1.0 - force / true), [words["share"] for words in said]
+    share = 0.01 * float(told[0].removesuffix(" %")) if told and told[0] != "a fifth" else 0.2
+    return {
+        "said": float(len(said)) if (told[:1] == ["a fifth"]) != estimated else -1.0,
+        "rows": float(min(float(words["rows"]) for words in said)) if said else np.inf,
+        "off": off,
+        "told over off": share / off if estimated else 1.0,
+        "others": float(len(others)),
+    }
+
+
+@case(
+    claim="A row of functions with kinks that carries contact along a line alone is told, and its force is off by more than a tenth.",
+    tier="gate",
+    bounds={
+        "said": Bound(1.0, 1.0, "definition: sentences"),
+        "off": Bound(at_least=0.1, at_most=0.3, reason="definition: share of the force; a fifth is told"),
+    },
+)
+def kinks() -> dict[str, float]:
+    """How much is said, and how far the force is off."""
+    at, way = 0.0, (depth(0.03),)
+    (true, fine), (text, changes) = strip("N", 2, 40, at), strip("N", 1, 8, at)
+    said, force = run(text, (*changes, *way))
+    return {"said": float(sum(words["share"] == "a fifth" for words in said)), "off": abs(force / run(true, (*fine, *way))[1] - 1.0)}
+
+
+#: The ball pressed in, in load steps of which the first is narrow, and lifted nearly out of the block; a flat punch on all of some strip.
+LIFTED = BALL.replace("\n]", "").replace("stages = [", 'stages = [{ name = "deep", steps = 6, motions.top.translate = [0, 0, -0.15] }, ')
+SOUND: dict[str, tuple[str, Changes]] = {
+    "on the way": (BALL, (depth(0.15), "stages.press.steps=6")),
+    "lifted": (LIFTED, (depth(-0.125),)),
+    "one row of smooth functions": (STRIP.replace("AT", "0.125"), (*strip("N", 2, 8, 0.125)[1], depth(0.03))),
+    **{f"one element, {family}{order}": (FLAT, strip(family, order, 1, 0.0)[1]) for family, order in (("N", 1), ("N", 2), ("L", 2))},
+}
+
+
+@case(
+    claim="Of contact that is narrow at first, or about to open, along a line that one row of smooth functions carries, and of faces all "
+    "of whose few control points bear nothing is said.",
+    tier="gate",
+    grid={"scene": tuple(SOUND)},
+    bounds={"said": Bound(0.0, 0.0, "definition: sentences")},
+)
+def broad(scene: str) -> dict[str, float]:
+    """How many."""
+    said, force = run(*SOUND[scene])
+    return {"said": float(len(said)) if force > 0.0 else np.nan}
+
+
+#: Bundled scenes and how many load steps their stages are cut down to; those that take longer are nightly.
+BUNDLED = {"block": 5, "iron-round": 5, "press": 5, "twist": 4, "twist-sharp": 4, "iron": 5, "reversal": 5, "tire": 5}
+
+
+@case(
+    claim="Of bundled scenes nothing is said: their contact is broad at the ends of stages.",
+    tier=lambda scene: "nightly" if scene in {"iron", "reversal", "tire"} else "gate",
+    grid={"scene": tuple(BUNDLED)},
+    bounds={"said": Bound(0.0, 0.0, "definition: sentences")},
+)
+def broad_scenes(scene: str) -> dict[str, float]:
+    """How many."""
+    steps = [f"stages.{stage.name}.steps={min(stage.steps, BUNDLED[scene])}" for stage in Scene.load(scene).problem().stages]
+    heard = Heard()
+    list(Simulation(Scene.load(scene, steps).problem(), heard).run())
+    return {"said": float(sum(NARROW.search(said) is not None for said in heard.said))}
