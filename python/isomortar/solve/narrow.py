@@ -87,14 +87,14 @@ class Narrow:
 
 
 def forces(pair: Pair, pressure: FloatArray, projections: Projections) -> FloatArray:
-    """Forces of constraints, shape (n,): their pressures by the integrals of their functions over what has a foot."""
+    """Forces of constraints, shape (n,): their pressures by the integrals of their functions over what has a foot (theory 9.9)."""
     test, area = pair.slave.test, pair.slave.area * (projections.found > 0)
     acting = (test.values * area[:, None]).reshape(pair.slave.elements, pair.slave.per_element, -1).sum(axis=1)
     return np.asarray(pressure * np.bincount(test.nodes.ravel(), acting.ravel(), test.count))
 
 
 def bearing(problem: Problem, mechanics: PairMechanics, balance: Balance, number: int) -> Bearing:
-    """What bears a contact that is closed.
+    """What bears a contact that is closed (theory 9.9, 9.10).
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def bearing(problem: Problem, mechanics: PairMechanics, balance: Balance, number
 
 
 def _sums(places: FloatArray, borne: FloatArray) -> FloatArray:
-    """Forces by row: of the constraints at the same place along a coordinate."""
+    """Forces by row: of the constraints at the same place along a coordinate (theory 9.9)."""
     _, row = np.unique(places, return_inverse=True)
     return np.bincount(row.ravel(), borne).astype(np.float64)
 
