@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from told.wrong.contacts import PAIR, PRESS, RINGS, TYRE
 from told.wrong.doubts import AVERAGED, DOUBTFUL
-from told.wrong.runs import LINEAR, PLATE, RUNS
+from told.wrong.runs import LINEAR, PLATE, PRESSED, RUNS
 from transforms import scaled
 
 from isomortar import cli
@@ -255,7 +255,7 @@ def test_a_run_tells_its_doubts_before_the_first_load_step_and_not_when_it_goes_
 _SHORT = PRESS.replace("point = [0, 0, 0]", "point = [0, 0, -0.02]").replace("[0, 0, -0.1]", "[0, 0, -0.015]")
 
 
-@pytest.mark.parametrize(("scene", "never"), [(PRESS, False), (_SHORT, True)], ids=["closes", "never"])
+@pytest.mark.parametrize(("scene", "never"), [(PRESSED, False), (_SHORT, True)], ids=["closes", "never"])
 def test_a_contact_that_never_closes_is_told_at_the_end(scene: str, never: bool) -> None:
     observer = Warned()
     for _ in Simulation(Scene.from_toml(scene.replace("steps = 1", "steps = 2")).problem(), observer).run():
@@ -280,7 +280,9 @@ def test_the_same_line_is_printed_once_and_warnings_are_counted() -> None:
     assert "5 load steps done, 2 warnings: read them" in shown
 
 
-@pytest.mark.parametrize(("scene", "line"), [(PRESS, "1 load step done, 0 warnings"), (_SHORT, "1 warning: read it")], ids=["none", "one"])
+@pytest.mark.parametrize(
+    ("scene", "line"), [(PRESSED, "1 load step done, 0 warnings"), (_SHORT, "1 warning: read it")], ids=["none", "one"]
+)
 def test_a_run_ends_with_the_number_of_warnings(
     scene: str, line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

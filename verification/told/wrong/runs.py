@@ -75,6 +75,8 @@ name = "press"
 steps = 2
 motions.core.translate = [0, 0, -0.05]
 """
+#: A tyre that is 0.02 deep in its road.
+LOW_TYRE = TYRE.replace("normal = [0, 0, 1]", "point = [0, 0, 0.02], normal = [0, 0, 1]")
 #: Scene, and the contact's and words of the warnings of a run of it: none for sound ones.
 RUNS = {
     "pressed": (staged(PRESSED, (2, DOWN, "0"), (2, STAY, "0")), []),
@@ -86,9 +88,10 @@ RUNS = {
     "lifted and pressed again": (staged(PRESSED, (1, DOWN, "0"), (3, UP, "0"), (1, "[0, 0, -0.3]", "0")), []),
     "lifted for good": (staged(PRESSED, (2, DOWN, "0"), (3, UP, "0")), ["opened in load step 3 and stayed open"]),
     "rolling": (  # by an element: its averaged gaps are open where control points are beside the lowest line
-        TYRE.replace("normal = [0, 0, 1]", "point = [0, 0, 0.02], normal = [0, 0, 1]").replace("rotate = 30", "rotate = 22.5"),
+        LOW_TYRE.replace("[16, 1, 1]", "[24, 1, 1]").replace("rotate = 30", "rotate = 15"),
         [],
     ),
+    "rolling by elements that are too long": (LOW_TYRE.replace("rotate = 30", "rotate = 22.5"), ["load step 1, the last of"]),
     "slid off": (
         staged(PAIR, (2, "[0, 0, -0.05]", "0"), (10, "[2.5, 0, 0]", "0")),
         ["left the master", "coefficients oscillate", "wholly beside", "opened in load step 8"],
