@@ -132,7 +132,7 @@ BALLS: dict[str, tuple[str, Changes, float, bool]] = {
     "averaged": (BALL, ('contacts.c.projection="averaged"',), 0.025, True),
     "uzawa": (BALL, ('solver.method="uzawa"',), 0.025, True),
     "exchanged": (BALL, EXCHANGED, 0.05, True),
-    "a quarter": (QUARTER, ("bodies.a.mesh.elements=[4, 4, 4]",), 0.025, True),
+    "a quarter": (QUARTER, ("bodies.a.mesh.order=1", "bodies.a.mesh.elements=[4, 4, 4]"), 0.05, True),
     "one row": (QUARTER, (), 0.05, False),
     "constraints at knots": (QUARTER, ('contacts.c.enforcement="knots"',), 0.025, False),
 }

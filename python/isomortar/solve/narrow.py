@@ -68,15 +68,15 @@ class Narrow:
     def __init__(self, equilibrium: Equilibrium) -> None:
         self._problem = equilibrium.problem
         self._watched = dict(enumerate(equilibrium.pairs))
+        self._areas = [_areas(mechanics.pair, mechanics.pair.slave.area) for mechanics in equilibrium.pairs]
         self._largest = np.zeros(len(equilibrium.pairs))
 
     def after_step(self, balance: Balance, step: int, ends: bool) -> Iterator[str]:
         """Warnings that the end of a load step gives rise to, if it `ends` a stage: all contact of round bodies is narrow at first."""
         for number, mechanics in list(self._watched.items()):
-            kinematics = balance.kinematics[number]
-            if isinstance(kinematics, PutOff):
+            if isinstance(balance.kinematics[number], PutOff):
                 continue
-            force = float(forces(mechanics.pair, balance.responses[number].pressure, kinematics.projections).sum())
+            force = float(balance.responses[number].pressure @ self._areas[number])
             self._largest[number] = max(force, self._largest[number])
             if not ends or force <= LIGHT * self._largest[number]:
                 continue
@@ -88,9 +88,18 @@ class Narrow:
 
 def forces(pair: Pair, pressure: FloatArray, projections: Projections) -> FloatArray:
     """Forces of constraints, shape (n,): their pressures by the integrals of their functions over what has a foot (theory 9.9)."""
-    test, area = pair.slave.test, pair.slave.area * (projections.found > 0)
-    acting = (test.values * area[:, None]).reshape(pair.slave.elements, pair.slave.per_element, -1).sum(axis=1)
-    return np.asarray(pressure * np.bincount(test.nodes.ravel(), acting.ravel(), test.count))
+    return np.asarray(pressure * _areas(pair, pair.slave.area * (projections.found > 0)))
+
+
+def _areas(pair: Pair, area: FloatArray) -> FloatArray:
+    """Integrals of the constraints' functions with areas of quadrature points, shape (n,)."""
+    test = pair.slave.test
+    acting = np.einsum("eqa,eq->ea", test.values.reshape(*_by_element(pair), -1), area.reshape(_by_element(pair)))
+    return np.bincount(test.nodes.ravel(), acting.ravel(), test.count).astype(np.float64)
+
+
+def _by_element(pair: Pair) -> tuple[int, int]:
+    return pair.slave.elements, pair.slave.per_element
 
 
 def bearing(problem: Problem, mechanics: PairMechanics, balance: Balance, number: int) -> Bearing:
