@@ -60,8 +60,8 @@ BALL = _scene(
 QUARTER = BALL.replace("[0.05, 0.03]", "[0, 0]").replace("format = 1", "format = 1\nsymmetry = { x = 0.0, y = 0.0 }")
 NARROW = re.compile(
     r"contact '(?P<contact>\w+)', load step (?P<step>\d+), the last of stage '\w+': it is too narrow for its slave \S+: (?P<rows>\S+) of "
-    r"\d+ rows of (control points|constraints) along \w and \S+ of \d+ along \w bear it.*\. Forces may be off by about (?P<share>.+), "
-    r"pressures by more\. Take twice as many elements or more along (?P<along>\w|\w and \w) \("
+    r"\d+ rows of (control points|constraints) along \w and \S+ of \d+ along \w bear it.*\. Forces under given motions may be off by "
+    r"about (?P<share>.+), pressures by more\. Take twice as many elements or more along (?P<along>\w|\w and \w) \("
 )
 
 

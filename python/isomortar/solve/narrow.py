@@ -162,6 +162,6 @@ def _told(problem: Problem, contact: Contact, found: Bearing, step: int) -> str:
     return (
         f"contact {contact.name!r}, load step {step}, the last of stage {stage!r}: it is too narrow for its slave {contact.slave.words}: "
         f"{found.rows[0]:.1f} of {found.of[0]} rows of {what} along {letters[0]} and {found.rows[1]:.1f} of {found.of[1]} along "
-        f"{letters[1]} bear it{between}. Forces may be off by about {share}, pressures by more. Take twice as many elements or more "
-        f"along {' and '.join(few)} (bodies.{contact.slave.body}.mesh.elements), or shorter ones there (mesh.grading)"
+        f"{letters[1]} bear it{between}. Forces under given motions may be off by about {share}, pressures by more. Take twice as "
+        f"many elements or more along {' and '.join(few)} (bodies.{contact.slave.body}.mesh.elements), or shorter ones there (mesh.grading)"
     )
