@@ -6,7 +6,8 @@
 !> - `x`: positions of all `n` control points, L.
 !> - `forces`: on all control points, F.
 !> - `with_tangent`: 1 to add to `tangent`, F/L, (column component, row component, block) on `pattern` of `nblocks`.
-!> - `smallest_jacobian`: least J met; of an element folded initially the determinant of its map.
+!> - `smallest_jacobian`: least J of all elements; where some are folded that of the first of them, whatever the number
+!>   of threads. Of one that is folded initially it is the determinant of its map.
 !> - `place`: on failure the element, from 1.
 subroutine add_body(body, material, x, n, forces, with_tangent, pattern, nblocks, tangent, smallest_jacobian, status, place)
   use iso_c_binding, only: c_double, c_int, c_int64_t

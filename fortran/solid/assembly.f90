@@ -52,7 +52,8 @@ contains
   !> - `positions` (3, control points): of all control points, L.
   !> - `residual` (3, control points): forces on all of them, F.
   !> - `pattern`, `tangent` (column component, row component, blocks): pattern of the tangent, and its blocks, F/L.
-  !> - `smallest_jacobian`: least J met; of an element folded initially the determinant of its map.
+  !> - `smallest_jacobian`: least J of all elements; where some are folded that of the first of them, whatever the
+  !>   number of threads. Of one that is folded initially it is the determinant of its map.
   !> - `status`, `place`: how it ended (isomortar_base_status), and on failure the element, from 1.
   subroutine add_body(body, material, positions, residual, smallest_jacobian, status, place, pattern, tangent)
     type(body_t), intent(in) :: body

@@ -56,5 +56,19 @@ class ConvergenceError(IsomortarError):
     """A load step did not converge and could not be cut further. What had converged is kept."""
 
 
+class PathError(ConvergenceError):
+    """A load increment is longer than `solver.path_tolerance` allows.
+
+    Parameters
+    ----------
+    error, tolerance : float
+        Its estimated error, and what is allowed.
+    """
+
+    def __init__(self, error: float, tolerance: float) -> None:
+        self.error = error
+        super().__init__(f"the path error of the multipliers is {error:.2e}, above solver.path_tolerance = {tolerance:g}")
+
+
 class ResultsError(IsomortarError):
     """A results file is missing, damaged, or does not belong to the scene."""

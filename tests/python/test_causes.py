@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from typing import Any
 
@@ -249,3 +250,17 @@ def test_coordinates_without_digits_are_refused() -> None:
     scene = Scene.from_toml(far)
     with pytest.raises(InputError, match=r"bodies.lower: body 'lower' stands 1.1e\+13 from the origin"):
         scene.problem()
+
+
+def test_a_path_tolerance_that_no_increment_meets_names_one_that_is_met() -> None:
+    def first_step(tolerance: str) -> str:
+        scene = Scene.load("press", [f"solver.path_tolerance={tolerance}", "solver.max_cuts=3"])
+        try:
+            next(iter(Simulation(scene.problem()).run()))
+        except ConvergenceError as error:
+            return str(error)
+        return ""
+
+    told = re.search(r"above solver.path_tolerance = 0.001. .* take solver.path_tolerance = (\S+) or more, let", first_step("1e-3"))
+    assert told
+    assert first_step(told[1]) == ""

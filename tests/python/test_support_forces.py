@@ -138,3 +138,25 @@ def test_default_curves_show_how_far_a_force_goes() -> None:
     names = [curve.name for curve in Scene.from_toml(GOOD).curves()]
     assert "top displacement z" in names
     assert not [name for name in names if name.startswith("die")]
+
+
+#: A rigid ring that a force presses into a block, and then no longer does.
+LET_GO = """
+format = 1
+materials.soft.young = 100
+bodies.ring = { geometry = { kind = "ring", centre = [0.5, 0, 0.5], outer = 0.5, inner = 0.3, width = 1 }, rigid = true }
+bodies.base = { geometry = { kind = "box", lower = [0, 0, -0.6], upper = [1, 1, 0] }, mesh.elements = [3, 1, 1] }
+contacts.sole = { slave = "base.w1", master = "ring.v1", friction = 0.5 }
+supports = { base.face = "base.w0", hand = { face = "ring.v0", components = ["x", "y"], force.z = -1 } }
+solver.max_cuts = 5
+stages = [{ name = "press", steps = 1 }, { name = "back", steps = 1, loads.hand = 0 }, { name = "again", steps = 1, loads.hand = 1 }]
+"""
+
+
+@pytest.mark.parametrize("method", ["monolithic", "uzawa"])
+def test_a_rigid_body_that_its_force_lets_go_stays_where_nothing_acts_on_it_and_is_pressed_again(method: str) -> None:
+    """What it pressed comes back in more than one iteration, in which nothing holds it any longer."""
+    pressed, back, again = Simulation(Scene.from_toml(LET_GO, overrides=[f"solver.method={method}"]).problem()).run()
+    assert back.contacts[0].active == 0
+    assert not np.any(back.contacts[0].force_master)
+    assert again.reactions[1].displacement[2] == pytest.approx(pressed.reactions[1].displacement[2], rel=1e-3)

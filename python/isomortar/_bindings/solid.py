@@ -34,7 +34,7 @@ def add_body(
     Raises
     ------
     FoldedElementError
-        J <= 0, now or in the reference configuration, with the number of the element.
+        J <= 0, now or in the reference configuration, with the number of the first such element and the least J at its points.
     """
     check.kind("body", body, BodyArrays)
     n = len(body.reference)

@@ -18,6 +18,7 @@ from isomortar.model.contact_checks import check_contacts
 from isomortar.model.entities import Body, Contact, Face, Problem, RigidPlane, SolverSettings, Support, unit
 from isomortar.model.glue import check_glue, named, pieces
 from isomortar.model.load_checks import check_loads
+from isomortar.model.magnitudes import check_magnitudes
 from isomortar.model.memory import memory_needed, memory_of_machine
 from isomortar.model.messages import input_error, located
 from isomortar.model.numbering import Numbering, check_closed
@@ -46,7 +47,7 @@ def check(problem: Problem) -> None:
         faces that do not conform; a support that turns too often in a load step, goes or turns too far from the origin, goes by motion
         and by force at once, moves where it does not hold, or has a moment and no face to turn; a rigid body that supports contradict
         each other on, leave components to, or release; a body that nothing holds; supports that contradict each other; contacts and loads
-        that cannot be meant; too few Gauss points for a body's weights.
+        that cannot be meant, or are absurdly large; too few Gauss points for a body's weights.
     """
     _check_settings(problem.settings)
     for body in problem.bodies:
@@ -59,6 +60,7 @@ def check(problem: Problem) -> None:
     check_glue(problem)
     check_contacts(problem)
     check_loads(problem)
+    check_magnitudes(problem)
     _check_turns(problem)
     _check_ways(problem)
     _check_carried(problem)

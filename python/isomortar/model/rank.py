@@ -17,7 +17,7 @@ def motions_left(problem: Problem, piece: tuple[Body, ...], stage: int = 0) -> F
     """Rigid motions that the supports leave a body, with what is glued to it, in a stage: those `moved` takes, shape (motions, 6)."""
     names = {body.name for body in piece}
     holding = [support for support in problem.supports if support.place.body in names and support.holds(stage)]
-    centre, size = _extent(piece)
+    centre, size = extent(piece)
     centres = [(np.asarray(support.centre) - centre) / size for support in holding]
     if piece[0].rigid:
         pressed = [np.eye(6)[k] for support in holding for k in support.pressed]
@@ -34,11 +34,11 @@ def motions_left(problem: Problem, piece: tuple[Body, ...], stage: int = 0) -> F
 
 def moved(piece: tuple[Body, ...], motion: FloatArray, points: FloatArray) -> FloatArray:
     """Displacements of points, shape (n, 3), by a rigid motion of a body: along the axes, and about them through its middle by its size."""
-    centre, size = _extent(piece)
+    centre, size = extent(piece)
     return motion[:3] + np.cross(motion[3:], (points - centre) / size)
 
 
-def _extent(piece: tuple[Body, ...]) -> tuple[FloatArray, float]:
+def extent(piece: tuple[Body, ...]) -> tuple[FloatArray, float]:
     """The middle of a body's control points, and how far they reach along an axis."""
     together = np.concatenate([body.patch.control_points for body in piece])
     return together.mean(axis=0), float(np.ptp(together, axis=0).max())

@@ -211,10 +211,17 @@ class Supports:
         """The same with what supports exert on plates, and those released, at a load time taken off: zero in balance (theory 5.17)."""
         forces = self.gathered(forces, positions)
         for plate in self.plates:
-            factor = factor_at(self._problem.stages, self._problem.supports[plate.support].factors, time)
             exerted = [plate.force[k] for k in plate.pressed] + [plate.moment / plate.length for _ in plate.across[:1]]
-            forces.ravel()[plate.slots] -= factor * np.array(exerted)
-        return forces if self._released is None else forces - self._remaining(time) * self._released
+            forces.ravel()[plate.slots] -= self.factor(plate, time) * np.array(exerted)
+        return forces if self._released is None else forces - self.fading(time)
+
+    def factor(self, plate: Plate, time: float) -> float:
+        """Factor of what a support exerts on a plate at a load time (theory 5.14)."""
+        return factor_at(self._problem.stages, self._problem.supports[plate.support].factors, time)
+
+    def fading(self, time: float) -> FloatArray:
+        """What is left at a load time of the forces of supports that were released, shape (control points, 3) (theory 5.23)."""
+        return np.zeros_like(self._numbering.reference) if self._released is None else self._remaining(time) * self._released
 
     def spread(self, solution: FloatArray, positions: FloatArray) -> FloatArray:
         """A field of control points, shape (control points, 3), from its values by equation, zero where it is prescribed (theory 5.17)."""

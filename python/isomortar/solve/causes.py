@@ -7,7 +7,7 @@ from itertools import combinations
 
 import numpy as np
 
-from isomortar.errors import SingularSystemError
+from isomortar.errors import PathError, SingularSystemError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.contrasts import element_lengths
 from isomortar.model.entities import Body, Contact, Problem
@@ -31,6 +31,9 @@ PENALTY = 1e3
 #: Elastic slips below this share of the slave make friction so stiff that Newton's method goes to and fro: a press failed at 2e-4.
 SHORT_SLIP = 1e-3
 
+#: What `solver.max_cuts` may be.
+MOST_CUTS = 30
+
 #: How an error says that a slave goes over its master's edge.
 BESIDE = "beside the master"
 
@@ -47,6 +50,9 @@ def causes(equilibrium: Equilibrium, state: State, error: Exception) -> Iterator
         Why the next one did not.
     """
     problem, positions = equilibrium.problem, state.positions
+    if isinstance(error, PathError):
+        yield _path(error.error, problem.settings.max_cuts)
+        return
     yield from sliding(equilibrium, state)
     yield from _flat(problem.deformable, equilibrium.solid.smallest_jacobians(positions))
     for body in problem.deformable:
@@ -60,6 +66,15 @@ def causes(equilibrium: Equilibrium, state: State, error: Exception) -> Iterator
     if BESIDE not in str(error):
         for pair in equilibrium.pairs:
             yield from _over_the_edge(pair, positions)
+
+
+def _path(error: float, cuts: int) -> str:
+    """What lets an increment that converged be as long as it is, or makes it shorter."""
+    unit = 10.0 ** np.floor(np.log10(error)) if np.isfinite(error) else np.inf
+    enough = np.ceil(error / unit) * unit if unit < np.inf else np.inf
+    ways = [f"take solver.path_tolerance = {enough:g} or more"] if enough <= 1.0 else []
+    ways += [f"let increments be halved more often than solver.max_cuts = {cuts}"] if cuts < MOST_CUTS else []
+    return f"balance and contact were met, and the shortest increment is too long for that: {', '.join([*ways, 'or take more load steps'])}"
 
 
 def _over_the_edge(pair: PairMechanics, positions: FloatArray) -> Iterator[str]:

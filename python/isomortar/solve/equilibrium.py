@@ -271,13 +271,32 @@ class Equilibrium:
         SingularSystemError
             Naming a body that nothing holds.
         """
-        sources, values = self.seen(*self.tangents(balance, laws, keep_bodies), balance)
+        sources, values = self.tangents(balance, laws, keep_bodies)
+        values[0] = self._at_rest(values[0], balance)
+        sources, values = self.seen(sources, values, balance)
         right = balance.unbalanced.ravel()[self.supports.free]
         if np.any(prescribed):
             for source, block in zip(sources, values, strict=True):
                 add_product(source, block, prescribed, right)
         solution = self.solve(sources, values, right, balance.positions)
         return prescribed - self.supports.spread(solution, balance.positions)
+
+    def _at_rest(self, stiffness: FloatArray, balance: Balance) -> FloatArray:
+        """The bodies' tangent, in which rigid ones that nothing acts on stay where they are where all contact is open.
+
+        Nothing holds one that its force has let go, and others have yet to come back from it.
+        """
+        if balance.active:
+            return stiffness
+        free = np.any(self.supports.equation.reshape(-1, 3) >= 0, axis=1)
+        rigid = [self.numbering.points[body.name] for body in self.problem.bodies if body.rigid]
+        still = [points for points in rigid if np.any(free[points]) and not np.any(balance.unbalanced[points])]
+        if not still:
+            return stiffness
+        diagonal = self.solid.diagonal[np.concatenate(still)]
+        stiffness = stiffness.copy()
+        stiffness[diagonal] = np.eye(3) * np.max(stiffness[self.solid.diagonal])
+        return stiffness
 
     def kept_correction(self, balance: Balance) -> FloatArray:
         """Correction of all positions by the factors of the last tangent, with the prescribed positions as they are."""

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from isomortar.errors import ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError
+from isomortar.errors import ConvergenceError, FoldedElementError, LostProjectionError, PathError, SingularSystemError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
 from isomortar.model.checks import check
@@ -173,7 +173,7 @@ class Simulation:
         second = self._method.advance(self._reached(state, first.balance, middle, 0.5 * (target - time)), target, step)
         error = self._distance(whole.balance, second.balance)
         if not error <= tolerance:
-            raise ConvergenceError(f"the path error of the multipliers is {error:.2e}, above solver.path_tolerance = {tolerance:g}")
+            raise PathError(error, tolerance)
         return [first, second]
 
     def _reached(self, start: State, balance: Balance, time: float, length: float) -> State:

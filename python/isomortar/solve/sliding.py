@@ -13,6 +13,7 @@ from isomortar.model.glue import named
 from isomortar.solve.contact import PairMechanics
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.metric import traction_norms
+from isomortar.solve.overcome import overcome
 from isomortar.solve.record import ContactState, State
 
 #: Share of what friction can bear above which a body is about to slide: what the last load increment before adds is less than the rest.
@@ -30,6 +31,12 @@ def sliding(equilibrium: Equilibrium, state: State) -> Iterator[str]:
     state : State
         Where the last load increment ended that converged.
     """
+    told = list(_used_up(equilibrium, state))
+    yield from told or overcome(equilibrium, state)
+
+
+def _used_up(equilibrium: Equilibrium, state: State) -> Iterator[str]:
+    """The same by what friction bears at the end of the last increment."""
     for piece, motions in zip(equilibrium.numbering.pieces, equilibrium.motions, strict=bool(equilibrium.motions)):
         names = {body.name for body in piece}
         pairs = [(pair, begun) for pair, begun in zip(equilibrium.pairs, state.contacts, strict=True) if _bodies(pair) & names]

@@ -76,26 +76,27 @@ class Touching:
         first = np.min([approach.distances for approach in approaches], axis=0)
         found: list[FloatArray | None] = []
         for pair, contact, approach, penalty in zip(pairs, start.contacts, approaches, penalties, strict=True):
-            among = np.isfinite(approach.distances) & (approach.distances <= first + _least(pair))
+            among = np.isfinite(approach.distances) & (approach.distances <= first + next_to_nothing(pair))
             if np.any(contact.pressure != 0.0) or not among.any():
                 found.append(None)
                 continue
-            size, least = float(pair.parameters(approach.control, penalty)[0]) if isinstance(penalty, Scales) else penalty, _least(pair)
-            found.append(np.where(approach.near, size * np.maximum(least, least - _heights(approach.control)), 0.0))
+            size = float(pair.parameters(approach.control, penalty)[0]) if isinstance(penalty, Scales) else penalty
+            least = next_to_nothing(pair)
+            found.append(np.where(approach.near, size * np.maximum(least, least - mean_heights(approach.control)), 0.0))
         return found
 
     def _approach(self, pair: PairMechanics, positions: FloatArray, start: ContactState) -> _Approach:
         """Of a pair; one that bears is where it stands (theory 6.8)."""
         sides = (side for side in (pair.pair.contact.slave, pair.pair.contact.master) if isinstance(side, Face))
         names = {face.body for side in sides for face in side.faces}
-        control, least = pair.kinematics(positions, start).control, _least(pair)
-        heights = _heights(control)
+        control, least = pair.kinematics(positions, start).control, next_to_nothing(pair)
+        heights = mean_heights(control)
         bears = start.pressure != 0.0
         near = np.isfinite(heights) & (bears if bears.any() else heights >= heights.max() - least)
         distances = np.full(len(self._ways), np.inf)
         for k, (bodies, way) in enumerate(self._ways):
             if names & bodies:
-                rates = (_heights(pair.kinematics(positions + least * way, start).control)[near] - heights[near]) / least
+                rates = (mean_heights(pair.kinematics(positions + least * way, start).control)[near] - heights[near]) / least
                 closes = rates > constants.IN_THE_WAY
                 distances[k] = np.min(-heights[near][closes] / rates[closes], initial=np.inf)
         return _Approach(control, near, distances)
@@ -111,11 +112,11 @@ def _motions_left(problem: Problem, numbering: Numbering, piece: tuple[Body, ...
     return displacements
 
 
-def _heights(control: Control) -> FloatArray:
+def mean_heights(control: Control) -> FloatArray:
     """Mean gaps of constraints, shape (n,), positive where they penetrate; of those without a foot minus infinity."""
     return np.divide(control.gap, control.weight, out=np.full_like(control.gap, -np.inf), where=control.weight > 0.0)
 
 
-def _least(pair: PairMechanics) -> float:
+def next_to_nothing(pair: PairMechanics) -> float:
     """A length that is next to nothing beside the slave face."""
     return constants.NO_PART * float(np.sqrt(pair.pair.area))

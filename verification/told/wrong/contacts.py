@@ -88,6 +88,13 @@ control_points = [[0, 0, 0.3], [1, 0, 0.3], [0, 1, 0], [1, 1, 0], [0, 0, 0.3], [
 
 # Scene, what is replaced, by what, the key that the error names, and a part of its text.
 WRONG = {
+    "absurd cohesion": (
+        PRESS,
+        "[supports.top]",
+        "cohesion = 1e200\n[supports.top]",
+        "contacts.floor.cohesion",
+        "is 1e+200; allowed: up to 1e+100",
+    ),
     "normal turned round": (PRESS, "normal = [0, 0, 1]", "normal = [0, 0, -1]", "contacts.floor.plane.normal", "turn it round, [0, 0, 1]"),
     "normal turned round, with a gap": (
         PRESS,

@@ -35,6 +35,7 @@ _BESIDE = '[supports.beside]\nface = "pad.u0"\n{}\n[supports.die]'
 # What is replaced, by what, the field that the error names, and a part of its text.
 WRONG = {
     "not a number": ("force.z = -0.3", "force.z = nan", "supports.top.force.z", "allowed: a finite number"),
+    "absurd force": ("force.z = -0.3", "force.z = -1e160", "supports.top.force", "is 1e+160 large; allowed: up to "),
     "another component": ("force.z = -0.3", "force.w = -0.3", "supports.top.force.w", "unknown key; allowed here: x, y, z"),
     "by components too": (
         "force.z = -0.3", 'force.z = -0.3\ncomponents = ["y", "z"]', "supports.top", "prescribes z both by components and by force",

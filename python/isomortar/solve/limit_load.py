@@ -1,0 +1,138 @@
+"""How much of their loads friction can bear: rigid bodies on beds of springs, and the way on which friction resists least (theory 9.11)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from isomortar._bindings import Control
+from isomortar.geometry.patch import FloatArray
+from isomortar.model.supports import BoolArray
+from isomortar.solve.contact import PairMechanics
+from isomortar.solve.record import ContactState, State
+from isomortar.solve.touching import mean_heights, next_to_nothing
+
+#: Rates of gaps, beside the largest one of all motions, below which a motion is along the contact: faces are flat to some digits.
+ALONG = 1e-3
+#: Share of a slave's constraints that touch from which on its moments are known: of less the place is not, before it is pressed.
+FACE = 0.5
+#: Iterations in which a bed of springs, and the motion that friction resists least, are found, or there are none.
+ITERATIONS = 50
+
+
+@dataclass(frozen=True)
+class Touch:
+    """Constraints of a pair that touch, by their numbers, and what motions do to them.
+
+    `closing`: rates of their gaps, shape (n, motions); `slipping`: those of their slips, in lengths, shape (n, 2, motions).
+    """
+
+    pair: PairMechanics
+    near: BoolArray
+    weight: FloatArray
+    closing: FloatArray
+    slipping: FloatArray
+
+    @property
+    def is_face(self) -> bool:
+        """Whether most of the slave touches."""
+        return bool(self.near.mean() >= FACE)
+
+    def lengths(self, way: FloatArray) -> FloatArray:
+        """How far each slips."""
+        return np.asarray(np.linalg.norm(self.slipping @ way, axis=1))
+
+    def limits(self, bed: FloatArray) -> FloatArray:
+        """What friction can bear at each, where a rigid motion presses them on a bed of springs."""
+        pressure = np.zeros(len(self.near))
+        pressure[self.near] = self.pressures(bed)
+        return self.pair.radius(pressure)[self.near]
+
+    def pressures(self, bed: FloatArray) -> FloatArray:
+        """Their pressures by such a motion."""
+        return np.asarray(np.maximum(self.closing @ bed, 0.0) / self.weight)
+
+
+def touches_of(mechanics: Sequence[PairMechanics], state: State, displacements: Sequence[FloatArray]) -> list[Touch]:
+    """What bears of all pairs, or touches, or is nearest to that, by motions given as displacements.
+
+    Raises
+    ------
+    LostProjectionError
+    """
+    pairs = list(zip(mechanics, state.contacts, strict=True))
+    found = [_heights(pair.kinematics(state.positions, begun).control) for pair, begun in pairs]
+    nearest = min(max((float(height.max(initial=-np.inf)) for height in found), default=-np.inf), 0.0)
+    touches = []
+    for (pair, begun), height in zip(pairs, found, strict=True):
+        bears, highest = (begun.pressure > 0.0) & np.isfinite(height), float(height.max(initial=-np.inf))
+        touching = np.isfinite(height) & (height >= highest - next_to_nothing(pair)) & (highest >= nearest - next_to_nothing(pair))
+        near = bears if bears.any() else touching
+        if near.any():
+            touches.append(_touch(pair, state.positions, begun, near, displacements))
+    return touches
+
+
+def _heights(control: Control) -> FloatArray:
+    """Mean gaps; minus infinity of what has no foot, or no metric to measure slips in, as at a pole."""
+    return np.where(np.all(control.metric[:, [0, 2]] > 0.0, axis=1), mean_heights(control), -np.inf)
+
+
+def _touch(pair: PairMechanics, positions: FloatArray, begun: ContactState, near: BoolArray, displacements: Sequence[FloatArray]) -> Touch:
+    """Of a pair at some positions; rates are differences over ways that are next to nothing."""
+    at, step = pair.kinematics(positions, begun).control, next_to_nothing(pair)
+    m11, m12, m22 = (at.metric[near] / at.square[near, None]).T
+    length = np.sqrt(m11)
+    in_lengths = np.stack([length, m12 / length, np.zeros_like(length), np.sqrt(np.maximum(m22 - m12**2 / m11, 0.0))], axis=1)
+    ends = [pair.kinematics(positions + step * displacement, begun).control for displacement in displacements]
+    closing = np.stack([(end.gap[near] - at.gap[near]) / step for end in ends], axis=1)
+    slips = np.stack([(end.slip[near] - at.slip[near]) / step for end in ends], axis=2)
+    return Touch(pair, near, at.weight[near], closing, in_lengths.reshape(-1, 2, 2) @ slips)
+
+
+def along_contact(touches: Sequence[Touch]) -> FloatArray:
+    """Motions that neither close nor open what touches, shape (motions, those); all, where nothing does."""
+    if not touches:
+        return np.zeros((0, 0))
+    _, values, motions = np.linalg.svd(np.concatenate([touch.closing / touch.weight[:, None] for touch in touches]))
+    return np.asarray(motions[np.count_nonzero(values > ALONG * max(values.max(), ALONG)) :].T)
+
+
+def pressed_bed(touches: Sequence[Touch], works: FloatArray, along: FloatArray) -> FloatArray | None:
+    """The motion that presses bodies, as rigid ones on beds of springs, until these bear their loads; None: they do not (theory 9.11).
+
+    Friction holds the motions along the contact, and is given no part in others.
+    """
+    closing = np.concatenate([touch.closing for touch in touches])
+    weight = np.concatenate([touch.weight for touch in touches])
+    slipping = np.concatenate([(touch.slipping / np.sqrt(touch.weight)[:, None, None]).reshape(-1, len(works)) for touch in touches])
+    _, values, rows = np.linalg.svd((slipping @ along).T @ slipping)
+    others = rows[np.count_nonzero(values > ALONG**2 * values.max(initial=0.0)) :].T
+    bed, presses = np.zeros(len(works)), np.ones(len(weight), dtype=bool)
+    for _ in range(ITERATIONS):
+        stiffness = (closing[presses] / weight[presses, None]).T @ closing[presses]
+        bed = others @ np.linalg.lstsq(others.T @ stiffness @ others, others.T @ works, rcond=ALONG**2)[0]
+        before, presses = presses, closing @ bed > 0.0
+        if np.array_equal(before, presses):
+            left = others.T @ (works - stiffness @ bed)
+            return bed if np.linalg.norm(left) <= ALONG * np.linalg.norm(works) else None
+    return None
+
+
+def least_resisted(touches: Sequence[Touch], limits: Sequence[FloatArray], along: FloatArray, works: FloatArray) -> FloatArray:
+    """Of motions along the contact on which loads do unit work the one that friction resists least (theory 9.11); zero: it resists none."""
+    resisted = [np.sqrt(limit)[:, None, None] * (touch.slipping @ along) for touch, limit in zip(touches, limits, strict=True)]
+    slips, limit, work = np.concatenate(resisted), np.concatenate(limits), along.T @ works
+    lengths, way = np.ones(len(limit)), np.zeros(len(work))
+    for _ in range(ITERATIONS):
+        shares = (slips / np.sqrt(lengths)[:, None, None]).reshape(-1, len(work))
+        stiffness = shares.T @ shares
+        found = np.linalg.lstsq(stiffness, work, rcond=ALONG**3)[0]
+        if not work @ found > 0.0 or np.linalg.norm(stiffness @ found - work) > ALONG * np.linalg.norm(work):
+            return np.zeros(len(works))
+        way = found / (work @ found)
+        lengths = np.linalg.norm(slips @ way, axis=1) / np.sqrt(np.where(limit > 0.0, limit, 1.0))
+        lengths = np.maximum(lengths, ALONG * lengths.max())
+    return along @ way
