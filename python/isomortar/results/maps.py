@@ -16,6 +16,7 @@ from isomortar.results import style
 from isomortar.results.face_field import FaceField
 from isomortar.results.fields import ContactSurface
 from isomortar.results.laid import Laid, directions_of, laid
+from isomortar.results.ranges import narrowest
 from isomortar.solve.record import StepResult
 
 #: By status of a control point: marker, filling, label.
@@ -34,7 +35,7 @@ def draw_map(problem: Problem, step: StepResult, field: FaceField) -> Figure:
     axes = figure.subplots()
     _draw_material(axes, surface, flat)
     seen = _seen(surface)
-    _draw_field(axes, field, flat, seen)
+    _draw_field(axes, field, flat, seen, narrowest(problem, field.name) if field.signed else 1e-300)
     _draw_states(axes, surface, flat)
     axes.set(xlabel=flat.labels[0], ylabel=flat.labels[1], aspect="equal")
     axes.set_title(f"{problem.name}, {surface.contact.name}, load step {step.step} ({step.stage})", loc="left", pad=24)
@@ -58,12 +59,12 @@ def _draw_material(axes: Axes, surface: ContactSurface, flat: Laid) -> None:
     axes.add_collection(LineCollection([*upright, *level], colors=style.BLACK, linewidths=0.4, alpha=0.6))
 
 
-def _draw_field(axes: Axes, field: FaceField, flat: Laid, seen: tuple[FloatArray, FloatArray]) -> None:
-    """Colours, up to the largest value of what is seen, and their bar."""
+def _draw_field(axes: Axes, field: FaceField, flat: Laid, seen: tuple[FloatArray, FloatArray], least: float) -> None:
+    """Colours, up to the largest value of what is seen, or `least` where that is round-off, and their bar."""
     samples = [_samples(direction) for direction in field.surface.directions]
     sizes, values = (_sizes(field, parameters) for parameters in (seen, samples))
     known = field.surface.over_master(seen)
-    peak = max(float((np.abs(sizes[known]) if field.signed else sizes).max(initial=0.0)), 1e-300)
+    peak = max(float((np.abs(sizes[known]) if field.signed else sizes).max(initial=0.0)), least)
     pulls = not field.signed and bool(values.min() < -style.NOTHING * peak)
     unseen = ~field.surface.over_master(samples) if field.signed else np.abs(values) < style.UNSEEN * peak
     shown = np.ma.masked_where(unseen, values)

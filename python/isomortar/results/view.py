@@ -26,6 +26,7 @@ from isomortar.results.bodies import plane_corners, towards
 from isomortar.results.fields import contact_surfaces
 from isomortar.results.files import place_for, writing
 from isomortar.results.paraview import states
+from isomortar.results.ranges import narrowest
 from isomortar.results.reader import Results
 from isomortar.results.vtu import BezierGrid
 from isomortar.solve.record import StepResult
@@ -225,15 +226,15 @@ def _fields(problem: Problem, surfaces: Sequence[Surface]) -> Iterator[dict[str,
         of = f" of {contact.name}" if len(problem.contacts) > 1 else ""
         face = next(surface for surface in surfaces if surface.contact == number)
         for column, unit_of, colours in CONTACT_FIELDS:
-            low, high = _range([face], column)
+            low, high = _range(problem, [face], column)
             bare = colours == "pressure"
             yield _field(f"{column}{of}", column, unit_of, colours, number, (0.0 if bare else low, high), bare)
         yield _field(f"status{of}", "status", "", "field", number, (0.0, 2.0), False)
     bodies = [surface for surface in surfaces if surface.contact is None]
     way = max(float(np.linalg.norm(row[:3] - surface.rows[0][:3], axis=0).max()) for surface in bodies for row in surface.rows)
-    yield _field("displacement", "displacement", "length", "field", None, (0.0, way), False)
+    yield _field("displacement", "displacement", "length", "field", None, (0.0, max(way, narrowest(problem, "displacement"))), False)
     for column, unit_of, colours in BODY_FIELDS:
-        yield _field(column, column, unit_of, colours, None, _range(bodies, column), False)
+        yield _field(column, column, unit_of, colours, None, _range(problem, bodies, column), False)
 
 
 def _field(
@@ -243,10 +244,11 @@ def _field(
     return {"label": label, "column": column, "unit": of_unit, "colours": colours, "contact": contact, "range": ends, "bare": bare}
 
 
-def _range(surfaces: Sequence[Surface], column: str) -> tuple[float, float]:
-    """Least and largest value of a field over all load steps, at parts of elements; zeros of one that is nowhere known."""
+def _range(problem: Problem, surfaces: Sequence[Surface], column: str) -> tuple[float, float]:
+    """Least and largest value of a field over all load steps, at parts of elements, farther apart than round-off."""
     together = np.concatenate([surface.values(column) for surface in surfaces])
-    return (float(together.min()), float(together.max())) if len(together) else (0.0, 0.0)
+    low, high = (float(together.min()), float(together.max())) if len(together) else (0.0, 0.0)
+    return low, max(high, low + (0.0 if column in ("pressure", "traction") else narrowest(problem, column)))
 
 
 def _planes(problem: Problem, surfaces: Sequence[Surface], centre: FloatArray) -> Iterator[dict[str, Any]]:
