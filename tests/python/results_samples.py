@@ -102,6 +102,12 @@ def _contact_state(random: np.random.Generator) -> ContactState:
     )
 
 
+def over_master(result: StepResult, share: float = 1.0) -> StepResult:
+    """A load step in which that share of the slave quadrature points has a foot, the first ones, round the ring."""
+    found = (np.arange(96) < 96 * share).astype(np.int32)
+    return replace(result, state=replace(result.state, contacts=tuple(replace(c, projected=found) for c in result.state.contacts)))
+
+
 def _contact_result(random: np.random.Generator) -> ContactResult:
     forces = random.normal(size=(4, 3))
     return ContactResult(

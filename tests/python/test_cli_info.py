@@ -101,6 +101,25 @@ def test_a_results_file_tells_of_loads(invoke: Invoke) -> None:
     assert (load["name"], load["force"]) == ("own", pytest.approx([0, 0, -0.5], abs=1e-15))
 
 
+def test_a_results_file_tells_what_is_of_the_whole(invoke: Invoke) -> None:
+    """Of a quarter with its forces; without symmetry nothing is said."""
+    text = """format = 1
+    bodies.block.geometry = { kind = "box", lower = [-1, -1, 0], upper = [1, 1, 2] }
+    bodies.block.mesh = { order = 2, elements = 2 }
+    supports.bed.face = "block.w0"
+    loads.own = { body = "block", weight = [0, 0, -0.25] }
+    stages = [{ name = "settle", steps = 1 }]"""
+    Path("own.toml").write_text(text)
+    said = "the part above the plane x = 0 and the plane y = 0 is computed, one of 4: forces and moments are the whole's, unknowns and "
+    for name, more, told in (("whole", [], []), ("quarter", ["--set", "symmetry={ x = 0.0, y = 0.0 }"], [said + "constraints the part's"])):
+        assert invoke("run", "own.toml", "--output", f"{name}.h5", "--quiet", *more)[0] == 0
+        lines = invoke("info", f"{name}.h5")[1].splitlines()
+        assert [line for line in lines if line.startswith("the part")] == told
+        (load,) = (line for line in lines if line.startswith("load "))
+        assert load.startswith("load own: force (0, 0, -2), ")
+    assert json.loads(invoke("info", "quarter.h5", "--json")[1])["symmetry"] == ["the plane x = 0", "the plane y = 0"]
+
+
 def _until(last: int) -> Callable[[ResultsWriter, StepResult], None]:
     """Recording of load steps up to one; the next one is a fault of the program."""
     recorded = ResultsWriter.recorded

@@ -165,7 +165,7 @@ def test_vtk_sees_the_pressure_field(tmp_path: Path) -> None:
     expected = []
     for surface in contact_surfaces(made, step_result(1)):
         matrices = (sampling_matrix(surface.directions[0], 2), sampling_matrix(surface.directions[1], 2))
-        _, field, _ = surface.fields(matrices)
+        field = surface.field(matrices, surface.pressure[:, None])
         grid = field.reshape(matrices[1].shape[0], matrices[0].shape[0])
         expected += list(grid[1::2, 1::2].ravel())
     assert seen == pytest.approx(expected, abs=1e-13)

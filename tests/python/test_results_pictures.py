@@ -33,7 +33,7 @@ from isomortar.results.stress import cauchy_stress, deformation_gradient, von_mi
 from isomortar.scene import Scene
 from isomortar.scene.schema import CurveTable
 from isomortar.solve.record import StepResult
-from results_samples import problem, step_result, without_contact
+from results_samples import over_master, problem, step_result, without_contact
 
 
 @dataclass(frozen=True)
@@ -45,8 +45,8 @@ class Curve:
 
 
 def quiet(number: int) -> StepResult:
-    """A step with little deformation, so that the bodies look like bodies."""
-    made, result = problem(), step_result(number)
+    """A step with little deformation, so that the bodies look like bodies, and with slaves that are all over their masters."""
+    made, result = problem(), over_master(step_result(number))
     rest = Numbering(made).reference
     return replace(result, state=replace(result.state, positions=rest + 0.1 * (result.state.positions - rest)))
 
@@ -304,7 +304,7 @@ def test_a_map_looks_at_contact_along_both_of_its_coordinates() -> None:
 
 
 def test_gaps_have_colours_of_both_signs_and_nothing_bare() -> None:
-    made, step = problem(), step_result(1)
+    made, step = problem(), over_master(step_result(1))
     drawn = mesh(mapped(made, step, "gap"))
     low, high = drawn.get_clim()
     assert low == -high < 0.0

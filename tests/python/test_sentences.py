@@ -103,6 +103,9 @@ def along_the_way(_: pytest.MonkeyPatch) -> Told:
     left = (replace(measured[0], excluded=7), measured[1])
     yield from zip(("left the master", "oscillates"), advice.after_step(2, left, wild), strict=True)
     assert list(advice.after_step(3, left, wild)) == list(advice.at_the_end({})) == []
+    half = [replace(state, projected=(np.arange(96) < 48).astype(np.int32)) for state in calm]
+    beyond = (measured[0], replace(measured[1], excluded=48))
+    (yield "large beside the master", *StepAdvice(problem(), 0, half).after_step(2, beyond, wild))
     gone = (replace(measured[0], active=0, excluded=96), measured[1])
     (yield "beside", *advice.after_step(4, gone, calm))
     assert list(advice.after_step(5, gone, calm)) == []

@@ -25,7 +25,6 @@ from isomortar.model.numbering import Numbering
 from isomortar.results import ResultsWriter
 from isomortar.results.bezier import functions_at, rational
 from isomortar.results.fields import body_points, contact_surfaces
-from isomortar.results.view import PARTS
 from isomortar.solve.record import StepResult
 from results_samples import problem
 from test_results_pictures import quiet
@@ -62,11 +61,16 @@ def nets(path: Path) -> list[dict[str, Any]]:
     for surface in data["surfaces"]:
         shape = [p * n + 1 for p, n in zip(surface["orders"], surface["elements"], strict=True)]
         count, rows = shape[0] * shape[1], len(surface["columns"])
-        parts = [count, *[rows * count] * len(data["steps"]), *[4 * surface["marks"]] * len(data["steps"])]
+        steps, drawn = len(data["steps"]), [n * surface["parts"] + 1 for n in surface["elements"]]
+        parts = [count, *[rows * count] * steps, *[4 * surface["marks"]] * steps]
+        parts += [drawn[0] * drawn[1], rows] * steps if surface["contact"] is not None else []
         weights, *blocks = np.split(numbers[begin : begin + sum(parts)].astype(float), np.cumsum(parts)[:-1])
         begin += sum(parts)
-        states = [block.reshape(rows, count) for block in blocks[: len(data["steps"])]]
-        found.append(surface | {"shape": shape, "weights": weights, "states": states, "marked": blocks[len(data["steps"]) :]})
+        states = [block.reshape(rows, count) for block in blocks[:steps]]
+        acting = [block.reshape(drawn[::-1]) for block in blocks[2 * steps :: 2]]
+        found.append(
+            surface | {"shape": shape, "weights": weights, "states": states, "marked": blocks[steps : 2 * steps], "acting": acting}
+        )
     assert begin == len(numbers)
     return found
 
@@ -142,11 +146,12 @@ def test_a_body_that_is_stretched_has_its_volume_on_the_page(tmp_path: Path) -> 
 
 
 def test_ranges_are_those_of_all_load_steps(page: Path) -> None:
-    """At quarters of elements; pressures begin at zero."""
-    quarters, found = [k / PARTS for k in range(PARTS + 1)], {}
+    """At the places where surfaces are drawn; pressures begin at zero."""
+    found: dict[tuple[str, int | None], list[float]] = {}
     for surface in nets(page):
+        places = [k / surface["parts"] for k in range(surface["parts"] + 1)]
         elements = itertools.product(*map(range, surface["elements"]))
-        for element, s, t, state in itertools.product(elements, quarters, quarters, surface["states"]):
+        for element, s, t, state in itertools.product(elements, places, places, surface["states"]):
             for name, value in zip(surface["columns"], at(surface, state, element, (s, t)), strict=True):
                 found.setdefault((name, surface["contact"]), []).append(value)
     fields = said(page)[0]["fields"]

@@ -89,7 +89,7 @@ def of_a_file(states: str) -> dict[str, float]:
                     for load, end in zip(problem.loads, last.loads, strict=True)
                 ],
                 "load_steps": 5, "recorded": count, "kept_states": kept, "cuts": sum(range(count)), "name": "scene", "version": "0",
-                "stages": {"press": (2, 2), "turn": (count - 2, 3)}, "cpu_seconds": count + sum(range(count)),
+                "stages": {"press": (2, 2), "turn": (count - 2, 3)}, "symmetry": [], "cpu_seconds": count + sum(range(count)),
             }  # fmt: skip
             given = {name: list(value) if isinstance(value, tuple) else value for name, value in asdict(found).items()}
             wrong += sum(given[name] != value for name, value in expected.items())

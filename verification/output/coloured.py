@@ -35,7 +35,7 @@ stages = [{ name = "one", steps = 1 }]
     },
 )
 def coloured(field: str) -> dict[str, float]:
-    """Ends of the colour bar, or of J their mean, off what they are to be; by how much the colour of most parts is not the last one."""
+    """Ends of the colour bar, of J its lower one, off what they are to be; by how much the colour of most parts is not the last one."""
     problem = Scene.from_toml(SCENE).problem()
     (step,), at_rest = load_steps(problem), Numbering(problem).reference
     motion = np.eye(3) if field == "displacement" else exported.GRADIENT
@@ -47,6 +47,25 @@ def coloured(field: str) -> dict[str, float]:
     drawn = np.concatenate([c.get_facecolor() for c in figure.axes[0].collections if isinstance(c, PathCollection)])
     alone = field == "J"  # a range of one value, which is drawn wider
     return {
-        "range": float(np.abs([0.5 * (low + high) - exact] if alone else [low, high - exact]).max()),
+        "range": float(np.abs([low - exact] if alone else [low, high - exact]).max()),
         "colours": 0.0 if alone else float(np.abs(np.median(drawn, axis=0) - style.field_colours()(1.0)).max()),
     }
+
+
+@case(
+    claim="A body that has no stress and its volume, however it has turned, or has not moved, has one colour: that of none.",
+    tier="gate",
+    grid={"field": ("stress", "J", "displacement")},
+    bounds={"colours": Bound(at_most=1e-2, reason="round-off: some parts of 256 colours; a range that round-off fills has all of them")},
+)
+def round_off(field: str) -> dict[str, float]:
+    """Largest distance of a colour from the first one."""
+    problem = Scene.from_toml(SCENE).problem()
+    (step,), at_rest = load_steps(problem), Numbering(problem).reference
+    cosine, sine = np.cos(0.7), np.sin(0.7)
+    turned = at_rest @ np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]]) + exported.SHIFT
+    moved = replace(step, state=replace(step.state, positions=at_rest if field == "displacement" else turned))
+    figure = draw_coloured(problem, moved, field)
+    faces = [c for c in figure.axes[0].collections if isinstance(c, PathCollection)]
+    drawn = np.concatenate([c.get_facecolor() for c in faces])
+    return {"colours": float(np.abs(np.median(drawn, axis=0) - style.field_colours()(0.0)).max())}

@@ -218,9 +218,9 @@ def arrows(contact: int) -> dict[str, float]:
 
 
 def _mapped(contact: int) -> tuple[Problem, StepResult]:
-    """Bodies of which no two directions have parameters as long, and a load step in which all states are on the slave face."""
+    """Bodies of which no two directions have parameters as long, and a load step with all states on the slave face, all over its master."""
     problem = _in_other_parameters(Scene.from_toml(_MAPPED).problem())
-    step = records.load_steps(problem)[0]
+    step = records.over_master(records.load_steps(problem)[0])
     status = np.arange(len(step.contacts[contact].status), dtype=np.int32) % 3
     return problem, replace(step, contacts=_with(step.contacts, contact, replace(step.contacts[contact], status=status)))
 

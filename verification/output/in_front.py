@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PathCollection
 from matplotlib.colors import to_rgb
-from output.records import load_steps
+from output.records import load_steps, over_master
 
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, case
@@ -158,7 +158,7 @@ def in_front(side: str) -> dict[str, float]:
     """Largest errors over random places of both pictures."""
     master, (axis, end), eye, steps = SIDES[side]
     problem = Scene.from_toml(SCENE.replace("FACE", side).replace("MASTER", master)).problem()
-    made = [moved(problem, step, factor) for step, factor in zip(load_steps(problem)[:steps], (1.0, 2.0), strict=False)]
+    made = [moved(problem, over_master(step), factor) for step, factor in zip(load_steps(problem)[:steps], (1.0, 2.0), strict=False)]
     step, boxes = made[0]
     figure = draw_bodies(problem, step, 0, common_scale(problem, [of for of, _ in made], 0) if steps > 1 else None)
     slaves = [of["slave"] for _, of in made]

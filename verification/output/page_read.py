@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 from output.drawn import centres
-from output.records import SCENE, load_steps, recorded
+from output.records import SCENE, load_steps, over_master, recorded
 from rational_functions import shares
 
 from isomortar import view
@@ -48,6 +48,8 @@ def taken_apart(page: Path) -> tuple[dict[str, Any], list[tuple[list[FloatArray]
                 block[:3] += np.array(data["centre"])[:, None]
                 blocks.append(block)
                 at += rows * count
+        if surface["contact"] is not None:  # where the master is opposite, and the largest values, of each load step
+            at += len(data["steps"]) * (int(np.prod([surface["parts"] * n + 1 for n in surface["elements"]])) + len(surface["columns"]))
         half = len(data["steps"])
         surfaces.append((blocks[:half], blocks[half:]))
     assert at == len(numbers)
@@ -91,14 +93,14 @@ def quantities(step: StepResult, number: int) -> dict[str, FloatArray]:
     bounds={
         "fields": Bound(at_most=1e-6, reason=f"{_SINGLE}; of the largest value"),
         "marks": Bound(at_most=1e-6, reason=f"{_SINGLE}; of the size of the scene"),
-        "ranges": Bound(at_most=1e-12, reason="round-off: values at fourths of the elements, over the largest"),
+        "ranges": Bound(at_most=1e-12, reason="round-off: values at the parts of elements that are drawn, over the largest"),
         "words": Bound(0.0, 0.0, "definition: load steps, stages, fields, faces and planes that are others, or told of another one"),
     },
 )
 def page_read() -> dict[str, float]:
     """Largest errors; how many words are wrong."""
     problem = Scene.from_toml(SCENE).problem()
-    steps, worst = load_steps(problem), {"fields": 0.0, "marks": 0.0, "ranges": 0.0}
+    steps, worst = [over_master(step) for step in load_steps(problem)], {"fields": 0.0, "marks": 0.0, "ranges": 0.0}
     with tempfile.TemporaryDirectory() as folder:
         run, page = Path(folder) / "run.h5", Path(folder) / "run.html"
         recorded(run, problem, steps, "every")
@@ -142,7 +144,7 @@ def _compare(
     """Note the largest errors of a contact's surface."""
     number, columns = described["contact"], described["columns"]
     directions, weights, points = slave(problem, number)
-    corners, fourths = (shares(directions, weights, on_grid([parts_of(d, n) for d in directions])) for n in (1, 4))
+    corners, drawn = (shares(directions, weights, on_grid([parts_of(d, n) for d in directions])) for n in (1, described["parts"]))
     belongs = shares(directions, weights, on_grid([centres(d) for d in directions]))
     ends: dict[str, list[float]] = {name: [] for name in OF_CONTACT[:3]}
     for step, row, mark in zip(steps, rows, marks, strict=True):
@@ -155,7 +157,7 @@ def _compare(
             exact = corners @ values
             off = np.abs(found[columns.index(name)] - exact).max() / np.maximum(np.abs(exact).max(), 1e-300)
             worst["fields"] = float(np.maximum(worst["fields"], off))
-            ends[name] += [float((fourths @ values).min()), float((fourths @ values).max())]
+            ends[name] += [float((drawn @ values).min()), float((drawn @ values).max())]
     for name, told in ends.items():
         low, high = fields[f"{name} of {problem.contacts[number].name}"]["range"]
         exact_low = 0.0 if name != "gap" else float(np.min(told))

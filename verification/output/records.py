@@ -77,6 +77,12 @@ def load_steps(problem: Problem) -> list[StepResult]:
     return [_load_step(problem, computed, simulation.equilibrium.numbering.reference, number) for number in _numbers(problem)]
 
 
+def over_master(step: StepResult) -> StepResult:
+    """The load step with all slave points over their master, where fields of contacts are shown as they are (theory 8.7)."""
+    contacts = tuple(replace(state, projected=np.ones_like(state.projected)) for state in step.state.contacts)
+    return replace(step, state=replace(step.state, contacts=contacts))
+
+
 def _numbers(problem: Problem) -> range:
     return range(1, problem.total_steps + 1)
 

@@ -67,6 +67,8 @@ class Information:
         Recorded load steps and all, by stage.
     cpu_seconds : float
         Of all recorded load steps.
+    symmetry : tuple of str
+        Planes of symmetry, above which the scene was computed.
     contacts : tuple of ContactEnd
     supports : tuple of SupportEnd
     loads : tuple of LoadEnd
@@ -81,6 +83,7 @@ class Information:
     cuts: int
     stages: dict[str, tuple[int, int]]
     cpu_seconds: float
+    symmetry: tuple[str, ...]
     contacts: tuple[ContactEnd, ...]
     supports: tuple[SupportEnd, ...]
     loads: tuple[LoadEnd, ...]
@@ -126,6 +129,7 @@ def information(results: isomortar.Results) -> Information:
         cuts=int(results.curve("cuts").sum()),
         stages={stage.name: (stages.count(stage.name), stage.steps) for stage in problem.stages},
         cpu_seconds=float(np.nansum(results.timings().get("total", np.zeros(0)))),
+        symmetry=tuple(plane.words for plane in problem.symmetry),
         contacts=tuple(_contacts(results, last)) if last else (),
         supports=tuple(_supports(results, last)) if last else (),
         loads=tuple(_loads(results, last)) if last else (),
@@ -157,6 +161,11 @@ def lines(found: Information, path: Path) -> Iterator[str]:
         f"{found.recorded} of {many(found.load_steps, 'load step')} ({parts}), {found.kept_states} with their state; "
         f"{found.cpu_seconds:.3g} CPU seconds, {many(found.cuts, 'cut')} of increments"
     )
+    if found.symmetry:
+        yield (
+            f"the part above {' and '.join(found.symmetry)} is computed, one of {2 ** len(found.symmetry)}: forces and moments are the "
+            "whole's, unknowns and constraints the part's"
+        )
     for contact in found.contacts:
         low, high = contact.pressure
         yield (

@@ -17,6 +17,7 @@ from isomortar.results import style
 from isomortar.results.bezier import functions_at, inner_places, rational_gradient
 from isomortar.results.bodies import VIEW, add_body, plain
 from isomortar.results.fields import body_points
+from isomortar.results.ranges import narrowest
 from isomortar.results.rendering import Canvas
 from isomortar.results.stress import cauchy_stress, deformation_gradient, von_mises
 from isomortar.solve.record import StepResult
@@ -73,7 +74,7 @@ def draw_coloured(problem: Problem, step: StepResult, name: str = "stress") -> F
         ]
     )
     lowest = 0.0 if shown.from_zero else float(inside.min())
-    colours = ScalarMappable(Normalize(lowest, max(float(inside.max()), lowest + 1e-300)), style.field_colours())
+    colours = ScalarMappable(Normalize(lowest, max(float(inside.max()), lowest + narrowest(problem, name))), style.field_colours())
     figure = Figure(figsize=(5.6, 4.2), layout="constrained")
     axes, canvas = figure.subplots(), Canvas(VIEW)
     glued = [face for joint in problem.glue for face in joint]

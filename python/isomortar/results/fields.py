@@ -12,7 +12,9 @@ from isomortar.model.enforcement import METHODS, SlaveFace
 from isomortar.model.entities import Contact, Problem
 from isomortar.model.numbering import Numbering
 from isomortar.model.sheet import Sheet
+from isomortar.model.supports import BoolArray
 from isomortar.results.bezier import functions_at, rational, rational_gradient
+from isomortar.results.footing import Footing
 from isomortar.solve.record import ContactResult, ContactState, StepResult
 
 
@@ -23,7 +25,7 @@ class ContactSurface:
     The fields are p = sum R^I p^I, for the magnitude of the traction sum R^I |tau^I|, and by `field` any other. `covariant`: control
     tractions tau_alpha^I in the master's coordinates, shape (n, 2); `gap`: control gaps g^I, positive is penetration. `letters`: names of
     the surface coordinates among u, v, w, in the first of several bodies; `outward`: sign of the product of the tangents that points out
-    of them.
+    of them; `footing`: where the master is opposite, and fields act.
     """
 
     contact: Contact
@@ -38,6 +40,7 @@ class ContactSurface:
     covariant: FloatArray
     gap: FloatArray
     status: IntArray
+    footing: Footing
 
     @property
     def lengths(self) -> tuple[float, float]:
@@ -48,9 +51,16 @@ class ContactSurface:
         return float(along[0]), float(along[1])
 
     def fields(self, matrices: tuple[FloatArray, FloatArray]) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Points, shape (m, 3), pressure and traction magnitude, shape (m,), by matrices of `isomortar.results.bezier`."""
-        values = self.field(matrices, np.column_stack([self.points, self.pressure, self.traction]))
-        return values[:, :3], values[:, 3], values[:, 4]
+        """Points, shape (m, 3), pressure and traction magnitude, shape (m,), by matrices of `isomortar.results.bezier`.
+
+        Beside the master both are zero (theory 8.7).
+        """
+        fields = [self.pressure[:, None], self.traction[:, None]]
+        points, places, *values = np.split(
+            self.field(matrices, np.hstack([self.points, self.reference_points, *fields])), [3, 6, 7], axis=1
+        )
+        pressure, traction = (self.footing.acting(places, at, control) for at, control in zip(values, fields, strict=True))
+        return points, pressure[:, 0], traction[:, 0]
 
     def field(self, matrices: tuple[FloatArray, FloatArray], control_values: FloatArray) -> FloatArray:
         """The field of control values of shape (n, k), shape (m, k)."""
@@ -68,6 +78,10 @@ class ContactSurface:
         field, gradient = rational_gradient(functions, self.weights, control_values)
         shape = (len(parameters[1]), len(parameters[0]), control_values.shape[1])
         return field.reshape(shape), gradient.reshape(*shape, 2)
+
+    def over_master(self, parameters: Sequence[FloatArray]) -> BoolArray:
+        """Whether the master is opposite, on a grid of n1 parameters times n2, shape (n2, n1)."""
+        return self.footing.at(self.on_grid(parameters, self.reference_points)[0])
 
 
 def body_points(problem: Problem, positions: FloatArray) -> dict[str, FloatArray]:
@@ -97,10 +111,16 @@ def contact_surfaces(problem: Problem, result: StepResult) -> list[ContactSurfac
                 reference_points=sheet.patch.control_points[face],
                 points=result.state.positions[points],
                 status=measured.status[side.nearest][slave.within],
+                footing=Footing.of(side.arrays, slave.within, numbering.reference, _has_foot(contact, state)),
                 **by_control,
             )
         )
     return surfaces
+
+
+def _has_foot(contact: Contact, state: ContactState) -> BoolArray:
+    """Which slave quadrature points have a foot; where each has a constraint of its own, that without one has no pressure anyway."""
+    return (state.projected > 0) | (not contact.of_averages)
 
 
 def _quantities(state: ContactState, measured: ContactResult) -> dict[str, FloatArray]:

@@ -16,6 +16,7 @@ from isomortar.results import style
 from isomortar.results.face_field import FaceField
 from isomortar.results.fields import ContactSurface
 from isomortar.results.laid import Laid, directions_of, laid
+from isomortar.results.ranges import narrowest
 from isomortar.solve.record import StepResult
 
 #: By status of a control point: marker, filling, label.
@@ -34,7 +35,7 @@ def draw_map(problem: Problem, step: StepResult, field: FaceField) -> Figure:
     axes = figure.subplots()
     _draw_material(axes, surface, flat)
     seen = _seen(surface)
-    _draw_field(axes, field, flat, seen)
+    _draw_field(axes, field, flat, seen, narrowest(problem, field.name) if field.signed else 1e-300)
     _draw_states(axes, surface, flat)
     axes.set(xlabel=flat.labels[0], ylabel=flat.labels[1], aspect="equal")
     axes.set_title(f"{problem.name}, {surface.contact.name}, load step {step.step} ({step.stage})", loc="left", pad=24)
@@ -58,13 +59,15 @@ def _draw_material(axes: Axes, surface: ContactSurface, flat: Laid) -> None:
     axes.add_collection(LineCollection([*upright, *level], colors=style.BLACK, linewidths=0.4, alpha=0.6))
 
 
-def _draw_field(axes: Axes, field: FaceField, flat: Laid, seen: tuple[FloatArray, FloatArray]) -> None:
-    """Colours, up to the largest value of what is seen, and their bar."""
+def _draw_field(axes: Axes, field: FaceField, flat: Laid, seen: tuple[FloatArray, FloatArray], least: float) -> None:
+    """Colours, up to the largest value of what is seen, or `least` where that is round-off, and their bar."""
     samples = [_samples(direction) for direction in field.surface.directions]
     sizes, values = (_sizes(field, parameters) for parameters in (seen, samples))
-    peak = max(float((np.abs(sizes) if field.signed else sizes).max()), 1e-300)
+    known = field.surface.over_master(seen)
+    peak = max(float((np.abs(sizes[known]) if field.signed else sizes).max(initial=0.0)), least)
     pulls = not field.signed and bool(values.min() < -style.NOTHING * peak)
-    shown = values if field.signed else np.ma.masked_where(np.abs(values) < style.UNSEEN * peak, values)
+    unseen = ~field.surface.over_master(samples) if field.signed else np.abs(values) < style.UNSEEN * peak
+    shown = np.ma.masked_where(unseen, values)
     x, y = np.moveaxis(flat.at(samples)[0], -1, 0)
     lowest = -peak if field.signed else 0.0
     image = axes.pcolormesh(x, y, shown, shading="gouraud", cmap=field.colours, vmin=lowest, vmax=peak, rasterized=True)
@@ -74,8 +77,15 @@ def _draw_field(axes: Axes, field: FaceField, flat: Laid, seen: tuple[FloatArray
 
 def _sizes(field: FaceField, parameters: Sequence[FloatArray]) -> FloatArray:
     """Values on a grid of parameters, or the norms of vectors, shape (n2, n1)."""
-    values = field.surface.on_grid(parameters, field.values)[0]
+    values = _values(field, parameters)
     return values[..., 0] if values.shape[-1] == 1 else np.linalg.norm(values, axis=-1)
+
+
+def _values(field: FaceField, parameters: Sequence[FloatArray]) -> FloatArray:
+    """Values on a grid of parameters, shape (n2, n1, k): what acts of them (theory 8.7), and gaps as they are."""
+    surface = field.surface
+    values, places = (surface.on_grid(parameters, control)[0] for control in (field.values, surface.reference_points))
+    return values if field.signed else surface.footing.acting(places, values, field.values)
 
 
 def _draw_states(axes: Axes, surface: ContactSurface, flat: Laid) -> None:
@@ -92,7 +102,7 @@ def _draw_arrows(axes: Axes, field: FaceField, flat: Laid, seen: tuple[FloatArra
     lengths = np.array([np.linalg.norm(ends[0, 1] - ends[0, 0]), np.linalg.norm(ends[1, 0] - ends[0, 0])])
     counts = np.maximum(np.round(_ARROWS * lengths / lengths.max()), 2).astype(int)
     grid = [_middles(x[0], x[-1], count) for x, count in zip(seen, counts, strict=True)]
-    vectors = surface.on_grid(grid, field.values)[0]
+    vectors = _values(field, grid)
     sizes = np.linalg.norm(vectors, axis=-1)
     arrows = sizes[..., None] * directions_of(surface, flat, grid, vectors)
     places, felt = flat.at(grid)[0], sizes > style.UNSEEN * max(float(sizes.max()), 1e-300)

@@ -28,6 +28,8 @@ from isomortar.results.vtu import BezierGrid, bezier_grid, write_vtu
 
 #: Places of xx, yy, zz, xy, yz, xz in a tensor's nine components: the order in which VTK has those of symmetric ones.
 _SYMMETRIC = [0, 4, 8, 1, 5, 2]
+#: Places along each direction of an element at which it is looked whether the master is opposite.
+_SAMPLES = 8
 
 
 def export(results_path: str | os.PathLike[str], outdir: str | os.PathLike[str]) -> Path:
@@ -38,7 +40,8 @@ def export(results_path: str | os.PathLike[str], outdir: str | os.PathLike[str])
     as a vector (friction on the slave), slip of the slave on its master within the load step as a vector (NaN where the state before it
     was not kept), control gaps (positive is penetration) and status (0 open, 1 stick, 2 slip). Pressure and traction are force per area in
     the reference configuration.
-    Cell data: number of the body or contact pair, from 0 in the order of the scene.
+    Cell data: number of the body or contact pair, from 0 in the order of the scene; of slave faces the share of each element that has the
+    master opposite (``over master``): beside it pressure and traction act on nothing, however large they are.
 
     Returns
     -------
@@ -84,8 +87,15 @@ def states(results: Results) -> Iterator[tuple[float, int, dict[str, list[Bezier
 def _at_rest(surface: ContactSurface) -> ContactSurface:
     """A slave face before anything has moved: open, its gaps not told (NaN)."""
     nothing, untold = np.zeros_like(surface.pressure), np.full_like(surface.gap, np.nan)
+    open_, everywhere = np.zeros_like(surface.status), replace(surface.footing, found=np.ones_like(surface.footing.found))
     return replace(
-        surface, points=surface.reference_points, pressure=nothing, traction=nothing, gap=untold, status=np.zeros_like(surface.status)
+        surface,
+        points=surface.reference_points,
+        pressure=nothing,
+        traction=nothing,
+        gap=untold,
+        status=open_,
+        footing=everywhere,
     )
 
 
@@ -118,4 +128,13 @@ def _contact(number: int, surface: ContactSurface, vectors: ContactVectors) -> B
         "gap": surface.gap[:, None],
         "status": surface.status[:, None].astype(np.float64),
     }
-    return bezier_grid(surface.directions, surface.weights, surface.points, fields, number)
+    grid = bezier_grid(surface.directions, surface.weights, surface.points, fields, number)
+    return replace(grid, of_cells={"over master": _over_master(surface)})
+
+
+def _over_master(surface: ContactSurface) -> FloatArray:
+    """Share of each element of a slave face that has the master opposite, shape (elements,), first direction fastest."""
+    first, second = surface.directions
+    middles = [direction.subdivided(2 * _SAMPLES)[1::2] for direction in (first, second)]
+    acting = surface.over_master(middles).reshape(second.elements, _SAMPLES, first.elements, _SAMPLES)
+    return np.asarray(acting.mean(axis=(1, 3)).ravel())

@@ -26,6 +26,7 @@ from isomortar.results.bodies import plane_corners, towards
 from isomortar.results.fields import contact_surfaces
 from isomortar.results.files import place_for, writing
 from isomortar.results.paraview import states
+from isomortar.results.ranges import narrowest
 from isomortar.results.reader import Results
 from isomortar.results.vtu import BezierGrid
 from isomortar.solve.record import StepResult
@@ -39,8 +40,8 @@ CONTACT_FIELDS = (
 )
 #: Colours by status: open, stick, slip.
 STATES = (("open", "#FFFFFF"), ("stick", style.BLUE), ("slip", style.ORANGE))
-#: Parts of an element at whose ends the ranges of colours are looked for.
-PARTS = 4
+#: Parts along a surface at whose ends it is drawn, and the ranges of colours are looked for; fewest and most along one of its elements.
+PARTS, PARTS_OF_ELEMENT = 72, (3, 24)
 
 
 @dataclass
@@ -48,8 +49,10 @@ class Surface:
     """A face of a body, or the slave face of a contact, as Bezier nets.
 
     `columns`: names of fields by net point, x, y, z first; `rows`: their values by load step, shape (columns, points) each. `marks`:
-    by load step places of the constraints and their status, shape (4, constraints). `contact`: number of the contact whose slave face
-    it is, or of none, a face of a body; `slave_of`: of those in which that is the slave.
+    by load step places of the constraints and their status, shape (4, constraints). `acting`: by load step of the slave face of a contact
+    1 where its master is opposite, else 0, at equal parts of its elements, shape (places,), and by column the largest size that acts, shape
+    (columns,). `contact`: number of the contact whose slave face it is, or of none, a face of a body; `slave_of`: of those in which that is
+    the slave.
     """
 
     name: str
@@ -62,11 +65,32 @@ class Surface:
     weights: FloatArray
     rows: list[FloatArray] = field(default_factory=list)
     marks: list[FloatArray] = field(default_factory=list)
+    acting: list[tuple[FloatArray, FloatArray]] = field(default_factory=list)
+
+    @property
+    def parts(self) -> int:
+        """Equal parts that each element is cut into."""
+        return parts_of(self.elements)
 
     def sampled(self, row: FloatArray, parts: int) -> FloatArray:
         """Columns of a load step at equal parts of each element, shape (places, columns), first direction fastest."""
         matrices = [_at_parts(order, elements, parts) for order, elements in zip(self.orders, self.elements, strict=True)]
         return rational(matrices, self.weights, row.T)[0]
+
+    def values(self, column: str) -> FloatArray:
+        """Values of a field of all load steps that are known, and of contacts act, at equal parts of elements (theory 8.7)."""
+        number = self.columns.index(column)
+        rows = [self.sampled(row[[number]], self.parts)[:, 0] for row in self.rows]
+        if self.contact is not None:
+            acting = zip(rows, self.acting, strict=True)
+            rows = [np.clip(values, -largest[number], largest[number])[here > 0.0] for values, (here, largest) in acting]
+        together = np.concatenate(rows)
+        return together[np.isfinite(together)]
+
+
+def parts_of(elements: Sequence[int]) -> int:
+    """Equal parts that each element of a surface is cut into."""
+    return int(np.clip(round(PARTS / max(elements)), *PARTS_OF_ELEMENT))
 
 
 def view(results_path: str | os.PathLike[str], output: str | os.PathLike[str]) -> Path:
@@ -113,6 +137,7 @@ def _page(results: Results) -> str:
         for surface, now in zip(surfaces, found, strict=True) if surfaces is not found else ():
             surface.rows += now.rows
             surface.marks += now.marks
+            surface.acting += now.acting
         steps.append({"step": number, "stage": last.stage if number else "at rest"})
     ends = np.array([end(row[:3], axis=1) for surface in surfaces for row in surface.rows for end in (np.min, np.max)])
     low, high = ends.min(axis=0), ends.max(axis=0)
@@ -177,10 +202,13 @@ def _of_contacts(problem: Problem, grids: Sequence[BezierGrid], step: StepResult
     for number, (grid, surface) in enumerate(zip(grids, contact_surfaces(problem, step), strict=True)):
         at_marks = tuple(functions_at(d, d.greville)[0] for d in surface.directions)
         places = surface.field((at_marks[0], at_marks[1]), surface.reference_points if at_rest else surface.points)
+        elements = tuple(d.elements for d in surface.directions)
+        acting = surface.over_master([d.subdivided(parts_of(elements)) for d in surface.directions]).ravel().astype(np.float64)
+        largest = {"pressure": surface.footing.largest(surface.pressure), "traction": surface.footing.largest(surface.traction)}
         yield Surface(
             surface.contact.name,
             tuple(d.order for d in surface.directions),
-            tuple(d.elements for d in surface.directions),
+            elements,
             style.SLAVE,
             number,
             (),
@@ -188,6 +216,7 @@ def _of_contacts(problem: Problem, grids: Sequence[BezierGrid], step: StepResult
             grid.weights,
             [np.concatenate([grid.points.T, *(grid.fields[name].T for name in names)])],
             [np.vstack([places.T, np.zeros(len(places)) if at_rest else surface.status])],
+            [(np.ones_like(acting) if at_rest else acting, np.array([largest.get(name, np.inf) for name in ("x", "y", "z", *names)]))],
         )
 
 
@@ -197,15 +226,15 @@ def _fields(problem: Problem, surfaces: Sequence[Surface]) -> Iterator[dict[str,
         of = f" of {contact.name}" if len(problem.contacts) > 1 else ""
         face = next(surface for surface in surfaces if surface.contact == number)
         for column, unit_of, colours in CONTACT_FIELDS:
-            low, high = _range([face], column)
+            low, high = _range(problem, [face], column)
             bare = colours == "pressure"
             yield _field(f"{column}{of}", column, unit_of, colours, number, (0.0 if bare else low, high), bare)
         yield _field(f"status{of}", "status", "", "field", number, (0.0, 2.0), False)
     bodies = [surface for surface in surfaces if surface.contact is None]
     way = max(float(np.linalg.norm(row[:3] - surface.rows[0][:3], axis=0).max()) for surface in bodies for row in surface.rows)
-    yield _field("displacement", "displacement", "length", "field", None, (0.0, way), False)
+    yield _field("displacement", "displacement", "length", "field", None, (0.0, max(way, narrowest(problem, "displacement"))), False)
     for column, unit_of, colours in BODY_FIELDS:
-        yield _field(column, column, unit_of, colours, None, _range(bodies, column), False)
+        yield _field(column, column, unit_of, colours, None, _range(problem, bodies, column), False)
 
 
 def _field(
@@ -215,16 +244,11 @@ def _field(
     return {"label": label, "column": column, "unit": of_unit, "colours": colours, "contact": contact, "range": ends, "bare": bare}
 
 
-def _range(surfaces: Sequence[Surface], column: str) -> tuple[float, float]:
-    """Least and largest value of a field over all load steps, at parts of elements."""
-    values = [
-        surface.sampled(row[[surface.columns.index(column)]], PARTS)[:, 0]
-        for surface in surfaces
-        for row in surface.rows
-        if np.isfinite(row[surface.columns.index(column)]).all()
-    ]
-    together = np.concatenate(values)
-    return float(together.min()), float(together.max())
+def _range(problem: Problem, surfaces: Sequence[Surface], column: str) -> tuple[float, float]:
+    """Least and largest value of a field over all load steps, at parts of elements, farther apart than round-off."""
+    together = np.concatenate([surface.values(column) for surface in surfaces])
+    low, high = (float(together.min()), float(together.max())) if len(together) else (0.0, 0.0)
+    return low, max(high, low + (0.0 if column in ("pressure", "traction") else narrowest(problem, column)))
 
 
 def _planes(problem: Problem, surfaces: Sequence[Surface], centre: FloatArray) -> Iterator[dict[str, Any]]:
@@ -243,6 +267,7 @@ def _described(surface: Surface) -> dict[str, Any]:
         "name": surface.name,
         "orders": surface.orders,
         "elements": surface.elements,
+        "parts": surface.parts,
         "colour": to_rgb(surface.colour),
         "contact": surface.contact,
         "slaveOf": surface.slave_of,
@@ -258,6 +283,7 @@ def _numbers(surfaces: Sequence[Surface], centre: FloatArray) -> NDArray[np.floa
         parts.append(surface.weights)
         for values in (*surface.rows, *surface.marks):
             parts.append((values - np.pad(centre, (0, len(values) - 3))[:, None]).ravel())
+        parts += [values for acting in surface.acting for values in acting]
     return np.concatenate(parts).astype("<f4")
 
 

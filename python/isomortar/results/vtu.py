@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -22,7 +22,8 @@ _TYPES = {"float64": "Float64", "int64": "Int64", "uint8": "UInt8"}
 class BezierGrid:
     """Bezier cells of one patch: points with rational weights and fields; cells with their points in VTK's order.
 
-    `orders`: of the cells along the three directions (a surface has 0 in the third). `number`: of the body or contact pair.
+    `orders`: of the cells along the three directions (a surface has 0 in the third). `number`: of the body or contact pair. `of_cells`:
+    further fields, a value a cell.
     """
 
     points: FloatArray
@@ -31,6 +32,7 @@ class BezierGrid:
     cells: NDArray[np.int64]
     orders: tuple[int, int, int]
     number: int
+    of_cells: dict[str, FloatArray] = field(default_factory=dict)
 
 
 def bezier_grid(
@@ -79,6 +81,8 @@ def write_vtu(path: Path, grids: list[BezierGrid]) -> None:
     cell_data = ElementTree.SubElement(piece, "CellData", HigherOrderDegrees="orders")
     _array(cell_data, "orders", np.concatenate([np.tile(np.asarray(grid.orders, np.int64), (len(grid.cells), 1)) for grid in grids]))
     _array(cell_data, "number", np.concatenate([np.full(len(grid.cells), grid.number) for grid in grids]))
+    for name in grids[0].of_cells:
+        _array(cell_data, name, np.concatenate([grid.of_cells[name] for grid in grids]))
     _array(ElementTree.SubElement(piece, "Points"), "points", np.concatenate([grid.points for grid in grids]))
     cells = ElementTree.SubElement(piece, "Cells")
     _array(cells, "connectivity", np.concatenate([(grid.cells + start).ravel() for grid, start in zip(grids, starts, strict=True)]))

@@ -131,7 +131,7 @@ class StepAdvice:
             if result.active > 3 and bears and largest > OSCILLATION * field and self._first(name, "oscillation"):
                 yield (
                     f"contact {name!r}, load step {step}: control pressures reach {largest:.3g} where the pressure field reaches "
-                    f"{field:.3g}; single coefficients oscillate (conditioning of the basis): look at the field, not at them"
+                    f"{field:.3g}; {_why_large(result.excluded)}: look at the field, not at them"
                 )
 
     def _leaving(self, name: str, step: int, result: ContactResult, excluded: int, points: int) -> Iterator[str]:
@@ -173,6 +173,13 @@ class StepAdvice:
             return False
         self._given.add((name, kind))
         return True
+
+
+def _why_large(excluded: int) -> str:
+    """What coefficients that are larger than their field are due to, by the slave points that have no foot."""
+    if excluded:
+        return "the slave goes beyond its master, and coefficients are large of which little is over it"
+    return "single coefficients oscillate (conditioning of the basis)"
 
 
 def _why_open(depth: float | None) -> str:

@@ -81,14 +81,18 @@ def stage_times(problem: Problem) -> FloatArray:
 
 
 def _fields(problem: Problem, step: StepResult, grids: list[Grid | None]) -> tuple[list[FloatArray], list[FloatArray]]:
-    """Pressure and magnitude of the traction on the cells of each slave face."""
+    """Pressure and magnitude of the traction on the cells of each slave face: what acts of them (theory 8.7)."""
     found: tuple[list[FloatArray], list[FloatArray]] = ([], [])
     for surface, grid in zip(contact_surfaces(problem, step), grids, strict=True):
-        both = np.column_stack([surface.pressure, surface.traction])
-        values = values_at(surface.directions, surface.weights, both, grid) if grid else np.zeros((0, 2))
-        for of_one, column in zip(found, values.T, strict=True):
-            of_one.append(column)
+        for of_one, control in zip(found, (surface.pressure[:, None], surface.traction[:, None]), strict=True):
+            of_one.append(_acting(surface, control, grid) if grid else np.zeros(0))
     return found
+
+
+def _acting(surface: ContactSurface, control: FloatArray, grid: Grid) -> FloatArray:
+    """What acts of a field on the cells of a slave face, shape (cells,)."""
+    values = values_at(surface.directions, surface.weights, np.hstack([surface.reference_points, control]), grid)
+    return surface.footing.acting(values[:, :3], values[:, 3:], control)[:, 0]
 
 
 def _penetration(problem: Problem, step: StepResult, surface: ContactSurface, grid: Grid | None) -> float:

@@ -8,7 +8,7 @@ async function inflated(text) {
   return new Float32Array(await new Response(stream).arrayBuffer());
 }
 
-/** Gives each surface its `weights`, and by load step its columns, x, y, z first, and its `marks` with their columns. */
+/** Gives each surface its `weights`, and by load step its columns, x, y, z first, its `marks` with their columns, and where a contact acts. */
 function distribute(page, numbers) {
   let begin = 0;
   const take = (count) => numbers.subarray(begin, (begin += count));
@@ -17,6 +17,8 @@ function distribute(page, numbers) {
     surface.weights = take(count);
     surface.states = page.steps.map(() => Object.fromEntries(surface.columns.map((name) => [name, take(count)])));
     surface.marked = page.steps.map(() => Object.fromEntries(["x", "y", "z", "status"].map((name) => [name, take(surface.marks)])));
+    const placed = (surface.elements[0] * surface.parts + 1) * (surface.elements[1] * surface.parts + 1);
+    surface.acting = surface.contact === null ? null : page.steps.map(() => ({ here: take(placed), largest: take(surface.columns.length) }));
   }
 }
 

@@ -52,9 +52,6 @@ function program() {
   return made;
 }
 
-/** Equal parts that each element is cut into: about 72 along a surface, and at least 3. */
-const partsOf = (surface) => Math.max(3, Math.min(24, Math.round(72 / Math.max(...surface.elements))));
-
 /** Whether a surface is seen: of the contact whose field is shown its slave face, in the place of those of the bodies. */
 function isSeen(surface) {
   if (surface.contact === null && hidden.has(surface.name)) return false;
@@ -62,6 +59,7 @@ function isSeen(surface) {
   return shown.field.contact === null || !surface.slaveOf.includes(shown.field.contact);
 }
 
+/** Values of the field that is shown; of a contact none where its master is not opposite. */
 function valuesOf(surface, places, parts) {
   const state = surface.states[shown.step];
   if (shown.field.column === "displacement") {
@@ -69,12 +67,16 @@ function valuesOf(surface, places, parts) {
     return places[0].map((_, k) => Math.hypot(...[0, 1, 2].map((axis) => places[axis][k] - rest[axis][k])));
   }
   if (!surface.columns.includes(shown.field.column)) return null;
-  return sampled(surface, state, [shown.field.column], parts)[0];
+  const values = sampled(surface, state, [shown.field.column], parts)[0];
+  if (!surface.acting) return values;
+  const { here, largest } = surface.acting[shown.step];
+  const most = largest[surface.columns.indexOf(shown.field.column)];
+  return values.map((value, k) => (here[k] > 0 ? Math.max(-most, Math.min(most, value)) : NaN));
 }
 
 /** Points, normals, values and numbers of the corners of triangles and of element boundaries. */
 function meshOf(surface) {
-  const parts = partsOf(surface);
+  const parts = surface.parts;
   const [columns, rows] = surface.elements.map((count) => count * parts + 1);
   const places = sampled(surface, surface.states[shown.step], ["x", "y", "z"], parts);
   const values = valuesOf(surface, places, parts);
