@@ -120,6 +120,28 @@ def test_a_results_file_tells_what_is_of_the_whole(invoke: Invoke) -> None:
     assert json.loads(invoke("info", "quarter.h5", "--json")[1])["symmetry"] == ["the plane x = 0", "the plane y = 0"]
 
 
+def test_pressures_are_told_per_area_at_rest(invoke: Invoke) -> None:
+    """A block that widens freely under its load: pressure times area at rest is the force, and stress times the area that it has then."""
+    text = """format = 1
+    materials.rubber = { young = 5.0, poisson = 0.3 }
+    bodies.block.geometry = { kind = "box", lower = [0, 0, 0], upper = [2, 1, 1] }
+    bodies.block.mesh = { order = 2, elements = 1 }
+    contacts.floor = { slave = "block.w0", plane = {}, friction = 0 }
+    supports.top = { face = "block.w1", components = ["z"] }
+    supports.x = { face = "block.u0", components = ["x"] }
+    supports.y = { face = "block.v0", components = ["y"] }
+    stages = [{ name = "press", steps = 1, motions.top.translate = [0, 0, -0.3] }]"""
+    Path("block.toml").write_text(text)
+    assert invoke("run", "block.toml", "--output", "block.h5", "--quiet")[0] == 0
+    (line,) = [line for line in invoke("info", "block.h5")[1].splitlines() if line.startswith("contact ")]
+    found = re.search(r"pressures (\S+) to (\S+) per area at rest", line)
+    assert found
+    force = last("block.h5").contacts[0].force_slave[2]
+    assert [2.0 * float(pressure) for pressure in found.groups()] == pytest.approx([force] * 2, rel=1e-3)
+    corner = last("block.h5").state.positions.max(axis=0)
+    assert corner[0] * corner[1] > 1.2 * 2.0
+
+
 def _until(last: int) -> Callable[[ResultsWriter, StepResult], None]:
     """Recording of load steps up to one; the next one is a fault of the program."""
     recorded = ResultsWriter.recorded

@@ -314,7 +314,11 @@ def test_gaps_have_colours_of_both_signs_and_nothing_bare() -> None:
 def test_bodies_are_drawn_in_colours_by_each_of_their_fields() -> None:
     """From zero on, or between the least and the largest value inside; rigid bodies have none."""
     made, step = problem(), quiet(1)
-    for name, label in (("stress", "von Mises stress (force / area)"), ("J", "J (volume / volume at rest)"), ("displacement", "length")):
+    for name, label in (
+        ("stress", "von Mises stress (force / deformed area)"),
+        ("J", "J (volume / volume at rest)"),
+        ("displacement", "length"),
+    ):
         figure = draw_coloured(made, step, name)
         assert label in figure.axes[1].get_ylabel()
         low, high = figure.axes[1].get_ylim()
@@ -374,5 +378,5 @@ def test_faces_are_drawn_in_equal_parts_of_elements() -> None:
     assert bodies.face_parts(directions, (40, 3)) == (10, 3)
     figure = draw_bodies(problem(), quiet(1), 0)
     assert [axes.get_xlabel() or axes.get_ylabel() for axes in figure.axes if "pressure" in axes.get_xlabel() + axes.get_ylabel()] == [
-        "contact pressure (force / area)"
+        "contact pressure (force / area at rest)"
     ]

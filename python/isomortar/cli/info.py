@@ -170,7 +170,7 @@ def lines(found: Information, path: Path) -> Iterator[str]:
         low, high = contact.pressure
         yield (
             f"contact {contact.name}: {contact.active} of {contact.constraints} constraints active, {contact.slip} slip; "
-            f"pressures {low:.4g} to {high:.4g}, penetration {contact.penetration:.2g}"
+            f"pressures {low:.4g} to {high:.4g} per area at rest, penetration {contact.penetration:.2g}"
         )
     for support in found.supports:
         turned = f", turned by {support.rotation:.5g} degrees" if support.rotation else ""

@@ -14,6 +14,7 @@ from isomortar.geometry.patch import Direction, FloatArray
 from isomortar.model.entities import Body, Face, Problem, RigidPlane, unit
 from isomortar.results import style
 from isomortar.results.bezier import rational, sampling_matrix
+from isomortar.results.face_field import CONTACT_FIELDS
 from isomortar.results.fields import ContactSurface, body_points, contact_surfaces
 from isomortar.results.rendering import Camera, Canvas
 from isomortar.solve.record import StepResult
@@ -115,7 +116,7 @@ def draw_bodies(problem: Problem, step: StepResult, number: int, scale: Scale | 
     whole.set_title(f"{problem.name}, load step {step.step} ({step.stage})", loc="left")
     contact.set_title(f"{surface.contact.slave.body} from the master's side", loc="left")
     bar = figure.colorbar(colours, ax=contact, shrink=0.7, aspect=22, pad=0.02, extend="min" if face.pulls else "neither")
-    bar.set_label("contact pressure (force / area)")
+    bar.set_label(CONTACT_FIELDS["pressure"])
     return figure
 
 

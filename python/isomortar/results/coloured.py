@@ -57,7 +57,7 @@ class BodyField:
 
 #: Fields of bodies by name.
 BODY_FIELDS = {
-    "stress": BodyField("von Mises stress (force / area)", stress),
+    "stress": BodyField("von Mises stress (force / deformed area)", stress),
     "J": BodyField("J (volume / volume at rest)", jacobian, from_zero=False),
     "displacement": BodyField("displacement (length)", displacement),
 }

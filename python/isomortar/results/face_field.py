@@ -17,8 +17,8 @@ from isomortar.solve.record import StepResult
 
 #: Fields of slave faces, and how a colour bar names them.
 CONTACT_FIELDS = {
-    "pressure": "contact pressure (force / area)",
-    "traction": "friction on the slave (force / area)",
+    "pressure": "contact pressure (force / area at rest)",
+    "traction": "friction on the slave (force / area at rest)",
     "slip": "slip in the load step (length)",
     "gap": "gap (length; positive is penetration)",
 }

@@ -123,7 +123,9 @@ CONTACT = {
     "moment_master": _exerted("force*length", "moment of the contact forces on the master, about the origin; of a rigid plane 0"),
     "active": _count("active constraints"),
     "slip": _count("slipping constraints"),
-    "pressure_field": _real("force/area", "smallest and largest contact pressure p = sum R^J p^J at the contact quadrature points", (2,)),
+    "pressure_field": _real(
+        "force/area", "smallest and largest contact pressure p = sum R^J p^J at the contact quadrature points; per area at rest", (2,)
+    ),
     "excluded": _count("contact quadrature points without a projection"),
     "friction_work": _later("force*length", "work that friction took up within the load step"),
     "spurious_work": _later("force*length", "work that pressures along averaged normals took up within the load step; else zero"),
@@ -131,7 +133,9 @@ CONTACT = {
 
 #: Restart state of a contact pair, named as in `ContactState`.
 CONTACT_STATE = {
-    "pressure": _real("force/area", "pressures p^J of the constraints: slave control points (mortar), or points of the slave"),
+    "pressure": _real(
+        "force/area", "pressures p^J of the constraints, per area at rest: slave control points (mortar), or points of the slave"
+    ),
     "traction": _of_friction("force/area*length/parameter", "covariant tractions tau_alpha^J of the constraints", (2,)),
     "projection": _real("parameter", "master coordinates of the slave quadrature points (on a rigid plane: lengths)"),
     "projected": _flag("1 where the slave quadrature point has a projection on the master, else 0"),

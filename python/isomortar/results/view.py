@@ -34,8 +34,8 @@ from isomortar.solve.record import StepResult
 #: Fields of bodies and of slave faces that a page shows: column, label, unit, colours.
 BODY_FIELDS = (("von Mises stress", "force per deformed area", "field"), ("J", "volume over that before", "field"))
 CONTACT_FIELDS = (
-    ("pressure", "force per area", "pressure"),
-    ("traction", "force per area", "pressure"),
+    ("pressure", "force per area at rest", "pressure"),
+    ("traction", "force per area at rest", "pressure"),
     ("gap", "length; positive is penetration", "field"),
 )
 #: Colours by status: open, stick, slip.
