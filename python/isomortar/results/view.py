@@ -32,10 +32,10 @@ from isomortar.results.vtu import BezierGrid
 from isomortar.solve.record import StepResult
 
 #: Fields of bodies and of slave faces that a page shows: column, label, unit, colours.
-BODY_FIELDS = (("von Mises stress", "force per deformed area", "field"), ("J", "volume over that before", "field"))
+BODY_FIELDS = (("von Mises stress", "force / deformed area", "field"), ("J", "volume / volume at rest", "field"))
 CONTACT_FIELDS = (
-    ("pressure", "force per area at rest", "pressure"),
-    ("traction", "force per area at rest", "pressure"),
+    ("pressure", "force / area at rest", "pressure"),
+    ("traction", "force / area at rest", "pressure"),
     ("gap", "length; positive is penetration", "field"),
 )
 #: Colours by status: open, stick, slip.
