@@ -127,6 +127,10 @@ SCENES: dict[str, tuple[str, tuple[str, str, str, float] | None]] = {
         (BLOCK + FLOOR + WALL + PUSHED).replace("FRICTION", "0.3").replace("FORWARDS", "1").replace("ASIDE", "0.5"),
         None,
     ),
+    "along a smooth wall": (
+        (BLOCK + FLOOR + WALL.replace("0.1", "0") + PUSHED).replace("FRICTION", "0.3").replace("FORWARDS", "1").replace("ASIDE", "0.9"),
+        ("body 'block'", "0, 1, 0", "'floor'", 0.9 / 0.6),
+    ),
     "a cohesion": (
         (BLOCK + FLOOR + PUSHED).replace("FRICTION", "0.3, cohesion = 1").replace("FORWARDS", "1").replace("ASIDE", "0"),
         None,
