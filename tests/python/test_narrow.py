@@ -32,4 +32,5 @@ def test_round_off_is_not_narrow(share: float, said: int) -> None:
     list(simulation.run())
     (balance,) = kept
     responses = [replace(response, pressure=share * response.pressure) for response in balance.responses]
-    assert len(list(Narrow(simulation.equilibrium).after_step(replace(balance, responses=responses), 1, True))) == said
+    narrow = Narrow(simulation.equilibrium, simulation.equilibrium.initial_state().contacts)
+    assert len(list(narrow.after_step(replace(balance, responses=responses), 1, True))) == said

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +16,7 @@ from isomortar.solve.advice import round_off
 from isomortar.solve.contact import PairMechanics, PutOff
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.feet import gaps
+from isomortar.solve.record import ContactState
 
 #: Rows that bear contact below which it is told, in both directions, or in one with functions that have kinks: there forces of balls and
 #: cylinders on blocks were off by up to a third. A single row of smooth functions along a line cost less than 7 %, two rows a tenth, more
@@ -64,15 +65,18 @@ class Bearing:
 
 
 class Narrow:
-    """Warnings of contacts that are too narrow for their slaves at the end of a stage; each is given once a contact."""
+    """Warnings of contacts that are too narrow for their slaves at the end of a stage; each is given once a contact.
 
-    def __init__(self, equilibrium: Equilibrium) -> None:
+    What bore when the computation begins, or goes on, counts as borne before.
+    """
+
+    def __init__(self, equilibrium: Equilibrium, states: Sequence[ContactState]) -> None:
         self._problem = equilibrium.problem
         self._watched = dict(enumerate(equilibrium.pairs))
         self._areas = [_areas(mechanics.pair, mechanics.pair.slave.area) for mechanics in equilibrium.pairs]
-        self._largest = np.zeros(len(equilibrium.pairs))
+        self._largest = np.array([state.pressure @ area for state, area in zip(states, self._areas, strict=True)])
         self._nothing = [round_off(self._problem, contact) for contact in self._problem.contacts]
-        self._highest = 0.0
+        self._highest = max((float(np.abs(state.pressure).max(initial=0.0)) for state in states), default=0.0)
 
     def after_step(self, balance: Balance, step: int, ends: bool) -> Iterator[str]:
         """Warnings that the end of a load step gives rise to, if it `ends` a stage: all contact of round bodies is narrow at first."""
