@@ -209,6 +209,23 @@ def broad(scene: str) -> dict[str, float]:
     return {"said": float(len(said)) if force > 0.0 else np.nan}
 
 
+@case(
+    claim="Of contact that is about to open nothing is said, either, where the run was resumed after it had borne most.",
+    tier="gate",
+    bounds={
+        "said": Bound(0.0, 0.0, "definition: sentences"),
+        "left": Bound(at_least=1e-6, at_most=0.1, reason="definition: share of the force before that is left"),
+    },
+)
+def resumed() -> dict[str, float]:
+    """How many, and how much is left."""
+    problem, heard = Scene.from_toml(LIFTED, overrides=(depth(-0.125),)).problem(), Heard()
+    *_, before, last = Simulation(problem).run()
+    list(Simulation(problem, heard, resume_from=before).run())
+    left, most = (abs(float(result.contacts[0].force_slave[2])) for result in (last, before))
+    return {"said": float(sum(NARROW.search(said) is not None for said in heard.said)), "left": left / most}
+
+
 #: Bundled scenes and how many load steps their stages are cut down to; those that take longer are nightly.
 BUNDLED = {"block": 5, "iron-round": 5, "press": 5, "twist": 4, "twist-sharp": 4, "iron": 5, "reversal": 5, "tire": 5}
 

@@ -76,11 +76,11 @@ def _softest(sheet: Sheet) -> float:
     return min(body.modulus for body in sheet.bodies)
 
 
-def _softest_of(problem: Problem, contact: Contact) -> float:
-    """Modulus of the softest body of both sides of a contact."""
+def round_off(problem: Problem, contact: Contact) -> float:
+    """Pressure up to which a contact bears nothing, by the modulus of the softest body of both sides."""
     sides = [contact.slave, *([] if isinstance(contact.master, RigidPlane) else [contact.master])]
     moduli = [body.modulus for side in sides for body in Sheet.of(problem, side).bodies if not body.rigid]
-    return min(moduli, default=0.0)
+    return NO_PRESSURE * min(moduli, default=0.0)
 
 
 def _element_size(sheet: Sheet) -> float:
@@ -108,7 +108,7 @@ class StepAdvice:
 
     def __init__(self, problem: Problem, step: int, states: Sequence[ContactState]) -> None:
         self._slaves = {contact.name: contact.slave.words for contact in problem.contacts}
-        self._least = [NO_PRESSURE * _softest_of(problem, contact) for contact in problem.contacts]
+        self._least = [round_off(problem, contact) for contact in problem.contacts]
         self._tolerance = problem.settings.newton_tolerance
         self._largest = max((float(np.abs(state.pressure).max(initial=0.0)) for state in states), default=0.0)
         self._begun = self._last = step

@@ -63,7 +63,7 @@ def touches_of(mechanics: Sequence[PairMechanics], state: State, displacements: 
     LostProjectionError
     """
     pairs = list(zip(mechanics, state.contacts, strict=True))
-    found = [_heights(pair.kinematics(state.positions, begun).control) for pair, begun in pairs]
+    found = [_heights(pair, pair.kinematics(state.positions, begun).control) for pair, begun in pairs]
     nearest = min(max((float(height.max(initial=-np.inf)) for height in found), default=-np.inf), 0.0)
     touches = []
     for (pair, begun), height in zip(pairs, found, strict=True):
@@ -75,21 +75,28 @@ def touches_of(mechanics: Sequence[PairMechanics], state: State, displacements: 
     return touches
 
 
-def _heights(control: Control) -> FloatArray:
-    """Mean gaps; minus infinity of what has no foot, or no metric to measure slips in, as at a pole."""
-    return np.where(np.all(control.metric[:, [0, 2]] > 0.0, axis=1), mean_heights(control), -np.inf)
+def _heights(pair: PairMechanics, control: Control) -> FloatArray:
+    """Mean gaps; minus infinity of what has no foot, or with friction no metric to measure slips in, as at a pole."""
+    measured = np.all(control.metric[:, [0, 2]] > 0.0, axis=1) if pair.friction.acts else True
+    return np.where(measured, mean_heights(control), -np.inf)
 
 
 def _touch(pair: PairMechanics, positions: FloatArray, begun: ContactState, near: BoolArray, displacements: Sequence[FloatArray]) -> Touch:
     """Of a pair at some positions; rates are differences over ways that are next to nothing."""
     at, step = pair.kinematics(positions, begun).control, next_to_nothing(pair)
-    m11, m12, m22 = (at.metric[near] / at.square[near, None]).T
-    length = np.sqrt(m11)
-    in_lengths = np.stack([length, m12 / length, np.zeros_like(length), np.sqrt(np.maximum(m22 - m12**2 / m11, 0.0))], axis=1)
     ends = [pair.kinematics(positions + step * displacement, begun).control for displacement in displacements]
     closing = np.stack([(end.gap[near] - at.gap[near]) / step for end in ends], axis=1)
     slips = np.stack([(end.slip[near] - at.slip[near]) / step for end in ends], axis=2)
-    return Touch(pair, near, at.weight[near], closing, in_lengths.reshape(-1, 2, 2) @ slips)
+    slipping = _in_lengths(at.metric[near] / at.square[near, None]) @ slips if pair.friction.acts else np.zeros_like(slips)
+    return Touch(pair, near, at.weight[near], closing, slipping)
+
+
+def _in_lengths(metric: FloatArray) -> FloatArray:
+    """Matrices that make lengths of slips in coordinates, shape (n, 2, 2)."""
+    m11, m12, m22 = metric.T
+    length = np.sqrt(m11)
+    rows = np.stack([length, m12 / length, np.zeros_like(length), np.sqrt(np.maximum(m22 - m12**2 / m11, 0.0))], axis=1)
+    return rows.reshape(-1, 2, 2)
 
 
 def along_contact(touches: Sequence[Touch]) -> FloatArray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,9 +12,11 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Body, Contact, Face, Problem
 from isomortar.model.pairs import Pair
 from isomortar.model.sheet import Sheet
+from isomortar.solve.advice import round_off
 from isomortar.solve.contact import PairMechanics, PutOff
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.feet import gaps
+from isomortar.solve.record import ContactState
 
 #: Rows that bear contact below which it is told, in both directions, or in one with functions that have kinks: there forces of balls and
 #: cylinders on blocks were off by up to a third. A single row of smooth functions along a line cost less than 7 %, two rows a tenth, more
@@ -63,22 +65,31 @@ class Bearing:
 
 
 class Narrow:
-    """Warnings of contacts that are too narrow for their slaves at the end of a stage; each is given once a contact."""
+    """Warnings of contacts that are too narrow for their slaves at the end of a stage; each is given once a contact.
 
-    def __init__(self, equilibrium: Equilibrium) -> None:
+    What bore when the computation begins, or goes on, counts as borne before.
+    """
+
+    def __init__(self, equilibrium: Equilibrium, states: Sequence[ContactState]) -> None:
         self._problem = equilibrium.problem
         self._watched = dict(enumerate(equilibrium.pairs))
         self._areas = [_areas(mechanics.pair, mechanics.pair.slave.area) for mechanics in equilibrium.pairs]
-        self._largest = np.zeros(len(equilibrium.pairs))
+        self._largest = np.array([state.pressure @ area for state, area in zip(states, self._areas, strict=True)])
+        self._nothing = [round_off(self._problem, contact) for contact in self._problem.contacts]
+        self._highest = max((float(np.abs(state.pressure).max(initial=0.0)) for state in states), default=0.0)
 
     def after_step(self, balance: Balance, step: int, ends: bool) -> Iterator[str]:
         """Warnings that the end of a load step gives rise to, if it `ends` a stage: all contact of round bodies is narrow at first."""
+        pressures = [float(np.abs(response.pressure).max(initial=0.0)) for response in balance.responses]
+        self._highest = max([self._highest, *pressures])
+        left_open = self._problem.settings.newton_tolerance * self._highest
         for number, mechanics in list(self._watched.items()):
             if isinstance(balance.kinematics[number], PutOff):
                 continue
             force = float(balance.responses[number].pressure @ self._areas[number])
             self._largest[number] = max(force, self._largest[number])
-            if not ends or force <= LIGHT * self._largest[number]:
+            bears = pressures[number] > max(self._nothing[number], left_open)  # below that it is what balance leaves open
+            if not ends or not bears or force <= LIGHT * self._largest[number]:
                 continue
             found = bearing(self._problem, mechanics, balance, number)
             if found.too_narrow:

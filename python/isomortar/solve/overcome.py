@@ -15,6 +15,7 @@ from isomortar.model.rank import extent, motions_left
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.limit_load import Touch, along_contact, least_resisted, pressed_bed, touches_of
 from isomortar.solve.record import State
+from isomortar.solve.touching import displacement
 
 #: Share of what friction can bear from which on it is told of: pressures are those below a rigid body, which moments notice.
 ALL = 0.9
@@ -45,7 +46,7 @@ def overcome(equilibrium: Equilibrium, state: State) -> Iterator[str]:
     state : State
         Where the last load increment ended that converged.
     """
-    motions = _motions(equilibrium)
+    motions = _motions(equilibrium, state.positions)
     works = np.array([_work(equilibrium, state.positions, motion) for motion in motions])
     try:
         touches = touches_of(equilibrium.pairs, state, [motion.displacement for motion in motions]) if np.any(works) else []
@@ -63,13 +64,13 @@ def overcome(equilibrium: Equilibrium, state: State) -> Iterator[str]:
         yield from _said(equilibrium, resist, motions, way, float(borne.sum()))
 
 
-def _motions(equilibrium: Equilibrium) -> list[_Motion]:
-    """The rigid motions that supports leave all bodies, where loads act."""
-    pieces, stage = equilibrium.numbering.pieces if equilibrium.motions else (), equilibrium.supports.stage
+def _motions(equilibrium: Equilibrium, positions: FloatArray) -> list[_Motion]:
+    """The rigid motions that supports leave all bodies where these are, if loads act."""
+    numbering, stage = equilibrium.numbering, equilibrium.supports.stage
     return [
-        _Motion(k, amounts, displacement)
-        for k, (piece, fields) in enumerate(zip(pieces, equilibrium.motions, strict=True))
-        for amounts, displacement in zip(motions_left(equilibrium.problem, piece, stage), fields, strict=True)
+        _Motion(k, amounts, displacement(numbering, piece, amounts, positions))
+        for k, piece in enumerate(numbering.pieces if equilibrium.motions else ())
+        for amounts in motions_left(equilibrium.problem, piece, stage)
     ]
 
 

@@ -81,13 +81,13 @@ class Simulation:
         self._lost, self._pulling, self._sharing = LostDigits(self.equilibrium), Pulling(self.equilibrium), Sharing(self.equilibrium)
         self._small_strains, self._unseen = SmallStrains(self.equilibrium), Unseen(self.equilibrium)
         self._snapping, self._inside_out, self._astray = Snapping(self.equilibrium), InsideOut(self.equilibrium), Astray(self.equilibrium)
-        self._narrow = Narrow(self.equilibrium)
         self._of_stages = [watch for watch in (Passing(self.equilibrium.problem), Behind(self.equilibrium.problem)) if watch.needed]
         self._step = resume_from.step if resume_from else 0
         self._increment = resume_from.next_increment if resume_from else 1.0
         self.equilibrium.orderings = dict(resume_from.orderings) if resume_from else {}
         self._stood: tuple[Reaction, ...] = resume_from.reactions if resume_from else ()
         self.state = self._from_record(resume_from) if resume_from else self.equilibrium.initial_state()
+        self._narrow = Narrow(self.equilibrium, self.state.contacts)
 
     def run(self) -> Iterator[StepResult]:
         """Compute the load steps that are left, one recorded step at a time.

@@ -104,12 +104,16 @@ class Touching:
 
 def _motions_left(problem: Problem, numbering: Numbering, piece: tuple[Body, ...], stage: int) -> FloatArray:
     """Rigid motions that supports leave a body, with all that is glued to it: displacements of all control points, one each."""
+    displacements = [displacement(numbering, piece, motion, numbering.reference) for motion in motions_left(problem, piece, stage)]
+    return np.array(displacements).reshape(-1, *numbering.reference.shape)
+
+
+def displacement(numbering: Numbering, piece: tuple[Body, ...], motion: FloatArray, positions: FloatArray) -> FloatArray:
+    """What a rigid motion of a body, with all that is glued to it, does to all control points at some positions."""
     own = np.concatenate([numbering.points[body.name] for body in piece])
-    motions = motions_left(problem, piece, stage)
-    displacements = np.zeros((len(motions), *numbering.reference.shape))
-    for displacement, motion in zip(displacements, motions, strict=True):
-        displacement[own] = moved(piece, motion, numbering.reference[own])
-    return displacements
+    displaced = np.zeros_like(positions)
+    displaced[own] = moved(piece, motion, positions[own])
+    return displaced
 
 
 def mean_heights(control: Control) -> FloatArray:
