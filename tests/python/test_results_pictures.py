@@ -303,6 +303,28 @@ def test_a_map_looks_at_contact_along_both_of_its_coordinates() -> None:
         assert limits == pytest.approx((ends[0] - margin, ends[1] + margin), rel=1e-3)
 
 
+@pytest.mark.parametrize("ends", [(0, 2), (0, 0), (3, 3), (-1, -1)])
+def test_a_map_looks_at_every_control_point_in_contact(ends: tuple[int, int]) -> None:
+    """The first one and the last one, of two and of one alone, along the face's first coordinate."""
+    surface = contact_surfaces(problem(), step_result(1))[0]
+    ten = Direction("N", 1, [0.0, *range(11), 10.0])
+    status = np.zeros((surface.directions[1].count, ten.count), dtype=np.int32)
+    status[0, list(ends)] = 1
+    first, _ = maps._seen(replace(surface, directions=(ten, surface.directions[1]), status=status.ravel()))
+    assert list(first[[0, -1]]) == list(maps._within(ten, ten.greville[list(ends)])[[0, -1]])
+    assert np.ptp(first) < 10.0
+
+
+def test_a_face_is_as_long_as_its_control_net() -> None:
+    """Of the block's flat faces along its coordinates: v and w, w and u, u and v."""
+    road = problem().body("road").patch
+    surface = contact_surfaces(problem(), quiet(1))[0]
+    for face, lengths in {"u0": (1.0, 0.5), "v1": (0.5, 3.0), "w1": (3.0, 1.0)}.items():
+        points = road.face_points(face)
+        here = replace(surface, directions=road.face_directions(face), reference_points=road.control_points[points])
+        assert here.lengths == pytest.approx(lengths), face
+
+
 def test_gaps_have_colours_of_both_signs_and_nothing_bare() -> None:
     made, step = problem(), over_master(step_result(1))
     drawn = mesh(mapped(made, step, "gap"))

@@ -2,6 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import numpy as np
+from told.wrong.doubts import DOUBTFUL
+from transforms import with_patches
+
 from isomortar.harness import Bound, case
 from isomortar.scene import Scene
 from isomortar.solve.doubts import doubts
@@ -75,6 +81,27 @@ def wrong(scene: str, changes: tuple[str, ...], words: str) -> bool:
     """Whether something else is said than one sentence with these words, or, where there are none, nothing."""
     warnings = outlook(Scene.from_toml(scene, overrides=changes).problem()).warnings
     return len(warnings) != bool(words) or any(words not in warning for warning in warnings)
+
+
+def slanting(share: float) -> float:
+    """Whether half a model is taken for one with its bodies slanting, by a share of x, from the plane where they end."""
+    text, old, new, words = DOUBTFUL["half a model"]
+    slant = np.array([[1.0, 0.0, share], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    problem = with_patches(
+        Scene.from_toml(text.replace(old, new)).problem(), lambda patch: replace(patch, control_points=patch.control_points @ slant)
+    )
+    return float(any(words in warning for warning in outlook(problem).warnings))
+
+
+@case(
+    claim="Bodies that end at one plane are taken for halves where they come to it at right angles; not where they slant, up or down.",
+    tier="gate",
+    grid={"share": (-0.2, 0.0, 0.2)},
+    bounds={"wrong": Bound(0.0, 0.0, "definition: halves that are not taken for such, or what is none that is")},
+)
+def as_halves(share: float) -> dict[str, float]:
+    """Whether it is wrong."""
+    return {"wrong": abs(slanting(share) - float(share == 0.0))}
 
 
 @case(

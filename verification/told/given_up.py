@@ -132,3 +132,19 @@ def freely(young: float) -> dict[str, float]:
     block = BLOCK + f"materials.m.young = {young}\nsupports.top.face = 'block.w1'\nsupports.top.components = "
     told = {"['y', 'z']": "can move along (1, 0, 0) freely", "['z']": "can turn about an axis along ("}
     return {"silent": float(sum(words not in error(block + components) for components, words in told.items()))}
+
+
+@case(
+    claim="Where less than half of the quadrature points are on the master, a deformation that nothing resists is put down to those that "
+    "are beside it; else not.",
+    tier="gate",
+    bounds={"wrong": Bound(0.0, 0.0, "definition: numbers of points of which something else is said")},
+)
+def points_beside() -> dict[str, float]:
+    """Of how many numbers of points."""
+    total = int(re.findall(r"of the (\d+) quadrature points", explained([], [3, 5], found=0))[0])
+    told = [
+        f"rest on {total - beside} of the {total} quadrature points" in explained([4], [], beside=beside) for beside in range(total + 1)
+    ]
+    right = [2 * (total - beside) < total for beside in range(total + 1)]
+    return {"wrong": float(sum(one != other for one, other in zip(told, right, strict=True)))}

@@ -12,7 +12,7 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, case
 from isomortar.scene import Scene
 from isomortar.solve.equilibrium import Balance
-from isomortar.solve.lost import LOST, LostDigits
+from isomortar.solve.lost import DEFORMED, LOST, LostDigits
 from isomortar.solve.record import StepResult
 from isomortar.solve.simulation import Simulation
 
@@ -140,3 +140,25 @@ def lost(symmetry: str) -> dict[str, float]:
         wrong += len({body for body, *_ in told} ^ ({"low", "high"} - bodies))
         others += sum(float(left) != images * LENGTH for _, left, _ in told)
     return {"wrong": float(wrong), "left": float(others)}
+
+
+@case(
+    claim="A body deforms by one control point that is pushed aside by more than round-off, whichever way; by round-off it does not.",
+    tier="gate",
+    grid={"axis": (0, 1, 2), "way": (-1, 1)},
+    bounds={"wrong": Bound(0.0, 0.0, "definition: bodies whose forces are lost and of which it is not said, or the other way round")},
+)
+def pushed_aside(axis: int, way: int) -> dict[str, float]:
+    """Of two bodies, by twice the share of their size from which on it counts, and by half of it."""
+    simulation = Simulation(Scene.from_toml(SCENE).problem())
+    result, numbering = nothing(next(iter(simulation.run()))), simulation.equilibrium.numbering
+    balance, wrong = left_over(simulation), 0
+    for share, bodies in ((2.0, {"low", "high"}), (0.5, set[str]())):
+        positions = numbering.reference.copy()
+        for piece in range(2):
+            own = numbering.piece_points(piece)
+            middle = np.linalg.norm(positions[own] - positions[own].mean(axis=0), axis=1).argmin()
+            positions[own.start + middle, axis] += way * share * DEFORMED * SIZE
+        told = LostDigits(simulation.equilibrium).after_step(replace(balance, positions=positions), result)
+        wrong += len({found[1] for sentence in told if (found := SAID.search(sentence))} ^ bodies)
+    return {"wrong": float(wrong)}

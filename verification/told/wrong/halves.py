@@ -45,6 +45,12 @@ REFUSED = {
         "contacts.floor.plane",
         "is not its own mirror image in the plane x = 0",
     ),
+    "a rigid plane, the other way": (
+        PLANE.replace("plane = {}", "plane = { normal = [-0.1, 0, 1], point = [0, 0, -1] }"),
+        "x = 0.0",
+        "contacts.floor.plane",
+        "is not its own mirror image in the plane x = 0",
+    ),
     "a face beside": (
         PLANE.replace('face = "block.w1"', 'face = "block.u1"'),
         "x = 0.0",

@@ -40,15 +40,16 @@ def error(text: str, *overrides: str) -> str:
     return ""
 
 
-def explained(directions: list[int], multipliers: list[int], found: int = 1) -> str:
+def explained(directions: list[int], multipliers: list[int], found: int = 1, beside: int = 0) -> str:
     """What is said of a direction that moves some unknowns of the held block, and of one that changes multipliers of its contact.
 
-    `found` is 0 where all quadrature points have left the master.
+    `found` is 0 where all quadrature points have left the master, `beside` how many of them have.
     """
     equilibrium = Equilibrium(Scene.from_toml(BLOCK + 'supports.top.face = "block.w1"').problem(), Ledger())
     state, pair, free = equilibrium.initial_state(), equilibrium.pairs[0], equilibrium.supports.free
     kinematics = pair.kinematics(state.positions, state.contacts[0])
     projections = replace(kinematics.projections, found=np.full_like(kinematics.projections.found, found))
+    projections.found[:beside] = 0
     equation = np.full(3 * len(pair.pair.slave.point), -1)
     equation[::3] = len(free) + np.arange(len(equation[::3]))
     null = np.zeros(len(free) + len(equation[::3]))

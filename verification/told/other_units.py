@@ -1,0 +1,64 @@
+"""What is said of a scene at a first look and in a run of it, and of the same scene in other units: the same sentences."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from told.alike import words
+from told.runs import LONG, PLATES, Heard
+from told.wrong.doubts import DOUBTFUL
+from told.wrong.runs import RUNS
+from transforms import scaled
+
+from isomortar.harness import Bound, case
+from isomortar.model.entities import Problem
+from isomortar.scene import Scene
+from isomortar.solve.outlook import outlook
+from isomortar.solve.simulation import Simulation
+
+#: Doubts about a number in metres and seconds.
+OF_ONE_UNIT = {"acceleration"}
+#: Other units of length and stress, powers of two: not a bit of a result changes.
+UNITS = ((2.0**-30, 2.0**40), (2.0**30, 2.0**-40))
+_SAID = Bound(0.0, 0.0, "definition: sentences on a scene in one of two units, and not in the other")
+
+
+def others(one: Counter[tuple[str, ...]], two: Counter[tuple[str, ...]]) -> float:
+    """How many sentences are in one alone."""
+    return float(((one - two) + (two - one)).total())
+
+
+def of_a_run(problem: Problem) -> Counter[tuple[str, ...]]:
+    """The words of what is said in a run."""
+    heard = Heard()
+    list(Simulation(problem, heard).run())
+    return Counter(words(said) for said in heard.said)
+
+
+@case(
+    claim="What is doubtful of a scene does not depend on its units, whatever the doubt is.",
+    tier="gate",
+    grid={"units": tuple(range(len(UNITS)))},
+    bounds={"others": _SAID},
+)
+def doubtful_in_units(units: int) -> dict[str, float]:
+    """How many, over all scenes of which something is doubtful."""
+    found = 0.0
+    for text, old, new, *_ in (scene for name, scene in DOUBTFUL.items() if name not in OF_ONE_UNIT):
+        problem = Scene.from_toml(text.replace(old, new)).problem()
+        said = [Counter(words(sentence) for sentence in outlook(of).warnings) for of in (problem, scaled(problem, *UNITS[units]))]
+        found += others(*said)
+    return {"others": found}
+
+
+@case(
+    claim="What is said in the course of a run does not depend on the units of its scene.",
+    tier="gate",
+    grid={"run": (*(name for name in RUNS if name not in LONG), *PLATES)},
+    bounds={"others": _SAID},
+)
+def runs_in_units(run: str) -> dict[str, float]:
+    """How many."""
+    problem = Scene.from_toml((RUNS | PLATES)[run][0]).problem()
+    said = of_a_run(problem)
+    return {"others": sum(others(said, of_a_run(scaled(problem, *units))) for units in UNITS)}
