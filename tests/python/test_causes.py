@@ -261,6 +261,8 @@ def test_a_path_tolerance_that_no_increment_meets_names_one_that_is_met() -> Non
             return str(error)
         return ""
 
-    told = re.search(r"above solver.path_tolerance = 0.001. .* take solver.path_tolerance = (\S+) or more, let", first_step("1e-3"))
+    words = r"error of the multipliers is (\S+), above solver.path_tolerance = 0.001. .* take solver.path_tolerance = (\S+) or more, let"
+    told = re.search(words, first_step("1e-3"))
     assert told
-    assert first_step(told[1]) == ""
+    assert float(told[1]) <= float(told[2]) < 2.0 * float(told[1])
+    assert first_step(told[2]) == ""

@@ -120,7 +120,7 @@ class StepAdvice:
     def after_step(self, step: int, results: Sequence[ContactResult], states: Sequence[ContactState]) -> Iterator[str]:
         """Warnings that the end of a load step gives rise to."""
         before, self._excluded, self._last = self._excluded, [result.excluded for result in results], step
-        self._largest = max([self._largest, *(float(result.pressure_field[1]) for result in results)])
+        self._largest = max([self._largest, *(float(result.pressure_field.max()) for result in results)])
         for name, least, result, state, excluded in zip(self._slaves, self._least, results, states, before, strict=True):
             if result.active:
                 self._closed[name] = step
