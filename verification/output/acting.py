@@ -82,7 +82,7 @@ def acting() -> dict[str, float]:
     presses = grid.weights @ ((pressures > 0) & (np.abs(_across(grid.places)) > 0.9))
     return {
         "hidden": float(everywhere.max()) / largest,
-        "shown": max(shown) / largest,
+        "shown": float(np.max(shown)) / largest,
         "shares": float(np.abs(over - [[0.0], [0.125], [1.0], [1.0], [0.125], [0.0]]).max()),
         "beyond": float(presses) / float(grid.weights.sum()),
     }

@@ -163,7 +163,7 @@ def balls(scene: str) -> dict[str, float]:
     share = 0.01 * float(told[0].removesuffix(" %")) if told and told[0] != "a fifth" else 0.2
     return {
         "said": float(len(said)) if (told[:1] == ["a fifth"]) != estimated else -1.0,
-        "rows": float(min(float(words["rows"]) for words in said)) if said else np.inf,
+        "rows": float(np.min([float(words["rows"]) for words in said])) if said else np.inf,
         "off": off,
         "told over off": share / off if estimated else 1.0,
         "others": float(len(others)),
