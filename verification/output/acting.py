@@ -77,7 +77,7 @@ def acting() -> dict[str, float]:
     pressures = trade_run._fields(problem, step, [grid])[0][0]
     everywhere, _ = surface.on_grid([d.subdivided(8) for d in surface.directions], surface.pressure[:, None])
     bar = draw_map(problem, step, face_field(problem, step, 0)).axes[0].collections
-    colours = max(float(drawn.get_clim()[1] or 0.0) for drawn in bar if drawn.get_array() is not None)
+    colours = float(np.max([drawn.get_clim()[1] or 0.0 for drawn in bar if drawn.get_array() is not None]))
     shown = [colours, common_scale(problem, [step], 0).face.peak, float(told["fields"][0]["range"][1]), float(pressures.max())]
     presses = grid.weights @ ((pressures > 0) & (np.abs(_across(grid.places)) > 0.9))
     return {
