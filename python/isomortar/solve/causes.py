@@ -15,8 +15,10 @@ from isomortar.model.sheet import Sheet
 from isomortar.solve.advice import few_points
 from isomortar.solve.contact import PairMechanics
 from isomortar.solve.equilibrium import Equilibrium
+from isomortar.solve.overcome import overcome
 from isomortar.solve.record import State
 from isomortar.solve.sliding import sliding
+from isomortar.solve.tipping import tipping
 
 #: Volume ratios below this one are those of elements about to fold.
 FLAT = 0.1
@@ -53,7 +55,8 @@ def causes(equilibrium: Equilibrium, state: State, error: Exception) -> Iterator
     if isinstance(error, PathError):
         yield _path(error.error, problem.settings.max_cuts)
         return
-    yield from sliding(equilibrium, state)
+    judgements = (list(judge(equilibrium, state)) for judge in (sliding, overcome, tipping))
+    yield from next(filter(None, judgements), [])
     yield from _flat(problem.deformable, equilibrium.solid.smallest_jacobians(positions))
     for body in problem.deformable:
         yield from _lengths(body, LENGTHS_BENT if isinstance(error, SingularSystemError) else LENGTHS)

@@ -67,8 +67,6 @@ class Equilibrium:
         In coordinates about `origin`.
     time : float
         Load time at the end of the increment that was begun last: loads are those of then.
-    motions : list of ndarray, each of shape (motions, control points, 3)
-        Rigid motions that supports leave each piece, where loads act in the scene; else none.
     orderings : dict
         Orderings of the unknowns that are in use, by the number of sources: with each pair that is in contact the matrix differs.
 
@@ -106,7 +104,6 @@ class Equilibrium:
         self._system_patterns: list[object] = []
         self._solid_entries: sparse.csr_array | None = None
         self._touching = Touching(self.problem, self.numbering, self.supports, self.loads)
-        self.motions = self._touching.motions
 
     def standing(self, step: int) -> Supports:
         """The supports of the stage of a load step."""
@@ -156,7 +153,6 @@ class Equilibrium:
         self.time, self._known = time, None
         if self._system is not None:
             self._system.begin()
-        self._touching.begin(start.positions, time)
         for pair, contact in zip(self.pairs, start.contacts, strict=True):
             pair.begin(self.supports, start.positions, contact, time)
         with self.ledger.phase("solid"):
@@ -165,7 +161,7 @@ class Equilibrium:
 
     def closed(self, start: State, penalties: Sequence[float | Scales]) -> list[FloatArray | None]:
         """First pressures of the pairs that loads close, of which all is open at the start; see `Touching.closed` (theory 6.8)."""
-        return self._touching.closed(self.pairs, start, penalties)
+        return self._touching.closed(self.pairs, start, self.time, penalties)
 
     def state(self, balance: Balance) -> State:
         """The state that a balance leaves, to go on from."""

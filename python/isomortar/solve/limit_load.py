@@ -26,7 +26,8 @@ ITERATIONS = 50
 class Touch:
     """Constraints of a pair that touch, by their numbers, and what motions do to them.
 
-    `closing`: rates of their gaps, shape (n, motions); `slipping`: those of their slips, in lengths, shape (n, 2, motions).
+    `closing`: rates of their gaps, shape (n, motions); `slipping`: those of their slips, in lengths, shape (n, 2, motions); `beside`: mean
+    rates of gaps of the others, which are open, shape (those, motions); `share`: parts of the area over the master, shape (n,).
     """
 
     pair: PairMechanics
@@ -34,6 +35,8 @@ class Touch:
     weight: FloatArray
     closing: FloatArray
     slipping: FloatArray
+    beside: FloatArray
+    share: FloatArray
 
     @property
     def is_face(self) -> bool:
@@ -71,7 +74,7 @@ def touches_of(mechanics: Sequence[PairMechanics], state: State, displacements: 
         touching = np.isfinite(height) & (height >= highest - next_to_nothing(pair)) & (highest >= nearest - next_to_nothing(pair))
         near = bears if bears.any() else touching
         if near.any():
-            touches.append(_touch(pair, state.positions, begun, near, displacements))
+            touches.append(_touch(pair, state.positions, begun, near, np.isfinite(height) & ~near, displacements))
     return touches
 
 
@@ -81,14 +84,23 @@ def _heights(pair: PairMechanics, control: Control) -> FloatArray:
     return np.where(measured, mean_heights(control), -np.inf)
 
 
-def _touch(pair: PairMechanics, positions: FloatArray, begun: ContactState, near: BoolArray, displacements: Sequence[FloatArray]) -> Touch:
+def _touch(
+    pair: PairMechanics,
+    positions: FloatArray,
+    begun: ContactState,
+    near: BoolArray,
+    beside: BoolArray,
+    displacements: Sequence[FloatArray],
+) -> Touch:
     """Of a pair at some positions; rates are differences over ways that are next to nothing."""
     at, step = pair.kinematics(positions, begun).control, next_to_nothing(pair)
     ends = [pair.kinematics(positions + step * displacement, begun).control for displacement in displacements]
-    closing = np.stack([(end.gap[near] - at.gap[near]) / step for end in ends], axis=1)
+    closing = np.stack([(end.gap - at.gap) / step for end in ends], axis=1)
     slips = np.stack([(end.slip[near] - at.slip[near]) / step for end in ends], axis=2)
     slipping = _in_lengths(at.metric[near] / at.square[near, None]) @ slips if pair.friction.acts else np.zeros_like(slips)
-    return Touch(pair, near, at.weight[near], closing, slipping)
+    weight = at.weight[near]
+    share = weight / (weight.sum() + at.weight[beside].sum())
+    return Touch(pair, near, weight, closing[near], slipping, closing[beside] / at.weight[beside, None], share)
 
 
 def _in_lengths(metric: FloatArray) -> FloatArray:

@@ -3,37 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from isomortar.errors import LostProjectionError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
-from isomortar.model.glue import named
-from isomortar.model.rank import extent, motions_left
+from isomortar.model.rank import extent
 from isomortar.solve.equilibrium import Equilibrium
+from isomortar.solve.free_motions import FreeMotion, direction, free_motions, going
 from isomortar.solve.limit_load import Touch, along_contact, least_resisted, pressed_bed, touches_of
 from isomortar.solve.record import State
-from isomortar.solve.touching import displacement
 
 #: Share of what friction can bear from which on it is told of: pressures are those below a rigid body, which moments notice.
 ALL = 0.9
 #: Loads of more than so many times what friction can bear: a body that rolls, of which something else is to be said.
 ROLLS = 1e6
-#: A motion is a turn where the body's ends go this share of its way apart.
-TURNS = 0.01
-#: Bodies go along where they go this share of the farthest one's way.
-GOES = 0.1
-
-
-@dataclass(frozen=True)
-class _Motion:
-    """A rigid motion that supports leave a piece: along axes and about them by its size, shape (6,); as displacements of all points."""
-
-    piece: int
-    amounts: FloatArray
-    displacement: FloatArray
 
 
 def overcome(equilibrium: Equilibrium, state: State) -> Iterator[str]:
@@ -46,8 +31,8 @@ def overcome(equilibrium: Equilibrium, state: State) -> Iterator[str]:
     state : State
         Where the last load increment ended that converged.
     """
-    motions = _motions(equilibrium, state.positions)
-    works = np.array([_work(equilibrium, state.positions, motion) for motion in motions])
+    motions = free_motions(equilibrium.problem, equilibrium.numbering, equilibrium.supports, state.positions)
+    works = np.array([work_on(equilibrium, state.positions, motion) for motion in motions])
     try:
         touches = touches_of(equilibrium.pairs, state, [motion.displacement for motion in motions]) if np.any(works) else []
     except LostProjectionError:
@@ -64,17 +49,7 @@ def overcome(equilibrium: Equilibrium, state: State) -> Iterator[str]:
         yield from _said(equilibrium, resist, motions, way, float(borne.sum()))
 
 
-def _motions(equilibrium: Equilibrium, positions: FloatArray) -> list[_Motion]:
-    """The rigid motions that supports leave all bodies where these are, if loads act."""
-    numbering, stage = equilibrium.numbering, equilibrium.supports.stage
-    return [
-        _Motion(k, amounts, displacement(numbering, piece, amounts, positions))
-        for k, piece in enumerate(numbering.pieces if equilibrium.motions else ())
-        for amounts in motions_left(equilibrium.problem, piece, stage)
-    ]
-
-
-def _work(equilibrium: Equilibrium, positions: FloatArray, motion: _Motion) -> float:
+def work_on(equilibrium: Equilibrium, positions: FloatArray, motion: FreeMotion) -> float:
     """Work of all loads, and of the forces and moments of plates, on a motion."""
     supports, time = equilibrium.supports, equilibrium.time
     work = float(np.sum(sum(equilibrium.loads.forces(positions, time), supports.fading(time)) * motion.displacement))
@@ -82,30 +57,25 @@ def _work(equilibrium: Equilibrium, positions: FloatArray, motion: _Motion) -> f
     (centre, size), bodies = extent(piece), {body.name for body in piece}
     for plate in supports.plates:
         if equilibrium.problem.supports[plate.support].place.body in bodies:
-            goes = shift + np.cross(turn, plate.centre - centre) / size
+            there = supports.centre(equilibrium.problem.supports[plate.support], time, positions)
+            goes = shift + np.cross(turn, there - centre) / size
             work += supports.factor(plate, time) * float(plate.force @ goes + plate.moment * (plate.axis @ turn) / size)
     return work
 
 
-def _said(equilibrium: Equilibrium, touches: Sequence[Touch], motions: Sequence[_Motion], way: FloatArray, borne: float) -> Iterator[str]:
+def _said(
+    equilibrium: Equilibrium, touches: Sequence[Touch], motions: Sequence[FreeMotion], way: FloatArray, borne: float
+) -> Iterator[str]:
     """On the bodies that go on a way on which loads do unit work; friction bears some of that at most."""
-    pieces, images = equilibrium.numbering.pieces, equilibrium.problem.images
-    goes = np.zeros((len(pieces), 6))
-    for share, motion in zip(way, motions, strict=True):
-        goes[motion.piece] += share * motion.amounts
-    lengths = np.linalg.norm(goes, axis=1)
-    bodies = " and ".join(named(pieces[k], pieces[k][0].name) for k in np.flatnonzero(lengths > GOES * lengths.max()))
-    shift, turn = goes[np.argmax(lengths)].reshape(2, 3)
-    turns = np.linalg.norm(turn) > TURNS * np.linalg.norm(shift)
-    if turns and not all(touch.is_face for touch in touches):
+    goes, images = going(equilibrium.numbering, motions, way), equilibrium.problem.images
+    if goes.turns and not all(touch.is_face for touch in touches):
         return
-    rates = turn / extent(pieces[np.argmax(lengths)])[1] if turns else shift
+    rates = goes.turn if goes.turns else goes.shift
     far = float(np.linalg.norm(rates))
-    along = ", ".join(f"{value:g}" for value in np.round(rates / far, 2) + 0.0)
     contacts = " and ".join(repr(touch.pair.pair.contact.name) for touch in touches)
     yield (
-        f"loads {'turn' if turns else 'push'} {bodies} {'about an axis ' if turns else ''}along ({along}) by {images / far:.3g} by then, "
-        f"where friction of contact {contacts} can bear about {images * borne / far:.3g} at the pressures that hold it otherwise, and "
-        "nothing else does: beyond that it slides, and is nowhere at rest. Take more friction, or less load that way, or hold or move it "
-        "by a support"
+        f"loads {'turn' if goes.turns else 'push'} {goes.bodies} {'about an axis ' if goes.turns else ''}along ({direction(rates)}) by "
+        f"{images / far:.3g} by then, where friction of contact {contacts} can bear about {images * borne / far:.3g} at the pressures that "
+        "hold it otherwise, and nothing else does: beyond that it slides, and is nowhere at rest. Take more friction, or less load that "
+        "way, or hold or move it by a support"
     )

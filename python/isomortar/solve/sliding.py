@@ -12,8 +12,8 @@ from isomortar.model.entities import Face
 from isomortar.model.glue import named
 from isomortar.solve.contact import PairMechanics
 from isomortar.solve.equilibrium import Equilibrium
+from isomortar.solve.free_motions import free_motions
 from isomortar.solve.metric import traction_norms
-from isomortar.solve.overcome import overcome
 from isomortar.solve.record import ContactState, State
 
 #: Share of what friction can bear above which a body is about to slide: what the last load increment before adds is less than the rest.
@@ -31,20 +31,16 @@ def sliding(equilibrium: Equilibrium, state: State) -> Iterator[str]:
     state : State
         Where the last load increment ended that converged.
     """
-    told = list(_used_up(equilibrium, state))
-    yield from told or overcome(equilibrium, state)
-
-
-def _used_up(equilibrium: Equilibrium, state: State) -> Iterator[str]:
-    """The same by what friction bears at the end of the last increment."""
-    for piece, motions in zip(equilibrium.numbering.pieces, equilibrium.motions, strict=bool(equilibrium.motions)):
+    found = free_motions(equilibrium.problem, equilibrium.numbering, equilibrium.supports, state.positions)
+    for number, piece in enumerate(equilibrium.numbering.pieces):
+        motions = [motion.displacement for motion in found if motion.piece == number]
         names = {body.name for body in piece}
         pairs = [(pair, begun) for pair, begun in zip(equilibrium.pairs, state.contacts, strict=True) if _bodies(pair) & names]
-        if not len(motions) or not pairs:
+        if not motions or not pairs:
             continue
         borne, most = np.sum([_share(pair, state.positions, begun) for pair, begun in pairs], axis=0)
         friction = np.sum([_friction(pair, state.positions, begun) for pair, begun in pairs], axis=0)
-        along = np.linalg.norm(np.einsum("mij,ij->m", motions, friction))
+        along = np.linalg.norm(np.einsum("mij,ij->m", np.stack(motions), friction))
         if most > 0.0 and borne > ALL * most and along > HOLDS * np.linalg.norm(friction, axis=1).sum():
             contacts = " and ".join(repr(pair.pair.contact.name) for pair, _ in pairs)
             yield (

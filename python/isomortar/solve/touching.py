@@ -10,12 +10,12 @@ import numpy as np
 from isomortar._bindings import Control
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
-from isomortar.model.entities import Body, Face, Problem
+from isomortar.model.entities import Face, Problem
 from isomortar.model.loads import Loads
 from isomortar.model.numbering import Numbering
-from isomortar.model.rank import motions_left, moved
 from isomortar.model.supports import BoolArray, Supports
 from isomortar.solve.contact import PairMechanics
+from isomortar.solve.free_motions import free_motions
 from isomortar.solve.record import ContactState, State
 from isomortar.solve.scales import Scales
 
@@ -38,41 +38,40 @@ class Touching:
     numbering : Numbering
     supports : Supports
     loads : Loads
-
-    Attributes
-    ----------
-    motions : list of ndarray, each of shape (motions, control points, 3)
-        Rigid motions that supports leave each piece, where loads act in the scene; else none.
     """
 
     def __init__(self, problem: Problem, numbering: Numbering, supports: Supports, loads: Loads) -> None:
-        self._pieces, self._supports, self._loads = numbering.pieces, supports, loads
-        loaded = bool(problem.loads or supports.plates)
-        self.motions = [_motions_left(problem, numbering, piece, supports.stage) for piece in self._pieces] if loaded else []
-        self._ways: list[tuple[set[str], FloatArray]] = []
+        self._problem, self._numbering, self._supports, self._loads = problem, numbering, supports, loads
 
-    def begin(self, positions: FloatArray, time: float) -> None:
-        """Begin an increment: a body goes as loads move it, one that no load moves may go any way (theory 6.8)."""
-        if not self.motions:
-            return
+    def _ways(self, positions: FloatArray, time: float) -> list[tuple[set[str], FloatArray]]:
+        """Bodies, and a way that each goes to a load time: as loads move it, or any way if none does (theory 6.8)."""
+        motions = free_motions(self._problem, self._numbering, self._supports, positions)
+        if not motions:
+            return []
         left = self._supports.unbalanced(-sum(self._loads.forces(positions, time), np.zeros_like(positions)), positions, time)
         turning = any(plate.across for plate in self._supports.plates)
-        self._ways = []
-        for piece, motions in zip(self._pieces, self.motions, strict=True):
-            works = -np.einsum("mij,ij->m", motions, left)
-            way = np.tensordot(works, motions, 1)
+        found: list[tuple[set[str], FloatArray]] = []
+        for number, piece in enumerate(self._numbering.pieces):
+            own = np.reshape([motion.displacement for motion in motions if motion.piece == number], (-1, *positions.shape))
+            works = -np.einsum("mij,ij->m", own, left)
+            way = np.tensordot(works, own, 1)
             driven = not turning and np.abs(works).max(initial=0.0) > constants.NO_PART * np.abs(left).sum()
-            ways = way[None] / np.abs(way).max() if driven else np.concatenate([motions, -motions])
-            self._ways += [({body.name for body in piece}, one) for one in ways]
+            ways = way[None] / np.abs(way).max() if driven else np.concatenate([own, -own])
+            found += [({body.name for body in piece}, one) for one in ways]
+        return found
 
-    def closed(self, pairs: Sequence[PairMechanics], start: State, penalties: Sequence[float | Scales]) -> list[FloatArray | None]:
+    def closed(
+        self, pairs: Sequence[PairMechanics], start: State, time: float, penalties: Sequence[float | Scales]
+    ) -> list[FloatArray | None]:
         """Pressures whose trials are above zero where loads close pairs first (theory 6.8); None of other pairs, and of those that bear.
 
         With scales in its place a penalty is that of `PairMechanics.parameters`.
         """
-        if not self._ways or all(np.any(contact.pressure != 0.0) for contact in start.contacts):
+        all_bear = all(np.any(contact.pressure != 0.0) for contact in start.contacts)
+        ways = [] if all_bear else self._ways(start.positions, time)
+        if not ways:
             return [None] * len(pairs)
-        approaches = [self._approach(pair, start.positions, contact) for pair, contact in zip(pairs, start.contacts, strict=True)]
+        approaches = [_approach(pair, start.positions, contact, ways) for pair, contact in zip(pairs, start.contacts, strict=True)]
         first = np.min([approach.distances for approach in approaches], axis=0)
         found: list[FloatArray | None] = []
         for pair, contact, approach, penalty in zip(pairs, start.contacts, approaches, penalties, strict=True):
@@ -85,35 +84,22 @@ class Touching:
             found.append(np.where(approach.near, size * np.maximum(least, least - mean_heights(approach.control)), 0.0))
         return found
 
-    def _approach(self, pair: PairMechanics, positions: FloatArray, start: ContactState) -> _Approach:
-        """Of a pair; one that bears is where it stands (theory 6.8)."""
-        sides = (side for side in (pair.pair.contact.slave, pair.pair.contact.master) if isinstance(side, Face))
-        names = {face.body for side in sides for face in side.faces}
-        control, least = pair.kinematics(positions, start).control, next_to_nothing(pair)
-        heights = mean_heights(control)
-        bears = start.pressure != 0.0
-        near = np.isfinite(heights) & (bears if bears.any() else heights >= heights.max() - least)
-        distances = np.full(len(self._ways), np.inf)
-        for k, (bodies, way) in enumerate(self._ways):
-            if names & bodies:
-                rates = (mean_heights(pair.kinematics(positions + least * way, start).control)[near] - heights[near]) / least
-                closes = rates > constants.IN_THE_WAY
-                distances[k] = np.min(-heights[near][closes] / rates[closes], initial=np.inf)
-        return _Approach(control, near, distances)
 
-
-def _motions_left(problem: Problem, numbering: Numbering, piece: tuple[Body, ...], stage: int) -> FloatArray:
-    """Rigid motions that supports leave a body, with all that is glued to it: displacements of all control points, one each."""
-    displacements = [displacement(numbering, piece, motion, numbering.reference) for motion in motions_left(problem, piece, stage)]
-    return np.array(displacements).reshape(-1, *numbering.reference.shape)
-
-
-def displacement(numbering: Numbering, piece: tuple[Body, ...], motion: FloatArray, positions: FloatArray) -> FloatArray:
-    """What a rigid motion of a body, with all that is glued to it, does to all control points at some positions."""
-    own = np.concatenate([numbering.points[body.name] for body in piece])
-    displaced = np.zeros_like(positions)
-    displaced[own] = moved(piece, motion, positions[own])
-    return displaced
+def _approach(pair: PairMechanics, positions: FloatArray, start: ContactState, ways: Sequence[tuple[set[str], FloatArray]]) -> _Approach:
+    """Of a pair; one that bears is where it stands (theory 6.8)."""
+    sides = (side for side in (pair.pair.contact.slave, pair.pair.contact.master) if isinstance(side, Face))
+    names = {face.body for side in sides for face in side.faces}
+    control, least = pair.kinematics(positions, start).control, next_to_nothing(pair)
+    heights = mean_heights(control)
+    bears = start.pressure != 0.0
+    near = np.isfinite(heights) & (bears if bears.any() else heights >= heights.max() - least)
+    distances = np.full(len(ways), np.inf)
+    for k, (bodies, way) in enumerate(ways):
+        if names & bodies:
+            rates = (mean_heights(pair.kinematics(positions + least * way, start).control)[near] - heights[near]) / least
+            closes = rates > constants.IN_THE_WAY
+            distances[k] = np.min(-heights[near][closes] / rates[closes], initial=np.inf)
+    return _Approach(control, near, distances)
 
 
 def mean_heights(control: Control) -> FloatArray:

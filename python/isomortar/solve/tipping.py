@@ -1,0 +1,132 @@
+"""Bodies that loads tip over, or lift: contact, which presses and rubs and does not pull, has nothing that would balance these."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from scipy import sparse
+from scipy.optimize import linprog
+
+from isomortar.errors import LostProjectionError
+from isomortar.geometry.patch import FloatArray
+from isomortar.solve.contact import PairMechanics
+from isomortar.solve.equilibrium import Equilibrium
+from isomortar.solve.feet import gaps
+from isomortar.solve.free_motions import FreeMotion, direction, free_motions, going
+from isomortar.solve.limit_load import ALONG, Touch, touches_of
+from isomortar.solve.overcome import work_on
+from isomortar.solve.record import ContactState, State
+from isomortar.solve.touching import next_to_nothing
+
+#: Bodies that bear on less than this share of what is over the master are on its edge: soft ones are over it before rigid ones would be.
+EDGE = 1.0 / 3.0
+#: Directions along a face in which slips are looked at: all others are off by less than four per cent.
+DIRECTIONS = 12
+#: Friction in place of what contacts have: that bodies slide is another matter.
+STICKS = 10.0
+#: Rates of opening, beside the speed of what touches, above which a motion opens it.
+ASKEW = 0.1
+#: What helps where the slave goes on beyond that.
+FINER = "refine the slave, whose outermost control points bear within its edge, "
+#: Share of what is over the master that a motion has to open, or leave open: one that slides along it opens nothing.
+OPENS = 0.25
+
+
+def tipping(equilibrium: Equilibrium, state: State) -> Iterator[str]:
+    """Sentences, without a capital, on bodies that loads turn over an edge of what bears them, or lift (theory 9.12).
+
+    Parameters
+    ----------
+    equilibrium : Equilibrium
+        Its loads are those at the end of the increment that was begun last.
+    state : State
+        Where the last load increment ended that converged.
+    """
+    motions = free_motions(equilibrium.problem, equilibrium.numbering, equilibrium.supports, state.positions)
+    works = np.array([work_on(equilibrium, state.positions, motion) for motion in motions])
+    if not np.any(works):
+        return
+    try:
+        touches = touches_of(equilibrium.pairs, state, [motion.displacement for motion in motions])
+    except LostProjectionError:
+        return
+    way = overturning(touches, works / np.linalg.norm(works))
+    if way is not None:
+        yield _said(equilibrium, state, touches, motions, way)
+
+
+def overturning(touches: Sequence[Touch], works: FloatArray) -> FloatArray | None:
+    """The motion on which loads do most work beyond what contact takes up, all of it or on a share EDGE of its area (theory 9.12).
+
+    Its amounts add up to one: as few motions as can be. None: there is none that opens much of a contact.
+    """
+    if not touches:
+        return None
+    table, costs = _resistance(touches)
+    for crushed in (False, True):
+        limits = np.append(np.zeros(table.shape[0]), 1.0)
+        total = np.repeat([1.0, 0.0], [2 * len(works), len(costs)])
+        bounds = [(0.0, None)] * 2 * len(works) + [(0.0, None if crushed else 0.0)] * len(costs)
+        found = linprog(np.concatenate([-works, works, costs]), A_ub=sparse.vstack([table, total[None]]), b_ub=limits, bounds=bounds)
+        forwards, backwards = found.x[: 2 * len(works)].reshape(2, -1)
+        if -found.fun > ALONG and any(_opened(touch, forwards - backwards) > OPENS for touch in touches):
+            return np.asarray(forwards - backwards)
+    return None
+
+
+def _resistance(touches: Sequence[Touch]) -> tuple[sparse.csr_array, FloatArray]:
+    """Rows that no motion, forwards or backwards, makes positive but as far as it presses constraints, and what that costs each of them."""
+    rates = [_rates(touch) for touch in touches]
+    pressed = [np.full((len(own) // len(touch.share), 1), 1.0) for own, touch in zip(rates, touches, strict=True)]
+    each = sparse.block_diag([part for part, touch in zip(pressed, touches, strict=True) for _ in touch.share])
+    beside = np.concatenate([touch.beside for touch in touches])
+    moves = np.concatenate([*rates, beside])
+    presses = sparse.vstack([-each, sparse.csr_array((len(beside), each.shape[1]))])
+    return sparse.hstack([moves, -moves, presses], format="csr"), np.concatenate([touch.share / EDGE for touch in touches])
+
+
+def _rates(touch: Touch) -> FloatArray:
+    """Mean rates of closing, and with friction of slips along some directions as well, shape (n * directions, motions)."""
+    if not touch.pair.friction.acts:
+        return touch.closing / touch.weight[:, None]
+    angles = 2.0 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS
+    slips = np.einsum("ad,nam->ndm", [np.cos(angles), np.sin(angles)], touch.slipping)
+    rates = (touch.closing[:, None] + STICKS * slips) / touch.weight[:, None, None]
+    return np.asarray(rates).reshape(-1, rates.shape[2])
+
+
+def _opened(touch: Touch, way: FloatArray) -> float:
+    """Share of what is over the master that a motion opens, or that is open; none if it goes along the contact."""
+    rates, beside = touch.closing @ way / touch.weight, touch.beside @ way
+    speed = np.hypot(rates, touch.lengths(way) / touch.weight).max()
+    opens, opens_more = rates < -ASKEW * speed, beside < -ASKEW * speed
+    return float(1.0 - touch.share @ ~opens) if opens.any() or opens_more.any() else 0.0
+
+
+def _said(equilibrium: Equilibrium, state: State, touches: Sequence[Touch], motions: Sequence[FreeMotion], way: FloatArray) -> str:
+    """On the bodies that go, and what opens."""
+    goes = going(equilibrium.numbering, motions, way)
+    opened = [touch for touch in touches if _opened(touch, way) > OPENS]
+    contacts = " and ".join(repr(touch.pair.pair.contact.name) for touch in opened)
+    if goes.turns:
+        place = ", ".join(f"{value:.3g}" for value in goes.axis_point + equilibrium.origin)
+        how = f"turn {goes.bodies} about an axis along ({direction(goes.turn)}) through ({place})"
+        end, cure = "it tips over", "Let loads act nearer to the middle of what bears them, take a wider base, "
+    else:
+        how, end, cure = f"move {goes.bodies} along ({direction(goes.shift)})", "it lifts off", "Take less load that way, "
+    displacement = np.tensordot(way, [motion.displacement for motion in motions], 1)
+    begun = dict(zip(equilibrium.pairs, state.contacts, strict=True))
+    finer = any(_goes_on(touch.pair, state.positions, begun[touch.pair], displacement) for touch in opened)
+    return (
+        f"loads {how} by then, and contact {contacts}, which presses and rubs and does not pull, bears them on less than a third of its "
+        f"area, if at all: {end}. {cure}{FINER if finer else ''}or hold or move it by a support"
+    )
+
+
+def _goes_on(pair: PairMechanics, positions: FloatArray, begun: ContactState, displacement: FloatArray) -> bool:
+    """Whether a slave goes on beyond the axis that it turns about: constraints are averages, and the outermost are within its edge."""
+    moved = positions + next_to_nothing(pair) * displacement
+    start, end = pair.kinematics(positions, begun).projections, pair.kinematics(moved, begun).projections
+    rates = gaps(pair.pair, moved, end) - gaps(pair.pair, positions, start)
+    return bool(rates.max() > ALONG * np.abs(rates).max())

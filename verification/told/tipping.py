@@ -1,0 +1,171 @@
+"""What is said of bodies that loads tip over an edge of what bears them, or lift: no increment converges, and no friction would help."""
+
+from __future__ import annotations
+
+import re
+from itertools import product
+
+import numpy as np
+from told.too_steep import said
+
+from isomortar.harness import Bound, case
+
+#: A block twice as high as wide: it stands while the middle of its loads is over its base, here as far as its control points carry.
+SCENE = """
+format = 1
+materials.soft.young = YOUNG
+bodies.block = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 2] }, mesh.elements = [4, 2, 2] }
+GROUND
+LOADS
+solver = { method = "METHOD", max_cuts = 2, max_iterations = 15 }
+stages = [{ name = "stand", steps = 1 }]
+"""
+TABLE = """
+supports.table.face = "table.w0"
+bodies.table = { geometry = { kind = "box", lower = [-0.5, -0.5, -0.5], upper = [1.5, 1.5, 0] }, mesh.elements = [8, 4, 1] }
+"""
+GROUNDS = {
+    "plane": 'contacts.floor = { slave = "block.w0", friction = 1, plane = {} }',
+    "smooth": 'contacts.floor = { slave = "block.w0", plane = {} }\nsupports.foot = { edge = "block.u1.w0", components = ["x"] }',
+    "body": TABLE + 'contacts.floor = { slave = "block.w0", master = "table.w1", friction = 1 }',
+    "swapped": TABLE + 'contacts.floor = { slave = "table.w1", master = "block.w0", friction = 1 }',
+}
+WEIGHT = 'loads.own = { body = "block", weight = [0, 0, -1] }\n'
+#: Loads whose middle is LEAN beside that of the base.
+LOADS = {
+    "weight": 'loads.own = { body = "block", weight = [LEAN, 0, -1] }',
+    "pressure": WEIGHT + 'loads.push = { face = "block.u0", pressure = LEAN }',
+    "traction": WEIGHT + 'loads.push = { face = "block.w1", traction = [LEAN, 0, 0] }',
+    "moment": WEIGHT + 'supports.hand = { face = "block.w1", centre = [0.5, 0.5, 2], axis = [0, 1, 0], FREE, moment = TWICE }',
+}
+TOLD = re.compile(r"Loads (turn|move) (.*?) (?:about an axis )?along \((.*?)\)(?: through \((.*?)\))? by then, and contact (.*?), which")
+FINER = "refine the slave, whose outermost control points bear within its edge"
+
+
+def of_block(loads: str, ground: str, method: str, lean: float, young: str = "10000") -> str:
+    """Why a block does not stand; nothing, if it does."""
+    scene = SCENE.replace("LOADS", LOADS[loads]).replace("GROUND", GROUNDS[ground]).replace("METHOD", method)
+    return said(
+        scene.replace("TWICE", str(2.0 * lean))
+        .replace("FREE", "force = { x = 0, y = 0, z = 0 }")
+        .replace("LEAN", str(lean))
+        .replace("YOUNG", young)
+    )
+
+
+def axis(sentence: str) -> tuple[str, float]:
+    """Along what a block is told to turn, and where on its base; nothing, if it is not told."""
+    found = TOLD.search(sentence)
+    tips = found and found[1] == "turn" and found[2] == "body 'block'" and found[5] == "'floor'"
+    return (found[3], float(found[4].split(",")[0])) if found and tips else ("", np.inf)
+
+
+@case(
+    claim="A high block stands while the middle of its loads is over its base, and is told to tip over that edge of it beyond; on all "
+    "grounds, whatever pushes, to either side.",
+    tier="gate",
+    grid={"ground": tuple(GROUNDS), "method": ("monolithic", "uzawa")},
+    bounds={
+        "restless": Bound(0.0, 0.0, "definition: blocks that do not stand though they should"),
+        "others": Bound(0.0, 0.0, "definition: blocks of which another axis is told, or none"),
+        "off": Bound(at_most=0.125, reason="definition: how far the axis is from the edge; half an element of the slave"),
+    },
+)
+def tips(ground: str, method: str) -> dict[str, float]:
+    """How many of two and of four, and how far off at most."""
+    rest = [of_block(loads, ground, method, 0.3) for loads in ("weight", "pressure")]
+    ways = [*product(LOADS, (0.7,)), *([] if ground == "smooth" else [("weight", -0.7)])]
+    found = [(lean, axis(of_block(loads, ground, method, lean))) for loads, lean in ways]
+    others = [along != ("0, 1, 0" if lean > 0.0 else "0, -1, 0") for lean, (along, _) in found]
+    off = [abs(place - (1.0 if lean > 0.0 else 0.0)) for lean, (_, place) in found]
+    return {"restless": float(sum(map(bool, rest))), "others": float(sum(others)), "off": float(np.max(off))}
+
+
+@case(
+    claim="A block that its slave's control points cannot carry though its base could is told so; one of rubber that has sunk in on its "
+    "edge is told to tip over before a rigid one would; and a finer slave carries more.",
+    tier="gate",
+    bounds={
+        "finer": Bound(2.0, 2.0, "definition: of blocks beyond what control points carry, and beyond their edge, those told"),
+        "stands": Bound(1.0, 1.0, "definition: the first, on the same elements where they carry it"),
+        "rubber": Bound(2.0, 2.0, "definition: of two methods those by which rubber is told"),
+    },
+)
+def carries() -> dict[str, float]:
+    """How many of each."""
+    beyond = [of_block("weight", "plane", "monolithic", lean) for lean in (0.46, 0.55)]
+    stands = of_block("weight", "plane", "monolithic", 0.42)
+    rubber = [of_block("weight", "plane", method, 0.41, "100") for method in ("monolithic", "uzawa")]
+    return {
+        "finer": float(sum(FINER in sentence and axis(sentence)[0] == "0, 1, 0" for sentence in beyond)),
+        "stands": float(stands == ""),
+        "rubber": float(sum(axis(sentence)[0] == "0, 1, 0" for sentence in rubber)),
+    }
+
+
+HEAD = """
+format = 1
+materials.soft.young = 1e4
+solver = { max_cuts = 2, max_iterations = 15 }
+stages = [{ name = "stand", steps = 1 }]
+"""
+LOWER = 'bodies.lower = { geometry = { kind = "box", lower = [0, 0, 0], upper = [3, 1, 1] }, mesh.elements = [6, 2, 1] }\n'
+UPPER = 'bodies.upper = { geometry = { kind = "box", lower = [1, 0, 1], upper = [2, 1, 3] }, mesh.elements = [4, 2, 2] }\n'
+PILE = LOWER + UPPER + 'contacts.floor = { slave = "lower.w0", friction = 1, plane = {} }\n'
+MID = 'contacts.mid = { slave = "upper.w0", master = "lower.w1", friction = 1 }\n'
+BOTH = 'loads = { low = { body = "lower", weight = [0, 0, -1] }, high = { body = "upper", weight = [LEAN, 0, -1] } }\n'
+LIFTED = """
+contacts.floor = { slave = "lower.w0", friction = 1, plane = {} }
+loads.low = { body = "lower", weight = [0.3, 0, 1] }
+"""
+PLANK = """
+bodies.plank = { geometry = { kind = "box", lower = [0, 0, 0], upper = [2, 1, 0.3] }, mesh.elements = [8, 2, 1] }
+bodies.table = { geometry = { kind = "box", lower = [-1, -0.5, -0.5], upper = [0.8, 1.5, 0] }, mesh.elements = [8, 4, 1] }
+supports.table.face = "table.w0"
+contacts.edge = { slave = "plank.w0", master = "table.w1", friction = 1 }
+loads.own = { body = "plank", weight = [0, 0, -1] }
+"""
+RING = """
+bodies.ring = { geometry = { kind = "ring", inner = 0.6, outer = 1, width = 0.5, centre = [0, 0, 1] } }
+contacts.floor = { slave = "ring.v1", friction = 0.3, plane = {} }
+loads.own = { body = "ring", weight = [0.5, 0, -1] }
+"""
+WALL = 'contacts.wall = { slave = "block.u1", friction = 0.1, plane = { point = [1, 0, 0], normal = [-1, 0, 0] } }\n'
+#: Scenes, and what is to be told: bodies, how, and along what; nothing: they stand, or do something else.
+SCENES: dict[str, tuple[str, tuple[str, str, str] | None]] = {
+    "upper one": (PILE + MID + BOTH.replace("LEAN", "0.8"), ("turn", "body 'upper'", "0, 1, 0")),
+    "stays up": (PILE + MID + BOTH.replace("LEAN", "0.3"), None),
+    "glued": (
+        PILE.replace("upper = [3, 1, 1]", "upper = [2, 1, 1]").replace("lower = [0, 0, 0]", "lower = [1, 0, 0]")
+        .replace("[6, 2, 1]", "[4, 2, 1]") + 'glue = [["lower.w1", "upper.w0"]]\n' + BOTH.replace("LEAN", "0.8"),
+        ("turn", "body 'lower' (glued to 'upper')", "0, 1, 0"),
+    ),
+    "over an edge": (PLANK, ("turn", "body 'plank'", "0, 1, 0")),
+    "a half": (
+        SCENE.replace("lower = [0, 0, 0]", "lower = [0, -1, 0]").replace("GROUND", GROUNDS["plane"]).replace("LOADS", LOADS["weight"])
+        .replace("LEAN", "0.7") + "symmetry = { y = 0 }\n", ("turn", "body 'block'", "0, 1, 0"),
+    ),
+    "against a wall": (
+        SCENE.replace("GROUND", GROUNDS["plane"] + "\n" + WALL).replace("LOADS", LOADS["weight"]).replace("LEAN", "0.7"), None,
+    ),
+    "lifted": (LOWER + LIFTED, ("move", "body 'lower'", "0, 0, 1")),
+    "slides": (
+        SCENE.replace("GROUND", GROUNDS["plane"].replace("= 1,", "= 0.1,")).replace("LOADS", LOADS["weight"]).replace("LEAN", "0.2"), None,
+    ),
+    "rolls": (RING, None),
+}  # fmt: skip
+
+
+@case(
+    claim="Of several bodies, glued or on each other or over their table's edge, the one is told of that tips; of bodies that slide or "
+    "roll, or that something else holds, it is not said, and of one that is lifted that it lifts off.",
+    tier="gate",
+    grid={"scene": tuple(SCENES)},
+    bounds={"others": Bound(0.0, 0.0, "definition: bodies and ways that are told and are others")},
+)
+def tipping(scene: str) -> dict[str, float]:
+    """Whether something else is told."""
+    text, expected = SCENES[scene]
+    whole = text.replace("METHOD", "monolithic").replace("YOUNG", "10000") if "METHOD" in text else HEAD + text
+    found = TOLD.search(said(whole))
+    return {"others": float((found and (found[1], found[2], found[3])) != expected)}
