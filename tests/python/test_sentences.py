@@ -16,6 +16,8 @@ from told.astray import STRETCHING, TURNING
 from told.astray import run as astray
 from told.behind import DOWN
 from told.behind import SCENE as FLOOR
+from told.beyond_edges import STRIP as BEYOND_EDGES
+from told.beyond_edges import punch
 from told.given_up import all_told, without_digits
 from told.narrow import BALLS, STRIPS, depth, strip
 from told.passing import SCENE as BENT
@@ -169,6 +171,9 @@ def along_the_way(_: pytest.MonkeyPatch) -> Told:
     near = "stages.s.motions.top.translate=[0, 0.2, 0]"  # in one increment on all machines
     yield "turning coordinates", next(said for said in astray(TURNING, (near,))[0] if "degrees" in said)
     yield "stretching coordinates", next(said for said in astray(STRETCHING)[0] if "degrees" not in said)
+    observer = Warned()
+    list(Simulation(Scene.from_toml(punch(BEYOND_EDGES, 0.2)).problem(), observer).run())
+    yield "beyond edges", observer.said[0]
     for name, (text, changes) in {
         "narrow": strip(*STRIPS["N2 beside it"]),
         "one row": (BALLS["one row"][0], (depth(0.05),)),

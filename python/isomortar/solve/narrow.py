@@ -9,10 +9,11 @@ import numpy as np
 
 from isomortar._bindings import Projections
 from isomortar.geometry.patch import FloatArray
-from isomortar.model.entities import Body, Contact, Face, Problem
+from isomortar.model.entities import Contact, Problem
 from isomortar.model.pairs import Pair
 from isomortar.model.sheet import Sheet
 from isomortar.solve.advice import round_off
+from isomortar.solve.beyond_edges import beyond_edges, softness, told
 from isomortar.solve.contact import PairMechanics, PutOff
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.feet import gaps
@@ -71,7 +72,7 @@ class Narrow:
     """
 
     def __init__(self, equilibrium: Equilibrium, states: Sequence[ContactState]) -> None:
-        self._problem = equilibrium.problem
+        self._equilibrium, self._problem = equilibrium, equilibrium.problem
         self._watched = dict(enumerate(equilibrium.pairs))
         self._areas = [_areas(mechanics.pair, mechanics.pair.slave.area) for mechanics in equilibrium.pairs]
         self._largest = np.array([state.pressure @ area for state, area in zip(states, self._areas, strict=True)])
@@ -95,6 +96,11 @@ class Narrow:
             if found.too_narrow:
                 del self._watched[number]
                 yield _told(self._problem, mechanics.pair.contact, found, step)
+                continue
+            over = beyond_edges(self._equilibrium, mechanics.pair, balance.positions, balance.kinematics[number].projections)
+            if over is not None and over.too_stiff:
+                del self._watched[number]
+                yield told(self._problem, mechanics.pair.contact, over, step)
 
 
 def forces(pair: Pair, pressure: FloatArray, projections: Projections) -> FloatArray:
@@ -148,17 +154,8 @@ def _between(problem: Problem, mechanics: PairMechanics, balance: Balance, numbe
     if not acting.any():
         return 0.0, 0.0
     depth = np.sqrt(acting @ np.square(gaps(pair, balance.positions, projections)) / acting.sum())
-    return float(depth), float(_softness(problem, pair.contact) * np.sqrt(problem.images * (acting @ pressure)))
-
-
-def _softness(problem: Problem, contact: Contact) -> float:
-    """Sum of (1 - nu^2) / E of both sides."""
-    sides = [side for side in (contact.slave, contact.master) if isinstance(side, Face)]
-    return sum(max(_soft(problem.body(face.body)) for face in side.faces) for side in sides)
-
-
-def _soft(body: Body) -> float:
-    return 0.0 if body.rigid else (1.0 - body.material.poisson**2) / body.material.young
+    soft = softness(problem, pair.contact.slave) + softness(problem, pair.contact.master)
+    return float(depth), float(soft * np.sqrt(problem.images * (acting @ pressure)))
 
 
 def _told(problem: Problem, contact: Contact, found: Bearing, step: int) -> str:

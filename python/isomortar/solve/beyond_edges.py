@@ -1,0 +1,115 @@
+"""Elements of a slave that go on beyond an edge of its master: they cannot follow what it presses in, and are too stiff."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from isomortar._bindings import Projections
+from isomortar.geometry.patch import Direction, FloatArray
+from isomortar.model.enforcement.face import SlaveFace, grid
+from isomortar.model.entities import Body, Contact, Face, Problem, RigidPlane
+from isomortar.model.pairs import Pair
+from isomortar.model.sheet import Sheet
+from isomortar.model.supports import BoolArray
+from isomortar.solve.equilibrium import Equilibrium
+from isomortar.solve.feet import slave_points
+
+#: Share of the force by which an edge of the master makes contact too stiff, times the width in elements that is over the master: fitted to
+#: punches, of widths from a fifth of an element to ten, on blocks of order 1 to 3.
+STIFFENS = 0.1
+#: Parts of an element along a line that are looked at.
+PARTS = 8
+#: Share of the force from which on it is told.
+COSTS = 0.15
+#: A direction is too coarse where it costs this share of what the other one does.
+PART = 0.5
+
+
+@dataclass(frozen=True)
+class BeyondEdges:
+    """What of a contact is over its master.
+
+    Attributes
+    ----------
+    widths : ndarray, shape (2,)
+        How wide that is along each coordinate of the slave face, in elements of that.
+    edges : ndarray of int, shape (2,)
+        At how many ends of that the slave goes on.
+    softness : float
+        Share of the slave in what both bodies give way.
+    """
+
+    widths: FloatArray
+    edges: FloatArray
+    softness: float
+
+    @property
+    def costs(self) -> FloatArray:
+        """Share of the force that elements along each coordinate add to it, by an estimate, shape (2,) (theory 9.13)."""
+        return np.asarray(self.softness * STIFFENS * self.edges / self.widths)
+
+    @property
+    def too_stiff(self) -> bool:
+        """Whether it is told."""
+        return bool(self.costs.sum() > COSTS)
+
+
+def beyond_edges(equilibrium: Equilibrium, pair: Pair, positions: FloatArray, projections: Projections) -> BeyondEdges | None:
+    """What is over the master, along the lines of the face that most of is; None where all is, or nothing.
+
+    Lines are lines of places, of which those are over the master whose nearest quadrature points are.
+    """
+    contact, problem, found = pair.contact, equilibrium.problem, projections.found > 0
+    if found.all() or not found.any():
+        return None
+    face = SlaveFace(contact, problem, equilibrium.numbering)
+    (u, du), (v, dv) = (_places(direction) for direction in face.directions)
+    nodes, values, slopes = face.at(grid(u, v))
+    places = np.einsum("qa,qai->qi", values, positions[face.point[nodes]])
+    over = found[cKDTree(slave_points(pair, positions)).query(places)[1]]
+    widths, edges = np.array([_longest(lines) for lines in (over.reshape(len(v), -1), over.reshape(len(v), -1).T)]).T
+    if edges.any():  # areas are known better than lines, where quadrature points are few
+        area = np.sum(np.prod(grid(du, dv), axis=1) * face.areas(nodes, slopes), where=over)
+        widths[edges > 0] *= (np.sum(pair.slave.area, where=found) / area) ** (1.0 / np.count_nonzero(edges))
+    slave, master = softness(problem, contact.slave), softness(problem, contact.master)
+    return BeyondEdges(widths, edges, slave / (slave + master))
+
+
+def _places(direction: Direction) -> tuple[FloatArray, FloatArray]:
+    """Middles of equal parts of each element along a direction, and lengths of these."""
+    lengths = np.diff(direction.boundaries)[:, None]
+    middles = direction.boundaries[:-1, None] + lengths * (np.arange(PARTS) + 0.5) / PARTS
+    return middles.ravel(), np.repeat(lengths / PARTS, PARTS)
+
+
+def _longest(lines: BoolArray) -> tuple[float, int]:
+    """The most elements that are over the master along a line of places, shape (lines, places), and its ends that are not."""
+    longest = lines[int(np.argmax(lines.sum(axis=1)))]
+    return np.count_nonzero(longest) / PARTS, int(not longest[0]) + int(not longest[-1])
+
+
+def softness(problem: Problem, side: Face | RigidPlane) -> float:
+    """(1 - nu^2) / E of one side of a contact, of the softest of its bodies."""
+    return max((_soft(problem.body(face.body)) for face in side.faces), default=0.0) if isinstance(side, Face) else 0.0
+
+
+def _soft(body: Body) -> float:
+    return 0.0 if body.rigid else (1.0 - body.material.poisson**2) / body.material.young
+
+
+def told(problem: Problem, contact: Contact, found: BeyondEdges, step: int) -> str:
+    """The sentence."""
+    letters, body, stage = Sheet.of(problem, contact.slave).letters, contact.slave.body, problem.stages[problem.stage_of(step)].name
+    over = " and ".join(
+        f"{width:.2g} along {letter}" for letter, width, edges in zip(letters, found.widths, found.edges, strict=True) if edges
+    )
+    few = [letter for letter, costs in zip(letters, found.costs, strict=True) if costs > PART * found.costs.max()]
+    return (
+        f"contact {contact.name!r}, load step {step}, the last of stage {stage!r}: elements of its slave {contact.slave.words} are too "
+        f"long for its master, beyond whose edges they go on: {over} are over it, and too stiff. Forces under given motions may be too "
+        f"large by about {10 * round(10.0 * float(found.costs.sum()))} %, pressures by more. Take twice as many elements or more along "
+        f"{' and '.join(few)} (bodies.{body}.mesh.elements), or shorter ones there (mesh.grading)"
+    )
