@@ -15,7 +15,7 @@ PACKAGE = Path(isomortar.__file__).parent
 PLACE = PACKAGE / "model" / "constants.py"
 #: Modules that refuse, warn or explain: their thresholds stand with their sentences.
 JUDGES = {
-    "advice", "astray", "behind", "causes", "checks", "contact_checks", "doubtful_edges", "doubtful_meshes", "doubtful_motions",
+    "advice", "astray", "behind", "borne", "causes", "checks", "contact_checks", "doubtful_edges", "doubtful_meshes", "doubtful_motions",
     "doubtful_sizes", "doubtful_turns", "doubts", "left_out", "limit_load", "lost", "magnitudes", "meeting", "memory", "narrow",
     "overcome", "passing", "pulling", "rational", "singular", "sliding", "small_strains", "stance",
 }  # fmt: skip

@@ -12,7 +12,7 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Body, Contact, Face, Problem
 from isomortar.model.pairs import Pair
 from isomortar.model.sheet import Sheet
-from isomortar.solve.advice import round_off
+from isomortar.solve.borne import Borne
 from isomortar.solve.contact import PairMechanics, PutOff
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.feet import gaps
@@ -75,20 +75,18 @@ class Narrow:
         self._watched = dict(enumerate(equilibrium.pairs))
         self._areas = [_areas(mechanics.pair, mechanics.pair.slave.area) for mechanics in equilibrium.pairs]
         self._largest = np.array([state.pressure @ area for state, area in zip(states, self._areas, strict=True)])
-        self._nothing = [round_off(self._problem, contact) for contact in self._problem.contacts]
-        self._highest = max((float(np.abs(state.pressure).max(initial=0.0)) for state in states), default=0.0)
+        self._borne = Borne(self._problem, states)
 
     def after_step(self, balance: Balance, step: int, ends: bool) -> Iterator[str]:
         """Warnings that the end of a load step gives rise to, if it `ends` a stage: all contact of round bodies is narrow at first."""
-        pressures = [float(np.abs(response.pressure).max(initial=0.0)) for response in balance.responses]
-        self._highest = max([self._highest, *pressures])
-        left_open = self._problem.settings.newton_tolerance * self._highest
+        self._borne.see(response.pressure for response in balance.responses)
         for number, mechanics in list(self._watched.items()):
             if isinstance(balance.kinematics[number], PutOff):
                 continue
-            force = float(balance.responses[number].pressure @ self._areas[number])
+            pressure = balance.responses[number].pressure
+            force = float(pressure @ self._areas[number])
             self._largest[number] = max(force, self._largest[number])
-            bears = pressures[number] > max(self._nothing[number], left_open)  # below that it is what balance leaves open
+            bears = self._borne.more_than_nothing(number, float(np.abs(pressure).max(initial=0.0)))
             if not ends or not bears or force <= LIGHT * self._largest[number]:
                 continue
             found = bearing(self._problem, mechanics, balance, number)
