@@ -92,6 +92,17 @@ def test_what_is_drawn_may_be_chosen(results_path: Path, tmp_path: Path) -> None
         plot(results_path, tmp_path, step=9)
 
 
+def test_curves_need_no_state(tmp_path: Path) -> None:
+    """They are of all load steps, whichever one bodies and maps would be of, and whatever was kept of it."""
+    writer = ResultsWriter(tmp_path / "run.h5", problem(), "", "0", states="last")
+    for number in (1, 2):
+        writer.recorded(quiet(number))
+    (drawn,) = plot(tmp_path / "run.h5", tmp_path, step=1, only=["curves"], formats=["png"])
+    assert drawn.name == "reactions-rim.png"
+    with pytest.raises(ResultsError, match="kept no state of load step 1"):
+        plot(tmp_path / "run.h5", tmp_path, step=1, only=["curves", "maps"])
+
+
 @pytest.mark.filterwarnings("error")
 def test_a_curve_may_have_any_label(results_path: Path, tmp_path: Path) -> None:
     """Files are called after it as far as they can be."""

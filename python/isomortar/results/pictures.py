@@ -82,14 +82,13 @@ def plot(
     _among("format", formats, FORMATS)
     folder = Path(outdir)
     with Results(results_path) as results, style():
-        shown = results.last_step() if step is None else results.step(step)
-        if shown is None:
+        if not len(results.steps):
             raise ResultsError(f"{results.path} holds no load step yet: nothing to draw")
         over = abscissa(results, x)
-        chosen = fields or (("pressure",) if results.problem.contacts else ("stress",))
-        drawers = {"curves": _of_curves(results, curves, over), "bodies": _of_bodies(results, shown, chosen)}
-        drawers["maps"] = _of_contacts(results, shown, chosen)
-        figures = {stem: draw for kind, drawn in drawers.items() if kind in (only or DRAWABLE) for stem, draw in drawn}
+        kinds = [kind for kind in DRAWABLE if kind in (only or DRAWABLE)]
+        figures = dict(_of_curves(results, curves, over)) if "curves" in kinds else {}
+        if kinds != ["curves"]:
+            figures |= dict(_of_step(results, int(results.steps[-1]) if step is None else step, fields, kinds))
         if not figures:
             wanted = " or ".join([*fields, *only])
             raise ResultsError(f"{results.path} has no contact, or no support, of which {wanted} could be drawn")
@@ -115,6 +114,14 @@ def _of_curves(results: Results, curves: Sequence[WantedCurve], over: Abscissa) 
 def _stem(label: str) -> str:
     """What a file may be called after a label that says anything: letters, digits and signs of no meaning to the system, not too many."""
     return re.sub(r"[^\w .,+=()-]", "_", label)[:100].rstrip()
+
+
+def _of_step(results: Results, number: int, fields: Sequence[str], kinds: Sequence[str]) -> Iterator[Named]:
+    step, chosen = results.step(number), fields or (("pressure",) if results.problem.contacts else ("stress",))
+    if "bodies" in kinds:
+        yield from _of_bodies(results, step, chosen)
+    if "maps" in kinds:
+        yield from _of_contacts(results, step, chosen)
 
 
 def _of_bodies(results: Results, step: StepResult, fields: Sequence[str]) -> Iterator[Named]:
