@@ -87,7 +87,8 @@ def _sentence(fault: ErrorDetails) -> str:
         case "union_tag_invalid":
             return f"is {fault['ctx']['tag']!r}; allowed: {fault['ctx']['expected_tags']}"
         case "string_pattern_mismatch":
-            return f"name {given} has other characters than are allowed: letters, digits, _ and -"
+            letters = "letters" if fault["loc"] == ("name",) else "letters from a to z"
+            return f"name {given} has other characters than are allowed: {letters}, digits, _ and -"
         case "too_short" | "too_long":
             return f"has {fault['ctx']['actual_length']} entries; allowed: " + message.split(" should have ")[1].split(" after")[0]
     if message.startswith("Input should be "):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import re
-import warnings
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
@@ -148,7 +147,6 @@ def _map(problem: Problem, step: StepResult, number: int, field: str, before: St
 def _save(figure: Figure, stem: Path, formats: Sequence[str]) -> list[Path]:
     paths = [stem.with_name(f"{stem.name}.{kind}") for kind in formats]
     for path in paths:
-        with writing(path), warnings.catch_warnings():
-            warnings.simplefilter("ignore", UserWarning)  # of letters that the font does not have, labels wider than the figure
+        with writing(path):
             figure.savefig(path, bbox_inches="tight", pad_inches=0.08)
     return paths

@@ -102,7 +102,7 @@ CASES = {
     "Young": ("young = 10.0", "young = 0", "materials.rubber.young", "is 0; allowed: greater than 0"),
     "Poisson": ("poisson = 0.3", "poisson = 0.5", "materials.rubber.poisson", "is 0.5; allowed: less than 0.5"),
     "NaN": ("poisson = 0.3", "poisson = nan", "materials.rubber.poisson", "is nan; allowed: a finite number"),
-    "name": ("[supports.top]", '[supports."the top"]', "supports.the top", "allowed: letters, digits, _ and -"),
+    "name": ("[supports.top]", '[supports."the top"]', "supports.the top", "allowed: letters from a to z, digits, _ and -"),
     "no material": (
         'material = "cork"',
         'material = "corc"',
