@@ -16,7 +16,7 @@ from isomortar.results import style
 from isomortar.results.face_field import FaceField
 from isomortar.results.fields import ContactSurface
 from isomortar.results.laid import Laid, directions_of, laid
-from isomortar.results.ranges import narrowest
+from isomortar.results.ranges import Dimension, narrowest
 from isomortar.solve.record import StepResult
 
 #: By status of a control point: marker, filling, label.
@@ -35,7 +35,7 @@ def draw_map(problem: Problem, step: StepResult, field: FaceField) -> Figure:
     axes = figure.subplots()
     _draw_material(axes, surface, flat)
     seen = _seen(surface)
-    _draw_field(axes, field, flat, seen, narrowest(problem, field.name) if field.signed else 1e-300)
+    _draw_field(axes, field, flat, seen, narrowest(problem, Dimension.LENGTH) if field.signed else 1e-300)
     _draw_states(axes, surface, flat)
     axes.set(xlabel=flat.labels[0], ylabel=flat.labels[1], aspect="equal")
     axes.set_title(f"{problem.name}, {surface.contact.name}, load step {step.step} ({step.stage})", loc="left", pad=24)
