@@ -14,6 +14,7 @@ from isomortar.model.glue import named
 from isomortar.model.rank import extent, motions_left
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.limit_load import Touch, along_contact, least_resisted, pressed_bed, touches_of
+from isomortar.solve.more_friction import more_friction
 from isomortar.solve.record import State
 from isomortar.solve.touching import displacement
 
@@ -60,8 +61,9 @@ def overcome(equilibrium: Equilibrium, state: State) -> Iterator[str]:
     way = least_resisted(touches, limits, along, works)
     borne = np.array([limit @ touch.lengths(way) for touch, limit in zip(touches, limits, strict=True)])
     if 1.0 / ROLLS < borne.sum() < 1.0 / ALL:
-        resist = [touch for touch, part in zip(touches, borne, strict=True) if part > constants.IN_THE_WAY * borne.sum()]
-        yield from _said(equilibrium, resist, motions, way, float(borne.sum()))
+        resist = [k for k, part in enumerate(borne) if part > constants.IN_THE_WAY * borne.sum()]
+        more = more_friction([(touches[k].pair.pair.contact, limits[k], limits[k] * touches[k].lengths(way)) for k in resist])
+        yield from _said(equilibrium, [touches[k] for k in resist], motions, way, float(borne.sum()), more)
 
 
 def _motions(equilibrium: Equilibrium, positions: FloatArray) -> list[_Motion]:
@@ -87,8 +89,10 @@ def _work(equilibrium: Equilibrium, positions: FloatArray, motion: _Motion) -> f
     return work
 
 
-def _said(equilibrium: Equilibrium, touches: Sequence[Touch], motions: Sequence[_Motion], way: FloatArray, borne: float) -> Iterator[str]:
-    """On the bodies that go on a way on which loads do unit work; friction bears some of that at most."""
+def _said(
+    equilibrium: Equilibrium, touches: Sequence[Touch], motions: Sequence[_Motion], way: FloatArray, borne: float, more: str
+) -> Iterator[str]:
+    """On the bodies that go on a way on which loads do unit work; friction bears some of that at most, and what lets it bear more."""
     pieces, images = equilibrium.numbering.pieces, equilibrium.problem.images
     goes = np.zeros((len(pieces), 6))
     for share, motion in zip(way, motions, strict=True):
@@ -106,6 +110,6 @@ def _said(equilibrium: Equilibrium, touches: Sequence[Touch], motions: Sequence[
     yield (
         f"loads {'turn' if turns else 'push'} {bodies} {'about an axis ' if turns else ''}along ({along}) by {images / far:.3g} by then, "
         f"where friction of contact {contacts} can bear about {images * borne / far:.3g} at the pressures that hold it otherwise, and "
-        "nothing else does: beyond that it slides, and is nowhere at rest. Take more friction, or less load that way, or hold or move it "
+        f"nothing else does: beyond that it slides, and is nowhere at rest. Take {more}, or less load that way, or hold or move it "
         "by a support"
     )
