@@ -7,9 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from isomortar._bindings import Projections
+from isomortar._bindings import Projections, surface_functions
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Body, Contact, Face, Problem
+from isomortar.model.numbering import Numbering
 from isomortar.model.pairs import Pair
 from isomortar.model.sheet import Sheet
 from isomortar.solve.borne import Borne
@@ -45,6 +46,8 @@ class Bearing:
         How many rows there are.
     kinks : tuple of bool
         Whether functions of the face have kinks along each coordinate.
+    round : tuple of bool
+        Whether it is a pole, round which a coordinate goes, that bears most: a point, however many rows there are along that.
     depth : float
         Of the quadrature points, root of the mean square where there is pressure: averages of it are zero.
     costs : float
@@ -54,6 +57,7 @@ class Bearing:
     rows: FloatArray
     of: tuple[int, int]
     kinks: tuple[bool, bool]
+    round: tuple[bool, bool]
     depth: float
     costs: float
 
@@ -61,7 +65,7 @@ class Bearing:
     def too_narrow(self) -> bool:
         """Whether it is told."""
         few = self.rows < ROWS
-        return bool(few.all() or np.any(few & self.kinks)) or self.costs > COSTS
+        return bool(np.all(few | self.round) or np.any(few & self.kinks)) or self.costs > COSTS
 
 
 class Narrow:
@@ -126,16 +130,22 @@ def bearing(problem: Problem, mechanics: PairMechanics, balance: Balance, number
     borne = forces(mechanics.pair, balance.responses[number].pressure, balance.kinematics[number].projections)
     depth, pressed = _between(problem, mechanics, balance, number)
     ratio = depth / pressed if pressed > 0.0 else 0.0
-    first, second = (_sums(places, borne) for places in mechanics.pair.places.T)
+    (first, round_first), (second, round_second) = (_sums(mechanics.pair.places, borne, axis) for axis in (0, 1))
     rows = np.array([np.sum(sums) ** 2 / (sums @ sums) for sums in (first, second)])
     u, v = (direction.order == 1 or direction.family == "L" for direction in Sheet.of(problem, mechanics.pair.contact.slave).directions)
-    return Bearing(rows, (len(first), len(second)), (u, v), depth, (ratio - FREE) / (ratio + ADDED))
+    round_poles, counts = (round_first, round_second), (len(first), len(second))
+    return Bearing(rows, counts, (u, v), round_poles, depth, (ratio - FREE) / (ratio + ADDED))
 
 
-def _sums(places: FloatArray, borne: FloatArray) -> FloatArray:
-    """Forces by row: of the constraints at the same place along a coordinate (theory 9.9)."""
-    _, row = np.unique(places, return_inverse=True)
-    return np.bincount(row.ravel(), borne).astype(np.float64)
+def _sums(places: FloatArray, borne: FloatArray, axis: int) -> tuple[FloatArray, bool]:
+    """Forces by row, of constraints at the same place along a coordinate, and whether a pole that it goes round bears most (theory 9.9).
+
+    A pole is a constraint that is alone across the coordinate: all rows have an equal part of it.
+    """
+    row, across = (np.unique(places[:, k], return_inverse=True)[1].ravel() for k in (axis, 1 - axis))
+    at_pole = np.bincount(across)[across] == 1
+    sums, of_pole = np.bincount(row, np.where(at_pole, 0.0, borne)), float(borne[at_pole].sum())
+    return np.asarray(sums + of_pole / len(sums), np.float64), of_pole > 0.5 * float(borne.sum())
 
 
 def _between(problem: Problem, mechanics: PairMechanics, balance: Balance, number: int) -> tuple[float, float]:
@@ -146,13 +156,24 @@ def _between(problem: Problem, mechanics: PairMechanics, balance: Balance, numbe
     if not acting.any():
         return 0.0, 0.0
     depth = np.sqrt(acting @ np.square(gaps(pair, balance.positions, projections)) / acting.sum())
-    return float(depth), float(_softness(problem, pair.contact) * np.sqrt(problem.images * (acting @ pressure)))
+    softness = acting @ _softness(problem, pair, projections) / acting.sum()
+    return float(depth), float(softness * np.sqrt(problem.images * (acting @ pressure)))
 
 
-def _softness(problem: Problem, contact: Contact) -> float:
-    """Sum of (1 - nu^2) / E of both sides."""
-    sides = [side for side in (contact.slave, contact.master) if isinstance(side, Face)]
-    return sum(max(_soft(problem.body(face.body)) for face in side.faces) for side in sides)
+def _softness(problem: Problem, pair: Pair, projections: Projections) -> FloatArray:
+    """Sum of (1 - nu^2) / E of both sides at the quadrature points, where several bodies are joined of the one that is there."""
+    numbering, test = Numbering(problem), pair.slave.shape
+    soft = np.zeros(numbering.count)
+    for body in problem.bodies:
+        soft[numbering.points[body.name]] = _soft(body)
+    nodes = np.repeat(test.nodes, pair.slave.per_element, axis=0)
+    found = np.einsum("qa,qa->q", test.values, soft[pair.slave.point[nodes]])
+    if isinstance(pair.contact.master, Face):
+        sheet = Sheet.of(problem, pair.contact.master)
+        feet = np.flatnonzero(projections.found > 0)
+        nodes, functions = surface_functions(*sheet.arrays(numbering), projections.xi[feet])
+        found[feet] += np.einsum("qa,qa->q", functions[:, 0], soft[pair.master_face[nodes]])
+    return found
 
 
 def _soft(body: Body) -> float:
@@ -164,7 +185,8 @@ def _told(problem: Problem, contact: Contact, found: Bearing, step: int) -> str:
     letters, what = Sheet.of(problem, contact.slave).letters, "control points" if contact.of_averages else "constraints"
     least, deep = float(found.rows.min()), found.costs > COSTS
     sides = list(zip(letters, found.rows, found.of, strict=True))
-    few = [letter for letter, rows, count in sides if rows <= max(ENOUGH, least) and rows < ALL * count] or list(letters)
+    few = [letter for letter, rows, count in sides if rows <= max(ENOUGH, least) and rows < ALL * count]
+    few = few or [letter for letter, is_round in zip(letters, found.round, strict=True) if not is_round]
     between = f", and between these it is about {found.depth:.2g} inside its master or apart from it" if deep else ""
     share = f"{100.0 * found.costs:.2g} %" if deep else "a fifth"
     stage = problem.stages[problem.stage_of(step)].name
