@@ -21,7 +21,7 @@ from isomortar.errors import InputError, ResultsError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Face, Problem, RigidPlane, unit
 from isomortar.results import style
-from isomortar.results.bezier import bernstein, functions_at, rational
+from isomortar.results.bezier import at_parts, functions_at, rational
 from isomortar.results.bodies import plane_corners, towards
 from isomortar.results.fields import contact_surfaces
 from isomortar.results.files import place_for, writing
@@ -78,7 +78,7 @@ class Surface:
 
     def sampled(self, row: FloatArray, parts: int) -> FloatArray:
         """Columns of a load step at equal parts of each element, shape (places, columns), first direction fastest."""
-        matrices = [_at_parts(order, elements, parts) for order, elements in zip(self.orders, self.elements, strict=True)]
+        matrices = [at_parts(order, elements, parts) for order, elements in zip(self.orders, self.elements, strict=True)]
         return rational(matrices, self.weights, row.T)[0]
 
     def values(self, column: str) -> FloatArray:
@@ -290,16 +290,6 @@ def _numbers(surfaces: Sequence[Surface], centre: FloatArray) -> NDArray[np.floa
             parts.append((values - np.pad(centre, (0, len(values) - 3))[:, None]).ravel())
         parts += [values for acting in surface.acting for values in acting]
     return np.concatenate(parts).astype("<f4")
-
-
-def _at_parts(order: int, elements: int, parts: int) -> FloatArray:
-    """Matrix from Bezier points of a direction to values at equal parts of its elements, shape (elements * parts + 1, points)."""
-    matrix = np.zeros((elements * parts + 1, elements * order + 1))
-    for element in range(elements):
-        matrix[element * parts : (element + 1) * parts + 1, element * order : (element + 1) * order + 1] = bernstein(
-            order, np.linspace(0.0, 1.0, parts + 1)
-        )
-    return matrix
 
 
 def _colours(chosen: Colormap) -> list[list[int]]:
