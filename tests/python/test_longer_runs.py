@@ -149,6 +149,8 @@ LONGER = "the last stage may be longer at the same rate, and stages may be added
 CHANGES = {
     "friction": ({"contacts.floor.friction": 0.1}, "contacts.floor.friction"),
     "a longer stage": ({"stages.press.steps": 3}, "stages.press.steps"),
+    "a finer mesh": ({"bodies.block.mesh.elements": [3, 2, 1]}, "bodies.block.patch"),
+    "other constraints": ({"contacts.floor.enforcement": "knots"}, "contacts.floor.enforcement"),
     "another way": ({"stages.press.motions.top.translate": [0, 0, -0.1]}, "supports.top.motions.0.translate"),
 }
 
