@@ -87,10 +87,10 @@ def _last_step(path: Path, problem: Problem, resume: bool, overwrite: bool) -> S
         return None
     if not path.is_file():
         raise ResultsError(f"{path} is no ordinary file, but a folder or a device: name another results file")
-    if overwrite and is_marked(path):
-        return None
-    if overwrite:
+    if not is_marked(path):
         raise ResultsError(f"{path} is no results file of isomortar, so it is not overwritten: remove it yourself, or name another file")
+    if overwrite:
+        return None
     with Results(path) as results:
         last = results.last_step()
         if last and resume:

@@ -24,7 +24,10 @@ def input_error(error: ValidationError, data: Any) -> InputError:
     data : dict
         What was validated.
     """
-    faults = list(dict.fromkeys((_field(fault, data), _sentence(fault)) for fault in error.errors()))  # one value, three directions
+    found = error.errors()
+    inside = {fault["loc"][:depth] for fault in found for depth in range(len(fault["loc"]))}
+    found = [fault for fault in found if fault["type"] != "too_short" or fault["loc"] not in inside]  # of entries that are wrong
+    faults = list(dict.fromkeys((_field(fault, data), _sentence(fault)) for fault in found))  # one value, three directions
     field, message = faults[0]
     return InputError("\n".join([message, *(f"{path}: {sentence}" for path, sentence in faults[1:])]), field)
 

@@ -56,7 +56,14 @@ def parse(text: str, name: str) -> dict[str, Any]:
     try:
         return _read(text)
     except tomllib.TOMLDecodeError as error:
-        raise InputError(f"{name} is not valid TOML: {error}") from error
+        raise InputError(f"{name} is not valid TOML: {error}{_line(text, str(error))}") from error
+
+
+def _line(text: str, message: str) -> str:
+    """The line that a message is about, as far as it is short, and what it may want."""
+    lines, found = text.split("\n"), re.search(r"at line (\d+)", message)
+    said = f", where it says {lines[int(found[1]) - 1].strip()[:60]!r}" if found else ""
+    return said + (". Texts stand in quotes, numbers have a point" if "value" in message or "newline" in message else "")
 
 
 def _read(text: str) -> dict[str, Any]:

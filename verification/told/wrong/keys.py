@@ -176,6 +176,18 @@ CASES = {
         "contacts.pair.slave",
         "there is no body 'uper'; allowed: BODY.FACE with BODY one of upper, lower",
     ),
+    "no face of a slave": (
+        'slave = "upper.w0"',
+        'slave = "upper"',
+        "contacts.pair.slave",
+        "is 'upper', which names no face; allowed: BODY.FACE",
+    ),
+    "no component": (
+        'face = "upper.w1"',
+        'face = "upper.w1"\ncomponents = ["w"]',
+        "supports.top.components.0",
+        "is 'w'; allowed: 'x', 'y' or 'z'",
+    ),
     "slave is master": ('master = "lower.w1"', 'master = "upper.w0"', "contacts.pair.master", "is the slave face 'upper.w0' itself"),
     "no master": ('master = "lower.w1"\n', "", "contacts.pair", "has neither master nor plane; allowed: exactly one of them"),
     "friction": (
