@@ -121,7 +121,7 @@ def _idle_stages(problem: Problem) -> Iterator[str]:
         held = any(len({support.holds(k) for k in (number - 1, number)}) > 1 for support in problem.supports)
         if not (moved or loaded or held):
             yield (
-                f"nothing moves and no load changes in stage {stage.name!r}: its {stage.steps} load steps compute the same state again. "
+                f"nothing moves and no load changes in stage {stage.name!r}: all its load steps ({stage.steps}) have the same state. "
                 "Give it a motion or a load, or take it out"
             )
 
