@@ -261,7 +261,7 @@ DOUBTFUL = {
         '[solver]\nmethod = "uzawa"\ncomplementarity_tolerance = 1e-9\n[supports.top]',
         "does nothing",
     ),
-    "idle stage": (PRESS, "rotate = 0 }", 'rotate = 0 }\n[[stages]]\nname = "hold"\nsteps = 20', "have the same state"),
+    "idle stage": (PRESS, "rotate = 0 }", 'rotate = 0 }\n[[stages]]\nname = "hold"\nsteps = 20', "compute the same state again"),
     "held on one side": (PAIR, 'face = "lower.w0"', 'face = "lower.w1"', "its face lower.w1 is held by support 'base'"),
     "load on contact": (
         PRESS,
