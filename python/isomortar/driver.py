@@ -11,7 +11,7 @@ from isomortar.errors import InputError, ResultsError
 from isomortar.model.entities import Problem
 from isomortar.results.files import claimed, is_marked
 from isomortar.results.reader import Results
-from isomortar.results.writer import ResultsWriter
+from isomortar.results.writer import ResultsWriter, goes_on_longer
 from isomortar.scene.scene import Scene
 from isomortar.solve.record import AugmentationRecord, IterationRecord, Observer, StepResult
 from isomortar.solve.simulation import Simulation
@@ -69,7 +69,7 @@ def results_path(scene: Scene) -> Path:
 def compute(scene: Scene, problem: Problem, path: Path, observer: Observer, resume: bool, overwrite: bool) -> Results:
     """The same as `run`, where the scene's problem is known already."""
     with claimed(path):
-        last = _last_step(path, resume, overwrite)
+        last = _last_step(path, problem, resume, overwrite)
 
         def open_writer() -> ResultsWriter:
             return ResultsWriter(path, problem, scene.to_toml(), version("isomortar"), scene.record.states, resume, not resume)
@@ -79,20 +79,22 @@ def compute(scene: Scene, problem: Problem, path: Path, observer: Observer, resu
     return Results(path)
 
 
-def _last_step(path: Path, resume: bool, overwrite: bool) -> StepResult | None:
-    """Where to go on; nothing is there, or may go, where the answer is None."""
+def _last_step(path: Path, problem: Problem, resume: bool, overwrite: bool) -> StepResult | None:
+    """Where to go on, of the same problem; nothing is there, or may go, where the answer is None."""
     if path.is_symlink():
         raise ResultsError(f"{path} is a symbolic link: name the file that it leads to")
     if not path.exists():
         return None
     if not path.is_file():
         raise ResultsError(f"{path} is no ordinary file, but a folder or a device: name another results file")
-    if overwrite and is_marked(path):
-        return None
-    if overwrite:
+    if not is_marked(path):
         raise ResultsError(f"{path} is no results file of isomortar, so it is not overwritten: remove it yourself, or name another file")
+    if overwrite:
+        return None
     with Results(path) as results:
         last = results.last_step()
+        if last and resume:
+            goes_on_longer(results, problem)
     if last and not resume:
         raise InputError(f"{path} exists already: go on with --resume, begin anew with --overwrite, or name another file with --output")
     return last

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import imageio_ffmpeg
@@ -50,6 +51,17 @@ def test_a_film_for_players_of_films_has_the_pictures_too(results_path: Path, tm
             pictures.seek(number)
             right = np.asarray(pictures.convert("RGB"), float)[:height, :width]
             assert np.abs(frame.reshape(height, width, 3) - right).mean() < 3.0
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_scene_of_any_script_is_filmed_and_drawn(tmp_path: Path) -> None:
+    """Letters that the font does not have are boxes, and no words of the picture's library."""
+    path = tmp_path / "接触.h5"
+    writer = ResultsWriter(path, replace(problem(), name="接触"), "", "0")
+    for number in (1, 2):
+        writer.recorded(quiet(number))
+    assert isomortar.film(path, path.with_suffix(".webp")).is_file()
+    assert isomortar.plot(path, tmp_path / "drawn")
 
 
 def test_a_film_goes_into_a_folder_that_is_made_and_never_over_results(results_path: Path, tmp_path: Path) -> None:

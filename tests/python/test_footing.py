@@ -13,11 +13,13 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from matplotlib.collections import QuadMesh
+from scipy import spatial
 
 import isomortar
 from isomortar.accuracy.sampling import face_grid
 from isomortar.model.entities import Problem
 from isomortar.results import ResultsWriter
+from isomortar.results.bezier import functions_at
 from isomortar.results.bodies import common_scale
 from isomortar.results.face_field import face_field
 from isomortar.results.fields import ContactSurface, contact_surfaces
@@ -53,6 +55,18 @@ def sampled(made: Problem) -> ContactSurface:
 def test_a_place_is_over_the_master_where_the_nearest_quadrature_point_has_a_foot() -> None:
     over = sampled(problem()).over_master(PARAMETERS)
     np.testing.assert_array_equal(over, np.tile(ROUND[:, None] < 2.0, (1, 5)))
+
+
+def test_the_nearest_points_are_looked_for_in_one_tree(monkeypatch: pytest.MonkeyPatch) -> None:
+    """However often it is asked: pictures, pages and exports ask for each field."""
+    grown: list[int] = []
+    tree = spatial.cKDTree
+    monkeypatch.setattr(spatial, "cKDTree", lambda points: grown.append(len(points)) or tree(points))
+    surface = sampled(problem())
+    for _ in range(3):
+        surface.over_master(PARAMETERS)
+        surface.fields(tuple(functions_at(d, x)[0] for d, x in zip(surface.directions, PARAMETERS, strict=True)))
+    assert len(grown) == 1
 
 
 def test_where_all_points_have_a_foot_all_places_are_over_the_master() -> None:

@@ -149,6 +149,11 @@ LONGER = "the last stage may be longer at the same rate, and stages may be added
 CHANGES = {
     "friction": ({"contacts.floor.friction": 0.1}, "contacts.floor.friction"),
     "a longer stage": ({"stages.press.steps": 3}, "stages.press.steps"),
+    "a finer mesh": (
+        {"bodies.block.mesh.elements": [3, 2, 1]},
+        "bodies.block.mesh: 2 x 2 x 1 elements of N2 x N2 x N2 in the file, 3 x 2 x 1 elements",
+    ),
+    "other constraints": ({"contacts.floor.enforcement": "knots"}, "contacts.floor.enforcement"),
     "another way": ({"stages.press.motions.top.translate": [0, 0, -0.1]}, "supports.top.motions.0.translate"),
 }
 

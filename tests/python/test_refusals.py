@@ -184,6 +184,8 @@ def of_files(patch: pytest.MonkeyPatch) -> Told:
     yield "results", refusal(lambda: Scene.load("results.toml"))
     Path("scene.toml").write_text("format = = 1")
     yield "no TOML", _but_the_end(refusal(lambda: Scene.load("scene.toml")))
+    Path("comma.toml").write_text("format = 0,1")
+    yield "no TOML, where", refusal(lambda: Scene.load("comma.toml")).partition(")")[2]
     yield "value", _but_the_end(refusal(lambda: apply_overrides({"solver": {}}, ["solver.max_cuts=[1"])))
     writer = ResultsWriter("run.h5", problem(), "", "0", states="last")
     yield "plotted: no step", refusal(lambda: plot("run.h5", "figures"))

@@ -8,11 +8,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection, QuadMesh
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
+from matplotlib.transforms import Bbox
 
 from isomortar.driver import run
 from isomortar.errors import InputError, ResultsError
@@ -90,6 +92,17 @@ def test_what_is_drawn_may_be_chosen(results_path: Path, tmp_path: Path) -> None
         plot(results_path, tmp_path, formats=["png", "jpg"])
     with pytest.raises(ResultsError, match="load step 9 is not in"):
         plot(results_path, tmp_path, step=9)
+
+
+def test_curves_need_no_state(tmp_path: Path) -> None:
+    """They are of all load steps, whichever one bodies and maps would be of, and whatever was kept of it."""
+    writer = ResultsWriter(tmp_path / "run.h5", problem(), "", "0", states="last")
+    for number in (1, 2):
+        writer.recorded(quiet(number))
+    (drawn,) = plot(tmp_path / "run.h5", tmp_path, step=1, only=["curves"], formats=["png"])
+    assert drawn.name == "reactions-rim.png"
+    with pytest.raises(ResultsError, match="kept no state of load step 1"):
+        plot(tmp_path / "run.h5", tmp_path, step=1, only=["curves", "maps"])
 
 
 @pytest.mark.filterwarnings("error")
@@ -402,3 +415,34 @@ def test_faces_are_drawn_in_equal_parts_of_elements() -> None:
     assert [axes.get_xlabel() or axes.get_ylabel() for axes in figure.axes if "pressure" in axes.get_xlabel() + axes.get_ylabel()] == [
         "contact pressure (force / area at rest)"
     ]
+
+
+#: A block that is long, and a support whose name is.
+LONG = """
+format = 1
+bodies.block = { geometry = { kind = "box", lower = [0, 0, 0], upper = [10, 0.5, 0.5] }, mesh.elements = [4, 1, 1] }
+contacts.floor = { slave = "block.w0", plane = {}, friction = 0.2 }
+supports.what_presses_it_down_and_drags_it.face = "block.w1"
+stages = [{ name = "press", steps = 2, motions.what_presses_it_down_and_drags_it.translate = [0.01, 0, -0.02] }]
+"""
+
+
+def box(artist: Artist, figure: Figure) -> Bbox:
+    """Where something is drawn, in dots."""
+    return artist.get_window_extent(figure.canvas.get_renderer())
+
+
+def test_what_is_long_is_drawn_beside_each_other(tmp_path: Path) -> None:
+    """Titles leave legends free, and labels of colour bars go about as far as these."""
+    with run(Scene.from_toml(LONG), tmp_path / "run.h5") as results, style.style():
+        curves = draw_reactions(results, "what_presses_it_down_and_drags_it")
+        face = draw_map(results.problem, results.step(2), face_field(results.problem, results.step(2), 0))
+    for figure in (curves, face):
+        FigureCanvasAgg(figure).draw()
+        legends = [*figure.legends, *(axes.get_legend() for axes in figure.axes if axes.get_legend())]
+        titles = [axes.title if axes.title.get_text() else axes._left_title for axes in figure.axes]
+        assert not any(box(legend, figure).overlaps(box(title, figure)) for legend in legends for title in titles if title.get_text())
+    (bar,) = face.axes[1:] or face.axes[0].child_axes
+    label = bar.xaxis.label if bar.xaxis.label.get_text() else bar.yaxis.label
+    sides = (box(part, face) for part in (label, bar))
+    assert np.divide(*(max(side.width, side.height) for side in sides)) < 1.5

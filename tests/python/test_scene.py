@@ -218,12 +218,24 @@ def test_text_of_a_changed_scene_gives_the_same_problem() -> None:
     assert_same(Scene.from_toml(scene.to_toml()).problem(), scene.problem())
 
 
-@pytest.mark.parametrize("stem", ["my scene", "Größe", "v1.2", "$x^$"])
-def test_a_file_of_any_name_gives_a_scene_whose_text_can_be_read(tmp_path: Path, stem: str) -> None:
+STEMS = {
+    "my scene": "my_scene",
+    "Größe": "Größe",
+    "Gr\u00f6\u0308": "Gr\u00f6\u0308",
+    "接触": "接触",
+    "v1.2": "v1_2",
+    "$x^$": "_x__",
+    "a\udc80": "a_",
+}
+
+
+@pytest.mark.parametrize(("stem", "name"), STEMS.items(), ids=[name.encode("ascii", "replace").decode() for name in STEMS.values()])
+def test_a_file_of_any_name_gives_a_scene_whose_text_can_be_read(tmp_path: Path, stem: str, name: str) -> None:
+    """In its name letters of any script are what they are."""
     path = tmp_path / f"{stem}.toml"
     path.write_text(read_source("press")[0].replace('name = "press"\n', "", 1), encoding="utf-8")
     scene = Scene.load(path)
-    assert Scene.from_toml(scene.to_toml()).name == scene.name == scene.problem().name
+    assert Scene.from_toml(scene.to_toml()).name == scene.name == scene.problem().name == name
 
 
 def test_text_holds_the_geometry_of_files(tmp_path: Path) -> None:

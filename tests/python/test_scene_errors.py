@@ -105,7 +105,7 @@ def test_sources_that_are_no_scene(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"there is no scene file 'irn', and the bundled scenes are: iron, block, iron-round, press"):
         Scene.load("irn")
     (tmp_path / "a.toml").write_text("format = = 1")
-    with pytest.raises(InputError, match=r"a is not valid TOML: .*line 1"):
+    with pytest.raises(InputError, match=r"a is not valid TOML: .*line 1, column \d+\), where it says 'format = = 1'\. Texts"):
         Scene.load(tmp_path / "a.toml")
 
 

@@ -19,6 +19,8 @@ from isomortar.geometry.patch import Direction, FloatArray
 from isomortar.model.entities import Body
 from isomortar.results.bezier import bernstein, bezier_matrix, fitted, functions_at, inner_places, rational, rational_gradient
 from isomortar.results.fields import ContactSurface, body_points, contact_surfaces
+from isomortar.results.not_negative import not_negative
+from isomortar.results.ranges import ROUND_OFF
 from isomortar.results.stress import cauchy_stress, deformation_gradient, von_mises
 from isomortar.results.vectors import ContactVectors, contact_vectors
 
@@ -283,6 +285,9 @@ def figures(name: str, family: str, order: int, folder: Path, single: bool = Fal
         still = (*net[:2], points[body.name] - body.patch.control_points)
         exact = solid_fields(body, points[body.name], [inner_places(d) for d in net[0]])
         bezier = {field: fitted(*net[:2], values) for field, values in exact.items()}
+        _, weights = rational([bezier_matrix(d) for d in net[0]], net[1], net[1][:, None])
+        mises = bezier["von Mises stress"]
+        mises[:, 0] = not_negative(net[0], weights, mises[:, 0], 0.0 if body.rigid else ROUND_OFF * body.material.young)
         for number, ends in enumerate(elements(net[0])):
             cell = first + number
             count = POINTS[net[0][0].family]

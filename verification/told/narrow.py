@@ -59,7 +59,7 @@ BALL = _scene(
 )
 QUARTER = BALL.replace("[0.05, 0.03]", "[0, 0]").replace("format = 1", "format = 1\nsymmetry = { x = 0.0, y = 0.0 }")
 NARROW = re.compile(
-    r"contact '(?P<contact>\w+)', load step (?P<step>\d+), the last of stage '\w+': it is too narrow for its slave \S+: (?P<rows>\S+) of "
+    r"contact '(?P<contact>\w+)', load step (?P<step>\d+), the last of stage '\w+': it is too narrow for its slave [^:]+: (?P<rows>\S+) of "
     r"\d+ rows of (control points|constraints) along \w and \S+ of \d+ along \w bear it.*\. Forces under given motions may be off by "
     r"about (?P<share>.+), pressures by more\. Take twice as many elements or more along (?P<along>\w|\w and \w) \("
 )
@@ -184,6 +184,71 @@ def kinks() -> dict[str, float]:
     (true, fine), (text, changes) = strip("N", 2, 40, at), strip("N", 1, 8, at)
     said, force = run(text, (*changes, *way))
     return {"said": float(sum(words["share"] == "a fifth" for words in said)), "off": abs(force / run(true, (*fine, *way))[1] - 1.0)}
+
+
+#: The lower part of a ball, whose pole presses on a plane, and how deep it does with elements along its meridians that are too long.
+POLE = """
+format = 1
+materials.m = { young = 10, poisson = 0.3 }
+bodies.ball = { geometry = { kind = "sphere", centre = [0, 0, 1], inner = 0.5, outer = 1, latitudes = [-90, -30] } }
+contacts.c = { slave = "ball.v1", friction = 0, plane = {} }
+supports.top.face = "ball.v0"
+stages = [{ name = "press", steps = 1, motions.top.translate = [0, 0, -0.02] }]
+"""
+POLES = {2: 0.08, 4: 0.02}
+
+
+@case(
+    claim="Contact that a pole of its slave bears alone is told once, along the meridians: elements round the pole are no matter there.",
+    tier="gate",
+    grid={"elements": tuple(POLES)},
+    bounds={
+        "said": Bound(1.0, 1.0, "definition: sentences of the coarse slave, that it is to be refined along w alone"),
+        "off": Bound(at_least=0.05, reason="definition: share of the force that is missing or too much: or there is nothing to tell of"),
+        "round": Bound(at_most=0.03, reason="definition: by what share twice as many elements round the pole change the force"),
+        "others": Bound(0.0, 0.0, "definition: sentences of a slave with eight times as many elements along w"),
+    },
+)
+def poles(elements: int) -> dict[str, float]:
+    """What is said, and how far the force is off that of the fine slave."""
+    way = depth(POLES[elements])
+    said, force = run(POLE, (way, f"bodies.ball.mesh.elements=[8, 2, {elements}]"))
+    _, round_it = run(POLE, (way, f"bodies.ball.mesh.elements=[16, 2, {elements}]"))
+    others, true = run(POLE, (way, f"bodies.ball.mesh.elements=[8, 2, {8 * elements}]"))
+    return {
+        "said": float(len(said)) if all(words["along"] == "w" for words in said) else -1.0,
+        "off": abs(1.0 - force / true),
+        "round": abs(round_it / force - 1.0),
+        "others": float(len(others)),
+    }
+
+
+#: Another block beside that under the ball, glued to it and hardly there, whose face goes on that of the first.
+BESIDE = """
+materials.soft = { young = 1e-6, poisson = 0.3 }
+bodies.s.geometry = { kind = "box", lower = [1, -1, -1], upper = [1.5, 1, 0] }
+bodies.s.mesh = { order = 2, elements = [2, 8, 8] }
+bodies.s.material = "soft"
+glue = [["a.u1", "s.u0"]]
+"""
+JOINED = {"slave": 'contacts.c.slave=["a.w1", "s.w1"]', "master": 'contacts.c.master=["a.w1", "s.w1"]'}
+
+
+@case(
+    claim="What narrow contact costs is told by the bodies that it acts on, also where faces of softer ones are joined to theirs.",
+    tier="gate",
+    grid={"side": tuple(JOINED)},
+    bounds={
+        "apart": Bound(at_most=0.05, reason="definition: what is told with the softer body over what is told without it, one digit of two")
+    },
+)
+def joined(side: str) -> dict[str, float]:
+    """How far apart the shares are."""
+    changes = (*EXCHANGED, depth(0.05)) if side == "master" else (depth(0.025),)
+    scenes = ((BALL, changes), (BALL + BESIDE, (*changes, JOINED[side], 'bodies.a.material="m"')))
+    shares = [words["share"].removesuffix(" %") for text, also in scenes for words in run(text, also)[0]]
+    alone, both = map(float, shares) if len(shares) == 2 and "a fifth" not in shares else (1.0, np.inf)
+    return {"apart": abs(both / alone - 1.0)}
 
 
 #: The ball pressed in, in load steps of which the first is narrow, and lifted nearly out of the block; a flat punch on all of some strip.

@@ -164,6 +164,54 @@ def overcome(scene: str) -> dict[str, float]:
     return {"others": float(told != expected[:3]), "off": abs(ratio / expected[3] - 1.0)}
 
 
+#: A block of weight 0.6 that is pushed by a face, friction of its contact, and what limits that: all over, or on some of it, as the push
+#: leans on the front.
+LEANING = """
+bodies.block = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 0.3] }, mesh.elements = [4, 2, 1] }
+contacts.floor = { slave = "block.w0", friction = FRICTION, traction_max = MOST, plane = {} }
+loads = { own = { body = "block", weight = [0, 0, -2] }, push = { face = "block.u0", pressure = PUSH } }
+"""
+LOADS_OF = {
+    "at once": HEAD,
+    "afterwards": HEAD.replace("max_cuts = 2", "max_cuts = 5")
+    .replace("stages = [", 'stages = [{ name = "rest", steps = 1, loads.push = 0 }, ')
+    .replace("steps = 1 }]", "steps = 1, loads.push = 1 }]"),
+}
+COEFFICIENT, TRACTION = "more friction", "a larger contacts.floor.traction_max"
+#: Coefficient, largest traction and push, by what limits friction, and when the push comes: with the weight, or to a block that lies.
+LIMITS: dict[tuple[str, str], tuple[float, float, float]] = {
+    (COEFFICIENT, "at once"): (0.3, 5.0, 0.75),
+    (COEFFICIENT, "afterwards"): (0.3, 5.0, 0.75),
+    (TRACTION, "at once"): (0.9, 0.05, 0.73),
+    (TRACTION, "afterwards"): (0.9, 0.05, 0.73),
+    (f"{COEFFICIENT} or {TRACTION}", "at once"): (0.9, 0.1, 1.5),
+    (f"{COEFFICIENT} or {TRACTION}", "afterwards"): (0.9, 0.45, 1.5),
+}
+MORE = re.compile(r"Take (?:smaller loads or )?([^,]*), or (?:less load that way, or )?hold")
+
+
+@case(
+    claim="Who is told that friction can not bear a load is told to take more of what limits it, the coefficient or the largest traction: "
+    "with five times as much of that the block rests, and with five times as much of what is not told it does not.",
+    tier="gate",
+    grid={"limit": tuple(dict.fromkeys(limit for limit, _ in LIMITS)), "load": tuple(LOADS_OF)},
+    bounds={"wrong": Bound(0.0, 0.0, "definition: other advice, advice that is no cure, and what would be none and is")},
+)
+def cure(limit: str, load: str) -> dict[str, float]:
+    """How much of it is wrong."""
+    friction, most, push = LIMITS[limit, load]
+    scene = LOADS_OF[load] + LEANING.replace("PUSH", str(push))
+
+    def sentence(coefficient: float, largest: float) -> str:
+        return said(scene.replace("FRICTION", str(coefficient)).replace("MOST", str(largest)))
+
+    told = MORE.search(sentence(friction, most))
+    rough, strong = (5.0 if word in limit else 1.0 for word in (COEFFICIENT, TRACTION))
+    cured = sentence(rough * friction, strong * most) == ""
+    beside = rough != strong and sentence((6.0 - rough) * friction, (6.0 - strong) * most) == ""
+    return {"wrong": float((told is None or told[1] != limit) + (not cured) + beside)}
+
+
 #: A block that lies still, and is then pushed aside at one end; placed as it is, or carried there, which turns it by a right angle.
 PLACED = """
 format = 1

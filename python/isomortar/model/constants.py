@@ -73,6 +73,8 @@ CELL_HALVINGS = 50
 EASY_ITERATIONS = 12
 #: Loops of so many tangents make the next increment shorter: a few more, and this one would have been cut (`max_iterations`: 30).
 HARD_TANGENTS = 25
+#: Halvings of a load step that may be asked for (`max_cuts`): thirty are to a billionth, where load times still tell increments apart.
+MOST_CUTS = 30
 #: Load steps before the end of one that an increment still ends there: times are sums of increments, to round-off.
 SAME_TIME = 1e-12
 

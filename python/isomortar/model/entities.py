@@ -12,6 +12,7 @@ from pydantic import Field
 
 from isomortar._arrays import FRICTION_LAWS, LAWS, NO_FRICTION, FrictionArrays, MaterialArrays, MaterialLaw
 from isomortar.geometry.patch import FACES, Closed, FloatArray, Patch
+from isomortar.model import constants
 from isomortar.model.values import TABLE, Count, Point, Positive, Real
 
 #: How a slave point finds its point on a face of its master: the closest one, or along the averaged normal.
@@ -380,7 +381,7 @@ class SolverSettings:
     """Augmentations after which a load step is cut."""
     max_iterations: Count = 30
     """Tangents of a Newton loop after which a load step is cut."""
-    max_cuts: Annotated[int, Field(strict=True, ge=0, le=30)] = 8
+    max_cuts: Annotated[int, Field(strict=True, ge=0, le=constants.MOST_CUTS)] = 8
     """How often a load step may be halved before the run ends; 30 times is to a billionth."""
     measures: tuple[Measure, ...] = get_args(Measure)
     """What helps Newton's method on the way; leave one out to see what it does."""

@@ -24,7 +24,10 @@ def input_error(error: ValidationError, data: Any) -> InputError:
     data : dict
         What was validated.
     """
-    faults = list(dict.fromkeys((_field(fault, data), _sentence(fault)) for fault in error.errors()))  # one value, three directions
+    found = error.errors()
+    inside = {fault["loc"][:depth] for fault in found for depth in range(len(fault["loc"]))}
+    found = [fault for fault in found if fault["type"] != "too_short" or fault["loc"] not in inside]  # of entries that are wrong
+    faults = list(dict.fromkeys((_field(fault, data), _sentence(fault)) for fault in found))  # one value, three directions
     field, message = faults[0]
     return InputError("\n".join([message, *(f"{path}: {sentence}" for path, sentence in faults[1:])]), field)
 
@@ -87,7 +90,8 @@ def _sentence(fault: ErrorDetails) -> str:
         case "union_tag_invalid":
             return f"is {fault['ctx']['tag']!r}; allowed: {fault['ctx']['expected_tags']}"
         case "string_pattern_mismatch":
-            return f"name {given} has other characters than are allowed: letters, digits, _ and -"
+            letters = "letters" if fault["loc"] == ("name",) else "letters from a to z"
+            return f"name {given} has other characters than are allowed: {letters}, digits, _ and -"
         case "too_short" | "too_long":
             return f"has {fault['ctx']['actual_length']} entries; allowed: " + message.split(" should have ")[1].split(" after")[0]
     if message.startswith("Input should be "):

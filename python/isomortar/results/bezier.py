@@ -56,6 +56,16 @@ def sampling_matrix(direction: Direction, per_element: int) -> FloatArray:
     return np.concatenate([*inner, bezier[-1:]])
 
 
+def at_parts(order: int, elements: int, parts: int) -> FloatArray:
+    """Matrix from Bezier points of a direction to values at equal parts of its elements, shape (elements * parts + 1, points)."""
+    matrix = np.zeros((elements * parts + 1, elements * order + 1))
+    for element in range(elements):
+        matrix[element * parts : (element + 1) * parts + 1, element * order : (element + 1) * order + 1] = bernstein(
+            order, np.linspace(0.0, 1.0, parts + 1)
+        )
+    return matrix
+
+
 def functions_at(direction: Direction, parameters: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Functions of a direction and their derivatives at any of its parameters, each of shape (parameters, count).
 

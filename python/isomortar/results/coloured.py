@@ -17,7 +17,7 @@ from isomortar.results import style
 from isomortar.results.bezier import functions_at, inner_places, rational_gradient
 from isomortar.results.bodies import VIEW, add_body, plain
 from isomortar.results.fields import body_points
-from isomortar.results.ranges import narrowest
+from isomortar.results.ranges import Dimension, narrowest
 from isomortar.results.rendering import Canvas
 from isomortar.results.stress import cauchy_stress, deformation_gradient, von_mises
 from isomortar.solve.record import StepResult
@@ -48,18 +48,19 @@ def displacement(body: Body, points: FloatArray, parameters: Sequence[FloatArray
 
 @dataclass(frozen=True)
 class BodyField:
-    """A field of bodies: how a colour bar names it, its values, and whether colours begin at zero."""
+    """A field of bodies: how a colour bar names it, what it measures, its values, and whether colours begin at zero."""
 
     label: str
+    dimension: Dimension
     values: BodyValues
     from_zero: bool = True
 
 
 #: Fields of bodies by name.
 BODY_FIELDS = {
-    "stress": BodyField("von Mises stress (force / deformed area)", stress),
-    "J": BodyField("J (volume / volume at rest)", jacobian, from_zero=False),
-    "displacement": BodyField("displacement (length)", displacement),
+    "stress": BodyField("von Mises stress (force / deformed area)", Dimension.STRESS, stress),
+    "J": BodyField("J (volume / volume at rest)", Dimension.RATIO, jacobian, from_zero=False),
+    "displacement": BodyField("displacement (length)", Dimension.LENGTH, displacement),
 }
 
 
@@ -74,7 +75,9 @@ def draw_coloured(problem: Problem, step: StepResult, name: str = "stress") -> F
         ]
     )
     lowest = 0.0 if shown.from_zero else float(inside.min())
-    colours = ScalarMappable(Normalize(lowest, max(float(inside.max()), lowest + narrowest(problem, name))), style.field_colours())
+    colours = ScalarMappable(
+        Normalize(lowest, max(float(inside.max()), lowest + narrowest(problem, shown.dimension))), style.field_colours()
+    )
     figure = Figure(figsize=(5.6, 4.2), layout="constrained")
     axes, canvas = figure.subplots(), Canvas(VIEW)
     glued = [face for joint in problem.glue for face in joint]

@@ -52,7 +52,7 @@ def draw_reactions(results: Results, support: str, over: Abscissa | None = None)
         axes.set_ylabel(label)
         if np.abs(values).max() < 1e-9 * size:  # round-off: show it as nothing
             axes.set_ylim(-0.01 * size, 0.01 * size)
-    force.legend(ncols=3, loc="lower right", bbox_to_anchor=(1.0, 1.06), borderaxespad=0.0)
+    figure.legend(*force.get_legend_handles_labels(), ncols=3, loc="outside lower right")  # beside a title of any length
     force.set_title(f"{results.problem.name}: reaction at support {support}", loc="left", pad=18)
     _finish((force, moment), results, over)
     return figure

@@ -131,11 +131,36 @@ def _rounded(problem: Problem) -> Problem:
 
 
 def differences(stored: Problem, given: Problem) -> list[str]:
-    """Where two problems differ: one sentence a field, by its dotted path. Their own names, which may be those of files, are no part."""
-    old, new = (_flat(replace(problem, name="")) | _order(problem) | _order_of_loads(problem) for problem in (stored, given))
+    """Where two problems differ: one sentence a field, by its dotted path. Their own names, which may be those of files, are no part.
+
+    One sentence tells an entry that one of them has alone, and one the mesh of a body that has another.
+    """
+    old, new = (
+        _flat(replace(problem, name="")) | _order(problem) | _order_of_loads(problem) | _meshes(problem) for problem in (stored, given)
+    )
     missing = object()
-    paths = [path for path in {**old, **new} if old.get(path, missing) != new.get(path, missing)]
-    return [f"{path}: {_shown(old, path)} in the file, {_shown(new, path)} in the scene" for path in paths]
+    unlike = [path for path in {**old, **new} if old.get(path, missing) != new.get(path, missing)]
+    alone = {_entry(path) for path in old} ^ {_entry(path) for path in new}
+    told = alone | {path.replace(".mesh", ".patch") for path in unlike if path.endswith(".mesh")}
+    here = {_entry(path): "file" for path in old} | {_entry(path): "scene" for path in new}
+    sentences = [f"{entry}: in the {here[entry]} alone" for entry in dict.fromkeys(map(_entry, unlike)) if entry in alone]
+    paths = [path for path in unlike if not any(f"{path}.".startswith(f"{entry}.") for entry in told)]
+    return sentences + [f"{path}: {_shown(old, path)} in the file, {_shown(new, path)} in the scene" for path in paths]
+
+
+def _entry(path: str) -> str:
+    """The body, contact, ... that a path begins with."""
+    return ".".join(path.split(".")[:2])
+
+
+def _meshes(problem: Problem) -> dict[str, str]:
+    """Elements of each body in words."""
+    return {f"bodies.{body.name}.mesh": _mesh(body) for body in problem.bodies}
+
+
+def _mesh(body: Body) -> str:
+    directions = body.patch.directions
+    return f"{' x '.join(str(d.elements) for d in directions)} elements of {' x '.join(f'{d.family}{d.order}' for d in directions)}"
 
 
 def _write_body(group: h5py.Group, body: Body) -> None:
@@ -211,5 +236,5 @@ def _order_of_loads(problem: Problem) -> dict[str, Any]:
 def _shown(leaves: dict[str, Any], path: str) -> str:
     if path not in leaves:
         return "nothing"
-    text = repr(leaves[path])
+    text = leaves[path] if path.endswith(".mesh") else repr(leaves[path])
     return text if len(text) <= 60 else f"other numbers ({text[:30]}...)"

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy import sparse
@@ -10,6 +12,9 @@ from scipy import sparse
 from isomortar._bindings import SlaveArrays
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model.supports import BoolArray
+
+if TYPE_CHECKING:
+    from scipy.spatial import cKDTree
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,14 +53,17 @@ class Footing:
         functions = sparse.csr_array((values.ravel(), (rows, first[nodes].ravel())), shape=(len(nodes), len(within)))
         return cls(np.einsum("qa,qac->qc", values, reference[slave.point[nodes]]), functions, found)
 
+    @cached_property
+    def _tree(self) -> cKDTree:
+        from scipy.spatial import cKDTree
+
+        return cKDTree(self.places)
+
     def at(self, places: FloatArray) -> BoolArray:
         """Whether places at rest, shape (..., 3), have the master opposite: as the nearest quadrature point has (theory 8.7)."""
         if self.found.all():
             return np.ones(places.shape[:-1], dtype=bool)
-        from scipy.spatial import cKDTree
-
-        nearest = cKDTree(self.places).query(places)[1]
-        return self.found[nearest]
+        return self.found[self._tree.query(places)[1]]
 
     def acting(self, places: FloatArray, values: FloatArray, control_values: FloatArray) -> FloatArray:
         """What acts of a field: zero beside the master, nowhere larger than at all points with a foot (theory 8.7), shape (..., k).

@@ -16,13 +16,15 @@ from isomortar.results import style
 from isomortar.results.face_field import FaceField
 from isomortar.results.fields import ContactSurface
 from isomortar.results.laid import Laid, directions_of, laid
-from isomortar.results.ranges import narrowest
+from isomortar.results.ranges import Dimension, narrowest
 from isomortar.solve.record import StepResult
 
 #: By status of a control point: marker, filling, label.
 _STATES = (("o", "none", "open"), ("s", style.BLUE, "stick"), ("^", "white", "slip"))
 #: Samples along a face, and arrows along the longer side of what is seen of it.
 _SAMPLES, _ARROWS = 240, 24
+#: Height of what is seen over its length below which the colour bar is under it: beside it, it would be shorter than its label.
+_LONG = 0.4
 
 
 def draw_map(problem: Problem, step: StepResult, field: FaceField) -> Figure:
@@ -31,16 +33,18 @@ def draw_map(problem: Problem, step: StepResult, field: FaceField) -> Figure:
     Control points stand where the face's functions have their Greville abscissae (Lagrange: their nodes).
     """
     surface, flat = field.surface, laid(field.surface)
-    figure = Figure(figsize=(6.4, 4.4), layout="constrained")
+    figure = Figure(figsize=(6.4, 4.4))
     axes = figure.subplots()
     _draw_material(axes, surface, flat)
     seen = _seen(surface)
-    _draw_field(axes, field, flat, seen, narrowest(problem, field.name) if field.signed else 1e-300)
     _draw_states(axes, surface, flat)
     axes.set(xlabel=flat.labels[0], ylabel=flat.labels[1], aspect="equal")
     axes.set_title(f"{problem.name}, {surface.contact.name}, load step {step.step} ({step.stage})", loc="left", pad=24)
     axes.legend(ncols=3, loc="lower right", bbox_to_anchor=(1.0, 1.0), handletextpad=0.2, columnspacing=1.2)
     low, high = (end(flat.at(seen)[0], axis=(0, 1)) for end in (np.min, np.max))
+    is_long = high[1] - low[1] < _LONG * (high[0] - low[0])
+    figure.set_layout_engine("compressed" if is_long else "constrained")
+    _draw_field(axes, field, flat, seen, narrowest(problem, Dimension.LENGTH) if field.signed else 1e-300, is_long)
     margin = 0.03 * (high - low)
     axes.set(xlim=(low[0] - margin[0], high[0] + margin[0]), ylim=(low[1] - margin[1], high[1] + margin[1]))
     if field.values.shape[1] > 1:
@@ -59,8 +63,8 @@ def _draw_material(axes: Axes, surface: ContactSurface, flat: Laid) -> None:
     axes.add_collection(LineCollection([*upright, *level], colors=style.BLACK, linewidths=0.4, alpha=0.6))
 
 
-def _draw_field(axes: Axes, field: FaceField, flat: Laid, seen: tuple[FloatArray, FloatArray], least: float) -> None:
-    """Colours, up to the largest value of what is seen, or `least` where that is round-off, and their bar."""
+def _draw_field(axes: Axes, field: FaceField, flat: Laid, seen: tuple[FloatArray, FloatArray], least: float, is_long: bool) -> None:
+    """Colours, up to the largest value of what is seen, or `least` where that is round-off, and their bar: below a map that is long."""
     samples = [_samples(direction) for direction in field.surface.directions]
     sizes, values = (_sizes(field, parameters) for parameters in (seen, samples))
     known = field.surface.over_master(seen)
@@ -71,7 +75,8 @@ def _draw_field(axes: Axes, field: FaceField, flat: Laid, seen: tuple[FloatArray
     x, y = np.moveaxis(flat.at(samples)[0], -1, 0)
     lowest = -peak if field.signed else 0.0
     image = axes.pcolormesh(x, y, shown, shading="gouraud", cmap=field.colours, vmin=lowest, vmax=peak, rasterized=True)
-    bar = axes.figure.colorbar(image, cax=axes.inset_axes((1.02, 0.0, 0.025, 1.0)), extend="min" if pulls else "neither")
+    place = {"ax": axes, "location": "bottom", "aspect": 40} if is_long else {"cax": axes.inset_axes((1.02, 0.0, 0.025, 1.0))}
+    bar = axes.figure.colorbar(image, **place, extend="min" if pulls else "neither")
     bar.set_label(field.label)
 
 

@@ -21,6 +21,8 @@ from isomortar.model.numbering import Numbering
 from isomortar.results.bezier import fitted, inner_places
 from isomortar.results.fields import ContactSurface, body_points, contact_surfaces
 from isomortar.results.files import make_folder, writing
+from isomortar.results.not_negative import not_negative
+from isomortar.results.ranges import ROUND_OFF
 from isomortar.results.reader import Results
 from isomortar.results.stress import cauchy_stress, deformation_gradient, von_mises
 from isomortar.results.vectors import ContactVectors, contact_vectors
@@ -36,10 +38,10 @@ def export(results_path: str | os.PathLike[str], outdir: str | os.PathLike[str])
     """Write the bodies and slave faces at rest and at every kept state for ParaView.
 
     Point data of bodies: displacement; Cauchy stress (xx, yy, zz, xy, yz, xz; force per deformed area), its equivalent by von Mises and
-    J = det F, fitted element by element. Of slave faces: displacement, contact pressure, magnitude of the contact traction, that traction
-    as a vector (friction on the slave), slip of the slave on its master within the load step as a vector (NaN where the state before it
-    was not kept), control gaps (positive is penetration) and status (0 open, 1 stick, 2 slip). Pressure and traction are force per area in
-    the reference configuration.
+    J = det F, fitted element by element, the equivalent nowhere below zero. Of slave faces: displacement, contact pressure, magnitude of
+    the contact traction, that traction as a vector (friction on the slave), slip of the slave on its master within the load step as a
+    vector (NaN where the state before it was not kept), control gaps (positive is penetration) and status (0 open, 1 stick, 2 slip).
+    Pressure and traction are force per area in the reference configuration.
     Cell data: number of the body or contact pair, from 0 in the order of the scene; of slave faces the share of each element that has the
     master opposite (``over master``): beside it pressure and traction act on nothing, however large they are.
 
@@ -115,7 +117,10 @@ def body_grid(number: int, body: Body, points: FloatArray) -> BezierGrid:
     stress = np.zeros_like(deformation) if body.rigid else cauchy_stress(body.material, deformation)
     values = {"stress": stress.reshape(-1, 9)[:, _SYMMETRIC], "von Mises stress": von_mises(stress), "J": np.linalg.det(deformation)}
     fields = {name: fitted(directions, weights, value.reshape(len(deformation), -1)) for name, value in values.items()}
-    return bezier_grid(directions, weights, points, {"displacement": points - body.patch.control_points}, number, fields)
+    grid = bezier_grid(directions, weights, points, {"displacement": points - body.patch.control_points}, number, fields)
+    mises = grid.fields["von Mises stress"]
+    mises[:, 0] = not_negative(directions, grid.weights, mises[:, 0], 0.0 if body.rigid else ROUND_OFF * body.material.young)
+    return grid
 
 
 def _contact(number: int, surface: ContactSurface, vectors: ContactVectors) -> BezierGrid:

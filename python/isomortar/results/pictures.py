@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import re
-import warnings
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
@@ -82,14 +81,13 @@ def plot(
     _among("format", formats, FORMATS)
     folder = Path(outdir)
     with Results(results_path) as results, style():
-        shown = results.last_step() if step is None else results.step(step)
-        if shown is None:
+        if not len(results.steps):
             raise ResultsError(f"{results.path} holds no load step yet: nothing to draw")
         over = abscissa(results, x)
-        chosen = fields or (("pressure",) if results.problem.contacts else ("stress",))
-        drawers = {"curves": _of_curves(results, curves, over), "bodies": _of_bodies(results, shown, chosen)}
-        drawers["maps"] = _of_contacts(results, shown, chosen)
-        figures = {stem: draw for kind, drawn in drawers.items() if kind in (only or DRAWABLE) for stem, draw in drawn}
+        kinds = [kind for kind in DRAWABLE if kind in (only or DRAWABLE)]
+        figures = dict(_of_curves(results, curves, over)) if "curves" in kinds else {}
+        if kinds != ["curves"]:
+            figures |= dict(_of_step(results, int(results.steps[-1]) if step is None else step, fields, kinds))
         if not figures:
             wanted = " or ".join([*fields, *only])
             raise ResultsError(f"{results.path} has no contact, or no support, of which {wanted} could be drawn")
@@ -117,6 +115,14 @@ def _stem(label: str) -> str:
     return re.sub(r"[^\w .,+=()-]", "_", label)[:100].rstrip()
 
 
+def _of_step(results: Results, number: int, fields: Sequence[str], kinds: Sequence[str]) -> Iterator[Named]:
+    step, chosen = results.step(number), fields or (("pressure",) if results.problem.contacts else ("stress",))
+    if "bodies" in kinds:
+        yield from _of_bodies(results, step, chosen)
+    if "maps" in kinds:
+        yield from _of_contacts(results, step, chosen)
+
+
 def _of_bodies(results: Results, step: StepResult, fields: Sequence[str]) -> Iterator[Named]:
     problem = results.problem
     for number, contact in enumerate(problem.contacts) if "pressure" in fields else ():
@@ -141,7 +147,6 @@ def _map(problem: Problem, step: StepResult, number: int, field: str, before: St
 def _save(figure: Figure, stem: Path, formats: Sequence[str]) -> list[Path]:
     paths = [stem.with_name(f"{stem.name}.{kind}") for kind in formats]
     for path in paths:
-        with writing(path), warnings.catch_warnings():
-            warnings.simplefilter("ignore", UserWarning)  # of letters that the font does not have, labels wider than the figure
+        with writing(path):
             figure.savefig(path, bbox_inches="tight", pad_inches=0.08)
     return paths

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from enum import Enum
+
 from isomortar.model.entities import Problem
 from isomortar.model.numbering import Numbering
 
@@ -9,8 +11,18 @@ from isomortar.model.numbering import Numbering
 ROUND_OFF = 1e-12
 
 
-def narrowest(problem: Problem, field: str) -> float:
-    """Of a field of bodies or of a slave face, by its name in pictures or pages."""
-    if field in ("stress", "von Mises stress"):
-        return ROUND_OFF * max((body.material.young for body in problem.deformable), default=1.0)
-    return ROUND_OFF * (Numbering(problem).size if field in ("gap", "displacement") else 1.0)
+class Dimension(Enum):
+    """What a field measures."""
+
+    STRESS, LENGTH, RATIO = range(3)
+
+
+def narrowest(problem: Problem, dimension: Dimension) -> float:
+    """Of a field of bodies, or of gaps; contact stress has none, as it counts from zero where nothing bears."""
+    match dimension:
+        case Dimension.STRESS:
+            return ROUND_OFF * max((body.material.young for body in problem.deformable), default=1.0)
+        case Dimension.LENGTH:
+            return ROUND_OFF * Numbering(problem).size
+        case Dimension.RATIO:
+            return ROUND_OFF

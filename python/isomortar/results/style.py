@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -36,8 +37,9 @@ _STYLE: Any = {
 
 @contextmanager
 def style() -> Iterator[None]:
-    """The style of our figures, for the block that follows."""
-    with mpl.rc_context(_STYLE):
+    """The style of our figures, for the block that follows; nothing is said there of letters no font has, and of wide labels."""
+    with mpl.rc_context(_STYLE), warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
         yield
 
 

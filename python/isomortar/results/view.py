@@ -21,22 +21,26 @@ from isomortar.errors import InputError, ResultsError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Face, Problem, RigidPlane, unit
 from isomortar.results import style
-from isomortar.results.bezier import bernstein, functions_at, rational
+from isomortar.results.bezier import at_parts, functions_at, rational
 from isomortar.results.bodies import plane_corners, towards
 from isomortar.results.fields import contact_surfaces
 from isomortar.results.files import place_for, writing
 from isomortar.results.paraview import states
-from isomortar.results.ranges import narrowest
+from isomortar.results.ranges import Dimension, narrowest
 from isomortar.results.reader import Results
 from isomortar.results.vtu import BezierGrid
 from isomortar.solve.record import StepResult
 
-#: Fields of bodies and of slave faces that a page shows: column, label, unit, colours.
-BODY_FIELDS = (("von Mises stress", "force / deformed area", "field"), ("J", "volume / volume at rest", "field"))
+#: Fields of bodies and of slave faces that a page shows: column, unit, what it measures; None: contact stress, without which the material
+#: is bare.
+BODY_FIELDS = (
+    ("von Mises stress", "force / deformed area", Dimension.STRESS),
+    ("J", "volume / volume at rest", Dimension.RATIO),
+)
 CONTACT_FIELDS = (
-    ("pressure", "force / area at rest", "pressure"),
-    ("traction", "force / area at rest", "pressure"),
-    ("gap", "length; positive is penetration", "field"),
+    ("pressure", "force / area at rest", None),
+    ("traction", "force / area at rest", None),
+    ("gap", "length; positive is penetration", Dimension.LENGTH),
 )
 #: Colours by status: open, stick, slip.
 STATES = (("open", "#FFFFFF"), ("stick", style.BLUE), ("slip", style.ORANGE))
@@ -74,7 +78,7 @@ class Surface:
 
     def sampled(self, row: FloatArray, parts: int) -> FloatArray:
         """Columns of a load step at equal parts of each element, shape (places, columns), first direction fastest."""
-        matrices = [_at_parts(order, elements, parts) for order, elements in zip(self.orders, self.elements, strict=True)]
+        matrices = [at_parts(order, elements, parts) for order, elements in zip(self.orders, self.elements, strict=True)]
         return rational(matrices, self.weights, row.T)[0]
 
     def values(self, column: str) -> FloatArray:
@@ -225,16 +229,17 @@ def _fields(problem: Problem, surfaces: Sequence[Surface]) -> Iterator[dict[str,
     for number, contact in enumerate(problem.contacts):
         of = f" of {contact.name}" if len(problem.contacts) > 1 else ""
         face = next(surface for surface in surfaces if surface.contact == number)
-        for column, unit_of, colours in CONTACT_FIELDS:
-            low, high = _range(problem, [face], column)
-            bare = colours == "pressure"
+        for column, unit_of, dimension in CONTACT_FIELDS:
+            low, high = _range(problem, [face], column, dimension)
+            bare = dimension is None
+            colours = "pressure" if bare else "field"
             yield _field(f"{column}{of}", column, unit_of, colours, number, (0.0 if bare else low, high), bare)
         yield _field(f"status{of}", "status", "", "field", number, (0.0, 2.0), False)
     bodies = [surface for surface in surfaces if surface.contact is None]
     way = max(float(np.linalg.norm(row[:3] - surface.rows[0][:3], axis=0).max()) for surface in bodies for row in surface.rows)
-    yield _field("displacement", "displacement", "length", "field", None, (0.0, max(way, narrowest(problem, "displacement"))), False)
-    for column, unit_of, colours in BODY_FIELDS:
-        yield _field(column, column, unit_of, colours, None, _range(problem, bodies, column), False)
+    yield _field("displacement", "displacement", "length", "field", None, (0.0, max(way, narrowest(problem, Dimension.LENGTH))), False)
+    for column, unit_of, dimension in BODY_FIELDS:
+        yield _field(column, column, unit_of, "field", None, _range(problem, bodies, column, dimension), False)
 
 
 def _field(
@@ -244,11 +249,11 @@ def _field(
     return {"label": label, "column": column, "unit": of_unit, "colours": colours, "contact": contact, "range": ends, "bare": bare}
 
 
-def _range(problem: Problem, surfaces: Sequence[Surface], column: str) -> tuple[float, float]:
+def _range(problem: Problem, surfaces: Sequence[Surface], column: str, dimension: Dimension | None) -> tuple[float, float]:
     """Least and largest value of a field over all load steps, at parts of elements, farther apart than round-off."""
     together = np.concatenate([surface.values(column) for surface in surfaces])
     low, high = (float(together.min()), float(together.max())) if len(together) else (0.0, 0.0)
-    return low, max(high, low + (0.0 if column in ("pressure", "traction") else narrowest(problem, column)))
+    return low, max(high, low + (narrowest(problem, dimension) if dimension else 0.0))
 
 
 def _planes(problem: Problem, surfaces: Sequence[Surface], centre: FloatArray) -> Iterator[dict[str, Any]]:
@@ -285,16 +290,6 @@ def _numbers(surfaces: Sequence[Surface], centre: FloatArray) -> NDArray[np.floa
             parts.append((values - np.pad(centre, (0, len(values) - 3))[:, None]).ravel())
         parts += [values for acting in surface.acting for values in acting]
     return np.concatenate(parts).astype("<f4")
-
-
-def _at_parts(order: int, elements: int, parts: int) -> FloatArray:
-    """Matrix from Bezier points of a direction to values at equal parts of its elements, shape (elements * parts + 1, points)."""
-    matrix = np.zeros((elements * parts + 1, elements * order + 1))
-    for element in range(elements):
-        matrix[element * parts : (element + 1) * parts + 1, element * order : (element + 1) * order + 1] = bernstein(
-            order, np.linspace(0.0, 1.0, parts + 1)
-        )
-    return matrix
 
 
 def _colours(chosen: Colormap) -> list[list[int]]:

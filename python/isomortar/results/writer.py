@@ -23,6 +23,31 @@ from isomortar.solve.record import AugmentationRecord, ContactRates, Observer, R
 LIBVER = ("v110", "v110")
 
 
+def goes_on_longer(stored: Results, problem: Problem) -> bool:
+    """Whether a problem goes on where that of results ends; it may be the same.
+
+    Raises
+    ------
+    ResultsError
+        It is another one, which results of this one cannot be resumed with.
+    """
+    unlike = differences(stored.problem, problem)
+    if not unlike or is_longer(stored.problem, problem):
+        return bool(unlike)
+    further = ", ".join(stage.name for stage in stored.problem.stages[len(problem.stages) :])
+    if further and is_longer(problem, stored.problem):
+        raise ResultsError(
+            f"{stored.path} has stages that the scene does not have: {further}. Give them to resume it, as by the same --steps, or "
+            "name another results file"
+        )
+    more = f"; and {len(unlike) - 5} more" if len(unlike) > 5 else ""
+    raise ResultsError(
+        f"{stored.path} belongs to another scene, so it cannot be resumed with this one: {'; '.join(unlike[:5])}{more}. "
+        "Undo these changes, or name another results file; the last stage may be longer at the same rate, and stages may be added "
+        "at the end"
+    )
+
+
 class ResultsWriter(Observer):
     """Observer that keeps a results file complete up to the last recorded step.
 
@@ -76,7 +101,8 @@ class ResultsWriter(Observer):
             self._begin(scene_text, version)
             self._store()
         elif resume:
-            self._check_same_scene(scene_text)
+            with Results(self.path) as stored:
+                self._longer = scene_text if goes_on_longer(stored, problem) else None
             self._hold(h5py.File.in_memory(read(self.path)[SEAL_SIZE:], libver=LIBVER))
         else:
             raise ResultsError(f"{self.path} exists already: resume it, overwrite it, or name another results file")
@@ -115,25 +141,6 @@ class ResultsWriter(Observer):
         make("states", {"step": layout.STATE_STEP})
         for group in ("timings", "counters", "orderings"):
             file.create_group(group)
-
-    def _check_same_scene(self, scene_text: str) -> None:
-        with Results(self.path) as stored:
-            unlike = differences(stored.problem, self._problem)
-            if unlike and is_longer(stored.problem, self._problem):
-                self._longer, unlike = scene_text, []
-            further = ", ".join(stage.name for stage in stored.problem.stages[len(self._problem.stages) :])
-            if unlike and further and is_longer(self._problem, stored.problem):
-                raise ResultsError(
-                    f"{self.path} has stages that the scene does not have: {further}. Give them to resume it, as by the same --steps, or "
-                    "name another results file"
-                )
-        if unlike:
-            more = f"; and {len(unlike) - 5} more" if len(unlike) > 5 else ""
-            raise ResultsError(
-                f"{self.path} belongs to another scene, so it cannot be resumed with this one: {'; '.join(unlike[:5])}{more}. "
-                "Undo these changes, or name another results file; the last stage may be longer at the same rate, and stages may be added "
-                "at the end"
-            )
 
     def _lengthen(self) -> None:
         """Put a scene that goes on for longer in the place of the file's own."""

@@ -168,7 +168,9 @@ def _material(scene: SceneTable, body: str) -> Material:
 
 
 def _face(text: str, bodies: dict[str, Body], field: str) -> Face:
-    body, _, face = text.rpartition(".")
+    body, point, face = text.rpartition(".")
+    if not point:
+        raise InputError(f"is {text!r}, which names no face; allowed: BODY.FACE with BODY one of {listed(text, bodies)}", field)
     if body not in bodies:
         raise InputError(f"is {text!r}, but there is no body {body!r}; allowed: BODY.FACE with BODY one of {listed(body, bodies)}", field)
     faces = bodies[body].outer

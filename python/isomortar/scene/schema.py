@@ -26,6 +26,7 @@ from isomortar.scene.types import (
     Name,
     PerDirection,
     PerSurfaceDirection,
+    SceneName,
     Side,
     Table,
     entity,
@@ -299,8 +300,8 @@ class SceneTable(Table):
 
     format: Literal[1]
     """Version of the file format."""
-    name: Name | None = None
-    """Short name; default: the file's."""
+    name: SceneName | None = None
+    """Short name, which results files have; default: the file's."""
     title: str = ""
     """One line for people."""
     materials: dict[Name, MaterialTable] = Field({})

@@ -19,6 +19,8 @@ _BUNDLED = resources.files("isomortar.scene") / "bundled"
 #: Overrides of single values: ``KEY=VALUE`` each, or values by path.
 SceneChanges = Iterable[str] | Mapping[str, Any]
 
+#: What the name of a scene has none of (`SceneName`), and half a character, which is no text.
+_NO_NAME = re.compile("[^A-Za-z0-9_\u00a1-\ud7ff\ue000-\U0010ffff-]")
 _PATH = re.compile(r"[\w-]+(\.[\w-]+)*")
 
 #: Tables whose entries have names of their own: an override cannot add one.
@@ -46,7 +48,7 @@ def read_source(source: str | Path) -> tuple[str, str, Path]:
     path = Path(source)
     if not path.is_file():
         raise InputError(f"there is no scene file {str(source)!r}, and the bundled scenes are: {listed(str(source), names)}")
-    return read_text(path), re.sub(r"[^\w-]", "_", path.stem, flags=re.ASCII), path.parent
+    return read_text(path), _NO_NAME.sub("_", path.stem), path.parent
 
 
 def parse(text: str, name: str) -> dict[str, Any]:
@@ -54,7 +56,14 @@ def parse(text: str, name: str) -> dict[str, Any]:
     try:
         return _read(text)
     except tomllib.TOMLDecodeError as error:
-        raise InputError(f"{name} is not valid TOML: {error}") from error
+        raise InputError(f"{name} is not valid TOML: {error}{_line(text, str(error))}") from error
+
+
+def _line(text: str, message: str) -> str:
+    """The line that a message is about, as far as it is short, and what it may want."""
+    lines, found = text.split("\n"), re.search(r"at line (\d+)", message)
+    said = f", where it says {lines[int(found[1]) - 1].strip()[:60]!r}" if found else ""
+    return said + (". Texts stand in quotes, numbers have a point" if "value" in message or "newline" in message else "")
 
 
 def _read(text: str) -> dict[str, Any]:

@@ -62,6 +62,8 @@ def _spread(count: int) -> Callable[[Any], Any]:
 Grading = Annotated[Real, Field(ge=1e-3, le=1e3)]
 GaussPoints = Annotated[int, Strict(), Field(ge=1, le=64)]
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+$")]
+#: Of a scene, whose results are files of that name: letters of any script, too.
+SceneName = Annotated[str, Field(pattern=r"^([A-Za-z0-9_-]|[^\u0000-\u00A0])+$")]
 FaceName = Annotated[str, Field(json_schema_extra={"pattern": r"^[A-Za-z0-9_-]+\.[uvw][01]$"})]
 EdgeName = Annotated[str, Field(json_schema_extra={"pattern": r"^[A-Za-z0-9_-]+(\.[uvw][01]){2}$"})]
 CornerName = Annotated[str, Field(json_schema_extra={"pattern": r"^[A-Za-z0-9_-]+(\.[uvw][01]){3}$"})]

@@ -9,6 +9,7 @@ import numpy as np
 from isomortar.model.contrasts import element_lengths
 from isomortar.model.entities import Contact, Face, Problem, RigidPlane
 from isomortar.model.sheet import Sheet
+from isomortar.solve.borne import Borne
 from isomortar.solve.contact import PairMechanics
 from isomortar.solve.record import ContactResult, ContactState
 
@@ -16,8 +17,6 @@ from isomortar.solve.record import ContactResult, ContactState
 STIFFER = 10.0
 #: Control pressures this many times above the field's largest value oscillate.
 OSCILLATION = 1.5
-#: Share of the modulus of a contact's softest body up to which pressures are round-off of its coordinates.
-NO_PRESSURE = 1e-12
 #: Quadrature points are to be no farther apart than elements of the master are long; by this factor, for round-off.
 ENOUGH = 0.99
 #: Spurious work over friction work above which the master is too coarse.
@@ -76,13 +75,6 @@ def _softest(sheet: Sheet) -> float:
     return min(body.modulus for body in sheet.bodies)
 
 
-def round_off(problem: Problem, contact: Contact) -> float:
-    """Pressure up to which a contact bears nothing, by the modulus of the softest body of both sides."""
-    sides = [contact.slave, *([] if isinstance(contact.master, RigidPlane) else [contact.master])]
-    moduli = [body.modulus for side in sides for body in Sheet.of(problem, side).bodies if not body.rigid]
-    return NO_PRESSURE * min(moduli, default=0.0)
-
-
 def _element_size(sheet: Sheet) -> float:
     """Typical length of the elements at a side of a contact."""
     lengths = element_lengths(sheet.patch)
@@ -108,9 +100,7 @@ class StepAdvice:
 
     def __init__(self, problem: Problem, step: int, states: Sequence[ContactState]) -> None:
         self._slaves = {contact.name: contact.slave.words for contact in problem.contacts}
-        self._least = [round_off(problem, contact) for contact in problem.contacts]
-        self._tolerance = problem.settings.newton_tolerance
-        self._largest = max((float(np.abs(state.pressure).max(initial=0.0)) for state in states), default=0.0)
+        self._borne = Borne(problem, states)
         self._begun = self._last = step
         self._closed = {name: step for name, state in zip(self._slaves, states, strict=True) if np.any(state.pressure)}
         self._given: set[tuple[str, str]] = set()
@@ -120,14 +110,14 @@ class StepAdvice:
     def after_step(self, step: int, results: Sequence[ContactResult], states: Sequence[ContactState]) -> Iterator[str]:
         """Warnings that the end of a load step gives rise to."""
         before, self._excluded, self._last = self._excluded, [result.excluded for result in results], step
-        self._largest = max([self._largest, *(float(result.pressure_field.max()) for result in results)])
-        for name, least, result, state, excluded in zip(self._slaves, self._least, results, states, before, strict=True):
+        self._borne.see(state.pressure for state in states)
+        for number, (name, result, state, excluded) in enumerate(zip(self._slaves, results, states, before, strict=True)):
             if result.active:
                 self._closed[name] = step
             self._work[name] += result.work
             yield from self._leaving(name, step, result, excluded, len(state.projected))
             largest, field = float(state.pressure.max()), float(result.pressure_field[1])
-            bears = field > max(least, self._tolerance * self._largest)  # below that it is what balance leaves open
+            bears = self._borne.more_than_nothing(number, field)
             if result.active > 3 and bears and largest > OSCILLATION * field and self._first(name, "oscillation"):
                 yield (
                     f"contact {name!r}, load step {step}: control pressures reach {largest:.3g} where the pressure field reaches "

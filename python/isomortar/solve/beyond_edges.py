@@ -10,12 +10,13 @@ from scipy.spatial import cKDTree
 from isomortar._bindings import Projections
 from isomortar.geometry.patch import Direction, FloatArray
 from isomortar.model.enforcement.face import SlaveFace, grid
-from isomortar.model.entities import Body, Contact, Face, Problem, RigidPlane
+from isomortar.model.entities import Contact, Problem
 from isomortar.model.pairs import Pair
 from isomortar.model.sheet import Sheet
 from isomortar.model.supports import BoolArray
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.feet import slave_points
+from isomortar.solve.softness import softness
 
 #: Share of the force by which an edge of the master makes contact too stiff, times the width in elements that is over the master: fitted to
 #: punches, of widths from a fifth of an element to ten, on blocks of order 1 to 3.
@@ -74,7 +75,7 @@ def beyond_edges(equilibrium: Equilibrium, pair: Pair, positions: FloatArray, pr
     if edges.any():  # areas are known better than lines, where quadrature points are few
         area = np.sum(np.prod(grid(du, dv), axis=1) * face.areas(nodes, slopes), where=over)
         widths[edges > 0] *= (np.sum(pair.slave.area, where=found) / area) ** (1.0 / np.count_nonzero(edges))
-    slave, master = softness(problem, contact.slave), softness(problem, contact.master)
+    slave, master = (part[found].sum() for part in softness(problem, equilibrium.numbering, pair, projections))
     return BeyondEdges(widths, edges, slave / (slave + master))
 
 
@@ -89,15 +90,6 @@ def _longest(lines: BoolArray) -> tuple[float, int]:
     """The most elements that are over the master along a line of places, shape (lines, places), and its ends that are not."""
     longest = lines[int(np.argmax(lines.sum(axis=1)))]
     return np.count_nonzero(longest) / PARTS, int(not longest[0]) + int(not longest[-1])
-
-
-def softness(problem: Problem, side: Face | RigidPlane) -> float:
-    """(1 - nu^2) / E of one side of a contact, of the softest of its bodies."""
-    return max((_soft(problem.body(face.body)) for face in side.faces), default=0.0) if isinstance(side, Face) else 0.0
-
-
-def _soft(body: Body) -> float:
-    return 0.0 if body.rigid else (1.0 - body.material.poisson**2) / body.material.young
 
 
 def told(problem: Problem, contact: Contact, found: BeyondEdges, step: int) -> str:

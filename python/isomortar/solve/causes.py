@@ -9,6 +9,7 @@ import numpy as np
 
 from isomortar.errors import PathError, SingularSystemError
 from isomortar.geometry.patch import FloatArray
+from isomortar.model import constants
 from isomortar.model.contrasts import element_lengths
 from isomortar.model.entities import Body, Contact, Problem
 from isomortar.model.sheet import Sheet
@@ -32,9 +33,6 @@ INCOMPRESSIBLE = 1e4
 PENALTY = 1e3
 #: Elastic slips below this share of the slave make friction so stiff that Newton's method goes to and fro: a press failed at 2e-4.
 SHORT_SLIP = 1e-3
-
-#: What `solver.max_cuts` may be.
-MOST_CUTS = 30
 
 #: How an error says that a slave goes over its master's edge.
 BESIDE = "beside the master"
@@ -76,7 +74,7 @@ def _path(error: float, cuts: int) -> str:
     unit = 10.0 ** np.floor(np.log10(error)) if np.isfinite(error) else np.inf
     enough = np.ceil(error / unit) * unit if unit < np.inf else np.inf
     ways = [f"take solver.path_tolerance = {enough:g} or more"] if enough <= 1.0 else []
-    ways += [f"let increments be halved more often than solver.max_cuts = {cuts}"] if cuts < MOST_CUTS else []
+    ways += [f"let increments be halved more often than solver.max_cuts = {cuts}"] if cuts < constants.MOST_CUTS else []
     return f"balance and contact were met, and the shortest increment is too long for that: {', '.join([*ways, 'or take more load steps'])}"
 
 

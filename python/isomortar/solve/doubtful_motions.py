@@ -121,8 +121,8 @@ def _idle_stages(problem: Problem) -> Iterator[str]:
         held = any(len({support.holds(k) for k in (number - 1, number)}) > 1 for support in problem.supports)
         if not (moved or loaded or held):
             yield (
-                f"nothing moves and no load changes in stage {stage.name!r}: its {stage.steps} load steps compute the same state again. "
-                "Give it a motion or a load, or take it out"
+                f"nothing moves and no load changes in stage {stage.name!r}: all its load steps ({stage.steps}) compute the same state "
+                "again. Give it a motion or a load, or take it out"
             )
 
 

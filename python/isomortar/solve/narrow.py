@@ -10,14 +10,16 @@ import numpy as np
 from isomortar._bindings import Projections
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Contact, Problem
+from isomortar.model.numbering import Numbering
 from isomortar.model.pairs import Pair
 from isomortar.model.sheet import Sheet
-from isomortar.solve.advice import round_off
-from isomortar.solve.beyond_edges import beyond_edges, softness, told
+from isomortar.solve.beyond_edges import beyond_edges, told
+from isomortar.solve.borne import Borne
 from isomortar.solve.contact import PairMechanics, PutOff
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.feet import gaps
 from isomortar.solve.record import ContactState
+from isomortar.solve.softness import softness
 
 #: Rows that bear contact below which it is told, in both directions, or in one with functions that have kinks: there forces of balls and
 #: cylinders on blocks were off by up to a third. A single row of smooth functions along a line cost less than 7 %, two rows a tenth, more
@@ -46,6 +48,8 @@ class Bearing:
         How many rows there are.
     kinks : tuple of bool
         Whether functions of the face have kinks along each coordinate.
+    round : tuple of bool
+        Whether it is a pole, round which a coordinate goes, that bears most: a point, however many rows there are along that.
     depth : float
         Of the quadrature points, root of the mean square where there is pressure: averages of it are zero.
     costs : float
@@ -55,6 +59,7 @@ class Bearing:
     rows: FloatArray
     of: tuple[int, int]
     kinks: tuple[bool, bool]
+    round: tuple[bool, bool]
     depth: float
     costs: float
 
@@ -62,7 +67,7 @@ class Bearing:
     def too_narrow(self) -> bool:
         """Whether it is told."""
         few = self.rows < ROWS
-        return bool(few.all() or np.any(few & self.kinks)) or self.costs > COSTS
+        return bool(np.all(few | self.round) or np.any(few & self.kinks)) or self.costs > COSTS
 
 
 class Narrow:
@@ -76,20 +81,18 @@ class Narrow:
         self._watched = dict(enumerate(equilibrium.pairs))
         self._areas = [_areas(mechanics.pair, mechanics.pair.slave.area) for mechanics in equilibrium.pairs]
         self._largest = np.array([state.pressure @ area for state, area in zip(states, self._areas, strict=True)])
-        self._nothing = [round_off(self._problem, contact) for contact in self._problem.contacts]
-        self._highest = max((float(np.abs(state.pressure).max(initial=0.0)) for state in states), default=0.0)
+        self._borne = Borne(self._problem, states)
 
     def after_step(self, balance: Balance, step: int, ends: bool) -> Iterator[str]:
         """Warnings that the end of a load step gives rise to, if it `ends` a stage: all contact of round bodies is narrow at first."""
-        pressures = [float(np.abs(response.pressure).max(initial=0.0)) for response in balance.responses]
-        self._highest = max([self._highest, *pressures])
-        left_open = self._problem.settings.newton_tolerance * self._highest
+        self._borne.see(response.pressure for response in balance.responses)
         for number, mechanics in list(self._watched.items()):
             if isinstance(balance.kinematics[number], PutOff):
                 continue
-            force = float(balance.responses[number].pressure @ self._areas[number])
+            pressure = balance.responses[number].pressure
+            force = float(pressure @ self._areas[number])
             self._largest[number] = max(force, self._largest[number])
-            bears = pressures[number] > max(self._nothing[number], left_open)  # below that it is what balance leaves open
+            bears = self._borne.more_than_nothing(number, float(np.abs(pressure).max(initial=0.0)))
             if not ends or not bears or force <= LIGHT * self._largest[number]:
                 continue
             found = bearing(self._problem, mechanics, balance, number)
@@ -134,16 +137,22 @@ def bearing(problem: Problem, mechanics: PairMechanics, balance: Balance, number
     borne = forces(mechanics.pair, balance.responses[number].pressure, balance.kinematics[number].projections)
     depth, pressed = _between(problem, mechanics, balance, number)
     ratio = depth / pressed if pressed > 0.0 else 0.0
-    first, second = (_sums(places, borne) for places in mechanics.pair.places.T)
+    (first, round_first), (second, round_second) = (_sums(mechanics.pair.places, borne, axis) for axis in (0, 1))
     rows = np.array([np.sum(sums) ** 2 / (sums @ sums) for sums in (first, second)])
     u, v = (direction.order == 1 or direction.family == "L" for direction in Sheet.of(problem, mechanics.pair.contact.slave).directions)
-    return Bearing(rows, (len(first), len(second)), (u, v), depth, (ratio - FREE) / (ratio + ADDED))
+    round_poles, counts = (round_first, round_second), (len(first), len(second))
+    return Bearing(rows, counts, (u, v), round_poles, depth, (ratio - FREE) / (ratio + ADDED))
 
 
-def _sums(places: FloatArray, borne: FloatArray) -> FloatArray:
-    """Forces by row: of the constraints at the same place along a coordinate (theory 9.9)."""
-    _, row = np.unique(places, return_inverse=True)
-    return np.bincount(row.ravel(), borne).astype(np.float64)
+def _sums(places: FloatArray, borne: FloatArray, axis: int) -> tuple[FloatArray, bool]:
+    """Forces by row, of constraints at the same place along a coordinate, and whether a pole that it goes round bears most (theory 9.9).
+
+    A pole is a constraint that is alone across the coordinate: all rows have an equal part of it.
+    """
+    row, across = (np.unique(places[:, k], return_inverse=True)[1].ravel() for k in (axis, 1 - axis))
+    at_pole = np.bincount(across)[across] == 1
+    sums, of_pole = np.bincount(row, np.where(at_pole, 0.0, borne)), float(borne[at_pole].sum())
+    return np.asarray(sums + of_pole / len(sums), np.float64), of_pole > 0.5 * float(borne.sum())
 
 
 def _between(problem: Problem, mechanics: PairMechanics, balance: Balance, number: int) -> tuple[float, float]:
@@ -154,8 +163,8 @@ def _between(problem: Problem, mechanics: PairMechanics, balance: Balance, numbe
     if not acting.any():
         return 0.0, 0.0
     depth = np.sqrt(acting @ np.square(gaps(pair, balance.positions, projections)) / acting.sum())
-    soft = softness(problem, pair.contact.slave) + softness(problem, pair.contact.master)
-    return float(depth), float(soft * np.sqrt(problem.images * (acting @ pressure)))
+    soft = sum(softness(problem, Numbering(problem), pair, projections))
+    return float(depth), float(acting @ soft / acting.sum() * np.sqrt(problem.images * (acting @ pressure)))
 
 
 def _told(problem: Problem, contact: Contact, found: Bearing, step: int) -> str:
@@ -163,7 +172,8 @@ def _told(problem: Problem, contact: Contact, found: Bearing, step: int) -> str:
     letters, what = Sheet.of(problem, contact.slave).letters, "control points" if contact.of_averages else "constraints"
     least, deep = float(found.rows.min()), found.costs > COSTS
     sides = list(zip(letters, found.rows, found.of, strict=True))
-    few = [letter for letter, rows, count in sides if rows <= max(ENOUGH, least) and rows < ALL * count] or list(letters)
+    few = [letter for letter, rows, count in sides if rows <= max(ENOUGH, least) and rows < ALL * count]
+    few = few or [letter for letter, is_round in zip(letters, found.round, strict=True) if not is_round]
     between = f", and between these it is about {found.depth:.2g} inside its master or apart from it" if deep else ""
     share = f"{100.0 * found.costs:.2g} %" if deep else "a fifth"
     stage = problem.stages[problem.stage_of(step)].name

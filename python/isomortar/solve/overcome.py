@@ -13,6 +13,7 @@ from isomortar.model.rank import extent
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.free_motions import FreeMotion, direction, free_motions, going
 from isomortar.solve.limit_load import Touch, along_contact, least_resisted, pressed_bed, touches_of
+from isomortar.solve.more_friction import more_friction
 from isomortar.solve.record import State
 
 #: Share of what friction can bear from which on it is told of: pressures are those below a rigid body, which moments notice.
@@ -45,8 +46,9 @@ def overcome(equilibrium: Equilibrium, state: State) -> Iterator[str]:
     way = least_resisted(touches, limits, along, works)
     borne = np.array([limit @ touch.lengths(way) for touch, limit in zip(touches, limits, strict=True)])
     if 1.0 / ROLLS < borne.sum() < 1.0 / ALL:
-        resist = [touch for touch, part in zip(touches, borne, strict=True) if part > constants.IN_THE_WAY * borne.sum()]
-        yield from _said(equilibrium, resist, motions, way, float(borne.sum()))
+        resist = [k for k, part in enumerate(borne) if part > constants.IN_THE_WAY * borne.sum()]
+        more = more_friction([(touches[k].pair.pair.contact, limits[k], limits[k] * touches[k].lengths(way)) for k in resist])
+        yield from _said(equilibrium, [touches[k] for k in resist], motions, way, float(borne.sum()), more)
 
 
 def work_on(equilibrium: Equilibrium, positions: FloatArray, motion: FreeMotion) -> float:
@@ -64,9 +66,9 @@ def work_on(equilibrium: Equilibrium, positions: FloatArray, motion: FreeMotion)
 
 
 def _said(
-    equilibrium: Equilibrium, touches: Sequence[Touch], motions: Sequence[FreeMotion], way: FloatArray, borne: float
+    equilibrium: Equilibrium, touches: Sequence[Touch], motions: Sequence[FreeMotion], way: FloatArray, borne: float, more: str
 ) -> Iterator[str]:
-    """On the bodies that go on a way on which loads do unit work; friction bears some of that at most."""
+    """On the bodies that go on a way on which loads do unit work; friction bears some of that at most, and what lets it bear more."""
     goes, images = going(equilibrium.numbering, motions, way), equilibrium.problem.images
     if goes.turns and not all(touch.is_face for touch in touches):
         return
@@ -76,6 +78,6 @@ def _said(
     yield (
         f"loads {'turn' if goes.turns else 'push'} {goes.bodies} {'about an axis ' if goes.turns else ''}along ({direction(rates)}) by "
         f"{images / far:.3g} by then, where friction of contact {contacts} can bear about {images * borne / far:.3g} at the pressures that "
-        "hold it otherwise, and nothing else does: beyond that it slides, and is nowhere at rest. Take more friction, or less load that "
+        f"hold it otherwise, and nothing else does: beyond that it slides, and is nowhere at rest. Take {more}, or less load that "
         "way, or hold or move it by a support"
     )

@@ -8,12 +8,13 @@ from dataclasses import replace
 import numpy as np
 
 from isomortar.geometry.patch import FloatArray
-from isomortar.model.entities import Face
+from isomortar.model.entities import Contact, Face
 from isomortar.model.glue import named
 from isomortar.solve.contact import PairMechanics
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.free_motions import free_motions
 from isomortar.solve.metric import traction_norms
+from isomortar.solve.more_friction import more_friction
 from isomortar.solve.record import ContactState, State
 
 #: Share of what friction can bear above which a body is about to slide: what the last load increment before adds is less than the rest.
@@ -38,7 +39,9 @@ def sliding(equilibrium: Equilibrium, state: State) -> Iterator[str]:
         pairs = [(pair, begun) for pair, begun in zip(equilibrium.pairs, state.contacts, strict=True) if _bodies(pair) & names]
         if not motions or not pairs:
             continue
-        borne, most = np.sum([_share(pair, state.positions, begun) for pair, begun in pairs], axis=0)
+        borne = float(sum(_borne(pair, state.positions, begun) for pair, begun in pairs))
+        limits = [_limits(pair, state.positions, begun) for pair, begun in pairs]
+        most = float(sum(parts.sum() for _, _, parts in limits))
         friction = np.sum([_friction(pair, state.positions, begun) for pair, begun in pairs], axis=0)
         along = np.linalg.norm(np.einsum("mij,ij->m", np.stack(motions), friction))
         if most > 0.0 and borne > ALL * most and along > HOLDS * np.linalg.norm(friction, axis=1).sum():
@@ -46,7 +49,7 @@ def sliding(equilibrium: Equilibrium, state: State) -> Iterator[str]:
             yield (
                 f"friction of contact {contacts} bears {100.0 * borne / most:.0f} % of what it can by then, and nothing else keeps "
                 f"{named(piece, piece[0].name)} from going along with its loads: beyond that it slides, and is nowhere at rest. Take "
-                "smaller loads or more friction, or hold or move it by a support"
+                f"smaller loads or {more_friction(limits)}, or hold or move it by a support"
             )
 
 
@@ -55,11 +58,16 @@ def _bodies(pair: PairMechanics) -> set[str]:
     return {face.body for side in (contact.slave, contact.master) if isinstance(side, Face) for face in side.faces}
 
 
-def _share(pair: PairMechanics, positions: FloatArray, state: ContactState) -> tuple[float, float]:
-    """Sums of the sizes of a pair's tractions, and of what these can be: forces."""
+def _borne(pair: PairMechanics, positions: FloatArray, state: ContactState) -> float:
+    """Sum of the sizes of a pair's tractions, as a force."""
     control = pair.kinematics(positions, state).control
-    norms = traction_norms(control, state.traction)
-    return float(control.weight @ norms), float(control.weight @ pair.radius(state.pressure))
+    return float(control.weight @ traction_norms(control, state.traction))
+
+
+def _limits(pair: PairMechanics, positions: FloatArray, state: ContactState) -> tuple[Contact, FloatArray, FloatArray]:
+    """What a pair's tractions can be at most, as tractions and as forces."""
+    largest = pair.radius(state.pressure)
+    return pair.pair.contact, largest, pair.kinematics(positions, state).control.weight * largest
 
 
 def _friction(pair: PairMechanics, positions: FloatArray, state: ContactState) -> FloatArray:

@@ -102,7 +102,7 @@ CASES = {
     "Young": ("young = 10.0", "young = 0", "materials.rubber.young", "is 0; allowed: greater than 0"),
     "Poisson": ("poisson = 0.3", "poisson = 0.5", "materials.rubber.poisson", "is 0.5; allowed: less than 0.5"),
     "NaN": ("poisson = 0.3", "poisson = nan", "materials.rubber.poisson", "is nan; allowed: a finite number"),
-    "name": ("[supports.top]", '[supports."the top"]', "supports.the top", "allowed: letters, digits, _ and -"),
+    "name": ("[supports.top]", '[supports."the top"]', "supports.the top", "allowed: letters from a to z, digits, _ and -"),
     "no material": (
         'material = "cork"',
         'material = "corc"',
@@ -175,6 +175,18 @@ CASES = {
         'slave = "uper.w0"',
         "contacts.pair.slave",
         "there is no body 'uper'; allowed: BODY.FACE with BODY one of upper, lower",
+    ),
+    "no face of a slave": (
+        'slave = "upper.w0"',
+        'slave = "upper"',
+        "contacts.pair.slave",
+        "is 'upper', which names no face; allowed: BODY.FACE",
+    ),
+    "no component": (
+        'face = "upper.w1"',
+        'face = "upper.w1"\ncomponents = ["w"]',
+        "supports.top.components.0",
+        "is 'w'; allowed: 'x', 'y' or 'z'",
     ),
     "slave is master": ('master = "lower.w1"', 'master = "upper.w0"', "contacts.pair.master", "is the slave face 'upper.w0' itself"),
     "no master": ('master = "lower.w1"\n', "", "contacts.pair", "has neither master nor plane; allowed: exactly one of them"),
