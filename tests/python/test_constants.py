@@ -16,8 +16,8 @@ PLACE = PACKAGE / "model" / "constants.py"
 #: Modules that refuse, warn or explain: their thresholds stand with their sentences.
 JUDGES = {
     "advice", "astray", "behind", "causes", "checks", "contact_checks", "doubtful_edges", "doubtful_meshes", "doubtful_motions",
-    "doubtful_sizes", "doubtful_turns", "doubts", "left_out", "limit_load", "lost", "magnitudes", "meeting", "memory", "narrow",
-    "overcome", "passing", "pulling", "rational", "singular", "sliding", "small_strains", "stance",
+    "doubtful_sizes", "doubtful_turns", "doubts", "layers", "left_out", "limit_load", "lost", "magnitudes", "meeting", "memory",
+    "narrow", "overcome", "passing", "pulling", "rational", "singular", "sliding", "small_strains", "stance",
 }  # fmt: skip
 #: Numbers that stand for something else.
 CODES = {"RECENT", "_FAMILY_CODE", "_NO_SLIP", "_SLIPS_AT_POLE"}
