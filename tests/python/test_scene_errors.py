@@ -10,6 +10,8 @@ from told.wrong.keys import CASES, GOOD
 
 from isomortar.errors import InputError
 from isomortar.scene import Scene
+from isomortar.scene.schema import SceneTable
+from isomortar.scene.types import OF_THE_FILE
 
 
 def test_the_scene_that_the_cases_change_is_good() -> None:
@@ -24,6 +26,10 @@ def test_bad_scene(old: str, new: str, field: str, said: str) -> None:
     assert error.value.field == field
     assert said in str(error.value)
     assert str(error.value).startswith(f"{field}: ")
+
+
+def test_what_stands_above_all_tables_is_every_table_and_list_of_a_scene() -> None:
+    assert set(OF_THE_FILE) == SceneTable.model_fields.keys() - {"format", "name", "title"}
 
 
 def test_a_free_body_without_contact_is_named() -> None:

@@ -52,6 +52,7 @@ CASES = {
     "version": ("format = 1", "format = 2", "format", "is 2; allowed: 1"),
     "unknown key": ("steps = 3", "step = 3", "stages.press.step", "unknown key; allowed here: steps, name, motions"),
     "unknown table": ("[solver]", "[solvers]", "solvers", "unknown key; allowed here: solver, "),
+    "key of the file in a table": ("max_cuts = 4", "max_cuts = 4\nsymmetry.x = 0", "solver.symmetry", "put it above the first [table]"),
     "unknown key of a primitive": ("rise = 0.2", "raise = 0.2", "bodies.upper.geometry.raise", "rise, kind, centre, half_width"),
     "unknown primitive": ('kind = "bowl"', 'kind = "ball"', "bodies.upper.geometry.kind", "is 'ball'; allowed: 'box', 'bowl', 'cap'"),
     "half a turn too far": (
