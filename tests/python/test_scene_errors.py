@@ -44,7 +44,7 @@ def test_a_free_body_without_contact_is_named() -> None:
 def test_a_plane_holds_nobody() -> None:
     text = Scene.load("press").to_toml()
     text = text[: text.index("[supports.top]")] + '[[stages]]\nname = "rest"\nsteps = 1\n'
-    with pytest.raises(InputError, match="body 'block' is free"):
+    with pytest.raises(InputError, match="is free: it has no support and no load presses it on the plane that it touches"):
         Scene.from_toml(text).problem()
 
 

@@ -233,6 +233,7 @@ CASES = {
     ),
     "stage twice": ('name = "turn"', 'name = "press"', "stages.1.name", "is the name of two stages"),
     "free body": ('[supports.top]\nface = "upper.w1"', '[supports.top]\nface = "lower.u0"', "bodies.upper", "body 'upper' is free"),
+    "free on a plane": ('[supports.base]\nface = "lower.w0"\n', "", "bodies.lower", "no load presses it on the plane that it touches"),
     "conflict": (
         '[supports.base]\nface = "lower.w0"',
         '[supports.base]\nface = "lower.w0"\n[supports.side]\nface = "upper.u0"',
