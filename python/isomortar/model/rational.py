@@ -13,6 +13,7 @@ from isomortar.geometry.patch import FloatArray, Patch
 from isomortar.model.entities import Body
 from isomortar.model.layers import Line, in_layers
 from isomortar.model.lines import along, functions_along, quotient
+from isomortar.model.shares import percent
 
 #: Weights of conic sections, arcs of up to 120 degrees, are within this ratio of each other; the default points are made for them.
 CONIC = 2.0
@@ -52,7 +53,7 @@ def too_few_points(body: Body, error: float, least: float) -> str:
     return (
         f"body {body.name!r}: its weights, from {body.patch.weights.min():g} to {body.patch.weights.max():g}, differ too much for the "
         f"quadrature with {' x '.join(map(str, body.quadrature))} Gauss points an element: forces at its control points are off by "
-        f"{100 * error:.2g} % or more. {cure} the weights nearer to each other"
+        f"{percent(error)} or more. {cure} the weights nearer to each other"
     )
 
 

@@ -16,6 +16,7 @@ from isomortar.model.layers import Line, in_layers
 from isomortar.model.lines import functions_along, quotient
 from isomortar.model.numbering import Numbering
 from isomortar.model.rational import CONIC, MOST_ALONG, QUADRATURE_TOLD
+from isomortar.model.shares import percent
 from isomortar.model.sheet import Sheet
 
 
@@ -39,11 +40,11 @@ def too_few_points_of(problem: Problem, contact: Contact, error: float) -> str:
     """A sentence on a contact whose pressures are off by an error, with numbers of points that leave none that is told."""
     sheet = Sheet.of(problem, contact.slave)
     weights = _weights(sheet)
-    enough, percent = _points_enough(sheet, contact.quadrature), float(f"{100 * error:.2g}")
+    enough = _points_enough(sheet, contact.quadrature)
     cure = f"Take contacts.{contact.name}.quadrature = {list(enough)}, or bring" if enough else "Bring"
     return (
         f"contact {contact.name!r}: weights of its slave {contact.slave.words}, from {weights.min():g} to {weights.max():g}, differ too "
-        f"much for {' x '.join(map(str, contact.quadrature))} quadrature points: pressures are off by up to {percent:g} %. {cure} the "
+        f"much for {' x '.join(map(str, contact.quadrature))} quadrature points: pressures are off by up to {percent(error)}. {cure} the "
         "weights nearer to each other"
     )
 

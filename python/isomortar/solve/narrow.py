@@ -11,6 +11,7 @@ from isomortar._bindings import Projections
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Body, Contact, Face, Problem
 from isomortar.model.pairs import Pair
+from isomortar.model.shares import percent
 from isomortar.model.sheet import Sheet
 from isomortar.solve.advice import round_off
 from isomortar.solve.contact import PairMechanics, PutOff
@@ -168,7 +169,7 @@ def _told(problem: Problem, contact: Contact, found: Bearing, step: int) -> str:
     sides = list(zip(letters, found.rows, found.of, strict=True))
     few = [letter for letter, rows, count in sides if rows <= max(ENOUGH, least) and rows < ALL * count] or list(letters)
     between = f", and between these it is about {found.depth:.2g} inside its master or apart from it" if deep else ""
-    share = f"{100.0 * found.costs:.2g} %" if deep else "a fifth"
+    share = percent(found.costs) if deep else "a fifth"
     stage = problem.stages[problem.stage_of(step)].name
     return (
         f"contact {contact.name!r}, load step {step}, the last of stage {stage!r}: it is too narrow for its slave {contact.slave.words}: "
