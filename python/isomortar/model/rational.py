@@ -11,12 +11,10 @@ from scipy import sparse
 from isomortar.errors import FoldedElementError
 from isomortar.geometry.patch import FloatArray, Patch
 from isomortar.model.entities import Body
-from isomortar.model.layers import Line, in_layers
+from isomortar.model.layers import CONIC, Line, in_layers
 from isomortar.model.lines import along, functions_along, quotient
 from isomortar.model.shares import percent
 
-#: Weights of conic sections, arcs of up to 120 degrees, are within this ratio of each other; the default points are made for them.
-CONIC = 2.0
 #: Most quadrature points that a body is tried with, a second of work, and most along a direction of an element.
 MOST_POINTS, MOST_ALONG = 500_000, 64
 #: Points that are computed in one go.

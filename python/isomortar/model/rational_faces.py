@@ -12,10 +12,10 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.model.enforcement.face import SlaveFace
 from isomortar.model.enforcement.subcells import Subcells
 from isomortar.model.entities import Contact, Problem
-from isomortar.model.layers import Line, in_layers
+from isomortar.model.layers import CONIC, Line, in_layers
 from isomortar.model.lines import functions_along, quotient
 from isomortar.model.numbering import Numbering
-from isomortar.model.rational import CONIC, MOST_ALONG, QUADRATURE_TOLD
+from isomortar.model.rational import MOST_ALONG, QUADRATURE_TOLD
 from isomortar.model.shares import percent
 from isomortar.model.sheet import Sheet
 
