@@ -156,6 +156,14 @@ def test_weights_that_the_points_miss_are_refused_with_a_cure_that_cures() -> No
         _of_weights(rational(1e6))
 
 
+def test_bodies_with_weights_that_are_folded_between_their_points_are_told_where() -> None:
+    body = rational(4.0)
+    points = body.patch.control_points.copy()
+    points[-1, 0] = 0.7
+    (said,) = _of_weights(replace(body, patch=replace(body.patch, control_points=points)))
+    assert "between its Gauss points element 1, 1, 1 along u, v, w is folded" in said
+
+
 @pytest.mark.parametrize(
     ("thickness", "tip", "motion", "told"),
     [

@@ -10,6 +10,8 @@ from told.wrong.keys import CASES, GOOD
 
 from isomortar.errors import InputError
 from isomortar.scene import Scene
+from isomortar.scene.schema import SceneTable
+from isomortar.scene.types import OF_THE_FILE
 
 
 def test_the_scene_that_the_cases_change_is_good() -> None:
@@ -26,6 +28,10 @@ def test_bad_scene(old: str, new: str, field: str, said: str) -> None:
     assert str(error.value).startswith(f"{field}: ")
 
 
+def test_what_stands_above_all_tables_is_every_table_and_list_of_a_scene() -> None:
+    assert set(OF_THE_FILE) == SceneTable.model_fields.keys() - {"format", "name", "title"}
+
+
 def test_a_free_body_without_contact_is_named() -> None:
     text = GOOD[: GOOD.index("[contacts.pair]")] + GOOD[GOOD.index("[supports.top]") :].replace(
         'face = "upper.w1"', 'face = "upper.w1"\ncomponents = ["z"]'
@@ -38,7 +44,7 @@ def test_a_free_body_without_contact_is_named() -> None:
 def test_a_plane_holds_nobody() -> None:
     text = Scene.load("press").to_toml()
     text = text[: text.index("[supports.top]")] + '[[stages]]\nname = "rest"\nsteps = 1\n'
-    with pytest.raises(InputError, match="body 'block' is free"):
+    with pytest.raises(InputError, match="is free: it has no support and no load presses it on the plane that it touches"):
         Scene.from_toml(text).problem()
 
 

@@ -21,6 +21,7 @@ from told.beyond_edges import punch
 from told.given_up import all_told, without_digits
 from told.narrow import BALLS, STRIPS, depth, strip
 from told.passing import SCENE as BENT
+from told.weights import column
 from told.word_by_word import KINDS as OF_SCENES
 from told.word_by_word import SENTENCES
 from told.wrong.contacts import PRESS
@@ -87,6 +88,7 @@ def of_weights_and_memory(patch: pytest.MonkeyPatch) -> Told:
     (yield "weights", *_of_weights(rational(8.0)))
     yield "weights, refused", refusal(partial(_of_weights, rational(30.0)))
     yield "weights without a cure", refusal(partial(_of_weights, rational(1e6)))
+    yield "weights of a slave", next(said for said in Simulation(column(5.0, "plane")).doubts() if "quadrature points" in said)
     patch.setattr(doubts, "memory_of_machine", lambda: 1e6)
     (yield "memory", *warnings(PRESS))
 

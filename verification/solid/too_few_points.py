@@ -8,13 +8,14 @@ import numpy as np
 
 from isomortar import _bindings
 from isomortar._bindings import BodyArrays
-from isomortar.geometry.patch import FACES, FloatArray, Patch
+from isomortar.geometry.patch import FACES, Direction, FloatArray, Patch
 from isomortar.geometry.primitives import box
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
 from isomortar.model.entities import Body, Material
+from isomortar.model.layers import Line, in_layers
 from isomortar.model.numbering import patch_arrays
-from isomortar.model.rational import points_enough, quadrature_error
+from isomortar.model.rational import forces_of_stretch, points_enough, quadrature_error
 
 #: Gauss points along each direction of an element that leave nothing but round-off.
 MANY = 40
@@ -84,3 +85,33 @@ def told(body: str) -> dict[str, float]:
         return found | {"none": 1.0}
     half = (rule[0] // 2, rule[1] // 2, rule[2] // 2)
     return found | {"enough": off(given, rule, exact) / allowed, "half": off(given, half, exact) / allowed}
+
+
+def in_turn(contrast: float) -> Body:
+    """A cube with two weights in turn along u and v, control points where those of a polynomial cube are."""
+    across, up = Direction("N", 2, np.array([0.0, 0.0, 0.0, 0.5, 1.0, 1.0, 1.0])), Direction("N", 1, np.array([0.0, 0.0, 1.0, 1.0]))
+    grid = np.meshgrid(across.greville, across.greville, up.greville, indexing="ij")
+    points = np.stack([axis.ravel(order="F") for axis in grid], axis=1)
+    odd = np.sum(np.indices(grid[0].shape)[:2], axis=0).ravel(order="F") % 2
+    return Body("body", Patch((across, across, up), points, contrast**odd), Material(young=2.0, poisson=0.2), (4, 4, 2))
+
+
+@case(
+    claim="However much weights differ, layers integrate their functions, and a resultant that Gauss points miss by a per cent is told of.",
+    tier="gate",
+    grid={"contrast": [4.0, 1e2, 1e4, 1e6, 1e9, 1e12]},
+    bounds=lambda contrast: {
+        "layers": Bound(at_most=2e-4, reason="quadrature: Gauss points of a layer in which weights differ by four"),
+        "told": Bound(at_least=0.01 if contrast > 4.0 else 0.0, reason="definition: told from a hundredth on"),
+        "beside": Bound(at_least=1.0, reason="theory: a resultant is off by less than the forces that it is of"),
+    },
+)
+def in_layers_of_weights(contrast: float) -> dict[str, float]:
+    """Errors of the resultant on the upper face, exactly its area, in layers and by Gauss points; the latter beside the error told."""
+    body = in_turn(contrast)
+    top = body.patch.face_points("w1")
+    better = forces_of_stretch(body.patch, in_layers(body.patch.directions, body.patch.weights))[top, 2].sum()
+    gauss = [Line.of(direction.boundaries, points) for direction, points in zip(body.patch.directions, body.quadrature, strict=True)]
+    found = forces_of_stretch(body.patch, gauss)[top, 2].sum()
+    told = quadrature_error(body)
+    return {"layers": abs(better - 1.0), "told": told, "beside": told / max(abs(found - 1.0), 1e-3)}

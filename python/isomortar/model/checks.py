@@ -271,6 +271,7 @@ def _check_held(problem: Problem) -> None:
     held |= {body.name for body in problem.bodies if body.rigid}
     loaded = {body.name for load in problem.loads for body in whole[load.body]}
     touching = [c for c in problem.contacts if _touch(problem, c)]
+    on_planes = {face.body for contact in touching if isinstance(contact.master, RigidPlane) for face in contact.slave.faces}
     for _ in problem.bodies:
         for contact in touching:
             sides = [side for side in (contact.slave, contact.master) if isinstance(side, Face)]
@@ -281,9 +282,11 @@ def _check_held(problem: Problem) -> None:
     in_contact = {body.name for name in touched for body in whole[name]}
     for body in problem.deformable:
         if body.name not in held:
+            rests = not on_planes.isdisjoint(one.name for one in whole[body.name])
+            why = "and no load presses it on the plane that it touches" if rests else "and touches no held body or plane at the start"
             raise InputError(
-                f"{named(whole[body.name], body.name)} is free: it has no support and touches no held body or plane at the start; "
-                "add a support on one of its faces",
+                f"{named(whole[body.name], body.name)} is free: it has no support {why}; add a support on one of its faces"
+                f"{', or a load' if rests else ''}",
                 f"bodies.{body.name}",
             )
     hinged = replace(problem, supports=tuple(replace(s, moment=None) for s in problem.supports))  # on a hinge loads may hold it

@@ -14,6 +14,9 @@ from isomortar.model.values import TABLE, Real, coordinates
 
 T = TypeVar("T")
 
+#: Tables and lists of the whole file. In TOML what follows a [table] belongs to it, and so did they where one of these is not known.
+OF_THE_FILE = ("materials", "bodies", "glue", "contacts", "symmetry", "supports", "loads", "stages", "solver", "record")
+
 
 class Table(BaseModel):
     """Base of all tables of a scene file: unknown keys are errors that list the known ones, the nearest first."""
@@ -34,7 +37,8 @@ def entity(kind: type) -> BeforeValidator:
 def _only(known: Collection[str], data: Any) -> Any:
     unknown = [key for key in data if key not in known] if isinstance(data, dict) else []
     if unknown:
-        problem = f"unknown key; allowed here: {listed(unknown[0], known)}"
+        stray = f"; {unknown[0]} is a key of the whole file: put it above the first [table]" if unknown[0] in OF_THE_FILE else ""
+        problem = f"unknown key; allowed here: {listed(unknown[0], known)}{stray}"
         raise PydanticCustomError("unknown_key", "{problem}", {"problem": problem, "key": unknown[0]})
     return data
 

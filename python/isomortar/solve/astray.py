@@ -11,6 +11,7 @@ from isomortar._bindings import FaceArrays, Projections
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model import constants
 from isomortar.model.pairs import Pair
+from isomortar.model.shares import percent
 from isomortar.solve.contact import PairMechanics, PutOff
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.feet import pole_elements
@@ -50,7 +51,7 @@ class Astray:
             if borne > BORNE and (name, "borne") not in self._told:
                 self._told.add((name, "borne"))
                 yield (
-                    f"contact {name!r}, load step {step}: its tractions are {100.0 * (borne - 1.0):.2g} % more than the law of friction "
+                    f"contact {name!r}, load step {step}: its tractions are {percent(borne - 1.0)} more than the law of friction "
                     "takes them for: they are components along the master's coordinates, whose lengths change within elements of the "
                     f"slave. Refine the slave, even out the master's weights{_averaged(mechanics)} (docs/theory.md, 9.8)"
                 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import replace
 from itertools import combinations
 
@@ -19,6 +20,7 @@ from isomortar.model.memory import memory_needed, memory_of_machine
 from isomortar.model.numbering import Numbering, ends_apart
 from isomortar.model.pairs import Pair
 from isomortar.model.rational import QUADRATURE_TOLD, quadrature_error, too_few_points
+from isomortar.model.rational_faces import pressure_error, too_few_points_of
 from isomortar.model.stance import FACING, Stance, stance
 from isomortar.solve.doubtful_edges import of_edges
 from isomortar.solve.doubtful_faces import of_faces
@@ -84,6 +86,7 @@ def doubts(problem: Problem, state: State) -> Iterator[str]:
         yield from _of_ways(problem, contact, found, beside=not np.any(feet))
         yield from of_edges(problem, contact, feet, found.gap)
         yield from _of_contact(contact)
+        yield from _pressures(problem, contact)
         yield from of_rolling(problem, contact, found.towards)
         yield from doubts_at_poles(problem, contact, travel)
     for one, other in combinations(problem.contacts, 2):
@@ -221,6 +224,15 @@ def _of_contact(contact: Contact) -> Iterator[str]:
             f"contact {contact.name!r}: a coefficient of friction of {contact.friction:g} is above what materials have, and makes nearly "
             f"all stick. Was it meant in per cent, {contact.friction / 100.0:g}?"
         )
+
+
+def _pressures(problem: Problem, contact: Contact) -> Iterator[str]:
+    """Points of a contact that do not follow its slave's rational functions, where those of the slave's body do; else that is told."""
+    with suppress(FoldedElementError):
+        if contact.of_averages and all(quadrature_error(problem.body(face.body)) <= QUADRATURE_TOLD for face in contact.slave.faces):
+            error = pressure_error(problem, contact)
+            if error > QUADRATURE_TOLD:
+                yield too_few_points_of(problem, contact, error)
 
 
 def _loaded(problem: Problem) -> bool:

@@ -11,11 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 
-from isomortar import _bindings
 from isomortar.errors import ConvergenceError
 from isomortar.geometry.patch import Direction, FloatArray, Patch
 from isomortar.model import constants
-from isomortar.model.numbering import patch_arrays
+from isomortar.model.lines import along, functions_along, quotient
 from isomortar.solve.equilibrium import Equilibrium
 
 
@@ -140,41 +139,19 @@ class Places:
             net = np.column_stack([net * self._weights[:, None], self._weights])
         net = net.reshape((*self._shape, -1))
         (here_u, slope_u), (here_v, slope_v), (here_w, slope_w) = self._lines
-        low = _along(here_u, net, 2)
-        by_u, by_v, flat = _along(here_v, _along(slope_u, net, 2), 1), _along(slope_v, low, 1), _along(here_v, low, 1)
+        low = along(here_u, net, 2)
+        by_u, by_v, flat = along(here_v, along(slope_u, net, 2), 1), along(slope_v, low, 1), along(here_v, low, 1)
         each = len(constants.PLACES_BETWEEN)
         for first, last in self._slabs:
             rows = slice(first * each, last * each)
-            slopes = [_along(here_w[rows], by_u, 0), _along(here_w[rows], by_v, 0), _along(slope_w[rows], flat, 0)]
+            slopes = [along(here_w[rows], by_u, 0), along(here_w[rows], by_v, 0), along(slope_w[rows], flat, 0)]
             if self._weights is not None:
-                slopes = [_quotient(slope, _along(here_w[rows], flat, 0)) for slope in slopes]
+                slopes = [quotient(slope, along(here_w[rows], flat, 0)) for slope in slopes]
             volumes = np.einsum("...c,...c->...", np.cross(slopes[0], slopes[1]), slopes[2])
             yield volumes.reshape(last - first, each, self._elements[1], each, self._elements[0], each)
 
 
-def _quotient(slope: FloatArray, value: FloatArray) -> FloatArray:
-    """Derivative of a point from values and derivatives of its homogeneous coordinates."""
-    weight = value[..., 3:]
-    return (slope[..., :3] - value[..., :3] / weight * slope[..., 3:]) / weight
-
-
-def _along(matrix: sparse.csr_array, net: FloatArray, axis: int) -> FloatArray:
-    """A matrix times an array along one of its axes."""
-    moved = np.moveaxis(net, axis, 0)
-    return np.moveaxis((matrix @ moved.reshape(len(moved), -1)).reshape(-1, *moved.shape[1:]), 0, axis)
-
-
 def _functions(direction: Direction) -> tuple[sparse.csr_array, sparse.csr_array]:
-    """Polynomial functions of a direction and their derivatives at the places of its elements, each of shape (places, control points).
-
-    Places on a line are beside it, where functions of this element count. They are those of an edge of a patch with two flat directions.
-    """
+    """Functions of a direction and their derivatives at the places of its elements; those on a line are beside it (theory 5.25)."""
     inside = np.clip(constants.PLACES_BETWEEN, constants.BESIDE_A_LINE, 1.0 - constants.BESIDE_A_LINE)
-    places = (direction.boundaries[:-1, None] + np.diff(direction.boundaries)[:, None] * inside).ravel()
-    count, flat = direction.count, Direction("N", 1, np.array([0.0, 0.0, 1.0, 1.0]))
-    patch = patch_arrays(Patch((direction, flat, flat), np.zeros((4 * count, 3)), np.ones(4 * count)), np.arange(4 * count, dtype=np.int32))
-    nodes, functions = _bindings.surface_functions(patch, 3, 0, np.column_stack([places, np.zeros(len(places))]))
-    row = np.broadcast_to(np.arange(len(places))[:, None], nodes.shape)
-    edge = nodes < count
-    value, slope = (sparse.csr_array((functions[:, k][edge], (row[edge], nodes[edge])), shape=(len(places), count)) for k in range(2))
-    return value, slope
+    return functions_along(direction, (direction.boundaries[:-1, None] + np.diff(direction.boundaries)[:, None] * inside).ravel())

@@ -12,6 +12,7 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Contact, Problem
 from isomortar.model.numbering import Numbering
 from isomortar.model.pairs import Pair
+from isomortar.model.shares import percent
 from isomortar.model.sheet import Sheet
 from isomortar.solve.beyond_edges import beyond_edges, told
 from isomortar.solve.borne import Borne
@@ -175,7 +176,7 @@ def _told(problem: Problem, contact: Contact, found: Bearing, step: int) -> str:
     few = [letter for letter, rows, count in sides if rows <= max(ENOUGH, least) and rows < ALL * count]
     few = few or [letter for letter, is_round in zip(letters, found.round, strict=True) if not is_round]
     between = f", and between these it is about {found.depth:.2g} inside its master or apart from it" if deep else ""
-    share = f"{100.0 * found.costs:.2g} %" if deep else "a fifth"
+    share = percent(found.costs) if deep else "a fifth"
     stage = problem.stages[problem.stage_of(step)].name
     return (
         f"contact {contact.name!r}, load step {step}, the last of stage {stage!r}: it is too narrow for its slave {contact.slave.words}: "

@@ -52,6 +52,7 @@ CASES = {
     "version": ("format = 1", "format = 2", "format", "is 2; allowed: 1"),
     "unknown key": ("steps = 3", "step = 3", "stages.press.step", "unknown key; allowed here: steps, name, motions"),
     "unknown table": ("[solver]", "[solvers]", "solvers", "unknown key; allowed here: solver, "),
+    "key of the file in a table": ("max_cuts = 4", "max_cuts = 4\nsymmetry.x = 0", "solver.symmetry", "put it above the first [table]"),
     "unknown key of a primitive": ("rise = 0.2", "raise = 0.2", "bodies.upper.geometry.raise", "rise, kind, centre, half_width"),
     "unknown primitive": ('kind = "bowl"', 'kind = "ball"', "bodies.upper.geometry.kind", "is 'ball'; allowed: 'box', 'bowl', 'cap'"),
     "half a turn too far": (
@@ -244,6 +245,7 @@ CASES = {
     ),
     "stage twice": ('name = "turn"', 'name = "press"', "stages.1.name", "is the name of two stages"),
     "free body": ('[supports.top]\nface = "upper.w1"', '[supports.top]\nface = "lower.u0"', "bodies.upper", "body 'upper' is free"),
+    "free on a plane": ('[supports.base]\nface = "lower.w0"\n', "", "bodies.lower", "no load presses it on the plane that it touches"),
     "conflict": (
         '[supports.base]\nface = "lower.w0"',
         '[supports.base]\nface = "lower.w0"\n[supports.side]\nface = "upper.u0"',

@@ -1,0 +1,82 @@
+"""What too few points of a contact make of a uniform pressure, where weights of its slave differ and its body has points enough."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+from solid.too_few_points import in_turn
+
+from isomortar.harness import Bound, case
+from isomortar.model.entities import Problem
+from isomortar.scene import Scene
+from isomortar.solve.simulation import Simulation
+
+#: A column with such weights, pressed on a plane or on a block that it meets element by element; nothing is held across.
+SCENE = """
+format = 1
+materials.m = {{ young = 1.0, poisson = 0.0 }}
+bodies.column.patch = {{ order = [2, 2, 1], knots = {knots}, control_points = {points}, weights = {weights} }}
+bodies.column.mesh.quadrature = [60, 60, 2]
+bodies.block = {{ geometry = {{ kind = "box", lower = [0, 0, -1], upper = [1, 1, 0] }}, mesh.elements = [{elements}, {elements}, 1] }}
+contacts.c = {{ slave = "column.w0", {master}, friction = 0{more} }}
+supports.top = {{ face = "column.w1", components = ["z"] }}
+supports.x = {{ face = "column.u0", components = ["x"] }}
+supports.y = {{ face = "column.v0", components = ["y"] }}
+supports.base = {{ face = "block.w0" }}
+stages = [{{ name = "press", steps = 1, motions.top.translate = [0, 0, -0.01] }}]
+"""
+MASTERS = {"plane": "plane = {}", "block": 'master = "block.w1"'}
+
+
+def column(contrast: float, master: str, more: str = "") -> Problem:
+    """The problem; `more`: keys of its contact."""
+    patch = in_turn(contrast).patch
+    return Scene.from_toml(
+        SCENE.format(
+            knots=[direction.knots.tolist() for direction in patch.directions],
+            points=patch.control_points.tolist(),
+            weights=patch.weights.tolist(),
+            elements=3,
+            master=MASTERS[master],
+            more=more,
+        )
+    ).problem()
+
+
+def off(problem: Problem) -> float:
+    """The most that the pressure field is off its mean over the face, which is the force, relative."""
+    (result,) = Simulation(problem).run()
+    (contact,) = result.contacts
+    return float(np.abs(contact.pressure_field / contact.force_slave[2] - 1.0).max())
+
+
+@case(
+    claim="Contacts whose points do not follow the weights of their slave are told how far pressures are off, with a cure.",
+    tier="gate",
+    grid={"master": list(MASTERS), "contrast": [2.0, 5.0, 20.0]},
+    bounds=lambda master, contrast: (
+        {"none": Bound(at_most=0.0, reason="definition: weights like those of arcs, for which the points are made")}
+        if contrast == 2.0
+        else {
+            "told": Bound(
+                at_most=1.05 if master == "plane" else 2.0,
+                at_least=0.95 if master == "plane" else 1.0,
+                reason="definition: over the error there is, to two digits; a block that gives way evens pressures out, and some open",
+            ),
+            "cured": Bound(at_most=0.01, reason="definition: as much as is not told"),
+        }
+    ),
+)
+def points_of_a_contact(master: str, contrast: float) -> dict[str, float]:
+    """The error that is told over that of the field, and what is left of it with the points that the warning names."""
+    problem = column(contrast, master)
+    said = [sentence for sentence in Simulation(problem).doubts() if "quadrature points" in sentence]
+    if not said:
+        return {"none": 0.0}
+    (found,) = (re.search(r"off by up to (\S+) %.*quadrature = (\[.*?\])", sentence) for sentence in said)
+    assert found is not None, said
+    return {
+        "told": float(found[1]) / 100.0 / off(problem),
+        "cured": off(column(contrast, master, f", quadrature = {found[2]}")),
+    }
