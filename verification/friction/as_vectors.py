@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from scipy.interpolate import BSpline
 
-from isomortar.geometry.patch import Direction, FloatArray, Patch
+from isomortar._bindings import SlaveArrays
+from isomortar.geometry.patch import Direction, FloatArray, IntArray, Patch
 from isomortar.harness import Bound, case
+from isomortar.model.numbering import Numbering
+from isomortar.model.pairs import Pair
 from isomortar.results.vectors import contact_vectors
 from isomortar.scene import Scene
 from isomortar.solve.simulation import Simulation
@@ -148,3 +153,53 @@ def sticking() -> dict[str, float]:
         slips.append(np.abs(found.slip[sticks]).max() / 0.005)
     counts = [np.count_nonzero(result.contacts[0].status == 1) for result in results]
     return {"force": float(np.max(forces)), "slip": float(np.max(slips)), "sticking": float(np.min(counts))}
+
+
+#: The same block, a part of which is beyond the edge of what is below it.
+_OVER_AN_EDGE = {name: SCENES[name].replace("upper = [1.6, 1.7, 0]", "upper = [0.6, 1.7, 0]") for name in ("closest", "averaged")}
+
+
+@case(
+    claim="The slip of a part of a face that comes onto its master, or leaves it, is that of the points that are on it before and after.",
+    tier="gate",
+    grid={"master": list(_OVER_AN_EDGE), "way": (0.3, -0.3)},
+    bounds={
+        "slip": Bound(at_most=1e-12, reason=_ROUND_OFF),
+        "some": Bound(at_least=3.0, reason="definition: constraints of which some points have a foot at one of the two ends alone"),
+        "all off": Bound(at_least=3.0, reason="definition: constraints without a point that has a foot at both ends"),
+    },
+)
+def over_an_edge(master: str, way: float) -> dict[str, float]:
+    """Largest error over the way, of a block that goes rigidly; how many constraints are in part, and how many in no part, on it."""
+    problem = Scene.from_toml(_OVER_AN_EDGE[master]).problem()
+    numbering = Numbering(problem)
+    slave, result = Pair(problem.contacts[0], problem, numbering).slave, next(Simulation(problem).run())
+    nodes = np.repeat(slave.shape.nodes, slave.per_element, axis=0)
+    begins = np.einsum("qa,qac->qc", slave.shape.values, numbering.reference[slave.point[nodes]])
+    goes, own = np.array([way, 0.1, 0.0]), numbering.own["block"]
+    low, high = (problem.body("base").patch.control_points[k, :2] for k in (0, -1))
+    states, found = [], []
+    for step in (1, 2):
+        positions = numbering.reference.copy()
+        positions[own] += goes * (step - 1)
+        places = (begins + goes * (step - 1))[:, :2]
+        found.append((places[:, 0] < high[0]).astype(np.int32))
+        feet = np.where(found[-1][:, None] > 0, (places - low) / (high - low), 0.0)
+        contact = replace(result.state.contacts[0], projection=feet, projected=found[-1])
+        acts = replace(result.contacts[0], status=np.ones_like(result.contacts[0].status))
+        states.append(replace(result, step=step, state=replace(result.state, positions=positions, contacts=(contact,)), contacts=(acts,)))
+    shares = [_touched(nodes, slave, mark) for mark in (found[0] * found[1], found[0] + found[1])]
+    known = shares[0] > 0.0
+    (vectors,) = contact_vectors(problem, states[1], states[0])
+    error = np.abs(vectors.slip - known[:, None] * goes).max() / np.abs(goes).max()
+    return {
+        "slip": float(error),
+        "some": float(np.count_nonzero(known & (shares[1] > shares[0] * (1.0 + 1e-9)))),
+        "all off": float(np.count_nonzero(~known)),
+    }
+
+
+def _touched(nodes: IntArray, slave: SlaveArrays, marks: IntArray) -> FloatArray:
+    """Area times functions of a slave at the points that are marked, by control point."""
+    weights = slave.test.values * (slave.area * (marks > 0))[:, None]
+    return np.asarray(np.bincount(nodes.ravel(), weights.ravel(), minlength=slave.test.count), dtype=np.float64)

@@ -5,30 +5,51 @@ from __future__ import annotations
 import numpy as np
 from solid.material import CUBE, forces
 
+from isomortar import _bindings
+from isomortar._bindings import BodyArrays
 from isomortar.errors import FoldedElementError
+from isomortar.geometry.patch import FloatArray, Patch
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
+from isomortar.model.numbering import patch_arrays
 
-#: Elements in each direction, no two alike.
-ELEMENTS = (4, 3, 2)
+#: Elements in each direction, no two alike: a few, and more than are computed at once, of which every so many are folded.
+ELEMENTS = {"few": ((4, 3, 2), 1), "many": ((13, 12, 11), 107)}
+
+
+def moved(patch: Patch, positions: FloatArray) -> None:
+    """Forces of a body whose control points have gone somewhere."""
+    forces(patch, positions, 3)
+
+
+def volumes(patch: Patch, positions: FloatArray) -> None:
+    """Volumes of the control points of a body that is somewhere else."""
+    points = np.arange(len(positions), dtype=np.int32)
+    _bindings.control_volumes(BodyArrays(patch_arrays(patch, points), (3, 3, 3), positions))
 
 
 @case(
-    claim="Whichever element is folded, that one is named: numbers run fastest along the first direction.",
-    bounds={"other": Bound(0.0, 0.0, "definition: elements that are folded where none is named, or another")},
+    claim="Whichever element is folded, that one is named, in forces and in volumes: numbers run fastest along the first direction.",
+    grid={"size": tuple(ELEMENTS)},
+    bounds={
+        "other": Bound(0.0, 0.0, "definition: elements that are folded where none is named, or another"),
+        "of volumes": Bound(0.0, 0.0, "definition: the same of a body that is folded at rest"),
+    },
 )
-def which_element() -> dict[str, float]:
+def which_element(size: str) -> dict[str, float]:
     """How many of the elements, each folded alone: its middle node, which no other has, is moved beyond its sides."""
-    patch = mesh(CUBE, ("L", "L", "L"), (2, 2, 2), ELEMENTS)
-    numbers = np.arange(len(patch.control_points)).reshape([2 * n + 1 for n in ELEMENTS], order="F")
-    other = 0
-    for e, (k, j, i) in enumerate(np.ndindex(ELEMENTS[::-1])):
+    elements, apart = ELEMENTS[size]
+    patch = mesh(CUBE, ("L", "L", "L"), (2, 2, 2), elements)
+    numbers = np.arange(len(patch.control_points)).reshape([2 * n + 1 for n in elements], order="F")
+    last, other = int(np.prod(elements)) - 1, np.zeros(2)
+    for e in {*range(0, last, apart), last}:
+        i, j, k = np.unravel_index(e, elements, order="F")
         positions = patch.control_points.copy()
         positions[numbers[2 * i + 1, 2 * j + 1, 2 * k + 1]] += 1.0
-        try:
-            forces(patch, positions, 3)
-        except FoldedElementError as error:
-            other += error.place != e
-        else:
-            other += 1
-    return {"other": float(other)}
+        for number, computed in enumerate((moved, volumes)):
+            try:
+                computed(patch, positions)
+                other[number] += 1
+            except FoldedElementError as error:
+                other[number] += error.place != e
+    return {"other": float(other[0]), "of volumes": float(other[1])}

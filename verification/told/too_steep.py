@@ -21,11 +21,16 @@ LOADS
 solver = { method = "METHOD", max_cuts = 2, max_iterations = 12 }
 stages = [{ name = "lie", steps = 1 }]
 """
+#: A table of one element, so that slips are by its coordinates (of more, with kinks, they are by the slave's): both run off the loads' way.
+_OBLIQUE = [[x, 0.7 * x + y, z] for z in (-0.5, 0.0) for y in (-2.0, 2.0) for x in (-1.0, 2.0)]
 GROUNDS = {
     "plane": "plane = {}",
     "body": """master = "table.w1" }
 supports.table.face = "table.w0"
 bodies.table = { geometry = { kind = "box", lower = [-1, -1, -0.5], upper = [2, 2, 0] }, mesh.elements = [2, 2, 1]""",
+    "oblique": f"""master = "table.w1" }}
+supports.table.face = "table.w0"
+bodies.table = {{ patch = {{ order = [1, 1, 1], knots = {3 * [[0, 0, 1, 1]]}, control_points = {_OBLIQUE} }}, rigid = true""",
 }
 WEIGHT = 'loads.own = { body = "block", weight = [0, 0, -2] }\n'
 HAND = 'supports.hand = { face = "block.w1", centre = [0.5, 0.5, 0.3], force = { x = X, y = 0, z = Z }'
