@@ -59,7 +59,7 @@ class BeyondEdges:
 
 
 def beyond_edges(equilibrium: Equilibrium, pair: Pair, positions: FloatArray, projections: Projections) -> BeyondEdges | None:
-    """What is over the master, along the lines of the face that most of is; None where all is, or nothing.
+    """What is over the master, along the lines of the face that most of is (theory 9.13); None where all is, or nothing.
 
     Lines are lines of places, of which those are over the master whose nearest quadrature points are.
     """
