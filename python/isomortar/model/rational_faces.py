@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse.linalg import splu
 
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.enforcement.face import SlaveFace
@@ -67,6 +66,8 @@ def _points_enough(sheet: Sheet, rule: tuple[int, int]) -> tuple[int, int] | Non
 
 def _error(functions: sparse.csr_array, area: FloatArray, better: FloatArray) -> float:
     """The most that the field of a pressure of one is off, where points integrate it and forces are whole integrals."""
+    from scipy.sparse.linalg import splu
+
     try:
         off = splu(sparse.csc_array((functions.T * area) @ functions)).solve(better - functions.T @ area)
     except RuntimeError:  # singular: too few points to tell functions apart, of which there is another word

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from isomortar._bindings import Projections
 from isomortar.geometry.patch import Direction, FloatArray
@@ -66,6 +65,8 @@ def beyond_edges(equilibrium: Equilibrium, pair: Pair, positions: FloatArray, pr
     contact, problem, found = pair.contact, equilibrium.problem, projections.found > 0
     if found.all() or not found.any():
         return None
+    from scipy.spatial import cKDTree
+
     face = SlaveFace(contact, problem, equilibrium.numbering)
     (u, du), (v, dv) = (_places(direction) for direction in face.directions)
     nodes, values, slopes = face.at(grid(u, v))

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 from scipy import sparse
-from scipy.optimize import linprog
 
 from isomortar.errors import LostProjectionError
 from isomortar.geometry.patch import FloatArray
@@ -63,6 +62,8 @@ def overturning(touches: Sequence[Touch], works: FloatArray) -> FloatArray | Non
     """
     if not touches:
         return None
+    from scipy.optimize import linprog
+
     table, costs = _resistance(touches)
     for crushed in (False, True):
         limits = np.append(np.zeros(table.shape[0]), 1.0)
