@@ -18,7 +18,7 @@ JUDGES = {
     "advice", "astray", "behind", "beyond_edges", "borne", "causes", "checks", "contact_checks", "doubtful_edges",
     "doubtful_meshes", "doubtful_motions", "doubtful_sizes", "doubtful_turns", "doubts", "free_motions", "layers", "left_out",
     "limit_load", "lost", "magnitudes", "meeting", "memory", "more_friction", "narrow", "overcome", "passing", "pulling",
-    "rational", "singular", "sliding", "small_strains", "stance", "tipping",
+    "rational", "singular", "sliding", "small_strains", "stance", "tipping", "unstable",
 }  # fmt: skip
 #: Numbers that stand for something else.
 CODES = {"RECENT", "_FAMILY_CODE", "_NO_SLIP", "_SLIPS_AT_POLE"}

@@ -21,6 +21,7 @@ from told.beyond_edges import punch
 from told.given_up import all_told, without_digits
 from told.narrow import BALLS, STRIPS, depth, strip
 from told.passing import SCENE as BENT
+from told.unstable import column as slender
 from told.weights import column
 from told.word_by_word import KINDS as OF_SCENES
 from told.word_by_word import SENTENCES
@@ -176,6 +177,10 @@ def along_the_way(_: pytest.MonkeyPatch) -> Told:
     observer = Warned()
     list(Simulation(Scene.from_toml(punch(BEYOND_EDGES, 0.2)).problem(), observer).run())
     yield "beyond edges", observer.said[0]
+    observer = Warned()
+    list(Simulation(Scene.from_toml(slender("sliding", 1.08, "monolithic")).problem(), observer).run())
+    at = re.compile(r"(control point) \d+, along \(.*?\)")  # the way has a sign or its opposite
+    yield "unstable", next(at.sub(r"\1 #, along #", said) for said in observer.said if "not stable" in said)
     for name, (text, changes) in {
         "narrow": strip(*STRIPS["N2 beside it"]),
         "one row": (BALLS["one row"][0], (depth(0.05),)),

@@ -152,7 +152,7 @@ class CondensedSystem(CheckedSystem):
     """
 
     def __init__(self, bodies: Bodies, size: int, sources: Sequence[Source], general: Callable[[], LinearSystem], ledger: Ledger) -> None:
-        super().__init__(ledger)
+        super().__init__(size, ledger)
         self._bodies, self._make_general = bodies, general
         self._general: LinearSystem | None = None
         unknowns = len(bodies.pattern)

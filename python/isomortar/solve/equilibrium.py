@@ -352,6 +352,14 @@ class Equilibrium:
         assert self._system is not None, "nothing was solved before"
         return self._system.solve_again(right)
 
+    def moved_by(self, forces: FloatArray) -> FloatArray | None:
+        """What forces on the free unknowns move, by the factors of the last `solve` (theory 5.26); None before there are any."""
+        if self._system is None:
+            return None
+        right = np.zeros(self._system.size)
+        right[: len(forces)] = forces
+        return self._system.solve_again(right)[: len(forces)]
+
     def _system_for(self, sources: list[Source], size: int) -> CheckedSystem:
         """The linear system of these sources: the last one, as long as all patterns stand."""
         patterns: list[object] = [source.pattern for source in sources]

@@ -35,6 +35,7 @@ from isomortar.solve.small_strains import SmallStrains
 from isomortar.solve.snapping import Snapping
 from isomortar.solve.timing import Ledger
 from isomortar.solve.unseen import Unseen
+from isomortar.solve.unstable import Unstable
 from isomortar.solve.uzawa import Uzawa
 
 _REASONS_TO_CUT = (ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError)
@@ -87,7 +88,7 @@ class Simulation:
         self.equilibrium.orderings = dict(resume_from.orderings) if resume_from else {}
         self._stood: tuple[Reaction, ...] = resume_from.reactions if resume_from else ()
         self.state = self._from_record(resume_from) if resume_from else self.equilibrium.initial_state()
-        self._narrow = Narrow(self.equilibrium, self.state.contacts)
+        self._narrow, self._unstable = Narrow(self.equilibrium, self.state.contacts), Unstable(self.equilibrium)
 
     def run(self) -> Iterator[StepResult]:
         """Compute the load steps that are left, one recorded step at a time.
@@ -156,6 +157,8 @@ class Simulation:
         self._warn(self._astray.after_step(parts[-1].balance, step))
         self._warn(self._narrow.after_step(parts[-1].balance, step, self._ends_stage(step)))
         self._unseen.after_step(parts[-1].balance)
+        if self._ends_stage(step):
+            self._warn(self._unstable.after_stage(parts[-1].balance, step))
         if self._of_stages and self._ends_stage(step):
             deformed = self.equilibrium.numbering.deformed(state.positions)
             for watch in self._of_stages:

@@ -52,10 +52,16 @@ def entries(sources: Sequence[Source], size: int) -> sparse.csr_array:
 
 
 class CheckedSystem(ABC):
-    """A linear system with a fixed pattern that is factorised and solved many times; the first solution by any factors is checked."""
+    """A linear system with a fixed pattern that is factorised and solved many times; the first solution by any factors is checked.
 
-    def __init__(self, ledger: Ledger) -> None:
-        self._ledger = ledger
+    Attributes
+    ----------
+    size : int
+        How many unknowns it has.
+    """
+
+    def __init__(self, size: int, ledger: Ledger) -> None:
+        self.size, self._ledger = size, ledger
         self._refines = False
 
     @abstractmethod
@@ -165,7 +171,7 @@ class LinearSystem(CheckedSystem):
         `known` is that of the first source in its own rows and columns, where it is at hand already. Without an `ordering` that one of
         the size is kept whose first factors take the fewest operations.
         """
-        super().__init__(ledger)
+        super().__init__(size, ledger)
         first = entries(sources[:1], size) if known is None else known
         start = np.append(first.indptr, np.full(size + 1 - len(first.indptr), first.nnz, dtype=first.indptr.dtype))
         total = sparse.csr_array((first.data, first.indices, start), shape=(size, size))

@@ -1,0 +1,70 @@
+"""Equilibria that are not stable: bodies that buckle while all load steps converge."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from isomortar.errors import SingularSystemError
+from isomortar.geometry.patch import FloatArray
+from isomortar.solve.equilibrium import Balance, Equilibrium
+
+#: Forces that are looked at, each what the last one moves: the softest motions come first.
+FORCES = 12
+#: Work of a force on what it moves, beside the largest one of all, below which things move against it: above, it is round-off.
+AGAINST = -0.01
+
+
+class Unstable:
+    """Warnings of equilibria that are not stable at the end of a stage; given once."""
+
+    def __init__(self, equilibrium: Equilibrium) -> None:
+        self._equilibrium = equilibrium
+        self._told = False
+
+    def after_stage(self, balance: Balance, step: int) -> Iterator[str]:
+        """Warnings that the end of a stage gives rise to, by the factors of its last tangent."""
+        motion = None if self._told else self._against_force(balance.positions)
+        if motion is not None:
+            self._told = True
+            yield self._sentence(motion, step)
+
+    def _against_force(self, positions: FloatArray) -> FloatArray | None:
+        """A motion of all control points that goes against the force which makes it, shape (control points, 3) (theory 5.26); or None.
+
+        Forces are made orthogonal to each other, and their works on all their motions diagonal.
+        """
+        supports = self._equilibrium.supports
+        forces, motions = [_unit(np.random.default_rng(0).standard_normal(len(supports.free)))], list[FloatArray]()
+        try:
+            for _ in range(min(FORCES, len(supports.free))):
+                moved = self._equilibrium.moved_by(forces[-1])
+                if moved is None:
+                    return None
+                motions.append(moved)
+                basis = np.array(forces)
+                forces.append(_unit(moved - basis.T @ (basis @ moved)))
+        except SingularSystemError:  # its digits are lost, of which there is another word
+            return None
+        works = np.array(forces[:-1]) @ np.array(motions).T
+        values, shares = np.linalg.eigh(0.5 * (works + works.T))
+        if not values[0] < AGAINST * np.abs(values).max():
+            return None
+        return supports.spread(np.array(motions).T @ shares[:, 0], positions)
+
+    def _sentence(self, motion: FloatArray, step: int) -> str:
+        """On the control point that goes farthest."""
+        problem, numbering = self._equilibrium.problem, self._equilibrium.numbering
+        point = int(np.argmax(np.linalg.norm(motion, axis=1)))
+        along = ", ".join(f"{value:g}" for value in np.round(_unit(motion[point]), 2) + 0.0)
+        return (
+            f"load step {step}, the last of stage {problem.stages[problem.stage_of(step)].name!r}: the equilibrium is not stable: body "
+            f"{numbering.body_of(point)!r} buckles, or snaps, where it is let, most at control point {point}, along ({along}) or against "
+            "that. What is computed is one equilibrium of several, and not the one that bodies come to. Let a small load push them that "
+            "way in short load steps, or hold them there by a support"
+        )
+
+
+def _unit(vector: FloatArray) -> FloatArray:
+    return np.asarray(vector / np.linalg.norm(vector))

@@ -1,0 +1,91 @@
+"""What is said of bodies that buckle while all load steps converge, against Euler's loads; and that nothing is said of others."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+from told.runs import Heard
+
+from isomortar.harness import Bound, case
+from isomortar.scene import Scene
+from isomortar.solve.simulation import Simulation
+
+#: A slender column under a plate that slides on it, clamped below.
+COLUMN = """
+format = 1
+materials.m = { young = 1e4, poisson = 0 }
+bodies.c = { geometry = { kind = "box", lower = [0, 0, 0], upper = [0.04, 0.1, 1] }, mesh = { order = 3, elements = [1, 2, 8] } }
+bodies.p = { rigid = true, geometry = { kind = "box", lower = [-1, -1, 1], upper = [1, 1, 1.5] } }
+contacts.top = { slave = "c.w1", master = "p.w0", friction = FRICTION }
+supports.base.face = "c.w0"
+supports.hand.face = "p.w1"
+solver.method = "METHOD"
+stages = [{ name = "press", steps = 2, motions.hand.translate = [0, 0, -DOWN] }]
+"""
+#: The same under a load, beside a plane that it does not reach.
+MAST = """
+format = 1
+materials.m = { young = 1e4, poisson = 0 }
+bodies.c = { geometry = { kind = "box", lower = [0, 0, 0], upper = [0.04, 0.1, 1] }, mesh = { order = 3, elements = [1, 2, 8] } }
+contacts.wall = { slave = "c.u1", plane = { point = [1, 0, 0], normal = [-1, 0, 0] } }
+supports.base.face = "c.w0"
+loads.top = { face = "c.w1", traction = [0, 0, -PRESSURE] }
+stages = [{ name = "press", steps = 2 }]
+"""
+BENDING, AREA = 1e4 * 0.1 * 0.04**3 / 12.0, 0.1 * 0.04
+#: Euler's loads over pi^2 EI / L^2, by what holds the upper end: nothing, its turn, its turn and its way as well.
+EULER = {"free": 0.25, "sliding": 1.0, "sticking": 4.0}
+TOLD = re.compile(
+    r"load step (\d+), the last of stage '\w+': the equilibrium is not stable: body '(\w+)' buckles, or snaps, .* control point \d+, along "
+    r"\((.*?)\) or against that"
+)
+
+
+def told(text: str) -> list[re.Match[str]]:
+    """What is said of buckling in a run."""
+    heard = Heard()
+    list(Simulation(Scene.from_toml(text).problem(), heard).run())
+    return [found for said in heard.said if (found := TOLD.search(said))]
+
+
+def column(end: str, share: float, method: str) -> str:
+    """The scene in which it bears a share of Euler's load."""
+    strain = share * EULER[end] * np.pi**2 * BENDING / (1e4 * AREA)
+    if end == "free":
+        return MAST.replace("PRESSURE", f"{1e4 * strain:.9f}")
+    friction = "0" if end == "sliding" else "0.5"
+    return COLUMN.replace("FRICTION", friction).replace("DOWN", f"{strain:.9f}").replace("METHOD", method)
+
+
+@case(
+    claim="A column that bears more than Euler's load, whatever holds its end, is told to buckle, in its weak direction, and below that it "
+    "is not; so it is by both methods, and where a load across has bent it.",
+    tier="gate",
+    grid={"end": tuple(EULER), "method": ("monolithic", "uzawa")},
+    bounds={
+        "below": Bound(0.0, 0.0, "definition: sentences at 0.92 of Euler's load"),
+        "above": Bound(1.0, 1.0, "definition: sentences at 1.08 of it that say x"),
+    },
+)
+def buckles(end: str, method: str) -> dict[str, float]:
+    """What is said of both."""
+    below, above = (told(column(end, share, method)) for share in (0.92, 1.08))
+    return {"below": float(len(below)), "above": float(sum(abs(float(found[3].split(",")[0])) > 0.99 for found in above))}
+
+
+@case(
+    claim="Of a column that a load across lets bend nothing is said: it is where it comes to rest.",
+    tier="gate",
+    bounds={
+        "said": Bound(0.0, 0.0, "definition: sentences"),
+        "bent": Bound(at_least=0.02, reason="definition: how far it is bent, in lengths, or it might not be stable"),
+    },
+)
+def bends() -> dict[str, float]:
+    """What is said, and how far it bends."""
+    text = MAST.replace("PRESSURE", f"{1.2 * 0.25 * np.pi**2 * BENDING / AREA:.9f}").replace("steps = 2", "steps = 12")
+    heard = Heard()
+    text += 'loads.across = { face = "c.w1", traction = [0.02, 0, 0] }\n'
+    *_, last = Simulation(Scene.from_toml(text).problem(), heard).run()
+    return {"said": float(sum(bool(TOLD.search(said)) for said in heard.said)), "bent": float(last.state.positions[:, 0].max() - 0.04)}
