@@ -180,7 +180,7 @@ def along_the_way(_: pytest.MonkeyPatch) -> Told:
     observer = Warned()
     list(Simulation(Scene.from_toml(slender("sliding", 1.08, "monolithic")).problem(), observer).run())
     at = re.compile(r"(control point) \d+, along \(.*?\)")  # the way has a sign or its opposite
-    yield "unstable", next(at.sub(r"\1 #, along #", said) for said in observer.said if "not stable" in said)
+    yield "unstable", next(at.sub(r"\1 #, along (#)", said) for said in observer.said if "not stable" in said)
     for name, (text, changes) in {
         "narrow": strip(*STRIPS["N2 beside it"]),
         "one row": (BALLS["one row"][0], (depth(0.05),)),
