@@ -14,6 +14,8 @@ from isomortar.solve.equilibrium import Balance, Equilibrium
 FORCES = 12
 #: Work of a force on what it moves, beside the largest one of all, below which things move against it: above, it is round-off.
 AGAINST = -0.01
+#: Share of a motion that is not among forces before below which there are no others.
+NOTHING_LEFT = 1e-10
 
 
 class Unstable:
@@ -36,35 +38,41 @@ class Unstable:
         Forces are made orthogonal to each other, and their works on all their motions diagonal.
         """
         supports = self._equilibrium.supports
-        forces, motions = [_unit(np.random.default_rng(0).standard_normal(len(supports.free)))], list[FloatArray]()
-        try:
-            for _ in range(min(FORCES, len(supports.free))):
-                moved = self._equilibrium.moved_by(forces[-1])
-                if moved is None:
-                    return None
-                motions.append(moved)
-                basis = np.array(forces)
-                forces.append(_unit(moved - basis.T @ (basis @ moved)))
-        except SingularSystemError:  # its digits are lost, of which there is another word
+        force, forces, motions = np.random.default_rng(0).standard_normal(len(supports.free)), list[FloatArray](), list[FloatArray]()
+        for _ in range(min(FORCES, len(supports.free))):
+            forces.append(force / np.linalg.norm(force))
+            moved = self._moved_by(forces[-1])
+            if moved is None:
+                return None
+            motions.append(moved)
+            basis = np.array(forces)
+            force = moved - basis.T @ (basis @ moved)
+            if np.linalg.norm(force) <= NOTHING_LEFT * np.linalg.norm(moved):
+                break
+        if not forces:
             return None
-        works = np.array(forces[:-1]) @ np.array(motions).T
+        works = np.array(forces) @ np.array(motions).T
         values, shares = np.linalg.eigh(0.5 * (works + works.T))
         if not values[0] < AGAINST * np.abs(values).max():
             return None
         return supports.spread(np.array(motions).T @ shares[:, 0], positions)
 
+    def _moved_by(self, force: FloatArray) -> FloatArray | None:
+        """What a force moves; None where factors have no digits for it, of which there is another word, or there are none."""
+        try:
+            moved = self._equilibrium.moved_by(force)
+        except SingularSystemError:
+            return None
+        return moved if moved is not None and np.isfinite(moved).all() else None
+
     def _sentence(self, motion: FloatArray, step: int) -> str:
         """On the control point that goes farthest."""
         problem, numbering = self._equilibrium.problem, self._equilibrium.numbering
         point = int(np.argmax(np.linalg.norm(motion, axis=1)))
-        along = ", ".join(f"{value:g}" for value in np.round(_unit(motion[point]), 2) + 0.0)
+        along = ", ".join(f"{value:g}" for value in np.round(motion[point] / np.linalg.norm(motion[point]), 2) + 0.0)
         return (
             f"load step {step}, the last of stage {problem.stages[problem.stage_of(step)].name!r}: the equilibrium is not stable: body "
             f"{numbering.body_of(point)!r} buckles, or snaps, where it is let, most at control point {point}, along ({along}) or against "
             "that. What is computed is one equilibrium of several, and not the one that bodies come to. Let a small load push them that "
             "way in short load steps, or hold them there by a support"
         )
-
-
-def _unit(vector: FloatArray) -> FloatArray:
-    return np.asarray(vector / np.linalg.norm(vector))
