@@ -13,7 +13,7 @@ from isomortar.geometry.primitives import box
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
 from isomortar.model.entities import Body, Material
-from isomortar.model.layers import Line, in_layers
+from isomortar.model.layers import LinePoints, in_layers
 from isomortar.model.numbering import patch_arrays
 from isomortar.model.rational import forces_of_stretch, points_enough, quadrature_error
 
@@ -111,7 +111,7 @@ def in_layers_of_weights(contrast: float) -> dict[str, float]:
     body = in_turn(contrast)
     top = body.patch.face_points("w1")
     better = forces_of_stretch(body.patch, in_layers(body.patch.directions, body.patch.weights))[top, 2].sum()
-    gauss = [Line.of(direction.boundaries, points) for direction, points in zip(body.patch.directions, body.quadrature, strict=True)]
+    gauss = [LinePoints.of(direction.boundaries, points) for direction, points in zip(body.patch.directions, body.quadrature, strict=True)]
     found = forces_of_stretch(body.patch, gauss)[top, 2].sum()
     told = quadrature_error(body)
     return {"layers": abs(better - 1.0), "told": told, "beside": told / max(abs(found - 1.0), 1e-3)}

@@ -20,27 +20,27 @@ MOST_IN_LAYERS = 4_000_000
 
 
 @dataclass(frozen=True)
-class Line:
+class LinePoints:
     """Quadrature points of a direction, in the order of its elements, and their weights."""
 
     places: FloatArray
     weights: FloatArray
 
     @classmethod
-    def of(cls, ends: FloatArray, points: int) -> Line:
+    def of(cls, ends: FloatArray, points: int) -> LinePoints:
         """Gauss points between ends that follow each other."""
         at, weights = np.polynomial.legendre.leggauss(points)
         size = np.diff(ends)[:, None]
         return cls((ends[:-1, None] + 0.5 * (1.0 + at) * size).ravel(), (0.5 * weights * size).ravel())
 
 
-def in_layers(directions: Sequence[Direction], weights: FloatArray) -> list[Line]:
+def in_layers(directions: Sequence[Direction], weights: FloatArray) -> list[LinePoints]:
     """Gauss points in layers of each span that grow from its ends, as many as weights differ that count there (theory 9.2)."""
     grid = weights.reshape([direction.count for direction in directions], order="F")
     counts = [_layers(direction, np.moveaxis(grid, axis, 0)) for axis, direction in enumerate(directions)]
     for most, more in ((MOST_LAYERS, IN_A_LAYER), *((most, IN_ONE_OF_MANY) for most in range(MOST_LAYERS, 0, -1))):
         lines = [
-            Line.of(_ends(direction, np.minimum(own, most)), direction.order + (more if np.any(own) else IN_ONE_OF_MANY))
+            LinePoints.of(_ends(direction, np.minimum(own, most)), direction.order + (more if np.any(own) else IN_ONE_OF_MANY))
             for direction, own in zip(directions, counts, strict=True)
         ]
         if np.prod([len(line.places) for line in lines]) <= MOST_IN_LAYERS:

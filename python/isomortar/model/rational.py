@@ -11,7 +11,7 @@ from scipy import sparse
 from isomortar.errors import FoldedElementError
 from isomortar.geometry.patch import FloatArray, Patch
 from isomortar.model.entities import Body
-from isomortar.model.layers import CONIC, Line, in_layers
+from isomortar.model.layers import CONIC, LinePoints, in_layers
 from isomortar.model.lines import along, functions_along, quotient
 from isomortar.model.shares import percent
 
@@ -76,12 +76,12 @@ def _forces_in_layers(patch: Patch) -> FloatArray:
     return forces_of_stretch(patch, in_layers(patch.directions, patch.weights))
 
 
-def _gauss(body: Body) -> list[Line]:
+def _gauss(body: Body) -> list[LinePoints]:
     """The Gauss points of a body, by direction."""
-    return [Line.of(direction.boundaries, points) for direction, points in zip(body.patch.directions, body.quadrature, strict=True)]
+    return [LinePoints.of(direction.boundaries, points) for direction, points in zip(body.patch.directions, body.quadrature, strict=True)]
 
 
-def forces_of_stretch(patch: Patch, lines: Sequence[Line]) -> FloatArray:
+def forces_of_stretch(patch: Patch, lines: Sequence[LinePoints]) -> FloatArray:
     """Integrals of the gradients of a patch's functions, shape (control points, 3): forces of a stress of one.
 
     Raises
@@ -110,7 +110,7 @@ def forces_of_stretch(patch: Patch, lines: Sequence[Line]) -> FloatArray:
     return patch.weights[:, None] * forces.reshape(-1, 3)
 
 
-def _check_volumes(patch: Patch, lines: Sequence[Line], first: int, volumes: FloatArray) -> None:
+def _check_volumes(patch: Patch, lines: Sequence[LinePoints], first: int, volumes: FloatArray) -> None:
     """Refuse folded elements by the volumes (w, v, u) at places from the `first` along w on."""
     if volumes.min() >= FOLDED * volumes.max():
         return

@@ -11,7 +11,7 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.model.enforcement.face import SlaveFace
 from isomortar.model.enforcement.subcells import Subcells
 from isomortar.model.entities import Contact, Problem
-from isomortar.model.layers import CONIC, Line, in_layers
+from isomortar.model.layers import CONIC, LinePoints, in_layers
 from isomortar.model.lines import functions_along, quotient
 from isomortar.model.numbering import Numbering
 from isomortar.model.rational import MOST_ALONG, QUADRATURE_TOLD
@@ -57,7 +57,7 @@ def _points_enough(sheet: Sheet, rule: tuple[int, int]) -> tuple[int, int] | Non
     """Numbers of points of whole elements that doubling finds to leave no error that is told; None: more than are tried."""
     better = _in_layers(sheet)
     while max(rule) <= MOST_ALONG:
-        lines = [Line.of(direction.boundaries, points) for direction, points in zip(sheet.directions, rule, strict=True)]
+        lines = [LinePoints.of(direction.boundaries, points) for direction, points in zip(sheet.directions, rule, strict=True)]
         if _error(*_tables(sheet, lines), better) <= QUADRATURE_TOLD:
             return rule
         rule = 2 * rule[0], 2 * rule[1]
@@ -81,7 +81,7 @@ def _in_layers(sheet: Sheet) -> FloatArray:
     return np.asarray(functions.T @ area)
 
 
-def _tables(sheet: Sheet, lines: Sequence[Line]) -> tuple[sparse.csr_array, FloatArray]:
+def _tables(sheet: Sheet, lines: Sequence[LinePoints]) -> tuple[sparse.csr_array, FloatArray]:
     """Functions of a face at places, shape (places, control points of the face), and reference areas of these."""
     here = sheet.patch.face_points(sheet.face)
     points, weights = sheet.patch.control_points[here], _weights(sheet)
