@@ -7,7 +7,7 @@ import numpy as np
 from isomortar.scene import Scene
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.free_motions import free_motions
-from isomortar.solve.overcome import work_on
+from isomortar.solve.load_work import load_works
 from isomortar.solve.timing import Ledger
 
 #: A block that a force takes along at its corner while the same support shifts it.
@@ -27,7 +27,7 @@ def test_a_force_works_where_its_plate_is() -> None:
     positions = equilibrium.numbering.reference + np.array([0.0, 5.0, 0.0])
     corner = int(np.argmin(np.linalg.norm(positions - [0.0, 5.0, 1.0], axis=1)))
     motions = free_motions(equilibrium.problem, equilibrium.numbering, equilibrium.supports, positions)
-    works = [work_on(equilibrium, positions, motion) for motion in motions]
+    works = load_works(equilibrium, positions, motions)
     assert len(works) > 1
     np.testing.assert_allclose(works, [3.0 * motion.displacement[corner, 0] for motion in motions], atol=1e-12)
     assert np.ptp(works) > 0.1

@@ -280,7 +280,7 @@ def of_causes(patch: pytest.MonkeyPatch) -> Told:
     yield "over an edge", error(FROM_BESIDE).partition("to iteration. ")[2]
     yield "slides", refusal(lambda: list(pushed("along", "plane", 0.24).run())).partition("Friction")[2].replace(" of", "friction of", 1)
     yield "too steep", of_block(LOADS["weight"], "plane", "monolithic", 2.0).partition("Loads")[2].replace(" push", "loads push", 1)
-    yield "tips", tipping.of_block("weight", "plane", "monolithic", 0.7).partition("Loads")[2].replace(" turn", "loads turn", 1)
+    yield "tips", tipping.of_block("weight", "plane", "monolithic", 0.46).partition("Loads")[2].replace(" turn", "loads turn", 1)
     yield "lifts", said(tipping.HEAD + tipping.LOWER + tipping.LIFTED).partition("Loads")[2].replace(" move", "loads move", 1)
     equilibrium = Equilibrium(Scene.from_toml(BLOCK + 'supports.top.face = "block.w1"').problem(), Ledger())
     reference = equilibrium.numbering.reference

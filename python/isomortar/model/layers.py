@@ -34,6 +34,12 @@ class LinePoints:
         return cls((ends[:-1, None] + 0.5 * (1.0 + at) * size).ravel(), (0.5 * weights * size).ravel())
 
 
+def unlike(directions: Sequence[Direction], weights: FloatArray) -> bool:
+    """Whether weights differ along a direction, within some span, by more than those of arcs do."""
+    grid = weights.reshape([direction.count for direction in directions], order="F")
+    return any(np.any(_layers(direction, np.moveaxis(grid, axis, 0))) for axis, direction in enumerate(directions))
+
+
 def in_layers(directions: Sequence[Direction], weights: FloatArray) -> list[LinePoints]:
     """Gauss points in layers of each span that grow from its ends, as many as weights differ that count there (theory 9.2)."""
     grid = weights.reshape([direction.count for direction in directions], order="F")

@@ -11,7 +11,7 @@ from scipy import sparse
 from isomortar.errors import FoldedElementError
 from isomortar.geometry.patch import FloatArray, Patch
 from isomortar.model.entities import Body
-from isomortar.model.layers import CONIC, LinePoints, in_layers
+from isomortar.model.layers import LinePoints, in_layers, unlike
 from isomortar.model.lines import along, functions_along, quotient
 from isomortar.model.shares import percent
 
@@ -38,8 +38,7 @@ def quadrature_error(body: Body) -> float:
     FoldedElementError
         An element is folded between its Gauss points.
     """
-    weights = body.patch.weights
-    if not weights.max() > CONIC * weights.min():
+    if not unlike(body.patch.directions, body.patch.weights):
         return 0.0
     return _error(forces_of_stretch(body.patch, _gauss(body)), _forces_in_layers(body.patch))
 
@@ -51,7 +50,7 @@ def too_few_points(body: Body, error: float, least: float) -> str:
     return (
         f"body {body.name!r}: its weights, from {body.patch.weights.min():g} to {body.patch.weights.max():g}, differ too much for the "
         f"quadrature with {' x '.join(map(str, body.quadrature))} Gauss points an element: forces at its control points are off by "
-        f"{percent(error)} or more. {cure} the weights nearer to each other"
+        f"about {percent(error)}. {cure} the weights nearer to each other"
     )
 
 

@@ -11,7 +11,7 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.model.enforcement.face import SlaveFace
 from isomortar.model.enforcement.subcells import Subcells
 from isomortar.model.entities import Contact, Problem
-from isomortar.model.layers import CONIC, LinePoints, in_layers
+from isomortar.model.layers import LinePoints, in_layers, unlike
 from isomortar.model.lines import functions_along, quotient
 from isomortar.model.numbering import Numbering
 from isomortar.model.rational import MOST_ALONG, QUADRATURE_TOLD
@@ -22,8 +22,7 @@ from isomortar.model.sheet import Sheet
 def pressure_error(problem: Problem, contact: Contact) -> float:
     """The most that a uniform pressure is off by a contact's points (theory 9.14), relative; 0 where weights hardly differ."""
     sheet = Sheet.of(problem, contact.slave)
-    weights = _weights(sheet)
-    if not weights.max() > CONIC * weights.min():
+    if not unlike(sheet.directions, _weights(sheet)):
         return 0.0
     face = SlaveFace(contact, problem, Numbering(problem))
     nodes, values, _, area = Subcells(face).gauss() if contact.subcells else face.gauss()

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from isomortar.geometry.patch import FloatArray
-from isomortar.model import constants
 from isomortar.model.entities import Problem
 from isomortar.model.glue import named
 from isomortar.model.numbering import Numbering
@@ -56,24 +55,24 @@ def free_motions(problem: Problem, numbering: Numbering, supports: Supports, pos
 
 @dataclass(frozen=True)
 class Going:
-    """Bodies that go on some way together, by the one that goes farthest: how it shifts, and turns about its middle, shapes (3,)."""
+    """Bodies that go on some way together, by the one that goes farthest: shift, turn about its middle, shapes (3,), and size."""
 
     bodies: str
     shift: FloatArray
     turn: FloatArray
     middle: FloatArray
+    size: float
 
     @property
     def turns(self) -> bool:
         """Whether it turns more than it goes."""
         return bool(self.turn.any())
 
-    @property
-    def axis_point(self) -> FloatArray:
-        """A point of the axis that it turns about: of what is next to nothing beside its arm nothing is left."""
-        arm = np.cross(self.turn, self.shift) / (self.turn @ self.turn)
-        place = self.middle + arm
-        return np.where(np.abs(place) > constants.NO_PART * np.abs(arm).max(), place, 0.0)
+    def through(self, origin: FloatArray) -> str:
+        """A point of the axis that it turns about, by coordinates less an origin, in words: to a thousandth of its size."""
+        place = self.middle + np.cross(self.turn, self.shift) / (self.turn @ self.turn) + origin
+        unit = 10.0 ** (np.floor(np.log10(self.size)) - 3.0)
+        return ", ".join(f"{value:.10g}" for value in np.round(place / unit) * unit + 0.0)
 
 
 def going(numbering: Numbering, motions: Sequence[FreeMotion], way: FloatArray) -> Going:
@@ -87,7 +86,7 @@ def going(numbering: Numbering, motions: Sequence[FreeMotion], way: FloatArray) 
     shift, turn = goes[np.argmax(lengths)].reshape(2, 3)
     middle, size = extent(first)
     turns = np.linalg.norm(turn) > TURNS * np.linalg.norm(shift)
-    return Going(" and ".join(bodies), shift, turn / size if turns else np.zeros(3), middle)
+    return Going(" and ".join(bodies), shift, turn / size if turns else np.zeros(3), middle, size)
 
 
 def direction(rates: FloatArray) -> str:

@@ -9,10 +9,10 @@ import numpy as np
 from isomortar.errors import LostProjectionError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
-from isomortar.model.rank import extent
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.free_motions import FreeMotion, direction, free_motions, going
 from isomortar.solve.limit_load import Touch, along_contact, least_resisted, pressed_bed, touches_of
+from isomortar.solve.load_work import load_works
 from isomortar.solve.more_friction import more_friction
 from isomortar.solve.record import State
 
@@ -33,7 +33,7 @@ def overcome(equilibrium: Equilibrium, state: State) -> Iterator[str]:
         Where the last load increment ended that converged.
     """
     motions = free_motions(equilibrium.problem, equilibrium.numbering, equilibrium.supports, state.positions)
-    works = np.array([work_on(equilibrium, state.positions, motion) for motion in motions])
+    works = load_works(equilibrium, state.positions, motions)
     try:
         touches = touches_of(equilibrium.pairs, state, [motion.displacement for motion in motions]) if np.any(works) else []
     except LostProjectionError:
@@ -45,24 +45,17 @@ def overcome(equilibrium: Equilibrium, state: State) -> Iterator[str]:
     limits = [touch.limits(bed) for touch in touches]
     way = least_resisted(touches, limits, along, works)
     borne = np.array([limit @ touch.lengths(way) for touch, limit in zip(touches, limits, strict=True)])
-    if 1.0 / ROLLS < borne.sum() < 1.0 / ALL:
+    if 1.0 / ROLLS < borne.sum() < 1.0 / ALL and not _holds(touches, state, equilibrium, way):
         resist = [k for k, part in enumerate(borne) if part > constants.IN_THE_WAY * borne.sum()]
         more = more_friction([(touches[k].pair.pair.contact, limits[k], limits[k] * touches[k].lengths(way)) for k in resist])
         yield from _said(equilibrium, [touches[k] for k in resist], motions, way, float(borne.sum()), more)
 
 
-def work_on(equilibrium: Equilibrium, positions: FloatArray, motion: FreeMotion) -> float:
-    """Work of all loads, and of the forces and moments of plates, on a motion."""
-    supports, time = equilibrium.supports, equilibrium.time
-    work = float(np.sum(sum(equilibrium.loads.forces(positions, time), supports.fading(time)) * motion.displacement))
-    piece, (shift, turn) = equilibrium.numbering.pieces[motion.piece], motion.amounts.reshape(2, 3)
-    (centre, size), bodies = extent(piece), {body.name for body in piece}
-    for plate in supports.plates:
-        if equilibrium.problem.supports[plate.support].place.body in bodies:
-            there = supports.centre(equilibrium.problem.supports[plate.support], time, positions)
-            goes = shift + np.cross(turn, there - centre) / size
-            work += supports.factor(plate, time) * float(plate.force @ goes + plate.moment * (plate.axis @ turn) / size)
-    return work
+def _holds(touches: Sequence[Touch], state: State, equilibrium: Equilibrium, way: FloatArray) -> bool:
+    """Whether friction at the pressures that contacts had before, as those that motions of supports make, bears the loads."""
+    begun = dict(zip(equilibrium.pairs, state.contacts, strict=True))
+    borne = [float(touch.pair.radius(begun[touch.pair].pressure)[touch.near] @ touch.lengths(way)) for touch in touches]
+    return sum(borne) > 1.0 / ALL
 
 
 def _said(

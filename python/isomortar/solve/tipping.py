@@ -9,12 +9,11 @@ from scipy import sparse
 
 from isomortar.errors import LostProjectionError
 from isomortar.geometry.patch import FloatArray
-from isomortar.solve.contact import PairMechanics
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.feet import gaps
 from isomortar.solve.free_motions import FreeMotion, direction, free_motions, going
 from isomortar.solve.limit_load import ALONG, Touch, touches_of
-from isomortar.solve.overcome import work_on
+from isomortar.solve.load_work import load_works
 from isomortar.solve.record import ContactState, State
 from isomortar.solve.touching import next_to_nothing
 
@@ -43,22 +42,25 @@ def tipping(equilibrium: Equilibrium, state: State) -> Iterator[str]:
         Where the last load increment ended that converged.
     """
     motions = free_motions(equilibrium.problem, equilibrium.numbering, equilibrium.supports, state.positions)
-    works = np.array([work_on(equilibrium, state.positions, motion) for motion in motions])
+    works = load_works(equilibrium, state.positions, motions)
     if not np.any(works):
         return
+    of_pieces = np.bincount([motion.piece for motion in motions], works**2)
+    sizes = np.sqrt([of_pieces[motion.piece] for motion in motions])
     try:
         touches = touches_of(equilibrium.pairs, state, [motion.displacement for motion in motions])
+        way = overturning(touches, works, sizes)
+        if way is not None:
+            yield _said(equilibrium, state, touches, motions, way, works)
     except LostProjectionError:
         return
-    way = overturning(touches, works / np.linalg.norm(works))
-    if way is not None:
-        yield _said(equilibrium, state, touches, motions, way)
 
 
-def overturning(touches: Sequence[Touch], works: FloatArray) -> FloatArray | None:
+def overturning(touches: Sequence[Touch], works: FloatArray, sizes: FloatArray) -> FloatArray | None:
     """The motion on which loads do most work beyond what contact takes up, all of it or on a share EDGE of its area (theory 9.12).
 
-    Its amounts add up to one: as few motions as can be. None: there is none that opens much of a contact.
+    Its amounts add up to one: as few motions as can be. `sizes` are those of the works of the motion's body: a heavy one beside it does
+    not matter. None: there is no motion that opens much of a contact.
     """
     if not touches:
         return None
@@ -69,10 +71,14 @@ def overturning(touches: Sequence[Touch], works: FloatArray) -> FloatArray | Non
         limits = np.append(np.zeros(table.shape[0]), 1.0)
         total = np.repeat([1.0, 0.0], [2 * len(works), len(costs)])
         bounds = [(0.0, None)] * 2 * len(works) + [(0.0, None if crushed else 0.0)] * len(costs)
-        found = linprog(np.concatenate([-works, works, costs]), A_ub=sparse.vstack([table, total[None]]), b_ub=limits, bounds=bounds)
-        forwards, backwards = found.x[: 2 * len(works)].reshape(2, -1)
-        if -found.fun > ALONG and any(_opened(touch, forwards - backwards) > OPENS for touch in touches):
-            return np.asarray(forwards - backwards)
+        gained = np.concatenate([works, -works, -np.linalg.norm(works) * costs]) / np.abs(works).max()
+        found = linprog(-gained, A_ub=sparse.vstack([table, total[None]]), b_ub=limits, bounds=bounds)
+        if not found.success:
+            continue
+        way: FloatArray = np.diff(found.x[: 2 * len(works)].reshape(2, -1)[::-1], axis=0)[0]
+        size = sizes[np.abs(way) > ALONG * np.abs(way).max()].max(initial=0.0) / np.abs(works).max()
+        if -found.fun > ALONG * size > 0.0 and any(_opened(touch, way) > OPENS for touch in touches):
+            return way
     return None
 
 
@@ -105,29 +111,37 @@ def _opened(touch: Touch, way: FloatArray) -> float:
     return float(1.0 - touch.share @ ~opens) if opens.any() or opens_more.any() else 0.0
 
 
-def _said(equilibrium: Equilibrium, state: State, touches: Sequence[Touch], motions: Sequence[FreeMotion], way: FloatArray) -> str:
+def _said(
+    equilibrium: Equilibrium, state: State, touches: Sequence[Touch], motions: Sequence[FreeMotion], way: FloatArray, works: FloatArray
+) -> str:
     """On the bodies that go, and what opens."""
     goes = going(equilibrium.numbering, motions, way)
     opened = [touch for touch in touches if _opened(touch, way) > OPENS]
     contacts = " and ".join(repr(touch.pair.pair.contact.name) for touch in opened)
     if goes.turns:
-        place = ", ".join(f"{value:.3g}" for value in goes.axis_point + equilibrium.origin)
-        how = f"turn {goes.bodies} about an axis along ({direction(goes.turn)}) through ({place})"
+        how = f"turn {goes.bodies} about an axis along ({direction(goes.turn)}) through ({goes.through(equilibrium.origin)})"
         end, cure = "it tips over", "Let loads act nearer to the middle of what bears them, take a wider base, "
     else:
         how, end, cure = f"move {goes.bodies} along ({direction(goes.shift)})", "it lifts off", "Take less load that way, "
-    displacement = np.tensordot(way, [motion.displacement for motion in motions], 1)
     begun = dict(zip(equilibrium.pairs, state.contacts, strict=True))
-    finer = any(_goes_on(touch.pair, state.positions, begun[touch.pair], displacement) for touch in opened)
+    finer = goes.turns and any(_finer_bears(touch, state.positions, begun[touch.pair], motions, way, works) for touch in opened)
+    bear = "which press and rub and do not pull, bear" if len(opened) > 1 else "which presses and rubs and does not pull, bears"
     return (
-        f"loads {how} by then, and contact {contacts}, which presses and rubs and does not pull, bears them on less than a third of its "
-        f"area, if at all: {end}. {cure}{FINER if finer else ''}or hold or move it by a support"
+        f"loads {how} by then, and contact {contacts}, {bear} them on less than a third of "
+        f"{'their' if len(opened) > 1 else 'its'} area, if at all: {end}. {cure}{FINER if finer else ''}or hold or move it by a support"
     )
 
 
-def _goes_on(pair: PairMechanics, positions: FloatArray, begun: ContactState, displacement: FloatArray) -> bool:
-    """Whether a slave goes on beyond the axis that it turns about: constraints are averages, and the outermost are within its edge."""
-    moved = positions + next_to_nothing(pair) * displacement
+def _finer_bears(
+    touch: Touch, positions: FloatArray, begun: ContactState, motions: Sequence[FreeMotion], way: FloatArray, works: FloatArray
+) -> bool:
+    """Whether loads do no work on a turn about the slave's edge: constraints are averages, and the outermost bear within it."""
+    pair, step = touch.pair, next_to_nothing(touch.pair)
+    moved = positions + step * np.tensordot(way, [motion.displacement for motion in motions], 1)
     start, end = pair.kinematics(positions, begun).projections, pair.kinematics(moved, begun).projections
-    rates = gaps(pair.pair, moved, end) - gaps(pair.pair, positions, start)
-    return bool(rates.max() > ALONG * np.abs(rates).max())
+    rates = (gaps(pair.pair, moved, end) - gaps(pair.pair, positions, start)) / step
+    if rates.max() <= ALONG * np.abs(rates).max():
+        return False
+    going_on = np.isin([motion.piece for motion in motions], [motion.piece for motion, share in zip(motions, way, strict=True) if share])
+    lift = np.linalg.lstsq(touch.closing / touch.weight[:, None] * going_on, -np.ones(len(touch.weight)), rcond=ALONG)[0]
+    return bool(works @ (way + rates.max() * lift) <= 0.0)

@@ -1,0 +1,36 @@
+"""Work of all loads on rigid motions of bodies."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from isomortar.geometry.patch import FloatArray
+from isomortar.model import constants
+from isomortar.model.rank import extent
+from isomortar.solve.equilibrium import Equilibrium
+from isomortar.solve.free_motions import FreeMotion
+
+
+def load_works(equilibrium: Equilibrium, positions: FloatArray, motions: Sequence[FreeMotion]) -> FloatArray:
+    """Work of all loads, and of the forces and moments of plates, on each motion, shape (motions,); zero where it is round-off."""
+    parts = [_parts(equilibrium, positions, motion) for motion in motions]
+    works = np.array([part.sum() for part in parts])
+    largest = np.max([np.abs(part).sum() for part in parts], initial=0.0)
+    return np.where(np.abs(works) > constants.NO_PART * largest, works, 0.0)
+
+
+def _parts(equilibrium: Equilibrium, positions: FloatArray, motion: FreeMotion) -> FloatArray:
+    """The work on a motion of the force on each control point, and of each plate's force and moment."""
+    supports, time = equilibrium.supports, equilibrium.time
+    forces = sum(equilibrium.loads.forces(positions, time), supports.fading(time))
+    parts = [np.ravel(forces * motion.displacement)]
+    piece, (shift, turn) = equilibrium.numbering.pieces[motion.piece], motion.amounts.reshape(2, 3)
+    (centre, size), bodies = extent(piece), {body.name for body in piece}
+    for plate in supports.plates:
+        if equilibrium.problem.supports[plate.support].place.body in bodies:
+            there = supports.centre(equilibrium.problem.supports[plate.support], time, positions)
+            goes = shift + np.cross(turn, there - centre) / size
+            parts.append(supports.factor(plate, time) * np.append(plate.force * goes, plate.moment * (plate.axis @ turn) / size))
+    return np.concatenate(parts)
