@@ -38,7 +38,7 @@ LOADS = {
     "traction": WEIGHT + 'loads.push = { face = "block.w1", traction = [LEAN, 0, 0] }',
     "moment": WEIGHT + 'supports.hand = { face = "block.w1", centre = [0.5, 0.5, 2], axis = [0, 1, 0], FREE, moment = TWICE }',
 }
-TOLD = re.compile(r"Loads (turn|move) (.*?) (?:about an axis )?along \((.*?)\)(?: through \((.*?)\))? by then, and contact (.*?), which")
+TOLD = re.compile(r"Loads (turn|move) (.*?) (?:about an axis )?along \((.*?)\)(?: through \((.*?)\))? by then, which contact (.*?) could")
 FINER = "refine the slave, whose outermost control points bear within its edge"
 
 

@@ -125,10 +125,9 @@ def _said(
         how, end, cure = f"move {goes.bodies} along ({direction(goes.shift)})", "it lifts off", "Take less load that way, "
     begun = dict(zip(equilibrium.pairs, state.contacts, strict=True))
     finer = goes.turns and any(_finer_bears(touch, state.positions, begun[touch.pair], motions, way, works) for touch in opened)
-    bear = "which press and rub and do not pull, bear" if len(opened) > 1 else "which presses and rubs and does not pull, bears"
     return (
-        f"loads {how} by then, and contact {contacts}, {bear} them on less than a third of "
-        f"{'their' if len(opened) > 1 else 'its'} area, if at all: {end}. {cure}{FINER if finer else ''}or hold or move it by a support"
+        f"loads {how} by then, which contact {contacts} could hold by a pull alone, or by what presses on less than a third of the area: "
+        f"{end}. {cure}{FINER if finer else ''}or hold or move it by a support"
     )
 
 
