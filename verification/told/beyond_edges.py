@@ -32,8 +32,21 @@ BLOCK = (
     .replace("-0.1, 0]", "LEFT, 0]").replace("1.1, 0.5]", "RIGHT, 0.5]")
     .replace("[8, 1, 4]", "[2, 2, 1]").partition("supports.front")[0] + STRIP[STRIP.index("stages") :]
 )  # fmt: skip
+#: A ring that rests on a narrow foot with a part of its face, whose other side is over that foot as well; the foot is below, or at its seam.
+RING = """
+format = 1
+materials.m = { young = 10, poisson = 0.3 }
+bodies.s = { geometry = { kind = "ring", inner = 0.5, outer = 1, width = 1, centre = [0, 0, 1] }, mesh = { order = 2, elements = [8, 2, 2] } }
+bodies.p = { rigid = true, geometry = { kind = "box", lower = [-0.2, -1, LOW], upper = [0.2, 1, HIGH] } }
+contacts.c = { slave = "s.v1", master = "p.SIDE", friction = 0.3 }
+supports.foot.face = "p.OTHER"
+supports.top.face = "s.v0"
+stages = [{ name = "press", steps = 1, motions.top.translate = [0, 0, WAY] }]
+"""
+BELOW = {"LOW": "-1", "HIGH": "0", "SIDE": "w1", "OTHER": "w0", "WAY": "-0.1"}
+ABOVE = {"LOW": "2", "HIGH": "3", "SIDE": "w0", "OTHER": "w1", "WAY": "0.1"}
 TOLD = re.compile(
-    r"contact 'c', load step 1, the last of stage 'press': elements of its slave s\.w1 are too long for its master, beyond whose edges "
+    r"contact 'c', load step 1, the last of stage 'press': elements of its slave s\.\w1 are too long for its master, beyond whose edges "
     r"they go on: (.*) are over it, and too stiff\. Forces under given motions may be too large by about (\S+) %.* along "
     r"(\w(?: and \w)?) \(bodies\.s\."
 )
@@ -43,6 +56,13 @@ def punch(text: str, half: float, soft: bool = False, at: float = 0.0) -> str:
     """A scene with a punch of some half width, rigid or not, at a place."""
     kind = 'material = "k"' if soft else "rigid = true"
     return text.replace("RIGID", kind).replace("LEFT", str(at - half)).replace("RIGHT", str(at + half))
+
+
+def filled(text: str, words: dict[str, str]) -> str:
+    """A text with some words in place of others."""
+    for word, value in words.items():
+        text = text.replace(word, value)
+    return text
 
 
 def run(text: str, elements: str, order: str = "[2, 1, 2]") -> tuple[list[tuple[str, ...]], float]:
@@ -99,6 +119,7 @@ def punches(slave: str) -> dict[str, float]:
     tier="gate",
     bounds={
         "directions": Bound(1.0, 1.0, "definition: that u and v are told of a square punch"),
+        "rings": Bound(2.0, 2.0, "definition: of a ring on a foot below and one at its seam those told, round the ring"),
         "a half": Bound(at_most=0.0, reason="definition: shares that are told of a half less those of the whole, per cent"),
         "others": Bound(0.0, 0.0, "definition: sentences of a wide punch, and of a soft one"),
     },
@@ -108,7 +129,13 @@ def other_punches() -> dict[str, float]:
     square, _ = run(punch(BLOCK, 0.2), "[4, 4, 2]", "2")
     whole, _ = run(punch(STRIP, 0.2), "[4, 1, 2]")
     half, _ = run(punch(STRIP, 0.2) + "symmetry = { x = 0.0 }\n", "[4, 1, 2]")
+    rings = [run(filled(RING, words), "[8, 2, 2]", "2")[0] for words in (BELOW, ABOVE)]
     wide, _ = run(punch(STRIP, 2.5), "[4, 1, 2]")
     soft, _ = run(punch(STRIP, 0.2, soft=True).replace("k = { young = 100,", "k = { young = 5,"), "[4, 1, 2]")
     apart = abs(float(half[0][1]) - float(whole[0][1])) if half and whole else np.inf
-    return {"directions": float(bool(square) and square[0][2] == "u and v"), "a half": apart, "others": float(len(wide) + len(soft))}
+    return {
+        "directions": float(bool(square) and square[0][2] == "u and v"),
+        "rings": float(sum(bool(said) and said[0][2] == "w" for said in rings)),
+        "a half": apart,
+        "others": float(len(wide) + len(soft)),
+    }

@@ -6,14 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from isomortar._bindings import Projections
 from isomortar.geometry.patch import Direction, FloatArray
 from isomortar.model.enforcement.face import SlaveFace, grid
 from isomortar.model.entities import Contact, Problem
 from isomortar.model.pairs import Pair
 from isomortar.model.sheet import Sheet
 from isomortar.model.supports import BoolArray
-from isomortar.solve.equilibrium import Equilibrium
+from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.feet import slave_points
 from isomortar.solve.softness import softness
 
@@ -24,6 +23,8 @@ STIFFENS = 0.1
 PARTS = 8
 #: Share of the force from which on it is told.
 COSTS = 0.15
+#: Pressure at an end, beside the mean of what is over the master, above which it is held up there.
+LOADED = 0.3
 #: A direction is too coarse where it costs this share of what the other one does.
 PART = 0.5
 
@@ -57,11 +58,12 @@ class BeyondEdges:
         return bool(self.costs.sum() > COSTS)
 
 
-def beyond_edges(equilibrium: Equilibrium, pair: Pair, positions: FloatArray, projections: Projections) -> BeyondEdges | None:
-    """What is over the master, along the lines of the face that most of is (theory 9.13); None where all is, or nothing.
+def beyond_edges(equilibrium: Equilibrium, pair: Pair, balance: Balance, number: int) -> BeyondEdges | None:
+    """What is over the master, along the lines of the face that bear most (theory 9.13); None where all is, or nothing.
 
-    Lines are lines of places, of which those are over the master whose nearest quadrature points are.
+    Lines are lines of places, each as its nearest quadrature point is. What does not bear at its end is not held up there.
     """
+    projections, pressure = balance.kinematics[number].projections, pair.field(balance.responses[number].pressure)
     contact, problem, found = pair.contact, equilibrium.problem, projections.found > 0
     if found.all() or not found.any():
         return None
@@ -70,11 +72,13 @@ def beyond_edges(equilibrium: Equilibrium, pair: Pair, positions: FloatArray, pr
     face = SlaveFace(contact, problem, equilibrium.numbering)
     (u, du), (v, dv) = (_places(direction) for direction in face.directions)
     nodes, values, slopes = face.at(grid(u, v))
-    places = np.einsum("qa,qai->qi", values, positions[face.point[nodes]])
-    over = found[cKDTree(slave_points(pair, positions)).query(places)[1]]
-    widths, edges = np.array([_longest(lines) for lines in (over.reshape(len(v), -1), over.reshape(len(v), -1).T)]).T
+    places = np.einsum("qa,qai->qi", values, balance.positions[face.point[nodes]])
+    nearest = cKDTree(slave_points(pair, balance.positions)).query(places)[1]
+    over, bears = (part[nearest].reshape(len(v), -1) for part in (found, np.where(found, np.maximum(pressure, 0.0), 0.0)))
+    closed_u, closed_v = face.closed
+    widths, edges = np.array([_run(over, bears, closed_u), _run(over.T, bears.T, closed_v)]).T
     if edges.any():  # areas are known better than lines, where quadrature points are few
-        area = np.sum(np.prod(grid(du, dv), axis=1) * face.areas(nodes, slopes), where=over)
+        area = np.sum(np.prod(grid(du, dv), axis=1) * face.areas(nodes, slopes), where=over.ravel())
         widths[edges > 0] *= (np.sum(pair.slave.area, where=found) / area) ** (1.0 / np.count_nonzero(edges))
     slave, master = (part[found].sum() for part in softness(problem, equilibrium.numbering, pair, projections))
     return BeyondEdges(widths, edges, slave / (slave + master))
@@ -87,10 +91,23 @@ def _places(direction: Direction) -> tuple[FloatArray, FloatArray]:
     return middles.ravel(), np.repeat(lengths / PARTS, PARTS)
 
 
-def _longest(lines: BoolArray) -> tuple[float, int]:
-    """The most elements that are over the master along a line of places, shape (lines, places), and its ends that are not."""
-    longest = lines[int(np.argmax(lines.sum(axis=1)))]
-    return np.count_nonzero(longest) / PARTS, int(not longest[0]) + int(not longest[-1])
+def _run(over: BoolArray, bears: FloatArray, closed: bool) -> tuple[float, int]:
+    """Of the line that bears most, how many elements of those that are over the master beside each other, and at how many ends they bear.
+
+    `over`, `bears`: by lines and places, which begin anew after the last where the face meets itself.
+    """
+    line = int(np.argmax(bears.sum(axis=1)))
+    over, bears, first = over[line], bears[line], int(np.argmax(bears[line]))
+    if over.all():
+        return len(over) / PARTS, 0
+    if closed:
+        shift = len(over) // 2 - first
+        over, bears, first = np.roll(over, shift), np.roll(bears, shift), len(over) // 2
+    beside = np.flatnonzero(~over)
+    low, high = beside[beside < first].max(initial=-1) + 1, beside[beside > first].min(initial=len(over))
+    run, last = bears[low:high], max(1, min(PARTS // 2, (high - low) // 2))
+    ends = (low > 0, run[:last]), (high < len(over), run[-last:])
+    return len(run) / PARTS, sum(bool(is_edge and end.mean() > LOADED * run.mean()) for is_edge, end in ends)
 
 
 def told(problem: Problem, contact: Contact, found: BeyondEdges, step: int) -> str:

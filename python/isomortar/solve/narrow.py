@@ -101,7 +101,7 @@ class Narrow:
                 del self._watched[number]
                 yield _told(self._problem, mechanics.pair.contact, found, step)
                 continue
-            over = beyond_edges(self._equilibrium, mechanics.pair, balance.positions, balance.kinematics[number].projections)
+            over = beyond_edges(self._equilibrium, mechanics.pair, balance, number)
             if over is not None and over.too_stiff:
                 del self._watched[number]
                 yield told(self._problem, mechanics.pair.contact, over, step)
