@@ -32,11 +32,11 @@ BLOCK = (
     .replace("-0.1, 0]", "LEFT, 0]").replace("1.1, 0.5]", "RIGHT, 0.5]")
     .replace("[8, 1, 4]", "[2, 2, 1]").partition("supports.front")[0] + STRIP[STRIP.index("stages") :]
 )  # fmt: skip
-#: A ring that rests on a narrow foot with a part of its face, whose other side is over that foot as well; the foot is below, or at its seam.
+#: A ring on a narrow foot, over which the other side of its face is as well; the foot is below, or at its seam.
 RING = """
 format = 1
 materials.m = { young = 10, poisson = 0.3 }
-bodies.s = { geometry = { kind = "ring", inner = 0.5, outer = 1, width = 1, centre = [0, 0, 1] }, mesh = { order = 2, elements = [8, 2, 2] } }
+bodies.s = { geometry = { kind = "ring", inner = 0.5, outer = 1, width = 1, centre = [0, 0, 1] }, mesh.elements = [8, 2, 2] }
 bodies.p = { rigid = true, geometry = { kind = "box", lower = [-0.2, -1, LOW], upper = [0.2, 1, HIGH] } }
 contacts.c = { slave = "s.v1", master = "p.SIDE", friction = 0.3 }
 supports.foot.face = "p.OTHER"
@@ -135,7 +135,7 @@ def other_punches() -> dict[str, float]:
     apart = abs(float(half[0][1]) - float(whole[0][1])) if half and whole else np.inf
     return {
         "directions": float(bool(square) and square[0][2] == "u and v"),
-        "rings": float(sum(bool(said) and said[0][2] == "w" for said in rings)),
+        "rings": float(sum(bool(said) and said[0][2] == "u" for said in rings)),
         "a half": apart,
         "others": float(len(wide) + len(soft)),
     }
