@@ -10,7 +10,6 @@ import numpy as np
 from isomortar._bindings import Projections
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Contact, Problem
-from isomortar.model.numbering import Numbering
 from isomortar.model.pairs import Pair
 from isomortar.model.shares import percent
 from isomortar.model.sheet import Sheet
@@ -96,7 +95,7 @@ class Narrow:
             bears = self._borne.more_than_nothing(number, float(np.abs(pressure).max(initial=0.0)))
             if not ends or not bears or force <= LIGHT * self._largest[number]:
                 continue
-            found = bearing(self._problem, mechanics, balance, number)
+            found = bearing(self._equilibrium, mechanics, balance, number)
             if found.too_narrow:
                 del self._watched[number]
                 yield _told(self._problem, mechanics.pair.contact, found, step)
@@ -123,12 +122,12 @@ def _by_element(pair: Pair) -> tuple[int, int]:
     return pair.slave.elements, pair.slave.per_element
 
 
-def bearing(problem: Problem, mechanics: PairMechanics, balance: Balance, number: int) -> Bearing:
+def bearing(equilibrium: Equilibrium, mechanics: PairMechanics, balance: Balance, number: int) -> Bearing:
     """What bears a contact that is closed (theory 9.9, 9.10).
 
     Parameters
     ----------
-    problem : Problem
+    equilibrium : Equilibrium
     mechanics : PairMechanics
         Of the contact.
     balance : Balance
@@ -136,11 +135,14 @@ def bearing(problem: Problem, mechanics: PairMechanics, balance: Balance, number
         Of that contact.
     """
     borne = forces(mechanics.pair, balance.responses[number].pressure, balance.kinematics[number].projections)
-    depth, pressed = _between(problem, mechanics, balance, number)
+    depth, pressed = _between(equilibrium, mechanics, balance, number)
     ratio = depth / pressed if pressed > 0.0 else 0.0
     (first, round_first), (second, round_second) = (_sums(mechanics.pair.places, borne, axis) for axis in (0, 1))
     rows = np.array([np.sum(sums) ** 2 / (sums @ sums) for sums in (first, second)])
-    u, v = (direction.order == 1 or direction.family == "L" for direction in Sheet.of(problem, mechanics.pair.contact.slave).directions)
+    u, v = (
+        direction.order == 1 or direction.family == "L"
+        for direction in Sheet.of(equilibrium.problem, mechanics.pair.contact.slave).directions
+    )
     round_poles, counts = (round_first, round_second), (len(first), len(second))
     return Bearing(rows, counts, (u, v), round_poles, depth, (ratio - FREE) / (ratio + ADDED))
 
@@ -156,7 +158,7 @@ def _sums(places: FloatArray, borne: FloatArray, axis: int) -> tuple[FloatArray,
     return np.asarray(sums + of_pole / len(sums), np.float64), of_pole > 0.5 * float(borne.sum())
 
 
-def _between(problem: Problem, mechanics: PairMechanics, balance: Balance, number: int) -> tuple[float, float]:
+def _between(equilibrium: Equilibrium, mechanics: PairMechanics, balance: Balance, number: int) -> tuple[float, float]:
     """How deep quadrature points are where there is pressure, and how far that presses the bodies in, about (theory 9.10)."""
     pair, projections = mechanics.pair, balance.kinematics[number].projections
     pressure = abs(pair.field(balance.responses[number].pressure)) * (projections.found > 0)
@@ -164,8 +166,8 @@ def _between(problem: Problem, mechanics: PairMechanics, balance: Balance, numbe
     if not acting.any():
         return 0.0, 0.0
     depth = np.sqrt(acting @ np.square(gaps(pair, balance.positions, projections)) / acting.sum())
-    soft = sum(softness(problem, Numbering(problem), pair, projections))
-    return float(depth), float(acting @ soft / acting.sum() * np.sqrt(problem.images * (acting @ pressure)))
+    soft = sum(softness(equilibrium.problem, equilibrium.numbering, pair, projections))
+    return float(depth), float(acting @ soft / acting.sum() * np.sqrt(equilibrium.problem.images * (acting @ pressure)))
 
 
 def _told(problem: Problem, contact: Contact, found: Bearing, step: int) -> str:

@@ -11,7 +11,7 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.solve.equilibrium import Balance, Equilibrium
 
 #: Forces that are looked at, each what the last one moves: the softest motions come first.
-FORCES = 12
+FORCES = 8
 #: Work of a force on what it moves, beside the largest one of all, below which things move against it: above, it is round-off.
 AGAINST = -0.01
 #: Share of a motion that is not among forces before below which there are no others.
