@@ -111,6 +111,18 @@ bodies.ring = { geometry = { kind = "ring", inner = 0.6, outer = 1, width = 0.5,
 contacts.floor = { slave = "ring.v1", friction = 0.3, plane = {} }
 loads.own = { body = "ring", weight = [0.5, 0, -1] }
 """
+#: A block that a plate presses flat, and holds by friction against what a load does along.
+HELD = (
+    HEAD.replace("steps = 1", "steps = 4, motions.lid.translate = [0, 0, -1.3]")
+    + """
+bodies.block = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1.3, 1.1] }, mesh.elements = [3, 3, 2] }
+contacts.floor = { slave = "block.w0", friction = 0.3, plane = {} }
+contacts.top = { slave = "block.w1", friction = 0.3, master = "lid.w0" }
+bodies.lid = { rigid = true, geometry = { kind = "box", lower = [-2, -2, 1.1], upper = [3, 3, 1.5] } }
+supports.lid.face = "lid.w1"
+loads.own = { body = "block", weight = [0.1, 0, -0.1] }
+"""
+)
 #: Scenes, and which bodies are to be told of, along what, with the contacts, and load over limit; nothing: they do something else.
 SCENES: dict[str, tuple[str, tuple[str, str, str, float] | None]] = {
     "upper one": (PILE.replace("FRICTION", "0.6").replace("MID", "0.2"), ("body 'top'", "1, 0, 0", "'mid'", 2.5)),
@@ -136,6 +148,7 @@ SCENES: dict[str, tuple[str, tuple[str, str, str, float] | None]] = {
         (BLOCK + FLOOR + WALL.replace("0.1", "0") + PUSHED).replace("FRICTION", "0.3").replace("FORWARDS", "1").replace("ASIDE", "0.9"),
         ("body 'block'", "0, 1, 0", "'floor'", 0.9 / 0.6),
     ),
+    "held by a plate": (HELD, None),
     "a cohesion": (
         (BLOCK + FLOOR + PUSHED).replace("FRICTION", "0.3, cohesion = 1").replace("FORWARDS", "1").replace("ASIDE", "0"),
         None,
@@ -162,7 +175,7 @@ SCENES: dict[str, tuple[str, tuple[str, str, str, float] | None]] = {
 def overcome(scene: str) -> dict[str, float]:
     """Whether, and by how much."""
     text, expected = SCENES[scene]
-    found, ratio = TOLD.search(sentence := said(HEAD + text)), over(sentence)
+    found, ratio = TOLD.search(sentence := said(text if "format = 1" in text else HEAD + text)), over(sentence)
     if expected is None:
         return {"others": float(found is not None), "off": 0.0}
     told = found and (found[2], found[3], found[5])

@@ -1,4 +1,4 @@
-"""Work of all loads on rigid motions of bodies."""
+"""Work of all loads on rigid motions of bodies, and what bears these."""
 
 from __future__ import annotations
 
@@ -6,11 +6,28 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from isomortar.errors import LostProjectionError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
 from isomortar.model.rank import extent
 from isomortar.solve.equilibrium import Equilibrium
-from isomortar.solve.free_motions import FreeMotion
+from isomortar.solve.free_motions import FreeMotion, free_motions
+from isomortar.solve.limit_load import Touch, touches_of
+from isomortar.solve.record import State
+
+
+def borne_loads(equilibrium: Equilibrium, state: State) -> tuple[list[FreeMotion], FloatArray, list[Touch]]:
+    """Rigid motions that supports leave all bodies where an increment ended, works of loads on them, and what touches, by these.
+
+    Nothing does that is told where loads do no work, or where a foot is lost.
+    """
+    motions = free_motions(equilibrium.problem, equilibrium.numbering, equilibrium.supports, state.positions)
+    works = load_works(equilibrium, state.positions, motions)
+    try:
+        touches = touches_of(equilibrium.pairs, state, [motion.displacement for motion in motions]) if np.any(works) else []
+    except LostProjectionError:
+        touches = []
+    return motions, works, touches
 
 
 def load_works(equilibrium: Equilibrium, positions: FloatArray, motions: Sequence[FreeMotion]) -> FloatArray:

@@ -6,13 +6,12 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from isomortar.errors import LostProjectionError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
 from isomortar.solve.equilibrium import Equilibrium
-from isomortar.solve.free_motions import FreeMotion, direction, free_motions, going
-from isomortar.solve.limit_load import Touch, along_contact, least_resisted, pressed_bed, touches_of
-from isomortar.solve.load_work import load_works
+from isomortar.solve.free_motions import FreeMotion, direction, going
+from isomortar.solve.limit_load import Touch, along_contact, least_resisted, pressed_bed
+from isomortar.solve.load_work import borne_loads
 from isomortar.solve.more_friction import more_friction
 from isomortar.solve.record import State
 
@@ -32,12 +31,7 @@ def overcome(equilibrium: Equilibrium, state: State) -> Iterator[str]:
     state : State
         Where the last load increment ended that converged.
     """
-    motions = free_motions(equilibrium.problem, equilibrium.numbering, equilibrium.supports, state.positions)
-    works = load_works(equilibrium, state.positions, motions)
-    try:
-        touches = touches_of(equilibrium.pairs, state, [motion.displacement for motion in motions]) if np.any(works) else []
-    except LostProjectionError:
-        return
+    motions, works, touches = borne_loads(equilibrium, state)
     along = along_contact(touches)
     bed = pressed_bed(touches, works, along) if along.size else None
     if bed is None:

@@ -147,6 +147,7 @@ class Simulation:
                 state = self._reached(state, part.balance, float(end), (target - time) / len(parts))
             time, substeps = target, substeps + len(parts)
             self._grow(increment / longest, parts)
+        unstable = list(self._unstable.after_stage(parts[-1].balance, step)) if self._ends_stage(step) else []  # its solves are this step's
         result = self._result(step, state, parts[-1].balance, work, tuple(log), orders, substeps, cuts)
         self._warn(self._lost.after_step(parts[-1].balance, result))
         self._warn(self._pulling.after_step(parts[-1].balance, step))
@@ -157,8 +158,7 @@ class Simulation:
         self._warn(self._astray.after_step(parts[-1].balance, step))
         self._warn(self._narrow.after_step(parts[-1].balance, step, self._ends_stage(step)))
         self._unseen.after_step(parts[-1].balance)
-        if self._ends_stage(step):
-            self._warn(self._unstable.after_stage(parts[-1].balance, step))
+        self._warn(iter(unstable))
         if self._of_stages and self._ends_stage(step):
             deformed = self.equilibrium.numbering.deformed(state.positions)
             for watch in self._of_stages:

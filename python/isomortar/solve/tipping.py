@@ -11,9 +11,9 @@ from isomortar.errors import LostProjectionError
 from isomortar.geometry.patch import FloatArray
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.feet import gaps
-from isomortar.solve.free_motions import FreeMotion, direction, free_motions, going
-from isomortar.solve.limit_load import ALONG, Touch, touches_of
-from isomortar.solve.load_work import load_works
+from isomortar.solve.free_motions import FreeMotion, direction, going
+from isomortar.solve.limit_load import ALONG, Touch
+from isomortar.solve.load_work import borne_loads
 from isomortar.solve.record import ContactState, State
 from isomortar.solve.touching import next_to_nothing
 
@@ -41,17 +41,15 @@ def tipping(equilibrium: Equilibrium, state: State) -> Iterator[str]:
     state : State
         Where the last load increment ended that converged.
     """
-    motions = free_motions(equilibrium.problem, equilibrium.numbering, equilibrium.supports, state.positions)
-    works = load_works(equilibrium, state.positions, motions)
-    if not np.any(works):
+    motions, works, touches = borne_loads(equilibrium, state)
+    if not touches:
         return
     of_pieces = np.bincount([motion.piece for motion in motions], works**2)
-    sizes = np.sqrt([of_pieces[motion.piece] for motion in motions])
+    way = overturning(touches, works, np.sqrt([of_pieces[motion.piece] for motion in motions]))
+    if way is None:
+        return
     try:
-        touches = touches_of(equilibrium.pairs, state, [motion.displacement for motion in motions])
-        way = overturning(touches, works, sizes)
-        if way is not None:
-            yield _said(equilibrium, state, touches, motions, way, works)
+        yield _said(equilibrium, state, touches, motions, way, works)
     except LostProjectionError:
         return
 
@@ -62,8 +60,6 @@ def overturning(touches: Sequence[Touch], works: FloatArray, sizes: FloatArray) 
     Its amounts add up to one: as few motions as can be. `sizes` are those of the works of the motion's body: a heavy one beside it does
     not matter. None: there is no motion that opens much of a contact.
     """
-    if not touches:
-        return None
     from scipy.optimize import linprog
 
     table, costs = _resistance(touches)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from isomortar.errors import SingularSystemError
+from isomortar.errors import KernelError
 from isomortar.geometry.patch import FloatArray
 from isomortar.solve.equilibrium import Balance, Equilibrium
 
@@ -61,7 +61,7 @@ class Unstable:
         """What a force moves; None where factors have no digits for it, of which there is another word, or there are none."""
         try:
             moved = self._equilibrium.moved_by(force)
-        except SingularSystemError:
+        except KernelError:
             return None
         return moved if moved is not None and np.isfinite(moved).all() else None
 
