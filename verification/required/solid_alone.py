@@ -16,6 +16,7 @@ from isomortar.solve.condensed import Bodies, CondensedSystem
 from isomortar.solve.simulation import Simulation
 from isomortar.solve.system import LinearSystem, Source, block_product, entries
 from isomortar.solve.timing import Ledger
+from isomortar.solve.unstable import FORCES
 
 #: A block held at two sides, one of which is turned and lifted.
 BENT = """
@@ -29,7 +30,10 @@ stages = [{ name = "bend", steps = 4, motions.right = { translate = [0.04, 0, 0.
 
 
 class Plain:
-    """Newton's method with factors that are kept, for one body, from where the last load step leads; `ledger` counts what it did."""
+    """Newton's method with factors that are kept, for one body, from where the last load step leads; `ledger` counts what it did.
+
+    It asks at its end whether the equilibrium is stable.
+    """
 
     def __init__(self, problem: Problem) -> None:
         self.ledger = ledger = Ledger()
@@ -55,6 +59,8 @@ class Plain:
                 keep = True
             positions = self._balanced(positions, keep)
             rate = positions - start
+        for force in np.eye(len(self.free))[:FORCES]:  # whether the end of the stage is stable
+            self.system.solve_again(force)
         return positions
 
     def _pushed(self, start: FloatArray, step: int) -> FloatArray:
