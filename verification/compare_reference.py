@@ -35,9 +35,9 @@ import numpy as np
 from convert_reference import convert
 
 from isomortar.errors import IsomortarError
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
-from isomortar.solve.simulation import Simulation
 
 #: Share of the largest value of a run below which a quantity counts as nothing.
 FLOOR = 1e-6

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from isomortar.geometry.patch import FloatArray
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 #: Settings of this program that its own error is below that of the references with.
 SETTINGS: dict[str, dict[str, str | float]] = {

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from isomortar.cli.progress import progress as progress
     from isomortar.driver import run as run
     from isomortar.errors import IsomortarError as IsomortarError
+    from isomortar.march.simulation import Simulation as Simulation
     from isomortar.results.film import film as film
     from isomortar.results.paraview import export as export
     from isomortar.results.pictures import plot as plot
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
     from isomortar.results.view import view as view
     from isomortar.scene.scene import Scene as Scene
     from isomortar.solve.record import Observer as Observer
-    from isomortar.solve.simulation import Simulation as Simulation
 
     __version__: str
 
@@ -31,7 +31,7 @@ _HOMES = {
     "Observer": "solve.record",
     "Results": "results.reader",
     "Scene": "scene.scene",
-    "Simulation": "solve.simulation",
+    "Simulation": "march.simulation",
     "export": "results.paraview",
     "film": "results.film",
     "plot": "results.pictures",

@@ -8,13 +8,13 @@ from importlib.metadata import version
 from pathlib import Path
 
 from isomortar.errors import InputError, ResultsError
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
 from isomortar.results.files import claimed, is_marked
 from isomortar.results.reader import Results
 from isomortar.results.writer import ResultsWriter, goes_on_longer
 from isomortar.scene.scene import Scene
 from isomortar.solve.record import AugmentationRecord, IterationRecord, Observer, StepResult
-from isomortar.solve.simulation import Simulation
 
 
 def run(

@@ -20,15 +20,15 @@ from isomortar import cli
 from isomortar.cli.progress import Progress
 from isomortar.errors import InputError
 from isomortar.geometry.patch import Direction, Patch
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Body, Face, Material, Motion, Problem, Stage, Support
 from isomortar.model.rational import QUADRATURE_TOLD, points_enough
 from isomortar.scene import Scene
 from isomortar.scene.source import bundled_scenes
-from isomortar.solve.advice import by_default
-from isomortar.solve.doubtful_meshes import of_meshes
-from isomortar.solve.doubts import doubts
 from isomortar.solve.record import Observer
-from isomortar.solve.simulation import Simulation
+from isomortar.told.before.doubts import doubts
+from isomortar.told.before.meshes import of_meshes
+from isomortar.told.before.pairing import by_default
 
 
 def material(poisson: float, family: str, order: int) -> list[str]:

@@ -58,7 +58,7 @@ _STATES = """
 import sys
 from itertools import islice
 import isomortar
-from isomortar.solve.simulation import Simulation
+from isomortar.march.simulation import Simulation
 
 scene, steps, *settings = sys.argv[1:]
 for record in islice(Simulation(isomortar.Scene.load(scene, settings).problem()).run(), int(steps)):

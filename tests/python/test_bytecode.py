@@ -15,7 +15,7 @@ def test_a_start_compiles_nothing():
     if not hasattr(isomortar.__spec__.loader, "set_data") or "editable" not in type(isomortar.__spec__.loader).__module__:
         pytest.skip("an installed package is compiled by its installer")
     said = subprocess.run(
-        [sys.executable, "-v", "-c", "import isomortar.cli.commands, isomortar.solve.simulation"],
+        [sys.executable, "-v", "-c", "import isomortar.cli.commands, isomortar.march.simulation"],
         capture_output=True,
         text=True,
         check=True,

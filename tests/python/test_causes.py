@@ -14,11 +14,11 @@ from isomortar.errors import ConvergenceError, InputError, SingularSystemError
 from isomortar.geometry.patch import Direction, Patch
 from isomortar.geometry.primitives import box, ring
 from isomortar.geometry.refinement import mesh
+from isomortar.march.simulation import Simulation
 from isomortar.model.contrasts import element_lengths
 from isomortar.scene import Scene
-from isomortar.solve.advice import few_points
-from isomortar.solve.doubts import doubts
-from isomortar.solve.simulation import Simulation
+from isomortar.told.before.doubts import doubts
+from isomortar.told.before.pairing import few_points
 
 #: A block pressed onto a larger one, and slid off over its edge.
 OVER_THE_EDGE = """

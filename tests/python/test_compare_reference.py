@@ -13,8 +13,8 @@ import pytest
 from compare_reference import Comparison, compare, main
 from convert_reference import convert
 
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 BLOCK = {
     "kind": ["L", "L", "L"],

@@ -11,10 +11,10 @@ from scipy import sparse
 
 from isomortar._condensed import CondensedFactors, SymmetricPattern
 from isomortar.errors import InputError, KernelError, SingularSystemError
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
 from isomortar.solve.condensed import Bodies, CondensedSystem, touched
 from isomortar.solve.equilibrium import Equilibrium
-from isomortar.solve.simulation import Simulation
 from isomortar.solve.system import LinearSystem, entries
 from isomortar.solve.timing import Ledger
 

@@ -17,12 +17,12 @@ from isomortar._codes import WORK
 from isomortar.cli.cost import totals
 from isomortar.geometry.primitives import box
 from isomortar.geometry.refinement import mesh
+from isomortar.march.simulation import Simulation
 from isomortar.model.numbering import patch_arrays
 from isomortar.scene import Scene
 from isomortar.solve.condensed import CondensedSystem
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.record import Observer, StepResult
-from isomortar.solve.simulation import Simulation
 from isomortar.solve.system import CheckedSystem, LinearSystem
 from isomortar.solve.timing import COUNTERS, Ledger
 

@@ -8,10 +8,10 @@ from pydantic import BaseModel
 
 from isomortar.geometry.patch import Direction
 from isomortar.geometry.quadrature import contact_points, volume_points
+from isomortar.march.simulation import Simulation
 from isomortar.model import constants, entities
 from isomortar.scene import Scene, primitives, schema
 from isomortar.solve.record import StepResult
-from isomortar.solve.simulation import Simulation
 
 SOLVER = {
     "method": "monolithic",

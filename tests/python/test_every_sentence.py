@@ -19,7 +19,7 @@ import test_sentences
 PACKAGE = Path(isomortar.__file__).parent
 DOCS = Path(__file__).parents[2] / "docs"
 #: Folders whose sentences are looked at, and how many spaces make one.
-LAYERS, SPACES = ("geometry", "model", "results", "scene", "solve"), 4
+LAYERS, SPACES = ("geometry", "march", "model", "results", "scene", "solve", "told"), 4
 #: What is filled in is not longer than this.
 GAP = ".{0,200}"
 #: Sentences without an example: they are not said to people, or are about what a test can not bring about.

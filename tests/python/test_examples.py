@@ -12,8 +12,8 @@ import nbclient
 import nbformat
 import numpy as np
 
+from isomortar.march.simulation import Simulation
 from isomortar.solve.equilibrium import Equilibrium
-from isomortar.solve.simulation import Simulation
 from isomortar.solve.timing import Ledger
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 
 from isomortar.errors import ConvergenceError
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
 from isomortar.scene import Scene
 from isomortar.solve import monolithic
 from isomortar.solve.extrapolation import multipliers_ahead, positions_ahead, with_rates
 from isomortar.solve.monolithic import EXTRAPOLATION
 from isomortar.solve.record import ContactRates, ContactState, State, StepResult
-from isomortar.solve.simulation import Simulation
-from isomortar.solve.unstable import FORCES
+from isomortar.told.during.unstable import FORCES
 
 #: Bodies touch in the second of four steps, and slide on in four more.
 OVERRIDES = (

@@ -9,10 +9,10 @@ import pytest
 
 from isomortar.errors import LostProjectionError
 from isomortar.geometry.patch import Direction, Patch
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
 from isomortar.scene import Scene
 from isomortar.solve.equilibrium import Equilibrium
-from isomortar.solve.simulation import Simulation
 from isomortar.solve.timing import Ledger
 
 #: The lower face of a block holds the axis of a ring: from its middle row of points the inside of the ring is equally far all round.

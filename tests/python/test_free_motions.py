@@ -7,8 +7,8 @@ import numpy as np
 from isomortar.scene import Scene
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.free_motions import free_motions
-from isomortar.solve.load_work import load_works
 from isomortar.solve.timing import Ledger
+from isomortar.told.after.load_work import load_works
 
 #: A block that a force takes along at its corner while the same support shifts it.
 SCENE = """

@@ -14,13 +14,13 @@ import isomortar
 from isomortar.errors import ConvergenceError, InputError
 from isomortar.geometry import net
 from isomortar.geometry.patch import Direction
+from isomortar.march.simulation import Simulation
 from isomortar.model.numbering import Numbering
 from isomortar.program.getfem import GetFEM
 from isomortar.results import bodies
 from isomortar.results.definition import differences, read_problem, write_problem
 from isomortar.results.reader import Results
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 
 def test_the_scenes_that_the_cases_change_are_good() -> None:

@@ -11,9 +11,9 @@ from told.wrong.contacts import PAIR
 
 from isomortar._arrays import MaterialLaw
 from isomortar.errors import InputError
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Face, Problem, Support
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 from test_advice import rational
 
 

@@ -11,6 +11,7 @@ import pytest
 from isomortar._condensed import CondensedFactors, SymmetricPattern
 from isomortar.errors import FoldedElementError, SingularSystemError
 from isomortar.geometry.patch import FloatArray
+from isomortar.march.simulation import Simulation
 from isomortar.model import constants
 from isomortar.model.entities import Problem
 from isomortar.scene import Scene
@@ -18,7 +19,6 @@ from isomortar.solve.condensed import Bodies
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.newton import KEPT_BODIES, Newton
 from isomortar.solve.record import IterationRecord, StepResult
-from isomortar.solve.simulation import Simulation
 from isomortar.solve.system import entries
 from isomortar.solve.timing import Ledger
 from isomortar.solve.uzawa import _PositionNewton

@@ -14,6 +14,8 @@ from told.wrong.loads import GOOD, HALVED, UNEVEN, WRONG
 from isomortar import run
 from isomortar.cli.check import lines
 from isomortar.errors import InputError
+from isomortar.march.outlook import outlook
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Stage
 from isomortar.model.supports import factor_at
 from isomortar.program.getfem import GetFEM
@@ -21,9 +23,7 @@ from isomortar.results.definition import read_problem, write_problem
 from isomortar.results.reader import Results
 from isomortar.scene import Scene
 from isomortar.solve.newton import CLOSED_ANEW
-from isomortar.solve.outlook import outlook
 from isomortar.solve.record import LoadResult
-from isomortar.solve.simulation import Simulation
 from stopped_runs import Stopped
 
 

@@ -10,13 +10,13 @@ import pytest
 
 from isomortar import run
 from isomortar.errors import ConvergenceError
+from isomortar.march.simulation import Simulation
 from isomortar.model import constants
 from isomortar.model.constants import EASY_ITERATIONS, HARD_TANGENTS
 from isomortar.model.entities import Motion, Problem, Stage
 from isomortar.scene import Scene
 from isomortar.solve.method import Increment
 from isomortar.solve.record import AugmentationRecord, IterationRecord, State, StepResult
-from isomortar.solve.simulation import Simulation
 from stopped_runs import Stopped
 
 SCENE = """

@@ -15,12 +15,12 @@ import pytest
 
 from isomortar.errors import InputError
 from isomortar.geometry.patch import Direction
+from isomortar.march.simulation import Simulation
 from isomortar.model import checks, memory
 from isomortar.scene import Scene
-from isomortar.solve import doubts as doubting
 from isomortar.solve.condensed import CondensedSystem
-from isomortar.solve.simulation import Simulation
 from isomortar.solve.system import LinearSystem
+from isomortar.told.before import doubts as doubting
 
 
 def scene(family: str, order: int, elements: str) -> Scene:

@@ -19,9 +19,9 @@ from isomortar._condensed import CondensedFactors
 from isomortar._distributed import DistributedFactors, is_built
 from isomortar.cli import factor
 from isomortar.errors import InputError, KernelError, SingularSystemError
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
 from isomortar.solve.condensed import CondensedSystem
-from isomortar.solve.simulation import Simulation
 from isomortar.trade.knobs import KNOBS, dials_of
 from test_condensed import RANDOM, body, factors, pattern, whole
 

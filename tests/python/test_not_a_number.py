@@ -13,11 +13,11 @@ from isomortar import _bindings
 from isomortar._sparse import SparseLU
 from isomortar.errors import ConvergenceError, IsomortarError
 from isomortar.geometry.patch import FloatArray
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
 from isomortar.solve.distances import apart, largest, ratio
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.monolithic import _BorderedIterate
-from isomortar.solve.simulation import Simulation
 from isomortar.solve.system import CheckedSystem
 from isomortar.solve.timing import Ledger
 

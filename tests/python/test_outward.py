@@ -9,8 +9,8 @@ from isomortar.geometry.faces import cells
 from isomortar.geometry.patch import FACES, Patch
 from isomortar.geometry.primitives import ring, sphere, torus
 from isomortar.geometry.refinement import mesh
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 from test_geometry import PRIMITIVES, volume
 
 BODIES = PRIMITIVES | {

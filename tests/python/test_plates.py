@@ -12,6 +12,8 @@ from told.wrong.plates import ELSEWHERE, GOOD, HALVED, ROLLS, WRONG
 from isomortar import run
 from isomortar.cli.check import lines
 from isomortar.errors import ConvergenceError, InputError
+from isomortar.march.outlook import outlook
+from isomortar.march.simulation import Simulation
 from isomortar.model.rank import rigid_rank
 from isomortar.program.getfem import GetFEM
 from isomortar.results.definition import is_longer
@@ -19,8 +21,6 @@ from isomortar.results.reader import Results
 from isomortar.scene import Scene
 from isomortar.solve.condensed import CondensedSystem
 from isomortar.solve.equilibrium import Equilibrium
-from isomortar.solve.outlook import outlook
-from isomortar.solve.simulation import Simulation
 from isomortar.solve.system import LinearSystem
 from isomortar.solve.timing import Ledger
 from stopped_runs import Stopped

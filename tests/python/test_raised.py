@@ -16,13 +16,13 @@ from isomortar.errors import InputError
 from isomortar.geometry.patch import Direction, Patch
 from isomortar.geometry.primitives import bowl
 from isomortar.geometry.refinement import mesh, raised_along
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Body, Material, Raised
 from isomortar.model.numbering import Numbering, check_raised
 from isomortar.model.raised import Rows
 from isomortar.results.definition import differences, read_problem, write_problem
 from isomortar.results.fields import body_points
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 BOWL = mesh(bowl((0.0, 0.0), 0.5, 0.0, 0.2, 0.8), ("N", "N", "N"), (2, 2, 2), (3, 2, 3))
 

@@ -32,6 +32,7 @@ from isomortar.geometry import primitives
 from isomortar.geometry.halves import upper_half
 from isomortar.geometry.patch import Direction, Patch
 from isomortar.geometry.refinement import mesh
+from isomortar.march.simulation import Simulation
 from isomortar.model import checks
 from isomortar.model.contact_checks import check_contacts
 from isomortar.model.enforcement.face import SlaveFace
@@ -43,12 +44,12 @@ from isomortar.results import files, layout
 from isomortar.results.pictures import FIELDS
 from isomortar.results.writer import ResultsWriter
 from isomortar.scene.source import apply_overrides
-from isomortar.solve import doubts, feet, singular, system
-from isomortar.solve.advice import by_default
+from isomortar.solve import feet, singular, system
 from isomortar.solve.equilibrium import Equilibrium
-from isomortar.solve.simulation import Simulation
 from isomortar.solve.singular import PairConditions
 from isomortar.solve.timing import Ledger
+from isomortar.told.before import doubts
+from isomortar.told.before.pairing import by_default
 from results_samples import problem, step_result, without_contact
 from test_advice import warnings
 from test_causes import pushed

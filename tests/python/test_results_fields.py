@@ -19,6 +19,7 @@ from vtkmodules.vtkCommonDataModel import vtkBezierHexahedron
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 from isomortar.geometry.patch import Direction
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
 from isomortar.model.numbering import Numbering
 from isomortar.results import ResultsWriter
@@ -30,7 +31,6 @@ from isomortar.results.vectors import contact_vectors
 from isomortar.results.vtu import _places
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
-from isomortar.solve.simulation import Simulation
 from results_samples import INNER, OUTER, WIDTH, problem, step_result
 
 

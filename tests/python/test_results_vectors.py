@@ -12,12 +12,12 @@ import isomortar
 from isomortar import _bindings
 from isomortar._bindings import Response
 from isomortar.geometry.patch import FloatArray
+from isomortar.march.simulation import Simulation
 from isomortar.model.enforcement import SlaveFace
 from isomortar.results.paraview import export
 from isomortar.results.vectors import contact_vectors
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
-from isomortar.solve.simulation import Simulation
 from test_results_fields import read
 
 IRON = ["bodies.slave.mesh.elements=[3,3,1]", "bodies.master.mesh.elements=[6,3,1]", "stages.press.steps=1", "stages.drag.steps=4"]

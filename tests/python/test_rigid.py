@@ -13,6 +13,7 @@ from told.wrong.rigid import GOOD, WRONG
 
 from isomortar import _bindings, export, run
 from isomortar.errors import ConvergenceError, InputError
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
 from isomortar.model.memory import memory_needed
 from isomortar.model.numbering import Numbering
@@ -20,7 +21,6 @@ from isomortar.program.getfem import GetFEM
 from isomortar.results.definition import differences, read_problem, write_problem
 from isomortar.scene import Scene
 from isomortar.solve.record import Observer
-from isomortar.solve.simulation import Simulation
 
 FREE = GOOD.replace('[supports.die]\nface = "right.w0"\ncentre = [0.5, 0.5, -1]\n', "").replace(
     "motions.die = { translate = [0, 0, 0.04]", "motions.top = { translate = [0, 0, -0.04]"

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from isomortar.geometry.patch import FloatArray
+from isomortar.march.simulation import Simulation
 from isomortar.model.constants import MAX_SECANTS
 from isomortar.model.entities import Problem
 from isomortar.scene import Scene
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.record import StepResult
 from isomortar.solve.secants import Secants
-from isomortar.solve.simulation import Simulation
 from isomortar.solve.uzawa import _PositionNewton
 
 RANDOM = np.random.default_rng(7)

@@ -30,15 +30,16 @@ from told.wrong.runs import PLATE, RUNS
 from told.wrong.singular import CORNER
 
 from isomortar.errors import IsomortarError
+from isomortar.march.simulation import Simulation
 from isomortar.model.plates import rotation
 from isomortar.results.reader import Results
 from isomortar.results.writer import ResultsWriter
 from isomortar.scene import Scene
-from isomortar.solve import doubts, pulling
-from isomortar.solve.advice import StepAdvice
-from isomortar.solve.inside_out import InsideOut
-from isomortar.solve.simulation import Simulation
-from isomortar.solve.snapping import Snapping
+from isomortar.told.before import doubts
+from isomortar.told.during import pulling
+from isomortar.told.during.advice import StepAdvice
+from isomortar.told.during.inside_out import InsideOut
+from isomortar.told.during.snapping import Snapping
 from results_samples import problem, step_result
 from test_advice import Warned, _of_weights, rational, warnings
 from test_causes import scene

@@ -9,8 +9,8 @@ import pytest
 from told.wrong.contacts import PRESS
 
 from isomortar.errors import InputError
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 
 @pytest.mark.parametrize(

@@ -11,13 +11,13 @@ from told.wrong.sides import ALL, GOOD, PAIR, WRONG
 
 import isomortar
 from isomortar.errors import InputError
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Faces
 from isomortar.model.sheet import Sheet
 from isomortar.program.getfem import GetFEM
 from isomortar.results.definition import differences
 from isomortar.results.reader import Results
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 JOINED = '["a.v1", "c.v0"], ["b.v1", "d.v0"], ["c.u1", "d.u0"]]'
 

@@ -7,10 +7,10 @@ import pytest
 from told.wrong.singular import BLOCK, CORNER, error, explained
 
 from isomortar.errors import ConvergenceError
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.record import Observer, State, StepResult
-from isomortar.solve.simulation import Simulation
 from isomortar.solve.singular import explain
 from isomortar.solve.timing import Ledger
 

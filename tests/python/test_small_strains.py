@@ -9,7 +9,7 @@ from told.wrong.contacts import PRESS
 from transforms import scaled
 
 from isomortar.scene import Scene
-from isomortar.solve.small_strains import left_out
+from isomortar.told.during.small_strains import left_out
 
 BOWL = Scene.from_toml(PRESS).problem()
 

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from isomortar.errors import ConvergenceError
+from isomortar.march.simulation import Simulation
 from isomortar.model import constants
 from isomortar.model.entities import Measure, Motion, Problem, Stage
 from isomortar.scene import Scene
@@ -18,8 +19,7 @@ from isomortar.solve import bordered, monolithic
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.newton import KEPT_FACTORS
 from isomortar.solve.record import AugmentationRecord, IterationRecord, Observer, StepResult
-from isomortar.solve.simulation import Simulation
-from isomortar.solve.unstable import FORCES
+from isomortar.told.during.unstable import FORCES
 
 TWO_BODIES = [
     "bodies.slave.mesh.elements=[2,2,1]",

@@ -12,7 +12,7 @@ CHILD = """
 import sys, threading
 from isomortar import Scene
 from isomortar.solve.record import Observer
-from isomortar.solve.simulation import Simulation
+from isomortar.march.simulation import Simulation
 
 class Enough(Exception):
     pass

@@ -12,6 +12,8 @@ from told.wrong.forces import GOOD, HALVED, WRONG
 from isomortar import run
 from isomortar.cli.check import lines
 from isomortar.errors import InputError
+from isomortar.march.outlook import outlook
+from isomortar.march.simulation import Simulation
 from isomortar.model.numbering import Numbering
 from isomortar.model.rank import rigid_rank
 from isomortar.model.supports import Supports
@@ -19,8 +21,6 @@ from isomortar.program.getfem import GetFEM
 from isomortar.results.files import read, sealed
 from isomortar.results.reader import Results
 from isomortar.scene import Scene
-from isomortar.solve.outlook import outlook
-from isomortar.solve.simulation import Simulation
 from stopped_runs import Stopped
 
 

@@ -13,13 +13,13 @@ from isomortar.geometry.patch import Direction, Patch
 from isomortar.geometry.primitives import bowl, box, ring
 from isomortar.geometry.refinement import mesh
 from isomortar.geometry.splines import Spline
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Face
 from isomortar.model.origin import about
 from isomortar.model.symmetry import _faces_in_use
 from isomortar.scene import Scene
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.record import StepResult
-from isomortar.solve.simulation import Simulation
 from isomortar.solve.timing import Ledger
 
 

@@ -39,7 +39,7 @@ print(bits.hexdigest())
 RUN = """
 import hashlib, sys
 from isomortar import Scene
-from isomortar.solve.simulation import Simulation
+from isomortar.march.simulation import Simulation
 bits = hashlib.sha256()
 for step in Simulation(Scene.load(sys.argv[1], sys.argv[2:]).problem()).run():
     for contact in step.state.contacts:

@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 from told.wrong.raised import GOOD as RAISED
 
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Raised
 from isomortar.results.bezier import functions_at
 from isomortar.results.fields import contact_surfaces
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 from isomortar.trade.advice import cheaper_dials
 from isomortar.trade.knobs import KNOBS, changed, dials_of
 from isomortar.trade.run import traded

@@ -10,9 +10,9 @@ import pytest
 from told.mistakes import MISTAKES
 
 from isomortar.errors import IsomortarError
+from isomortar.march.outlook import outlook
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
-from isomortar.solve.outlook import outlook
-from isomortar.solve.simulation import Simulation
 from test_advice import Warned
 
 

@@ -18,11 +18,11 @@ from spheres import Cap
 from isomortar.geometry.patch import FloatArray
 from isomortar.geometry.quadrature import contact_points, volume_points
 from isomortar.harness import Bound, Curve, Shown, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Body, Contact, Face, Material, Motion, Problem, RigidPlane, Stage, Support
 from isomortar.results.bezier import rational, sampling_matrix
 from isomortar.results.fields import ContactSurface, contact_surfaces
 from isomortar.solve.record import ContactResult
-from isomortar.solve.simulation import Simulation
 
 #: Radius and expected contact radius in small strain; width and height of the body over the contact radius.
 RADIUS, CONTACT, SIZE = 1.0, 0.01, 12.0

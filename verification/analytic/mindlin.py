@@ -16,10 +16,10 @@ from spheres import Cap
 from isomortar.geometry.patch import FloatArray
 from isomortar.geometry.quadrature import contact_points, volume_points
 from isomortar.harness import Bound, Curve, Shown, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Body, Contact, Face, Material, Motion, Problem, Stage, Support
 from isomortar.results.bezier import rational, sampling_matrix
 from isomortar.results.fields import ContactSurface, contact_surfaces
-from isomortar.solve.simulation import Simulation
 
 MATERIAL = Material(10.0, 0.0)
 FRICTION, RADIUS, CONTACT = 0.3, 1.0, 0.01

@@ -9,10 +9,10 @@ from isomortar.geometry.primitives import bowl
 from isomortar.geometry.quadrature import contact_points, volume_points
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import LAGRANGE, NURBS, Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Body, Contact, Face, Material, Motion, Problem, RigidPlane, SolverSettings, Stage, Support
 from isomortar.results.bezier import sampling_matrix
 from isomortar.results.fields import contact_surfaces
-from isomortar.solve.simulation import Simulation
 
 #: Elements a side, samples of the field per element.
 ELEMENTS, SAMPLES = 5, 10

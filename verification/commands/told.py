@@ -25,10 +25,10 @@ from isomortar.cli.info import lines as lines_of_file
 from isomortar.cli.progress import Detail, Progress, _minutes
 from isomortar.errors import ConvergenceError, InputError
 from isomortar.harness import Bound, case, runner
+from isomortar.march.outlook import BodyOutlook, ContactOutlook, LoadOutlook, Outlook, SupportOutlook
 from isomortar.model.entities import Problem
 from isomortar.results.reader import Results
 from isomortar.scene import Scene
-from isomortar.solve.outlook import BodyOutlook, ContactOutlook, LoadOutlook, Outlook, SupportOutlook
 from isomortar.solve.record import AugmentationRecord, IterationRecord, StepResult
 from isomortar.trade import page
 

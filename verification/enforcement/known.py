@@ -19,12 +19,12 @@ from isomortar.errors import ConvergenceError
 from isomortar.geometry.patch import FloatArray
 from isomortar.geometry.quadrature import contact_points, volume_points
 from isomortar.harness.cases import Bound, Cell, Shown, Words, measured
+from isomortar.march.simulation import Simulation
 from isomortar.model.enforcement import slave_side
 from isomortar.model.enforcement.side import PointSide
 from isomortar.model.entities import Contact, Problem, Stage
 from isomortar.model.numbering import Numbering
 from isomortar.solve.record import StepResult
-from isomortar.solve.simulation import Simulation
 
 #: Ways at order two; at the others those that stand for a method.
 WAYS: tuple[str, ...] = (

@@ -11,8 +11,8 @@ from patch_tests.contact import SLAVE_ELEMENTS, default_rule, exact_pressure, pr
 
 from isomortar.errors import ConvergenceError
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
-from isomortar.solve.simulation import Simulation
 
 PASSES = ("one", "two")
 

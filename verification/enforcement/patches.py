@@ -12,8 +12,8 @@ from patch_tests.contact import ORDERS, default_rule, errors, functions, pressur
 from patch_tests.subcells import SUBCELLS
 
 from isomortar.harness import Bound, Shown, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem, Projection
-from isomortar.solve.simulation import Simulation
 
 ROWS: tuple[str, ...] = ("mortar", IN_CELLS, *METHODS[1:])
 #: At order 5 averaged normals take as long as all other orders.

@@ -7,9 +7,9 @@ from typing import Any
 
 from isomortar.errors import ConvergenceError
 from isomortar.harness.cases import Bound, Shown, Words, measured
+from isomortar.march.simulation import Simulation
 from isomortar.scene.scene import Scene
 from isomortar.solve.record import StepResult
-from isomortar.solve.simulation import Simulation
 
 
 @measured(

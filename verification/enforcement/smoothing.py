@@ -15,9 +15,9 @@ from isomortar import _bindings
 from isomortar.geometry.primitives import box
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Body, Contact, Face, Material, Motion, Problem, RigidPlane, SolverSettings, Stage, Support
 from isomortar.solve.record import StepResult
-from isomortar.solve.simulation import Simulation
 
 #: Height of the prism, its distance from the plane, and where its top is at the end of each stage: before, at, and beyond touch.
 HEIGHT: Final = 0.5

@@ -16,6 +16,7 @@ from scipy import sparse
 from isomortar._bindings import Law, Pattern, Response
 from isomortar.geometry.patch import Direction, FloatArray, Patch
 from isomortar.harness import Bound, Shown, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.enforcement.integration import integrated
 from isomortar.model.entities import Body, Face, Problem
 from isomortar.model.numbering import Numbering
@@ -28,7 +29,6 @@ from isomortar.solve import equilibrium
 from isomortar.solve.contact import Blocks, Kinematics, PairMechanics
 from isomortar.solve.reach import ContactPatterns
 from isomortar.solve.record import ContactState, StepResult
-from isomortar.solve.simulation import Simulation
 
 #: The body that stands for the surface; it has no material, and its control points go where the nodes have them.
 _SURFACE = "surface"

@@ -14,10 +14,10 @@ from transforms import relabelled
 
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
 from isomortar.scene import Scene
 from isomortar.scene.source import dump
-from isomortar.solve.simulation import Simulation
 
 #: Modes of x86's <fenv.h>.
 MODES = {"nearest": 0x000, "downward": 0x400, "upward": 0x800, "toward zero": 0xC00}

@@ -10,11 +10,11 @@ from scipy.interpolate import BSpline
 from isomortar._bindings import SlaveArrays
 from isomortar.geometry.patch import Direction, FloatArray, IntArray, Patch
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.numbering import Numbering
 from isomortar.model.pairs import Pair
 from isomortar.results.vectors import contact_vectors
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 #: A block is pressed, turned a little and dragged; what it slides on goes another way, and its coordinates are oblique.
 _BLOCK = """

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
 from isomortar.solve.record import ContactResult
-from isomortar.solve.simulation import Simulation
 
 #: Of functions of both signs what is left of a weight beyond the master's edge may be negative.
 SCENE = """

@@ -6,7 +6,7 @@ import numpy as np
 from small_scenes import bowl
 
 from isomortar.harness import Bound, case
-from isomortar.solve.simulation import Simulation
+from isomortar.march.simulation import Simulation
 
 FRICTION = 0.3
 

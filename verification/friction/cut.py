@@ -9,11 +9,11 @@ from friction.in_parts import SCENE
 
 from isomortar.errors import ConvergenceError
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
 from isomortar.solve.method import Increment
 from isomortar.solve.monolithic import Monolithic
 from isomortar.solve.record import Observer, State, StepResult
-from isomortar.solve.simulation import Simulation
 
 #: A turn by 90 degrees goes in thirds, each of which is tried again after every cut one; what is longer than a fifth is refused.
 LONGEST, INCREMENTS = 0.2, 6

@@ -12,9 +12,9 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.geometry.primitives import box
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Body, Contact, Face, Material, Motion, Problem, RigidPlane, SolverSettings, Stage, Support
 from isomortar.solve.record import StepResult
-from isomortar.solve.simulation import Simulation
 
 FRICTION = 0.3
 #: Largest elastic slip of the prism, and its motions in these: there, hold, back, across the middle, slide, turn back, far back.

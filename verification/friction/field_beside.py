@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 #: A block of trilinear elements, a part of which is beside its master; its quadrature points are Gauss's, three by direction.
 SCENE = """

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
-from isomortar.solve.simulation import Simulation
 
 #: Two pads on planes, pressed and then dragged as they are pressed on: the one that rubs goes another way in smaller load steps.
 SCENE = """

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
-from isomortar.solve.simulation import Simulation
 
 #: A block turns on a wavy master about its axis by more than one increment may; nothing slips for ever, pressures go along.
 SCENE = """

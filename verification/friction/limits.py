@@ -11,9 +11,9 @@ from small_scenes import bowl
 
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Contact, Material, Motion, Problem, Stage
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 #: Coefficient, cohesion and largest traction.
 Numbers = tuple[float, float, float | None]

@@ -8,9 +8,9 @@ import numpy as np
 
 from isomortar.errors import ConvergenceError
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
-from isomortar.solve.simulation import Simulation
 
 YOUNG, SIDE, HEIGHT = 10.0, 1.0, 2.0
 

@@ -7,9 +7,9 @@ from typing import Final
 import numpy as np
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
-from isomortar.solve.simulation import Simulation
 
 AVERAGED: Final = "contacts.interface.projection='averaged'"
 #: A small block over four lines of its master in three load steps: by closest points Uzawa's method cuts one.

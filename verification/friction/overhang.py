@@ -6,9 +6,9 @@ import numpy as np
 from friction.virtual_work import Surface, areas, on_surface
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
 from isomortar.solve.equilibrium import Equilibrium
-from isomortar.solve.simulation import Simulation
 from isomortar.solve.timing import Ledger
 
 #: A square slave of 4 x 4 elements, two columns of which lie over a flat master whose parameters are lengths over 1 and 1.5.

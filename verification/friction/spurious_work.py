@@ -11,10 +11,10 @@ from projection.averaged import uneven
 from isomortar._bindings import Response
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
 from isomortar.scene import Scene
 from isomortar.solve.record import Reaction
-from isomortar.solve.simulation import Simulation
 
 #: Load steps of the loop, and in each the places where forces are asked; how far it goes, over elements of length 0.2.
 STEPS, PLACES = 24, 4

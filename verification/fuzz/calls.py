@@ -20,8 +20,8 @@ from isomortar._condensed import CondensedFactors, SymmetricPattern
 from isomortar._sparse import SparseLU
 from isomortar.errors import InputError, IsomortarError
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 #: Those of factors.
 _FACTORS = ("analyse", "factorise", "solve", "order", "condense", "factorise_condensed", "renew_condensed", "solve_condensed")

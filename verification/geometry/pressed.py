@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from isomortar.harness import Bound, Shown, case
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 _OCTANT = """
 format = 1

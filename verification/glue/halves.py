@@ -12,12 +12,12 @@ from transforms import orientations, oriented
 from isomortar.geometry.patch import Direction, FloatArray, Patch
 from isomortar.harness import Bound, case
 from isomortar.harness.cases import Tier
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Body, Face, Problem
 from isomortar.model.numbering import Numbering
 from isomortar.results.fields import body_points
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
-from isomortar.solve.simulation import Simulation
 
 #: One half on the other, of different heights. The sides are held across, by a support each.
 _HALVES = """

@@ -16,12 +16,12 @@ from isomortar.geometry.primitives import box
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
 from isomortar.harness.cases import Tier
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Face, Faces, Problem
 from isomortar.model.numbering import Numbering
 from isomortar.model.sheet import Sheet
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
-from isomortar.solve.simulation import Simulation
 
 #: A bowl over the tiles, its lowest point beside where they meet, pressed and moved on over that.
 _SCENE = """

@@ -10,10 +10,10 @@ from small_scenes import TIGHT
 from isomortar import _bindings
 from isomortar.harness import Bound, case
 from isomortar.harness.tangents import check_tangent
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
 from isomortar.scene import Scene
 from isomortar.solve.record import LoadResult, Reaction, StepResult
-from isomortar.solve.simulation import Simulation
 
 KINDS = ("N1", "N2", "N3", "N4", "N5", "L1", "L2", "L3", "L4")
 TRACTION = 1.5

@@ -12,10 +12,10 @@ from transforms import mirrored, moved, orientations, oriented, relabelled, scal
 
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
-from isomortar.solve.simulation import Simulation
 
 #: A pad that is begun by a support, then pressed, tilted and dragged by others, under loads of all kinds and held by an edge for a while.
 _PAD = """

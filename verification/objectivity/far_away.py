@@ -6,9 +6,9 @@ import numpy as np
 from transforms import moved
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
-from isomortar.solve.simulation import Simulation
 
 #: A block that is pressed onto another one and dragged, under its weight.
 SCENE = """

@@ -14,9 +14,9 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.geometry.primitives import box
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Enforcement, Problem, RigidPlane
 from isomortar.solve.record import StepResult
-from isomortar.solve.simulation import Simulation
 
 #: No axis, plane or round number is kept by this rotation.
 TURN = np.linalg.qr(np.array([[0.3, -1.1, 0.7], [0.9, 0.4, -0.2], [-0.5, 0.8, 1.3]]))[0]

@@ -10,8 +10,8 @@ from isomortar.geometry.primitives import bowl, box
 from isomortar.geometry.quadrature import contact_points, volume_points
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, Curve, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Body, Contact, Face, Material, Motion, Problem, Stage, Support
-from isomortar.solve.simulation import Simulation
 
 #: Elements of the bowl a side; the block has one less over a larger width. The edge of the contact lies anywhere in its element.
 MESHES = (4, 5, 6, 7, 8, 10, 12)

@@ -11,11 +11,11 @@ from isomortar.accuracy.discretisations import coarse_geometry
 from isomortar.accuracy.sampling import Grid, body_grid, slave_grid, values_at
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness.cases import Bound, Shown, measured
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
 from isomortar.results.fields import body_points, contact_surfaces
 from isomortar.scene.scene import Scene
 from isomortar.solve.record import StepResult
-from isomortar.solve.simulation import Simulation
 
 #: Cells of the grid that displacements are compared on.
 BODY_CELLS = 2000

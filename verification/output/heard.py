@@ -10,9 +10,9 @@ from output.records import unlike
 
 from isomortar.driver import run
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
 from isomortar.solve.record import AugmentationRecord, IterationRecord, Observer, StepResult
-from isomortar.solve.simulation import Simulation
 
 #: A block that is pressed far, so that increments are cut, onto a floor that it is apart from, of which it is warned.
 SCENE = """

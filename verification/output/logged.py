@@ -7,11 +7,11 @@ from typing import Literal
 import numpy as np
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.model import constants
 from isomortar.scene import Scene
 from isomortar.solve.newton import KEPT_FACTORS
 from isomortar.solve.record import AugmentationRecord, IterationRecord, Observer
-from isomortar.solve.simulation import Simulation
 
 #: Two pads on planes: one is dragged until some of it slips, by Coulomb's law or with elastic slip, the other one rubs without a slip.
 SCENE = """

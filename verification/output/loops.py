@@ -11,6 +11,7 @@ import numpy as np
 
 from isomortar.errors import ConvergenceError
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.model import constants
 from isomortar.model.entities import Problem, SolverSettings
 from isomortar.scene import Scene
@@ -18,7 +19,6 @@ from isomortar.solve.method import Increment
 from isomortar.solve.monolithic import Monolithic
 from isomortar.solve.newton import KEPT_FACTORS
 from isomortar.solve.record import IterationRecord, State, StepResult
-from isomortar.solve.simulation import Simulation
 
 #: A pad that is pressed onto a plane, and then pressed and dragged by a little more, so that some of it slips.
 SCENE = """

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
 from isomortar.solve.newton import observed_order
 from isomortar.solve.record import IterationRecord
-from isomortar.solve.simulation import Simulation
 
 #: Residuals that fall by an order each: the first two, and so many after them.
 FIRST, SECOND, MORE = 1e-2, 1e-3, 2

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
 from isomortar.solve.extrapolation import multipliers_ahead, positions_ahead
-from isomortar.solve.simulation import Simulation
 
 #: A pad that comes down onto a plane in the second of three load steps, is dragged, and lifted; beside it one that stays above another.
 SCENE = """

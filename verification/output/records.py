@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
 from isomortar.results.reader import ContactHistory, Results
 from isomortar.results.table import columns
 from isomortar.results.writer import ResultsWriter
 from isomortar.scene import Scene
 from isomortar.solve.record import AugmentationRecord, ContactRates, IterationRecord, Rates, StepResult
-from isomortar.solve.simulation import Simulation
 
 #: Two of whatever a scene has several of, and no two of the same size.
 SCENE = """

@@ -10,10 +10,10 @@ import h5py
 import numpy as np
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.results.fields import contact_surfaces
 from isomortar.results.writer import ResultsWriter
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 #: A wheel that is pressed on a block by a force and dragged with friction, and its weight; all lengths and forces by a factor.
 SCENE = """

@@ -12,7 +12,7 @@ from isomortar.accuracy.discretisations import Elements
 from isomortar.accuracy.measures import expected_order, reference_uncertainty
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, Matches, case
-from isomortar.solve.simulation import Simulation
+from isomortar.march.simulation import Simulation
 
 #: By study: its highest order that is smooth enough, and three meshes, each twice as fine as the one before in the studied directions.
 #: Not the dragging force: its ripples follow the elements that the sharp rim of the slave leaves, and change by 5 % of the force from

@@ -18,8 +18,8 @@ from isomortar.geometry.quadrature import contact_points, volume_points
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, Curve, Matches, Shown, case
 from isomortar.harness.cases import Tier
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Body, Contact, Face, Material, Motion, Problem, SolverSettings, Stage, Support
-from isomortar.solve.simulation import Simulation
 
 #: All lengths become this many times as long.
 STRETCH = 0.95

@@ -16,8 +16,8 @@ from isomortar.geometry.patch import FloatArray, Patch
 from isomortar.geometry.quadrature import contact_points, volume_points
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import LAGRANGE, NURBS, Bound, Curve, Shown, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Body, Contact, Face, Material, Motion, Problem, SolverSettings, Stage, Support
-from isomortar.solve.simulation import Simulation
 
 MATERIAL = Material()
 #: Radii of the inner bore, the joint and the outer surface before the interference.

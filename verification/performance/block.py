@@ -44,7 +44,7 @@ with loading():
     with numpy_as_loaded():
         import isomortar.cli.commands, isomortar.driver
     from isomortar.scene import Scene
-    from isomortar.solve.simulation import Simulation
+    from isomortar.march.simulation import Simulation
     problem = Scene.load("block", sys.argv[1:]).problem()
 Simulation(problem)
 """

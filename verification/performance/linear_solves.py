@@ -11,7 +11,7 @@ from performance.problems import problem
 
 from isomortar.errors import IsomortarError
 from isomortar.harness.bench import Row, benchmark
-from isomortar.solve.simulation import Simulation
+from isomortar.march.simulation import Simulation
 
 #: The methods: name and, for augmentations, their tolerance.
 METHODS = ("monolithic", "uzawa:0.01", "uzawa:1e-6")

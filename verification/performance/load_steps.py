@@ -12,8 +12,8 @@ from performance.problems import problem
 
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness.bench import Row, benchmark
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Motion, Problem
-from isomortar.solve.simulation import Simulation
 
 #: A load step by its stage and the share of the stage that is done.
 Moment = tuple[int, Fraction]

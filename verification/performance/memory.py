@@ -16,8 +16,8 @@ from performance.problems import problem
 
 from isomortar.harness.bench import Plot, Row, benchmark
 from isomortar.harness.measurement import forget_peak_memory, peak_memory
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
-from isomortar.solve.simulation import Simulation
 
 Mesh = tuple[str, str, tuple[int, int, int]]
 Answer = TypeVar("Answer")

@@ -21,8 +21,8 @@ from isomortar._condensed import BodyFactors
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness.bench import ASIDE, Row, benchmark
 from isomortar.harness.measurement import peak_memory
+from isomortar.march.simulation import Simulation
 from isomortar.program.process import ONE_THREAD, output_of
-from isomortar.solve.simulation import Simulation
 from isomortar.solve.system import CheckedSystem
 
 #: What the ranks run: each ends with a line of its own.

@@ -15,10 +15,10 @@ from scipy import sparse
 
 from isomortar.accuracy.discretisations import Discretisation, overrides, sweep_of
 from isomortar.geometry.patch import FloatArray
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
 from isomortar.scene import Scene
 from isomortar.solve.equilibrium import Equilibrium
-from isomortar.solve.simulation import Simulation
 from isomortar.solve.system import CheckedSystem, LinearSystem, Source
 from isomortar.solve.timing import Ledger
 

@@ -11,8 +11,8 @@ from performance.problems import problem
 
 from isomortar.harness.bench import Plot, Row, benchmark
 from isomortar.harness.measurement import peak_memory
+from isomortar.march.simulation import Simulation
 from isomortar.model.memory import memory_needed, memory_of_machine
-from isomortar.solve.simulation import Simulation
 
 #: Elements along the sides of the block; the third side is half as long.
 SIDES = (6, 8, 12, 16, 24, 32, 40, 48)

@@ -15,8 +15,8 @@ from unittest.mock import patch
 from isomortar import _bindings
 from isomortar.harness.bench import Row, benchmark
 from isomortar.harness.bench.declaration import REPEATS
+from isomortar.march.simulation import Simulation
 from isomortar.program.process import output_of
-from isomortar.solve.simulation import Simulation
 
 #: What a process of its own runs: OpenMP asks for the number of threads once, when it is loaded.
 PROGRAM = "import sys; from performance import threads; getattr(threads, sys.argv[1])(*map(int, sys.argv[2:]))"

@@ -6,9 +6,9 @@ import numpy as np
 from output.records import unlike
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.program.own import Isomortar
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 #: A block that is pressed onto another one and dragged, along averaged normals.
 SCENE = """

@@ -12,12 +12,12 @@ from isomortar.errors import LostProjectionError
 from isomortar.geometry.patch import Direction, FloatArray, Patch
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Body, Contact, Face, Material, Problem
 from isomortar.scene import Scene
 from isomortar.solve.contact import PairMechanics
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.record import ContactState
-from isomortar.solve.simulation import Simulation
 from isomortar.solve.timing import Ledger
 
 #: A block in a ring, its lower face nearer to the ring above than to that below.

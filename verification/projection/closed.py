@@ -12,13 +12,13 @@ from isomortar.geometry.patch import FloatArray, IntArray, Patch
 from isomortar.geometry.primitives import ring
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
 from isomortar.model.plates import rotation
 from isomortar.scene import Scene
 from isomortar.solve.contact import Kinematics
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.record import ContactState
-from isomortar.solve.simulation import Simulation
 from isomortar.solve.timing import Ledger
 
 INNER, OUTER, WIDTH = 0.3, 0.5, 0.4

@@ -12,6 +12,7 @@ from isomortar.geometry.patch import Direction, FloatArray
 from isomortar.harness import Bound, Convergence, Order, Shown, case
 from isomortar.harness.cases import Claim
 from isomortar.harness.orders import regression
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Body, Problem
 from isomortar.model.numbering import Numbering
 from isomortar.results.bezier import functions_at, rational
@@ -19,7 +20,6 @@ from isomortar.results.stress import cauchy_stress, deformation_gradient
 from isomortar.scene import Scene
 from isomortar.scene.source import dump
 from isomortar.solve.record import StepResult
-from isomortar.solve.simulation import Simulation
 
 #: Radii: of the bore, the joint, the outer surface. Young's moduli of both, and Poisson's ratio.
 BORE, JOINT, OUTSIDE = 1.0, 1.5, 2.0

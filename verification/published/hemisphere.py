@@ -9,8 +9,8 @@ from published.benchmark import Benchmark, Drawing, Known, Quantity, among, poin
 
 from isomortar.harness import Bound, Shown, case
 from isomortar.harness.cases import Claim
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 #: Lengths over half the block's width, stresses over its Young's modulus; the poles of the hemisphere are on its rim.
 #: The softer block is the slave: the hemisphere covers it to its edges, over which a slave would slide. The sphere's poles, on the rim,

@@ -9,10 +9,10 @@ import numpy as np
 from published.benchmark import Benchmark, Beside, Drawing, Quantity, among, points, ratios, reaction
 
 from isomortar.harness import Bound, Shown, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
 from isomortar.program.declaration import LoadStep
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 #: One element of unit thickness across; the underside is an exact arc of radius 0.75, 0.2 above the base.
 _SCENE = """

@@ -12,11 +12,11 @@ from published.benchmark import Benchmark, Drawing, Quantity, among, points
 
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, Shown, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
 from isomortar.scene import Scene
 from isomortar.scene.source import dump
 from isomortar.solve.record import StepResult
-from isomortar.solve.simulation import Simulation
 
 #: Quarters, mm and N; round the axis one element is exact. At the axis there is a hole of a thousandth of the radius, held as an axis is:
 #: slips along a master have coordinates everywhere, which they have not at a pole.

@@ -14,6 +14,7 @@ from scipy.optimize import brentq
 from isomortar.accuracy.discretisations import parse_kind
 from isomortar.geometry.patch import FloatArray, Patch
 from isomortar.harness import Bound, Shown, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
 from isomortar.model.numbering import Numbering
 from isomortar.results.bezier import sampling_matrix
@@ -21,7 +22,6 @@ from isomortar.results.fields import contact_surfaces
 from isomortar.scene import Scene
 from isomortar.scene.geometry_file import patch_table
 from isomortar.scene.source import dump
-from isomortar.solve.simulation import Simulation
 
 #: Both: radius and height of the punch, and of the cylinder below.
 PUNCH, CYLINDER = (50.0, 100.0), (100.0, 200.0)

@@ -11,6 +11,7 @@ from published.benchmark import Benchmark, Beside, Drawing, Known, Quantity, at_
 
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, Shown, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
 from isomortar.model.numbering import Numbering
 from isomortar.program.declaration import LoadStep
@@ -19,7 +20,6 @@ from isomortar.results.fields import contact_surfaces
 from isomortar.results.stress import cauchy_stress, deformation_gradient
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
-from isomortar.solve.simulation import Simulation
 
 #: Halves of both, a slab of unit thickness; elements are finer towards the contact, at the end of the cylinder's arc.
 _SCENE = """

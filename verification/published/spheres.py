@@ -16,13 +16,13 @@ from isomortar.geometry.primitives import sphere
 from isomortar.geometry.refinement import mesh as refined
 from isomortar.geometry.splines import Spline
 from isomortar.harness import Bound, Shown, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
 from isomortar.program.declaration import LoadStep
 from isomortar.results.fields import contact_surfaces
 from isomortar.scene import Scene
 from isomortar.scene.geometry_file import patch_table
 from isomortar.scene.source import dump
-from isomortar.solve.simulation import Simulation
 
 POISSON = 0.3
 #: Hertz's modulus and radius of both spheres, and the force that makes the approach of literature.

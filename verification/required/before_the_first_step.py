@@ -5,9 +5,9 @@ from __future__ import annotations
 import tracemalloc
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.checks import check
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 #: A plate half of whose control points are held, and nothing else.
 _PLATE = """

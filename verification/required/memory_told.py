@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.memory import blocks, factor_entries, memory_needed
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 from isomortar.solve.system import LinearSystem
 
 #: Family, order and elements of a block.

@@ -11,11 +11,11 @@ from unittest.mock import patch
 import numpy as np
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
 from isomortar.scene import Scene
 from isomortar.solve.apart import Separation
 from isomortar.solve.record import StepResult
-from isomortar.solve.simulation import Simulation
 
 #: A block held at two sides, which are bent, ten lengths above a contact's other side or ten lengths aside of it.
 _BENT = """

@@ -6,6 +6,7 @@ import numpy as np
 
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.model import constants
 from isomortar.model.entities import Problem
 from isomortar.model.numbering import Numbering
@@ -13,10 +14,9 @@ from isomortar.model.solid import Solid
 from isomortar.model.supports import Supports
 from isomortar.scene import Scene
 from isomortar.solve.condensed import Bodies, CondensedSystem
-from isomortar.solve.simulation import Simulation
 from isomortar.solve.system import LinearSystem, Source, block_product, entries
 from isomortar.solve.timing import Ledger
-from isomortar.solve.unstable import FORCES
+from isomortar.told.during.unstable import FORCES
 
 #: A block held at two sides, one of which is turned and lifted.
 BENT = """

@@ -12,9 +12,9 @@ from required.solid_alone import BENT, Plain
 from speed.instructions import CORE
 
 from isomortar.harness import Bound, case, skip
+from isomortar.march.simulation import Simulation
 from isomortar.program.process import output_of
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 #: Elements of the block, enough for what both do to be most of it.
 ELEMENTS = "bodies.block.mesh.elements=[8,8,4]"

@@ -14,13 +14,13 @@ from isomortar.harness import Bound, Curve, case
 from isomortar.harness.cases import Tier
 from isomortar.harness.tangents import BOUND, PARTS, SYMMETRY_BOUND, measure
 from isomortar.harness.visits import visited_states
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Face, Motion, Problem, Stage
 from isomortar.model.numbering import Numbering
 from isomortar.model.plates import rotation
 from isomortar.model.supports import Supports
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
-from isomortar.solve.simulation import Simulation
 
 #: A bowl on a warped block of one bilinear element: two faces have all of its control points. It is pressed, then dragged and turned.
 _BOWL = """

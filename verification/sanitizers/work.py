@@ -10,8 +10,8 @@ import sys
 from itertools import islice
 from pathlib import Path
 
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 #: Short scenes with all of contact: a press with augmentations, a twist of two bodies with friction; and how many load steps of them.
 SCENES = (

@@ -9,9 +9,9 @@ from small_scenes import at_few_points, bowl
 
 from isomortar.errors import ConvergenceError
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
 from isomortar.solve.record import StepResult
-from isomortar.solve.simulation import Simulation
 
 _TOLERANCE = (
     "definition: augmentations end where the change, the gap and the slip are each worth a hundredth of the multipliers; the monolithic "

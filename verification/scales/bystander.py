@@ -14,9 +14,9 @@ from isomortar.geometry.primitives import box
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
 from isomortar.harness.cases import Tier
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Body, Face, Material, Motion, Problem, Support
 from isomortar.solve.record import StepResult
-from isomortar.solve.simulation import Simulation
 
 METHODS = ("monolithic", "uzawa")
 #: Moduli of a body that touches nothing, beside others of 10.

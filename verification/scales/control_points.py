@@ -11,8 +11,8 @@ from isomortar import _bindings
 from isomortar._bindings import Control, Law
 from isomortar.geometry.patch import Direction, FloatArray, Patch
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Body, Contact, Face, Material, Motion, Problem, RigidPlane, SolverSettings, Stage, Support
-from isomortar.solve.simulation import Simulation
 
 
 def graded(span: float) -> Patch:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 #: Two pads on planes of their own, the second one softer and wider.
 HEAD = """

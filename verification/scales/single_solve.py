@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 #: A pad, held above, on a rigid block; all of its lower face is in contact from the first load step on.
 SCENE = """

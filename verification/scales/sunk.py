@@ -6,8 +6,8 @@ import numpy as np
 from transforms import scaled
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 #: A block of which a side goes into the plane by a share of the block's size, and the rest follows.
 SCENE = """

@@ -6,8 +6,8 @@ import numpy as np
 
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 #: A pad by name, with its place, its mesh, and what is said of its contact.
 PAD = """

@@ -9,11 +9,11 @@ from isomortar.geometry.patch import Direction, FloatArray, Patch
 from isomortar.geometry.primitives import box
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.model import constants
 from isomortar.scene import Scene
-from isomortar.solve.inside_out import Places
 from isomortar.solve.record import Observer
-from isomortar.solve.simulation import Simulation
+from isomortar.told.during.inside_out import Places
 
 #: By name family, orders, elements and the largest weight of patches; no two directions alike.
 PATCHES = {

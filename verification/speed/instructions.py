@@ -14,9 +14,9 @@ import numpy as np
 
 from isomortar._compiled import KERNEL
 from isomortar.harness import Bound, Matches, case, skip
+from isomortar.march.simulation import Simulation
 from isomortar.program.process import output_of
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 #: A small twist on a master of order 3: two deformable bodies with friction; its first two load steps, with contact in both.
 SCENE, STEPS = "twist", 2

@@ -10,8 +10,8 @@ import numpy as np
 from isomortar.errors import InputError
 from isomortar.geometry.patch import FACES
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 #: Bodies with poles, seams, and faces that are a line or a point; their elements, and a place that holds them and another one.
 BODIES = {

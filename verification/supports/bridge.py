@@ -8,11 +8,11 @@ import numpy as np
 from small_scenes import TIGHT
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Face
 from isomortar.model.origin import about
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
-from isomortar.solve.simulation import Simulation
 
 #: The bridge is master of three contacts, slave of the one with the wall; two of the three are on one of its faces.
 _SCENE = """

@@ -8,11 +8,11 @@ import numpy as np
 from small_scenes import TIGHT
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Motion, Problem, Stage, unit
 from isomortar.model.supports import factor_at
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
-from isomortar.solve.simulation import Simulation
 
 #: Scenes with one support `top` that a force moves, or a moment turns.
 SCENES = {

@@ -8,8 +8,8 @@ import numpy as np
 from small_scenes import TIGHT
 
 from isomortar.harness import Bound, Shown, case
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 #: A slice of a pipe between two rigid plates, the upper one of which goes down by half the pipe's radius, from where both just touch it.
 _PIPE = """

@@ -6,10 +6,10 @@ import numpy as np
 from scipy.optimize import brentq
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Material
 from isomortar.results.stress import first_piola_stress
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 #: A block that is pulled along z, free to contract: nothing holds a whole face of it along x or y.
 _PULLED = """

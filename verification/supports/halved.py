@@ -10,8 +10,8 @@ from transforms import moved
 
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 #: Scenes of Lagrange elements, whose functions a plane halves, each with its plane.
 SCENES = {

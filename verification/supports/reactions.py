@@ -8,9 +8,9 @@ import numpy as np
 from small_scenes import TIGHT
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 _BLOCK = """
 format = 1

@@ -8,10 +8,10 @@ import numpy as np
 from small_scenes import TIGHT
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
-from isomortar.solve.simulation import Simulation
 
 _TIGHT = "theory: forces on all control points are in balance to 1e-12 of the internal ones"
 _METHODS = ("monolithic", "uzawa")

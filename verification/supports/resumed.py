@@ -7,7 +7,7 @@ from objectivity.driven import as_it_is
 from transforms import moved
 
 from isomortar.harness import Bound, case
-from isomortar.solve.simulation import Simulation
+from isomortar.march.simulation import Simulation
 
 
 @case(

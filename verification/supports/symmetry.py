@@ -13,10 +13,10 @@ from isomortar.geometry.primitives import box
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
 from isomortar.harness.cases import Tier
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Body, Contact, Enforcement, Face, Material, Motion, Problem, RigidPlane, SolverSettings, Stage, Support
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
-from isomortar.solve.simulation import Simulation
 
 #: Half lengths of the whole block, its height, and elements along the half lengths.
 HALF, HEIGHT, ELEMENTS = (0.5, 0.4), 0.5, (3, 2)

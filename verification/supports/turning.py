@@ -9,11 +9,11 @@ from small_scenes import TIGHT
 
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.numbering import Numbering
 from isomortar.model.supports import Supports
 from isomortar.scene import Scene
 from isomortar.solve.equilibrium import Equilibrium
-from isomortar.solve.simulation import Simulation
 from isomortar.solve.system import LinearSystem, add_product, block_product
 from isomortar.solve.timing import Ledger
 

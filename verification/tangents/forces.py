@@ -8,9 +8,9 @@ import numpy as np
 from small_scenes import at_few_points, bowl
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.solve.contact import Kinematics
 from isomortar.solve.scales import Scales
-from isomortar.solve.simulation import Simulation
 
 
 def without_some(kinematics: Kinematics) -> Kinematics:

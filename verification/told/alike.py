@@ -11,9 +11,9 @@ from told.mistakes import MISTAKES
 from transforms import moved, relabelled, scaled, turned
 
 from isomortar.harness import Bound, case
+from isomortar.march.outlook import outlook
 from isomortar.model.entities import Problem
 from isomortar.scene import Scene
-from isomortar.solve.outlook import outlook
 
 #: x to y, y to z, z to x.
 TURN = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])

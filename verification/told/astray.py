@@ -9,8 +9,8 @@ import numpy as np
 from told.runs import Heard
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 #: A block that is dragged along y, straight on, over a face at z = 0.
 SCENE = """

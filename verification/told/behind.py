@@ -7,8 +7,8 @@ import re
 from told.runs import Heard
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 #: Two blocks that are pressed onto a floor, which the first one alone is in contact with.
 SCENE = """

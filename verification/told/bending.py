@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 
 from isomortar.harness import Bound, case
+from isomortar.march.outlook import outlook
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
-from isomortar.solve.outlook import outlook
-from isomortar.solve.simulation import Simulation
 
 SCENE = """
 format = 1

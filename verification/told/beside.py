@@ -8,11 +8,11 @@ import numpy as np
 
 from isomortar.errors import ConvergenceError
 from isomortar.harness import Bound, case
+from isomortar.march.outlook import outlook
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
-from isomortar.solve.causes import BESIDE, causes
-from isomortar.solve.outlook import outlook
 from isomortar.solve.record import Observer
-from isomortar.solve.simulation import Simulation
+from isomortar.told.after.causes import BESIDE, causes
 
 #: A block that begins beyond the edge x = 0 of its master by as much as START, and goes on.
 SCENE = """

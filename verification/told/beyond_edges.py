@@ -8,8 +8,8 @@ import numpy as np
 from told.runs import Heard
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 #: A strip, and a punch of some half width that is pressed into it.
 STRIP = """

@@ -9,9 +9,9 @@ import numpy as np
 from isomortar.errors import InputError
 from isomortar.geometry.patch import Patch
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 SCENE = """
 format = 1

@@ -9,10 +9,10 @@ from told.wrong.doubts import DOUBTFUL
 from transforms import with_patches
 
 from isomortar.harness import Bound, case
+from isomortar.march.outlook import outlook
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
-from isomortar.solve.doubts import doubts
-from isomortar.solve.outlook import outlook
-from isomortar.solve.simulation import Simulation
+from isomortar.told.before.doubts import doubts
 
 #: A block on a block.
 SCENE = """

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 
 from isomortar.harness import Bound, case
+from isomortar.march.outlook import outlook
 from isomortar.scene import Scene
-from isomortar.solve.outlook import outlook
 
 SCENE = """
 format = 1

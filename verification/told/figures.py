@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from isomortar.harness import Bound, case
+from isomortar.march.outlook import outlook
 from isomortar.scene import Scene
-from isomortar.solve.outlook import outlook
 
 #: A lid on a stem that is glued to it, above a plane, and a bar on its own; no two numbers are the same.
 SCENE = """

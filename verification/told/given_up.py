@@ -17,9 +17,9 @@ from told.wrong.singular import BLOCK, CORNER, error, explained
 
 from isomortar.errors import SingularSystemError
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
 from isomortar.solve.equilibrium import Equilibrium
-from isomortar.solve.simulation import Simulation
 from isomortar.solve.singular import explain
 from isomortar.solve.timing import Ledger
 from isomortar.solve.trail import toggling

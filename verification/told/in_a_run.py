@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
 from isomortar.scene import Scene
-from isomortar.solve.advice import StepAdvice
 from isomortar.solve.record import ContactResult, ContactState, StepResult
-from isomortar.solve.simulation import Simulation
+from isomortar.told.during.advice import StepAdvice
 
 #: Two contacts of which the first one is never spoken of.
 SCENE = """

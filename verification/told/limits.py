@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from isomortar.harness import Bound, case
+from isomortar.march.outlook import outlook
 from isomortar.scene import Scene
-from isomortar.solve.outlook import outlook
 
 #: A block below its master, held by its lower face; the master goes to meet it.
 SCENE = """

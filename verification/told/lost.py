@@ -10,11 +10,11 @@ import numpy as np
 
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
 from isomortar.solve.equilibrium import Balance
-from isomortar.solve.lost import DEFORMED, LOST, LostDigits
 from isomortar.solve.record import StepResult
-from isomortar.solve.simulation import Simulation
+from isomortar.told.during.lost import DEFORMED, LOST, LostDigits
 
 #: A block between a rigid plane and another block, of size 2, on whose upper side a load is.
 SCENE = """

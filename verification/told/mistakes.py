@@ -8,8 +8,8 @@ from pathlib import Path
 
 from isomortar.errors import IsomortarError
 from isomortar.harness import Bound, case
+from isomortar.march.outlook import outlook
 from isomortar.scene import Scene
-from isomortar.solve.outlook import outlook
 
 #: A scene that comes with the program, what is changed in it, where it is noticed, and words of what is said.
 MISTAKES = Path(__file__).parent / "wrong_models.toml"

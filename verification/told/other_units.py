@@ -11,10 +11,10 @@ from told.wrong.runs import RUNS
 from transforms import scaled
 
 from isomortar.harness import Bound, case
+from isomortar.march.outlook import outlook
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
 from isomortar.scene import Scene
-from isomortar.solve.outlook import outlook
-from isomortar.solve.simulation import Simulation
 
 #: Doubts about a number in metres and seconds.
 OF_ONE_UNIT = {"acceleration"}

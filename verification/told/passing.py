@@ -7,8 +7,8 @@ import re
 from told.runs import Heard
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 #: A beam that a pressure bends towards a block below its end; a first look moves bodies as they are, and sees nothing.
 SCENE = """

@@ -5,9 +5,9 @@ from __future__ import annotations
 from told.wrong.runs import PLATE, RUNS
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
 from isomortar.solve.record import Observer
-from isomortar.solve.simulation import Simulation
 
 #: What is said of a scene before it runs.
 BEFORE = ("in each load step", "at the start", "nothing will happen", "the same state again", "feels no contact")

@@ -10,11 +10,11 @@ import numpy as np
 from told.wrong.singular import CORNER
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.record import StepResult
-from isomortar.solve.sharing import Sharing
-from isomortar.solve.simulation import Simulation
+from isomortar.told.during.sharing import Sharing
 
 TOLD = re.compile(r"contacts 'floor' and 'wall', load step 1: (\d+) slave control points at the edge between them bear on both and stick")
 STATES = OPEN, STICK, SLIP = 0, 1, 2

@@ -8,8 +8,8 @@ import numpy as np
 
 from isomortar.errors import ConvergenceError
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 #: A block of weight 0.6 on an incline, given by loads that lean: friction bears 0.18 along it.
 SCENE = """

@@ -8,8 +8,8 @@ import numpy as np
 from told.runs import Heard
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 #: A slender column under a plate that slides on it, clamped below.
 COLUMN = """

@@ -8,9 +8,9 @@ import numpy as np
 from solid.too_few_points import in_turn
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 
 #: A column with such weights, pressed on a plane or on a block that it meets element by element; nothing is held across.
 SCENE = """

@@ -10,9 +10,9 @@ from told.wrong import choices, contacts, doubts, forces, halves, joints, keys, 
 
 from isomortar.errors import IsomortarError
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
-from isomortar.solve import doubts as told_of
-from isomortar.solve.simulation import Simulation
+from isomortar.told.before import doubts as told_of
 
 SENTENCES = Path(__file__).parent / "sentences.toml"
 

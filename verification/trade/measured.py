@@ -10,8 +10,8 @@ from rational_functions import shares
 
 from isomortar.accuracy.sampling import slave_grid
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
-from isomortar.solve.simulation import Simulation
 from isomortar.trade import run as trades
 
 #: Half of a bowl that is pressed onto a plane and dragged along it; a wall that it does not reach.

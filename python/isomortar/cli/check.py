@@ -14,8 +14,8 @@ from isomortar.cli.options import Overrides, SceneArgument
 from isomortar.cli.words import many
 
 if TYPE_CHECKING:
+    from isomortar.march.outlook import BodyOutlook, ContactOutlook, LoadOutlook, Outlook, SupportOutlook
     from isomortar.model.entities import Problem
-    from isomortar.solve.outlook import BodyOutlook, ContactOutlook, LoadOutlook, Outlook, SupportOutlook
 
 
 def check(
@@ -38,7 +38,7 @@ def check(
 
 def show(problem: Problem, as_json: bool = False) -> None:
     """Print what a problem looks like before it is computed."""
-    from isomortar.solve.outlook import outlook
+    from isomortar.march.outlook import outlook
 
     found = outlook(problem)
     if as_json:

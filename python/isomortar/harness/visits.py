@@ -10,10 +10,10 @@ import numpy as np
 from isomortar._bindings import Law, Response
 from isomortar.errors import InputError
 from isomortar.geometry.patch import FloatArray
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
 from isomortar.solve.contact import Kinematics, PairMechanics
 from isomortar.solve.record import ContactState
-from isomortar.solve.simulation import Simulation
 
 
 @dataclass(frozen=True)

@@ -430,6 +430,10 @@ class Problem:
         ends = np.cumsum([stage.steps for stage in self.stages])
         return int(np.searchsorted(ends, step))
 
+    def ends_stage(self, step: int) -> bool:
+        """Whether a load step is the last one of its stage: the next one does not go on as it did."""
+        return step in np.cumsum([stage.steps for stage in self.stages])
+
     @property
     def given_supports(self) -> tuple[Support, ...]:
         """Its supports but for those that hold planes of symmetry, which come last."""

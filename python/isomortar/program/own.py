@@ -7,10 +7,10 @@ from time import process_time
 import numpy as np
 
 from isomortar.errors import ConvergenceError
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
 from isomortar.program.declaration import LoadStep, Outcome
 from isomortar.program.process import Ending
-from isomortar.solve.simulation import Simulation
 
 
 class Isomortar:

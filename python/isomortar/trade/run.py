@@ -12,12 +12,12 @@ from isomortar.accuracy.sampling import Grid, slave_grid, values_at
 from isomortar.errors import LostProjectionError
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness.cases import Bound, Shown, measured
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
 from isomortar.results.fields import ContactSurface, contact_surfaces
 from isomortar.results.gaps import gaps
 from isomortar.scene.scene import Scene
 from isomortar.solve.record import StepResult
-from isomortar.solve.simulation import Simulation
 from isomortar.solve.timing import PHASES
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from isomortar.errors import ConvergenceError
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
-from isomortar.solve.causes import causes
-from isomortar.solve.simulation import Simulation
+from isomortar.told.after.causes import causes
 
 SCENE = """
 format = 1

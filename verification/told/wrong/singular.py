@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from isomortar.errors import ConvergenceError
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
 from isomortar.solve.equilibrium import Equilibrium
-from isomortar.solve.simulation import Simulation
 from isomortar.solve.singular import PairConditions, explain
 from isomortar.solve.timing import Ledger
 

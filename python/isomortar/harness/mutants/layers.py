@@ -113,7 +113,7 @@ LAYERS = {
             name="python",
             folder=Path("python/isomortar"),
             suffix=".py",
-            parts=("accuracy", "geometry", "model", "results", "scene", "solve", "trade"),
+            parts=("accuracy", "geometry", "march", "model", "results", "scene", "solve", "told", "trade"),
             left_out={
                 "results/style.py": "colours and sizes of figures",
                 "trade/figures.py": "figures of a page",

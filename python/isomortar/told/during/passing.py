@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 from functools import cached_property
 
 from isomortar.model.entities import Body, Problem
-from isomortar.solve.left_out import unrelated, without_contact
-from isomortar.solve.meeting import depth
+from isomortar.told.before.left_out import unrelated, without_contact
+from isomortar.told.before.meeting import depth
 
 #: Depth over the size of the smaller body from which bodies are in each other: cells are flat, and faces between them are not.
 PASSED = 0.01

@@ -10,10 +10,10 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.free_motions import FreeMotion, direction, going
-from isomortar.solve.limit_load import Touch, along_contact, least_resisted, pressed_bed
-from isomortar.solve.load_work import borne_loads
-from isomortar.solve.more_friction import more_friction
 from isomortar.solve.record import State
+from isomortar.told.after.limit_load import Touch, along_contact, least_resisted, pressed_bed
+from isomortar.told.after.load_work import borne_loads
+from isomortar.told.after.more_friction import more_friction
 
 #: Share of what friction can bear from which on it is told of: pressures are those below a rigid body, which moments notice.
 ALL = 0.9

@@ -14,7 +14,7 @@ from isomortar.model.sheet import Sheet
 from isomortar.model.supports import BoolArray
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.feet import slave_points
-from isomortar.solve.softness import softness
+from isomortar.told.during.softness import softness
 
 #: Share of the force by which an edge of the master makes contact too stiff, times the width in elements that is over the master: fitted to
 #: punches, of widths from a fifth of an element to ten, on blocks of order 1 to 3.

@@ -12,10 +12,10 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.feet import gaps
 from isomortar.solve.free_motions import FreeMotion, direction, going
-from isomortar.solve.limit_load import ALONG, Touch
-from isomortar.solve.load_work import borne_loads
 from isomortar.solve.record import ContactState, State
 from isomortar.solve.touching import next_to_nothing
+from isomortar.told.after.limit_load import ALONG, Touch
+from isomortar.told.after.load_work import borne_loads
 
 #: Bodies that bear on less than this share of what is over the master are on its edge: soft ones are over it before rigid ones would be.
 EDGE = 1.0 / 3.0

@@ -22,16 +22,16 @@ from isomortar.model.pairs import Pair
 from isomortar.model.rational import QUADRATURE_TOLD, quadrature_error, too_few_points
 from isomortar.model.rational_faces import pressure_error, too_few_points_of
 from isomortar.model.stance import FACING, Stance, stance
-from isomortar.solve.doubtful_edges import of_edges
-from isomortar.solve.doubtful_faces import of_faces
-from isomortar.solve.doubtful_meshes import of_meshes
-from isomortar.solve.doubtful_motions import FLAT, approach, between, in_far_steps, nearest_approach, of_motions
-from isomortar.solve.doubtful_sizes import of_sizes
-from isomortar.solve.doubtful_turns import of_rolling, of_turns
 from isomortar.solve.feet import gaps
-from isomortar.solve.left_out import of_what_is_left_out
-from isomortar.solve.poles import doubts_at_poles
 from isomortar.solve.record import State
+from isomortar.told.before.edges import of_edges
+from isomortar.told.before.faces import of_faces
+from isomortar.told.before.left_out import of_what_is_left_out
+from isomortar.told.before.meshes import of_meshes
+from isomortar.told.before.motions import FLAT, approach, between, in_far_steps, nearest_approach, of_motions
+from isomortar.told.before.poles import doubts_at_poles
+from isomortar.told.before.sizes import of_sizes
+from isomortar.told.before.turns import of_rolling, of_turns
 
 #: An overlap of less than this share of the thinner body may be round-off of the geometry; what is more is told.
 TOLD_OVERLAP = 0.02

@@ -13,13 +13,13 @@ from isomortar.model.entities import Contact, Problem
 from isomortar.model.pairs import Pair
 from isomortar.model.shares import percent
 from isomortar.model.sheet import Sheet
-from isomortar.solve.beyond_edges import beyond_edges, told
-from isomortar.solve.borne import Borne
 from isomortar.solve.contact import PairMechanics, PutOff
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.feet import gaps
 from isomortar.solve.record import ContactState
-from isomortar.solve.softness import softness
+from isomortar.told.during.beyond_edges import beyond_edges, told
+from isomortar.told.during.borne import Borne
+from isomortar.told.during.softness import softness
 
 #: Rows that bear contact below which it is told, in both directions, or in one with functions that have kinks: there forces of balls and
 #: cylinders on blocks were off by up to a third. A single row of smooth functions along a line cost less than 7 %, two rows a tenth, more

@@ -1,4 +1,4 @@
-"""Warnings that help: what a scene or a step shows that is likely to disappoint, and what to do about it."""
+"""Warnings at load steps: what contacts show that is likely to disappoint, and what to do about it."""
 
 from __future__ import annotations
 
@@ -6,84 +6,14 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from isomortar.model.contrasts import element_lengths
-from isomortar.model.entities import Contact, Face, Problem, RigidPlane
-from isomortar.model.sheet import Sheet
-from isomortar.solve.borne import Borne
-from isomortar.solve.contact import PairMechanics
+from isomortar.model.entities import Problem
 from isomortar.solve.record import ContactResult, ContactState
+from isomortar.told.during.borne import Borne
 
-#: A slave this many times stiffer than its master, and finer, has nearly redundant constraints (theory 6).
-STIFFER = 10.0
 #: Control pressures this many times above the field's largest value oscillate.
 OSCILLATION = 1.5
-#: Quadrature points are to be no farther apart than elements of the master are long; by this factor, for round-off.
-ENOUGH = 0.99
 #: Spurious work over friction work above which the master is too coarse.
 SPURIOUS = 0.02
-
-
-def advice_on_problem(problem: Problem, pairs: Sequence[PairMechanics]) -> Iterator[str]:
-    """Warnings that are due before the first load step."""
-    for contact, pair in zip(problem.contacts, pairs, strict=True):
-        if isinstance(contact.master, RigidPlane):
-            continue
-        slave, master = Sheet.of(problem, contact.slave), Sheet.of(problem, contact.master)
-        stiffer = _softest(slave) / max(body.modulus for body in master.bodies)
-        elements = np.prod(pair.pair.master_elements)
-        master_area = _area(master.patch.control_points[master.patch.face_points(master.face)])
-        finer = (master_area / elements) / (pair.pair.area / pair.pair.slave.elements)
-        if stiffer > STIFFER and finer > 1.0:
-            how = "rigid" if slave.rigid else f"{stiffer:.0f} times stiffer"
-            yield (
-                f"contact {contact.name!r}: the slave {contact.slave.body!r} is {how} and its elements "
-                f"are {finer:.1f} times smaller than the master's; control pressures may be far off. Swap slave and master, or refine the "
-                "master"
-            )
-    for contact in problem.contacts:
-        yield from few_points(problem, contact)
-        yield from by_default(contact)
-
-
-def by_default(contact: Contact) -> Iterator[str]:
-    """Averaged normals that nobody asked for."""
-    if contact.by_default and isinstance(contact.master, Face):
-        yield (
-            f"contact {contact.name!r}: the master {contact.master.words} has C0 lines, which are kinks once it "
-            f'deforms: feet are found along averaged normals. contacts.{contact.name}.projection = "averaged" says that this is meant, '
-            '"closest" takes closest points'
-        )
-
-
-def few_points(problem: Problem, contact: Contact) -> Iterator[str]:
-    """Slaves whose quadrature points are farther apart than their master's elements are long: some of these bear nothing (theory 9.5)."""
-    if isinstance(contact.master, RigidPlane):
-        return
-    slave, master = Sheet.of(problem, contact.slave), Sheet.of(problem, contact.master)
-    apart = _element_size(slave) / (2**contact.subcells * np.sqrt(np.prod(contact.quadrature)))
-    share = float(_element_size(master) / apart)
-    if share < ENOUGH and max(body.modulus for body in slave.bodies) >= _softest(master):
-        needed = [int(np.ceil(2.0 * points / share)) for points in contact.quadrature]
-        yield (
-            f"contact {contact.name!r}: quadrature points of the slave are {1.0 / share:.1f} elements of its softer or equal master apart, "
-            f"which dents between them. Swap slave and master, refine the slave, or take contacts.{contact.name}.quadrature = {needed}"
-        )
-
-
-def _softest(sheet: Sheet) -> float:
-    """Modulus of the softest of a sheet's bodies."""
-    return min(body.modulus for body in sheet.bodies)
-
-
-def _element_size(sheet: Sheet) -> float:
-    """Typical length of the elements at a side of a contact."""
-    lengths = element_lengths(sheet.patch)
-    return float(np.sqrt(np.prod([np.median(of_direction) for of_direction in lengths[:2]])))
-
-
-def _area(points: np.ndarray) -> float:
-    """Rough area of a face: product of the two largest extents of its control points."""
-    return float(np.prod(np.sort(np.ptp(points, axis=0))[1:]))
 
 
 class StepAdvice:

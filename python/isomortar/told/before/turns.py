@@ -11,7 +11,7 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.model.constants import NO_PART
 from isomortar.model.entities import Contact, Face, Problem, Support, unit
 from isomortar.model.sheet import Sheet
-from isomortar.solve.doubtful_motions import FLAT, piece_of
+from isomortar.told.before.motions import FLAT, piece_of
 
 #: Angles that people give in radians, over pi, and how near to one a number of degrees has to be: 3.14 is meant as well.
 RADIANS = {1 / 6: "pi/6", 1 / 4: "pi/4", 1 / 3: "pi/3", 1 / 2: "pi/2", 2 / 3: "2 pi/3", 3 / 4: "3 pi/4", 5 / 6: "5 pi/6", 1.0: "pi"}

@@ -12,8 +12,8 @@ from isomortar.model import constants
 from isomortar.model.rank import extent
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.free_motions import FreeMotion, free_motions
-from isomortar.solve.limit_load import Touch, touches_of
 from isomortar.solve.record import State
+from isomortar.told.after.limit_load import Touch, touches_of
 
 
 def borne_loads(equilibrium: Equilibrium, state: State) -> tuple[list[FreeMotion], FloatArray, list[Touch]]:

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from isomortar.geometry.patch import IntArray
+from isomortar.march.simulation import Simulation
 from isomortar.model.contrasts import element_lengths
 from isomortar.model.entities import Body, Contact, Problem, RigidPlane, Support
 from isomortar.model.glue import pieces
 from isomortar.model.memory import memory_needed
 from isomortar.model.rank import rigid_rank
 from isomortar.model.stance import stance
-from isomortar.solve.simulation import Simulation
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,8 @@ from isomortar.solve.contact import PairMechanics
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.free_motions import free_motions
 from isomortar.solve.metric import traction_norms
-from isomortar.solve.more_friction import more_friction
 from isomortar.solve.record import ContactState, State
+from isomortar.told.after.more_friction import more_friction
 
 #: Share of what friction can bear above which a body is about to slide: what the last load increment before adds is less than the rest.
 ALL = 0.9

@@ -13,13 +13,13 @@ from isomortar.model import constants
 from isomortar.model.contrasts import element_lengths
 from isomortar.model.entities import Body, Contact, Problem
 from isomortar.model.sheet import Sheet
-from isomortar.solve.advice import few_points
 from isomortar.solve.contact import PairMechanics
 from isomortar.solve.equilibrium import Equilibrium
-from isomortar.solve.overcome import overcome
 from isomortar.solve.record import State
-from isomortar.solve.sliding import sliding
-from isomortar.solve.tipping import tipping
+from isomortar.told.after.overcome import overcome
+from isomortar.told.after.sliding import sliding
+from isomortar.told.after.tipping import tipping
+from isomortar.told.before.pairing import few_points
 
 #: Volume ratios below this one are those of elements about to fold.
 FLAT = 0.1

@@ -1,0 +1,1 @@
+"""The march through the load steps, and what is recorded of each."""

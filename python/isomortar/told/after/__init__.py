@@ -1,0 +1,1 @@
+"""What a load step that is given up may be due to."""

@@ -1,0 +1,1 @@
+"""What is doubtful of a scene before its first load step."""
