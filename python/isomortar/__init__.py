@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from isomortar.cli.progress import progress as progress
     from isomortar.driver import run as run
     from isomortar.errors import IsomortarError as IsomortarError
+    from isomortar.errors import IsomortarWarning as IsomortarWarning
     from isomortar.march.simulation import Simulation as Simulation
     from isomortar.results.film import film as film
     from isomortar.results.paraview import export as export
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
 
 _HOMES = {
     "IsomortarError": "errors",
+    "IsomortarWarning": "errors",
     "Observer": "solve.record",
     "Results": "results.reader",
     "Scene": "scene.scene",
@@ -40,7 +42,20 @@ _HOMES = {
     "view": "results.view",
 }
 
-__all__ = ["IsomortarError", "Observer", "Results", "Scene", "Simulation", "export", "film", "plot", "progress", "run", "view"]
+__all__ = [
+    "IsomortarError",
+    "IsomortarWarning",
+    "Observer",
+    "Results",
+    "Scene",
+    "Simulation",
+    "export",
+    "film",
+    "plot",
+    "progress",
+    "run",
+    "view",
+]
 
 
 def __getattr__(name: str) -> Any:

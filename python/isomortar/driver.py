@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
+import sys
+import warnings
 from collections.abc import Callable
 from importlib.metadata import version
 from pathlib import Path
 
-from isomortar.errors import InputError, ResultsError
+from isomortar.errors import ConvergenceError, InputError, IsomortarWarning, ResultsError
 from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
 from isomortar.results.files import claimed, is_marked
@@ -35,7 +37,8 @@ def run(
         The results file, complete up to the last load step at any moment; default ``results/NAME.h5``. Its folder is made if it does not
         exist.
     observer : Observer, optional
-        Watches; of a recorded step it hears when that is on the disk.
+        Watches; of a recorded step it hears when that is on the disk. Without one what is doubtful becomes Python's own warnings, of the
+        category `IsomortarWarning`.
     resume : bool
         Go on after the last load step of the file; begin where there is no file; nothing is computed where all is there.
     overwrite : bool
@@ -58,7 +61,7 @@ def run(
         written.
     """
     chosen = scene if isinstance(scene, Scene) else Scene.load(os.fspath(scene))
-    return compute(chosen, chosen.problem(), Path(output or results_path(chosen)), observer or Observer(), resume, overwrite)
+    return compute(chosen, chosen.problem(), Path(output or results_path(chosen)), observer or _Aloud(), resume, overwrite)
 
 
 def results_path(scene: Scene) -> Path:
@@ -74,8 +77,14 @@ def compute(scene: Scene, problem: Problem, path: Path, observer: Observer, resu
         def open_writer() -> ResultsWriter:
             return ResultsWriter(path, problem, scene.to_toml(), version("isomortar"), scene.record.states, resume, not resume)
 
-        for _ in Simulation(problem, _Recorder(open_writer, observer), last).run():
-            pass
+        recorder = _Recorder(open_writer, observer)
+        try:
+            for _ in Simulation(problem, recorder, last).run():
+                pass
+        except ConvergenceError:
+            recorder.ended()
+            raise
+        recorder.ended()
     return Results(path)
 
 
@@ -124,4 +133,19 @@ class _Recorder(Observer):
         self._observer.recorded(result)
 
     def warned(self, message: str) -> None:
+        self._writer.warned(message)
         self._observer.warned(message)
+
+    def ended(self) -> None:
+        """Have all on the disk that was told."""
+        self._writer.ended()
+
+
+class _Aloud(Observer):
+    """Says what is doubtful by Python's own warnings, with the line that runs the scene."""
+
+    def warned(self, message: str) -> None:
+        frame, depth = sys._getframe(), 1
+        while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] == __package__:
+            frame, depth = frame.f_back, depth + 1
+        warnings.warn(message, IsomortarWarning, stacklevel=depth)

@@ -7,6 +7,10 @@ class IsomortarError(Exception):
     """Base of every error that isomortar raises on purpose. Its text says what, where and what to do."""
 
 
+class IsomortarWarning(UserWarning):
+    """What is doubtful of a scene or a run, where nothing else hears it. Its text says what, where and what to do."""
+
+
 class InputError(IsomortarError, ValueError):
     """The input is wrong. Raised before any work starts.
 

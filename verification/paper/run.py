@@ -13,6 +13,7 @@ from isomortar.harness.cases import Bound, Shown, measured
 from isomortar.harness.store import program_hash
 from isomortar.results.reader import Results
 from isomortar.scene.scene import Scene
+from isomortar.solve.record import Observer
 
 
 @measured(
@@ -42,7 +43,7 @@ from isomortar.scene.scene import Scene
 def computed(scene: str) -> dict[str, Any]:
     """Curves of a scene file's run, and what it cost."""
     path = Path(scene)
-    with run(Scene.load(path), results_file(path), resume=True) as results:
+    with run(Scene.load(path), results_file(path), Observer(), resume=True) as results:
         return curves(results)
 
 

@@ -75,7 +75,7 @@ def examined(scene: Scene) -> Iterator[Examined]:
 
     with TemporaryDirectory() as folder:
         path = Path(folder) / "doctor.h5"
-        run(scene, path).close()
+        run(scene, path, isomortar.Observer()).close()
         with isomortar.Results(path) as results:
             steps = [results.step(int(number)) for number in results.steps]
     forces = np.array([[reaction.force for reaction in step.reactions] for step in steps])

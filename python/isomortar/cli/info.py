@@ -72,6 +72,8 @@ class Information:
     contacts : tuple of ContactEnd
     supports : tuple of SupportEnd
     loads : tuple of LoadEnd
+    warnings : tuple of str
+        What was told of the scene and its run.
     """
 
     name: str
@@ -87,15 +89,16 @@ class Information:
     contacts: tuple[ContactEnd, ...]
     supports: tuple[SupportEnd, ...]
     loads: tuple[LoadEnd, ...]
+    warnings: tuple[str, ...]
 
 
 def info(
     results: ResultsArgument,
     as_json: Annotated[bool, typer.Option("--json", help="Print all of it as JSON.")] = False,
 ) -> None:
-    """Say what a results file holds, how far its computation came, and how its contacts and supports stand at the last load step.
+    """Say what a results file holds, how far its computation came, how its contacts and supports stand, and what was doubtful.
 
-    Works while the computation is still running.
+    Contacts and supports are those of the last load step. Works while the computation is still running.
 
     For example:
 
@@ -133,6 +136,7 @@ def information(results: isomortar.Results) -> Information:
         contacts=tuple(_contacts(results, last)) if last else (),
         supports=tuple(_supports(results, last)) if last else (),
         loads=tuple(_loads(results, last)) if last else (),
+        warnings=results.warnings,
     )
 
 
@@ -178,6 +182,8 @@ def lines(found: Information, path: Path) -> Iterator[str]:
         yield f"support {support.name}: force ({_row(support.force)}), moment ({_row(support.moment)}), {way}"
     for load in found.loads:
         yield f"load {load.name}: force ({_row(load.force)}), moment ({_row(load.moment)})"
+    for warning in found.warnings:
+        yield f"warning: {warning}"
     if found.recorded < found.load_steps:
         yield f"not at its end: isomortar run SCENE --resume --output {path} goes on"
 

@@ -15,6 +15,7 @@ The program knows no units; `unit` names the dimension in terms of the scene's o
     /log/augmentations           one row an augmentation, in the order in which they happened
     /log/iterations              one row a Newton iteration, in the order in which they happened
     /log/notes                   one row a note of a Newton iteration
+    /log/warnings                one row a warning, each once, in the order in which they were told
     /states/...                  one row a kept state: positions, control pressures, ...: enough to restart
     /rates/...                   one row a kept state, NaN where the next step does not go on like that: part of what a restart needs
 """
@@ -202,8 +203,10 @@ _ITERATIONS = Quantity(
 
 _NOTES = Quantity(TEXT, "text", "what acted in a Newton iteration, in the order of the iterations")
 
-#: Named as the datasets of the log.
-LOG = {"augmentations": _AUGMENTATIONS, "iterations": _ITERATIONS, "notes": _NOTES}
+_WARNINGS = Quantity(TEXT, "text", "what was told of the scene and its run, each sentence once, in the order in which it was told")
+
+#: Named as the datasets of the log; warnings were not always among them.
+LOG = {"augmentations": _AUGMENTATIONS, "iterations": _ITERATIONS, "notes": _NOTES, "warnings": _WARNINGS}
 
 CONTROL_POINTS = _real("length", "control points in the reference configuration, first direction fastest")
 WEIGHTS = _real("1", "weights of the control points, not multiplied into them")

@@ -132,6 +132,11 @@ class Results:
         """Stage of each recorded load step."""
         return [text.decode() for text in self._rows("curves/stage")]
 
+    @cached_property
+    def warnings(self) -> tuple[str, ...]:
+        """What was told of the scene and its run, each sentence once; none of files from before it was kept."""
+        return self._read(lambda file: tuple(text.decode() for text in file["log/warnings"][()]) if "warnings" in file["log"] else ())
+
     def curve(
         self,
         quantity: str,

@@ -96,6 +96,7 @@ class ResultsWriter(Observer):
         self._problem = problem
         self._states = states
         self._longer: str | None = None
+        self._unstored = False
         if overwrite or not self.path.exists():
             self._hold(h5py.File.in_memory(libver=LIBVER))
             self._begin(scene_text, version)
@@ -107,12 +108,25 @@ class ResultsWriter(Observer):
         else:
             raise ResultsError(f"{self.path} exists already: resume it, overwrite it, or name another results file")
 
+    def warned(self, message: str) -> None:
+        """Append the warning, if it is not there yet; it is on the disk with the next load step, or at the end."""
+        if "warnings" not in self._file["log"]:
+            self._datasets.make("log", {"warnings": layout.LOG["warnings"]})
+        if message.encode() not in self._file["log/warnings"][()]:
+            self._datasets.extend("log/warnings", [message])
+            self._unstored = True
+
     def recorded(self, result: StepResult) -> None:
         """Append the step; on return it is on the disk."""
         self._lengthen()
         self._renew()
         self._append(result)
         self._store()
+
+    def ended(self) -> None:
+        """Put on the disk what was told after the last load step."""
+        if self._unstored:
+            self._store()
 
     def _hold(self, file: h5py.File) -> None:
         self._file, self._datasets = file, Datasets(file)
@@ -122,6 +136,7 @@ class ResultsWriter(Observer):
         self._file.flush()
         image = self._file.id.get_file_image()
         replace(self.path, seal(image), image)
+        self._unstored = False
 
     def _begin(self, scene_text: str, version: str) -> None:
         file, make = self._file, self._datasets.make
