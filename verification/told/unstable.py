@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from itertools import product
 
 import numpy as np
 from told.runs import Heard
@@ -10,6 +11,7 @@ from told.runs import Heard
 from isomortar.harness import Bound, case
 from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
+from isomortar.solve.equilibrium import Equilibrium
 
 #: A slender column under a plate that slides on it, clamped below.
 COLUMN = """
@@ -42,6 +44,17 @@ contacts.floor = { slave = "c.w0", plane = { point = [0, 0, -1] } }
 supports = { low.face = "c.w0", high.face = "c.w1" }
 stages = [{ name = "stand", steps = 1 }]
 """
+#: A block that is pressed onto a floor, and sticks or slips there.
+BLOCK = """
+format = 1
+bodies.block.geometry = { kind = "box", lower = [0, 0, 0], upper = [1, WIDE, 1] }
+bodies.block.mesh = { order = ORDER, elements = ELEMENTS }
+contacts.floor = { slave = "block.w0", plane = { point = [0, 0, 0], normal = [0, 0, 1] }, friction = FRICTION }
+supports.top.face = "block.w1"
+stages = [{ name = "press", steps = 2, motions.top.translate = [ASIDE, 0, -0.1] }]
+"""
+#: Eigenvalue of what forces move, over the largest, down to which it is round-off.
+ROUND_OFF = -1e-9
 BENDING, AREA = 1e4 * 0.1 * 0.04**3 / 12.0, 0.1 * 0.04
 #: Euler's loads over pi^2 EI / L^2, by what holds the upper end: nothing, its turn, its turn and its way as well.
 EULER = {"free": 0.25, "sliding": 1.0, "sticking": 4.0}
@@ -81,6 +94,38 @@ def buckles(end: str, method: str) -> dict[str, float]:
     """What is said of both."""
     below, above = (told(column(end, share, method)) for share in (0.92, 1.08))
     return {"below": float(len(below)), "above": float(sum(abs(float(found[3].split(",")[0])) > 0.99 for found in above))}
+
+
+def against(equilibrium: Equilibrium) -> int:
+    """How many motions all unit forces, each moving what it does, have that go against what makes them: real eigenvalues below zero."""
+    moved = np.array([equilibrium.moved_by(force) for force in np.eye(len(equilibrium.supports.free))])
+    values = np.linalg.eigvals(moved)
+    largest = np.abs(values).max() if np.abs(moved).max() > 1e-9 else np.inf
+    return int(np.sum((np.abs(values.imag) < -ROUND_OFF * largest) & (values.real < ROUND_OFF * largest)))
+
+
+@case(
+    claim="A block that friction holds, or that slips, in its middle or at once, is not said to buckle: forces that slip turn aside go "
+    "against what they move as a whole, and where all is held nothing moves but by round-off; no motion goes against its own force, by all of "
+    "them.",
+    tier="gate",
+    grid={"elements": (1, 2, 3), "friction": (0.1, 0.2, 0.5, 1.0, 3.0)},
+    bounds={
+        "said": Bound(0.0, 0.0, "definition: sentences, of orders 1 and 2, pressed straight and aside, of a cube and a flat block"),
+        "against": Bound(0.0, 0.0, "definition: motions that go against their forces, by dense eigenvalues"),
+    },
+)
+def rubs(elements: int, friction: float) -> dict[str, float]:
+    """What is said, and whether something buckles."""
+    said = found = 0
+    for order, aside, wide in product((1, 2), (0.0, 0.03), (1, 2)):
+        text = BLOCK.replace("ORDER", str(order)).replace("ELEMENTS", str(elements)).replace("ASIDE", str(aside))
+        heard = Heard()
+        simulation = Simulation(Scene.from_toml(text.replace("FRICTION", str(friction)).replace("WIDE", str(wide))).problem(), heard)
+        list(simulation.run())
+        said += sum(bool(TOLD.search(sentence)) for sentence in heard.said)
+        found += against(simulation.equilibrium)
+    return {"said": float(said), "against": float(found)}
 
 
 @case(

@@ -12,8 +12,12 @@ from isomortar.solve.equilibrium import Balance, Equilibrium
 
 #: Forces that are looked at, each what the last one moves: the softest motions come first.
 FORCES = 8
-#: Work of a force on what it moves, beside the largest one of all, below which things move against it: above, it is round-off.
+#: What a force moves along itself, beside the largest of all, below which things move against it: above, it is round-off.
 AGAINST = -0.01
+#: Share of the largest up to which an imaginary part is round-off of a pair that is real.
+REAL = 1e-6
+#: What a force moves times stiffness, by modulus and size of the bodies, up to which all is held, and nothing moves but by round-off.
+HELD = 1e-8
 #: Share of a motion that is not among forces before below which there are no others.
 NOTHING_LEFT = 1e-10
 
@@ -23,6 +27,8 @@ class Unstable:
 
     def __init__(self, equilibrium: Equilibrium) -> None:
         self._equilibrium = equilibrium
+        moduli = [body.modulus for body in equilibrium.problem.deformable]
+        self._softness = 1.0 / (max(moduli, default=np.inf) * equilibrium.numbering.size)
         self._told = False
 
     def after_stage(self, balance: Balance, step: int) -> Iterator[str]:
@@ -35,7 +41,7 @@ class Unstable:
     def _against_force(self, positions: FloatArray) -> FloatArray | None:
         """A motion of all control points that goes against the force which makes it, shape (control points, 3) (theory 5.26); or None.
 
-        Forces are made orthogonal to each other, and their works on all their motions diagonal.
+        Forces are made orthogonal to each other; of all their sums those are taken that move things along themselves, to or fro.
         """
         supports = self._equilibrium.supports
         force, forces, motions = np.random.default_rng(0).standard_normal(len(supports.free)), list[FloatArray](), list[FloatArray]()
@@ -51,11 +57,13 @@ class Unstable:
                 break
         if not forces:
             return None
-        works = np.array(forces) @ np.array(motions).T
-        values, shares = np.linalg.eigh(0.5 * (works + works.T))
-        if not values[0] < AGAINST * np.abs(values).max():
+        values, sums = np.linalg.eig(np.array(forces) @ np.array(motions).T)
+        largest = np.abs(values).max()
+        along = np.where(np.abs(values.imag) <= REAL * largest, values.real, 0.0)
+        least = int(np.argmin(along))
+        if largest <= HELD * self._softness or not along[least] < AGAINST * largest:
             return None
-        return supports.spread(np.array(motions).T @ shares[:, 0], positions)
+        return supports.spread(np.array(motions).T @ sums[:, least].real, positions)
 
     def _moved_by(self, force: FloatArray) -> FloatArray | None:
         """What a force moves; None where factors have no digits for it, of which there is another word, or there are none."""
