@@ -81,9 +81,10 @@ def doubts(problem: Problem, state: State) -> Iterator[str]:
     if not any(support.moves for support in problem.supports) and not presses and not _loaded(problem):
         yield "no support moves in any stage, and nothing overlaps at the start: nothing will happen"
     for contact, found, feet in zip(problem.contacts, stances, (contact.projected for contact in state.contacts), strict=True):
-        too_deep = _too_deep(problem, contact, state.positions, feet) if found.depth > 0.0 else 0
-        yield from _of_stance(contact, found, travel, too_deep, beside=not np.any(feet))
-        yield from _of_ways(problem, contact, found, beside=not np.any(feet))
+        inside, before = _inside_and_before(problem, contact, state.positions, feet)
+        too_deep, beside = inside if found.depth > 0.0 else 0, not np.any(feet) and not before
+        yield from _of_stance(contact, found, travel, too_deep, beside)
+        yield from _of_ways(problem, contact, found, beside)
         yield from of_edges(problem, contact, feet, found.gap)
         yield from _of_contact(contact)
         yield from _pressures(problem, contact)
@@ -144,13 +145,17 @@ def _overlaps(found: Stance) -> bool:
     return found.depth > TOLD_OVERLAP * found.thickness
 
 
-def _too_deep(problem: Problem, contact: Contact, positions: FloatArray, feet: IntArray) -> int:
-    """How many slave quadrature points are inside their master, as closest points tell, and have no foot along its averaged normals."""
+def _inside_and_before(problem: Problem, contact: Contact, positions: FloatArray, feet: IntArray) -> tuple[int, int]:
+    """How many slave quadrature points without a foot are inside their master, and before it, as closest points tell.
+
+    Along averaged normals feet are found up to a depth and a distance; by closest points there are no others.
+    """
     if feet.all() or not contact.averaged:
-        return 0
+        return 0, 0
     pair = Pair(replace(contact, projection="closest"), problem, Numbering(problem))
     closest = _bindings.project_points(pair.slave, pair.master, positions, np.zeros((len(feet), 2)), np.zeros_like(feet))
-    return int(np.count_nonzero((gaps(pair, positions, closest) > 0.0) & (feet == 0)))
+    depths = gaps(pair, positions, closest)[(feet == 0) & (closest.found > 0)]
+    return int(np.count_nonzero(depths > 0.0)), int(np.count_nonzero(depths <= 0.0))
 
 
 def _of_stance(contact: Contact, found: Stance, travel: float, too_deep: int, beside: bool) -> Iterator[str]:

@@ -1,0 +1,39 @@
+"""What is said of a slave that is opposite its master, however far, and of one that is beside it."""
+
+from __future__ import annotations
+
+from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
+from isomortar.scene import Scene
+
+#: A block that comes down onto another one, or beside it.
+SCENE = """
+format = 1
+bodies.upper = {{ geometry = {{ kind = "box", lower = [{aside}, 0, {gap}], upper = [{end}, 1, {top}] }}, mesh = {{ order = {order}, elements = 2 }} }}
+bodies.lower = {{ geometry = {{ kind = "box", lower = [0, 0, -1], upper = [1, 1, 0] }}, mesh = {{ order = {order}, elements = 2 }} }}
+contacts.pair = {{ slave = "upper.w0", master = "lower.w1", projection = "{projection}" }}
+supports = {{ hand.face = "upper.w1", base.face = "lower.w0" }}
+stages = [{{ name = "press", steps = 2, motions.hand.translate = [0, 0, -0.2] }}]
+"""
+BESIDE, APART = "is wholly beside its master", "apart at the start"
+#: How far apart they are: within the way of the motion, twice that and more, and beyond the reach of averaged normals.
+GAPS = (0.1, 0.6, 1.0, 3.0, 20.0)
+
+
+@case(
+    claim="A slave face opposite its master is said to be apart from it where it cannot close, by either projection, and never to be beside it; "
+    "one beside it is said to be that.",
+    tier="gate",
+    grid={"projection": ("closest", "averaged"), "order": (1, 2)},
+    bounds={"wrong": Bound(0.0, 0.0, "definition: sentences that are untrue or missing, of five distances, opposite and beside")},
+)
+def opposite(projection: str, order: int) -> dict[str, float]:
+    """How many sentences are wrong."""
+    wrong = 0
+    for gap in GAPS:
+        for aside in (0.0, 5.0):
+            text = SCENE.format(aside=aside, end=aside + 1.0, gap=gap, top=gap + 1.0, order=order, projection=projection)
+            said = " ".join(Simulation(Scene.from_toml(text).problem()).doubts())
+            wrong += (BESIDE in said) != (aside > 0.0)
+            wrong += (APART in said) != (aside == 0.0 and gap > 0.4)
+    return {"wrong": float(wrong)}
