@@ -19,7 +19,7 @@ from isomortar.results.reader import Results
 from isomortar.scene import Scene
 from isomortar.solve.record import Observer, StepResult
 
-#: A bar of a law for small strains, far from a wall of high friction with kinks: warned of before a run, in its first load step, at its end.
+#: A bar of a law for small strains, far from a rough wall with kinks: warned of before a run, in its first load step, and at its end.
 SCENE = """
 format = 1
 name = "bar"

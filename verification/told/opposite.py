@@ -9,8 +9,10 @@ from isomortar.scene import Scene
 #: A block that comes down onto another one, or beside it.
 SCENE = """
 format = 1
-bodies.upper = {{ geometry = {{ kind = "box", lower = [{aside}, 0, {gap}], upper = [{end}, 1, {top}] }}, mesh = {{ order = {order}, elements = 2 }} }}
-bodies.lower = {{ geometry = {{ kind = "box", lower = [0, 0, -1], upper = [1, 1, 0] }}, mesh = {{ order = {order}, elements = 2 }} }}
+bodies.upper.geometry = {{ kind = "box", lower = [{aside}, 0, {gap}], upper = [{end}, 1, {top}] }}
+bodies.lower.geometry = {{ kind = "box", lower = [0, 0, -1], upper = [1, 1, 0] }}
+bodies.upper.mesh = {{ order = {order}, elements = 2 }}
+bodies.lower.mesh = {{ order = {order}, elements = 2 }}
 contacts.pair = {{ slave = "upper.w0", master = "lower.w1", projection = "{projection}" }}
 supports = {{ hand.face = "upper.w1", base.face = "lower.w0" }}
 stages = [{{ name = "press", steps = 2, motions.hand.translate = [0, 0, -0.2] }}]
@@ -21,8 +23,8 @@ GAPS = (0.1, 0.6, 1.0, 3.0, 20.0)
 
 
 @case(
-    claim="A slave face opposite its master is said to be apart from it where it cannot close, by either projection, and never to be beside it; "
-    "one beside it is said to be that.",
+    claim="A slave face opposite its master is said to be apart from it where it cannot close, by either projection, and never to be beside "
+    "it; one beside it is said to be that.",
     tier="gate",
     grid={"projection": ("closest", "averaged"), "order": (1, 2)},
     bounds={"wrong": Bound(0.0, 0.0, "definition: sentences that are untrue or missing, of five distances, opposite and beside")},

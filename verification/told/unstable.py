@@ -106,8 +106,8 @@ def against(equilibrium: Equilibrium) -> int:
 
 @case(
     claim="A block that friction holds, or that slips, in its middle or at once, is not said to buckle: forces that slip turn aside go "
-    "against what they move as a whole, and where all is held nothing moves but by round-off; no motion goes against its own force, by all of "
-    "them.",
+    "against what they move as a whole, and where all is held nothing moves but by round-off; no motion goes against its own force, by "
+    "all of them.",
     tier="gate",
     grid={"elements": (1, 2, 3), "friction": (0.1, 0.2, 0.5, 1.0, 3.0)},
     bounds={
