@@ -23,7 +23,7 @@ GAPS = (0.1, 0.6, 1.0, 3.0, 20.0)
 
 
 @case(
-    claim="A slave face opposite its master is said to be apart from it where it cannot close, by either projection, and never to be beside "
+    claim="A face opposite its master is said to be apart from it where it cannot close, by either projection, and never to be beside "
     "it; one beside it is said to be that.",
     tier="gate",
     grid={"projection": ("closest", "averaged"), "order": (1, 2)},
