@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import re
 import tempfile
 import warnings
 from contextlib import suppress
+from html import unescape
 from pathlib import Path
 
 import h5py
 from output.heard import Hearing
 
+from isomortar import view
 from isomortar.cli.info import information, lines
 from isomortar.driver import run
 from isomortar.errors import ConvergenceError, IsomortarWarning
@@ -76,8 +79,8 @@ def heard_by_python(path: Path) -> tuple[tuple[str, ...], set[str]]:
 
 @case(
     claim="A results file holds what is told of its run, each sentence once and in order: of a whole run, of one that was stopped and "
-    "resumed, of one that is given up; `isomortar info` tells it; a file from before holds nothing, and what is told from then on. Who "
-    "runs a scene from Python and watches nothing is told by Python's warnings, with the line that runs it.",
+    "resumed, of one that is given up; `isomortar info` and the page to look at tell it; a file from before holds nothing, and what is "
+    "told from then on. Who runs a scene from Python and watches nothing is told by Python's warnings, with the line that runs it.",
     tier="gate",
     bounds={
         "kinds": Bound(5.0, 5.0, "definition: three before the run, one in it, one at its end, or it was not looked at"),
@@ -93,6 +96,8 @@ def warned() -> dict[str, float]:
             kept, told = results.warnings, tuple(lines(information(results), folder / "whole.h5"))
         heard = tuple(str(event[1]) for event in hearing.told if event[0] == "warned")
         unlike += kept != heard
+        page = view(folder / "whole.h5", folder / "whole.html").read_text(encoding="utf-8")
+        unlike += tuple(unescape(entry) for entry in re.findall("<li>(.*?)</li>", page)) != heard
         unlike += tuple(line for line in told if line.startswith("warning: ")) != tuple(f"warning: {sentence}" for sentence in heard)
         for step in (1, 2, 3):
             again = stopped_and_resumed(folder / f"from_{step}.h5", step)

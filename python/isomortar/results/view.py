@@ -149,6 +149,7 @@ def _page(results: Results) -> str:
     data = {
         "name": problem.name,
         "title": f"{int(results.kept_states[-1])} load steps",
+        "warnings": results.warnings,
         "steps": steps,
         "fields": [*_fields(problem, surfaces)],
         "surfaces": [_described(surface) for surface in surfaces],
