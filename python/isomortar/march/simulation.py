@@ -37,7 +37,7 @@ class Simulation:
     ----------
     problem : Problem
     observer : Observer, optional
-        Watches iterations, augmentations, cuts and recorded steps.
+        Watches iterations, augmentations, cuts and recorded steps, and hears warnings; without one nobody does.
     resume_from : StepResult, optional
         Last recorded step of an earlier run of the same problem.
 
