@@ -127,21 +127,28 @@ def weights_of_nodes(method: Enforcement, kind: str) -> dict[str, float]:
 
 
 @case(
-    claim="On a ring, whose face meets itself, no constraint at a point stands twice at the seam, and areas are those of the face.",
+    claim="On a ring, whose face meets itself, no constraint at a point is twice at the seam, those there and on other C0 lines are "
+    "seen from both sides, and areas are those of the face.",
     tier="gate",
     grid={"method": POINTWISE},
     bounds={
         "twice": Bound(at_least=1e-3, reason="definition: places that are apart"),
+        "sides": Bound(0.0, 0.0, "definition: constraints on lines that are seen from one side, or others that are from both"),
         "area": Bound(at_most=1e-9, reason="quadrature: of the length of arcs that are rational, with eight points"),
     },
 )
 def closed(method: Enforcement) -> dict[str, float]:
-    """Least distance of two constraints, and the error of the area."""
+    """Least distance of two constraints, how many have other numbers of sides, and the error of the area."""
     patch = mesh(ring((0.0, 0.0, 0.0), 0.5, 1.0, 0.4), ("N", "N", "N"), (2, 1, 2), (8, 1, 2))
     side = side_of(Body("ring", patch, Material(), (2, 2, 2), closed="u"), "v1", method, 8)
     points = side.carriers @ patch.control_points[patch.face_points("v1")][_kept(patch.face_points("v1"), side)]
     apart = np.linalg.norm(points[:, None] - points, axis=2) + 10.0 * np.eye(len(points))
-    return {"twice": float(apart.min()), "area": abs(float(side.arrays.area.sum()) / (0.8 * np.pi) - 1.0)}
+    round_it = patch.directions[0]  # the second coordinate of the face
+    lines = np.append(round_it.c0_lines, round_it.boundaries[0])
+    on_line = np.abs(side.places[:, 1, None] - lines).min(axis=1) < 1e-6
+    sides = np.bincount(side.arrays.test.nodes.ravel())
+    other = np.count_nonzero(sides != np.where(on_line, 2, 1))
+    return {"twice": float(apart.min()), "sides": float(other), "area": abs(float(side.arrays.area.sum()) / (0.8 * np.pi) - 1.0)}
 
 
 def _kept(face: np.ndarray, side: SlaveSide) -> np.ndarray:

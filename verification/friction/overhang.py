@@ -53,6 +53,31 @@ def edge() -> dict[str, float]:
     }
 
 
+@case(
+    claim="Control points all of whose quadrature points have left the master have no weight, others have one, however feet are found.",
+    grid={"projection": ("closest", "averaged")},
+    bounds={
+        "kept": Bound(0.0, 0.0, "definition: weights of control points without a foot"),
+        "lost": Bound(0.0, 0.0, "definition: control points with a foot that have no weight"),
+        "left": Bound(at_least=1.0, reason="definition: or nothing has left"),
+    },
+)
+def left_behind(projection: str) -> dict[str, float]:
+    """Largest such weight, and numbers of control points, of the square as it is."""
+    equilibrium = Equilibrium(Scene.from_toml(_SCENE, overrides=[f"contacts.interface.projection={projection}"]).problem(), Ledger())
+    pair, state = equilibrium.pairs[0], equilibrium.initial_state()
+    kinematics, slave = pair.kinematics(state.positions, state.contacts[0]), pair.pair.slave
+    nodes = np.repeat(slave.test.nodes, slave.per_element, axis=0)
+    over = np.zeros(slave.test.count, dtype=bool)
+    over[nodes[(slave.test.values > 0.0) & (kinematics.projections.found == 1)[:, None]]] = True
+    weight = kinematics.control.weight
+    return {
+        "kept": float(np.abs(weight[~over]).max()),
+        "lost": float(np.count_nonzero(weight[over] <= 0.0)),
+        "left": float(np.count_nonzero(~over)),
+    }
+
+
 #: A bowl pressed near the corner of its master, then moved over the corner and off.
 _CORNER = """
 format = 1

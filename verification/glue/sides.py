@@ -150,6 +150,23 @@ def tier(tiles: str, side: str, family: str, order: int, projection: str) -> Tie
 
 
 @case(
+    claim="Over tiles in a row of any lengths and numbers of elements coordinates of a side go on at the same speed.",
+    grid={"side": ("master", "slave"), "family": ("N", "L"), "order": (1, 3)},
+    bounds={
+        "uneven": Bound(at_most=1e-14, reason="definition: on flat tiles of even elements they are lengths along the row, but for a factor")
+    },
+)
+def at_one_speed(side: str, family: str, order: int) -> dict[str, float]:
+    """Largest distance of bounds of elements along three tiles, and across, from where they are, by the whole."""
+    problem = tiled(3, 1, side, family, order)
+    (contact,) = problem.contacts
+    found = Sheet.of(problem, getattr(contact, side)).directions
+    places = ([x for x, _ in _X], [-0.5, 0.0, 0.5])
+    shares = [[np.subtract(ends, ends[0]) / np.ptp(ends) for ends in (d.boundaries, place)] for d, place in zip(found, places, strict=True)]
+    return {"uneven": float(np.max([np.abs(one - other).max() for one, other in shares]))}
+
+
+@case(
     claim="A side of several patches gives what the one patch gives that they are, whichever side it is.",
     tier=tier,
     grid={

@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import permutations
 
 import numpy as np
+from geometry.bodies import BODIES, refined
 from shapes import cylinder_sector, cylinder_volume
 
 from isomortar.geometry.patch import FACES, Family, FloatArray, Patch
@@ -159,6 +160,33 @@ def weight(kind: str) -> dict[str, float]:
         "box": float(np.linalg.norm(forces.sum(axis=0) / volume - _WEIGHT) / np.linalg.norm(_WEIGHT)),
         "bowl": float(np.linalg.norm(bowls.sum(axis=0) / (1.0 - 0.2 * 2.0 / 3.0) - _WEIGHT) / np.linalg.norm(_WEIGHT)),
         "arm": float(np.linalg.norm(turning) / (volume * np.linalg.norm(_WEIGHT))),
+    }
+
+
+@case(
+    claim="Weights and tractions on built-in bodies, whole ones and those with poles among them, are what volumes and areas say; "
+    "weights act at their centres.",
+    grid={"body": list(BODIES)},
+    bounds={
+        "weight": Bound(at_most=1e-12, reason="quadrature: many points an element; round-off"),
+        "arm": Bound(at_most=1e-12, reason="quadrature: the same"),
+        "traction": Bound(at_most=1e-5, reason="quadrature: faces of arcs have the points of polynomials, and one more for weights"),
+    },
+)
+def on_built_in_bodies(body: str) -> dict[str, float]:
+    """Relative errors of the forces; of the weight's moment over weight times size."""
+    built, patch, value = BODIES[body], refined(body, "N2"), np.array(_WEIGHT)
+    loads = (Load("own", "weight", "body", None, _WEIGHT, (1.0,)), Load("pull", "traction", "body", built.curved, _WEIGHT, (1.0,)))
+    one = Body("body", patch, Material(), (12, 12, 12), built.closed)
+    problem = Problem("loaded", (one,), (), (), (Stage("stage", 1),), loads=loads)
+    numbering = Numbering(problem)
+    own, pull = Loads(problem, numbering).forces(numbering.reference, 1.0)
+    (volume, first, _), size = built.moments(), float(np.linalg.norm(value))
+    turning = np.cross(numbering.reference, own).sum(axis=0) - np.cross(first, value)
+    return {
+        "weight": float(np.linalg.norm(own.sum(axis=0) / volume - value)) / size,
+        "arm": float(np.linalg.norm(turning)) / (volume * size * one.size),
+        "traction": float(np.linalg.norm(pull.sum(axis=0) / built.area - value)) / size,
     }
 
 

@@ -12,7 +12,8 @@ _ROUND_OFF = Bound(at_most=1e-14, reason="round-off: sums of three products of n
 
 
 @case(
-    claim="On any rigid plane, coordinates are lengths along its tangents, and the gap is the penetration along its normal.",
+    claim="On any rigid plane, coordinates are lengths along its tangents, and the gap is the penetration along its normal, however "
+    "long these vectors are given, and the first tangent aslant.",
     tier="gate",
     bounds={
         "coordinates": _ROUND_OFF,
@@ -27,7 +28,8 @@ def distance_and_coordinates() -> dict[str, float]:
     for _ in range(10):
         origin, points = random.uniform(-1, 1, 3), random.uniform(-1, 1, (30, 3))
         normal, tangent = np.linalg.qr(random.standard_normal((3, 2)))[0].T
-        plane = PlaneArrays(origin, np.ascontiguousarray(normal), np.ascontiguousarray(tangent))
+        long, aslant = random.uniform(0.1, 3.0, 2), random.uniform(-2.0, 2.0)
+        plane = PlaneArrays(origin, long[0] * normal, long[1] * tangent + aslant * normal)
         number = np.arange(len(points), dtype=np.int32)
         slave = SlaveArrays.of_points(number)
         projections = _bindings.project_points(slave, plane, points, np.zeros((len(points), 2)), np.zeros_like(number))

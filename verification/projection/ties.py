@@ -62,3 +62,30 @@ def ties(kind: str, axis: int) -> dict[str, float]:
         "upper": float(np.count_nonzero(off > APART)),
         "ties": float(np.count_nonzero(np.abs(off) > APART)),
     }
+
+
+def across_a_diagonal(kind: str) -> Surface:
+    """The upper face of a plate over the unit square with waves across a diagonal of it, symmetric about a trough along that."""
+    order, elements = int(kind[1:]), MASTERS[kind]
+    plate = mesh(box((0.0, 0.0, -0.5), (1.0, 1.0, 0.0)), (kind[0],) * 3, (order, order, 1), (elements, elements, 1))  # type: ignore[arg-type]
+    points = plate.control_points.copy()
+    points[:, 2] -= HEIGHT * np.cos(3 * np.pi * (points[:, 0] - points[:, 1]))
+    return Surface(replace(plate, control_points=points), "w1")
+
+
+@case(
+    claim="Of two feet equally near, neither of which is lower along both coordinates, all starts find that which is along the second.",
+    grid={"kind": ["N2", "N3", "L2"]},
+    bounds={
+        "other": Bound(at_most=0.0, reason="definition: feet that are lower along the first coordinate"),
+        "ties": Bound(at_least=10.0, reason="definition: or nothing is chosen"),
+    },
+)
+def diagonal_ties(kind: str) -> dict[str, float]:
+    """Feet of targets above the trough, from no start and from random ones."""
+    face, random = across_a_diagonal(kind), np.random.default_rng(9)
+    along, height = random.uniform(0.3, 0.7, TARGETS), random.uniform(-0.3, 0.2, TARGETS)
+    targets = np.column_stack([along, along, height])
+    feet = [face.project(targets)] + [face.project(targets, random.uniform(0.0, 1.0, (TARGETS, 2))) for _ in range(STARTS)]
+    aside = np.concatenate([(points[:, 0] - points[:, 1])[found.found == 1] for found in feet for points in [face.points(found.xi)]])
+    return {"other": float(np.count_nonzero(aside < -APART)), "ties": float(np.count_nonzero(aside > APART))}

@@ -9,6 +9,7 @@ from small_scenes import bowl
 
 from isomortar import _bindings
 from isomortar._bindings import Control, Law
+from isomortar._codes import PointState
 from isomortar.geometry.patch import Direction, FloatArray, Patch
 from isomortar.harness import Bound, case
 from isomortar.march.simulation import Simulation
@@ -63,7 +64,7 @@ def spans(span: float) -> dict[str, float]:
     claim="What is not a number makes pressure or traction of its control point none either: nothing opens, sticks or slips for it.",
     tier="gate",
     grid={"slip_sum": ("local", "paper"), "friction": (0.0, 0.3)},
-    bounds={"hidden": Bound(at_most=0.0, reason="definition: control points whose response is finite")},
+    bounds={"hidden": Bound(at_most=0.0, reason="definition: control points that are open, or whose response is finite")},
 )
 def not_numbers(slip_sum: str, friction: float) -> dict[str, float]:
     """At the end of a run, one control quantity or multiplier after the other is spoiled at every active control point by itself."""
@@ -80,8 +81,36 @@ def not_numbers(slip_sum: str, friction: float) -> dict[str, float]:
 
 
 def _hidden(slave: _bindings.SlaveArrays, control: Control, law: Law, name: str, point: int) -> bool:
-    """Whether a control point's response is finite where one of its control quantities is not a number."""
+    """Whether a control point is open, or its response finite, where one of its control quantities is not a number."""
     values: FloatArray = getattr(control, name).copy()
     values[point] = np.nan
     response = _bindings.augmented_multipliers(slave, replace(control, **{name: values}), law)
-    return bool(np.isfinite(response.pressure[point]) and np.isfinite(response.traction[point]).all())
+    finite = np.isfinite(response.pressure[point]) and np.isfinite(response.traction[point]).all()
+    return bool(finite or response.state[point] == PointState.OPEN)
+
+
+@case(
+    claim="A control point answers to its mean gap and slip however small its share over the master is, down to where it has left that.",
+    grid={"friction": (0.0, 0.3), "share": (0.3, 1e-3, 1e-9, 1e-11)},
+    bounds=lambda friction, share: {  # noqa: ARG005
+        "changed": Bound(at_most=1e-12, reason="round-off: of means; or definition: of what has left nothing is closed"),
+        "active": Bound(at_least=1.0, reason="definition: or nothing is tried"),
+    },
+)
+def shares(friction: float, share: float) -> dict[str, float]:
+    """Largest change, over the largest, of pressures and tractions of points closed at the end of a run, by a share of their integrals.
+
+    Below a share of 1e-10 there is none of either left (theory 4.1).
+    """
+    simulation = Simulation(bowl("block", friction))
+    *_, before, last = simulation.run()
+    pair, state = simulation.equilibrium.pairs[0], last.state.contacts[0]
+    control = pair.kinematics(last.state.positions, before.state.contacts[0]).control
+    fewer = replace(control, **{name: share * getattr(control, name) for name in ("weight", "square", "gap", "slip", "metric")})
+    law = pair.law(np.array([1.0, 1.0]), state.pressure, state.traction)
+    whole, part = (_bindings.augmented_multipliers(pair.pair.slave, found, law) for found in (control, fewer))
+    left = 1.0 if share > 1e-10 else 0.0
+    changes = [(part.pressure - left * whole.pressure) / whole.pressure.max()]
+    if friction > 0.0:
+        changes += list((part.traction - left * whole.traction).T / np.abs(whole.traction).max())
+    return {"changed": float(np.abs(changes).max()), "active": float(np.count_nonzero(whole.state))}

@@ -57,3 +57,29 @@ def one_weight(weight: float, often: bool) -> dict[str, float]:
     ones, same = (Patch(patch.directions, patch.control_points, np.full(len(patch.weights), one)) for one in (1.0, weight))
     plain, weighted = (of_body(one, often) | of_faces(one) for one in (ones, same))
     return {name: float(np.count_nonzero(weighted[name] != values)) for name, values in plain.items()}
+
+
+#: By how much weights differ along a direction in what others are compared with.
+MUCH = 0.005
+
+
+@case(
+    claim="Weights that differ along one direction count in proportion, however little it is: in forces, tangents, volumes, functions "
+    "and areas.",
+    grid={"axis": [0, 1, 2], "little": [1e-3, 1e-7]},
+    bounds=dict.fromkeys(
+        ("forces", "tangents", "volumes", "functions", "tables"),
+        Bound(at_most=0.1, reason="discretisation: differences over others, some of which are five times as large"),
+    ),
+)
+def little_weight(axis: int, little: float) -> dict[str, float]:
+    """Changes over what weights differ by, apart from those of weights that differ by more: norm of the difference, over that of these."""
+    patch = curved("N", ORDERS, ELEMENTS)
+    row = np.unravel_index(np.arange(len(patch.weights)), patch.shape, order="F")[axis]
+    share = np.random.default_rng(5).uniform(0.0, 1.0, patch.shape[axis])[row]
+    none, few, more = (
+        of_body(one, False) | of_faces(one)
+        for one in (Patch(patch.directions, patch.control_points, 1.0 + apart * share) for apart in (0.0, little, MUCH))
+    )
+    slopes = {name: ((few[name] - none[name]) / little, (more[name] - none[name]) / MUCH) for name in none}
+    return {name: float(np.linalg.norm(one - other) / np.linalg.norm(other)) for name, (one, other) in slopes.items()}

@@ -7,15 +7,18 @@ from dataclasses import replace
 import numpy as np
 from small_scenes import TIGHT
 
+from isomortar.errors import ConvergenceError
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, case
 from isomortar.march.simulation import Simulation
+from isomortar.model.constants import LARGEST_TURN
 from isomortar.model.numbering import Numbering
 from isomortar.model.supports import Supports
 from isomortar.scene import Scene
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.system import LinearSystem, add_product, block_product
 from isomortar.solve.timing import Ledger
+from isomortar.told.during.snapping import Snapping
 
 #: A bar whose ends both turn about axes of their own, one of them while a force moves it as well.
 _BAR = """
@@ -177,3 +180,26 @@ def leaning() -> dict[str, float]:
         for steps in (1, 4)
     )
     return {"apart": abs(one - four), "turned": four}
+
+
+@case(
+    claim="How far a plate has turned in a load increment is the shorter way round, wherever it begins; only what is far is objected to.",
+    bounds={
+        "wrong": Bound(0.0, 0.0, "definition: turns that are far and not objected to, or are told as another one, or are near and are"),
+        "far": Bound(at_least=50.0, at_most=150.0, reason="definition: of 200 turns, or one of both is not tried"),
+    },
+)
+def far_turns() -> dict[str, float]:
+    """How many, of a plate about an axis askew."""
+    equilibrium, random = _bar("askew"), np.random.default_rng(5)
+    snapping, numbering, wrong, far = Snapping(equilibrium), equilibrium.numbering, 0, 0
+    for begin, way in zip(random.uniform(-180.0, 180.0, 200), random.uniform(-80.0, 80.0, 200), strict=True):
+        before, after = (_turned(equilibrium.supports, numbering, np.radians([0.0, angle])) for angle in (begin, begin + way))
+        said = ""
+        try:
+            snapping.look(before, after, 1.0)
+        except ConvergenceError as objection:
+            said = str(objection)
+        far += abs(way) > LARGEST_TURN
+        wrong += bool(said) != (abs(way) > LARGEST_TURN) or (bool(said) and f"turns by {way:.0f} degrees" not in said)
+    return {"wrong": float(wrong), "far": float(far)}

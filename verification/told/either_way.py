@@ -54,6 +54,9 @@ SLANTING = SCENE.replace(
     "supports.top.face",
     'contacts.floor = { slave = "above.w0", plane = { point = [0, 0, -0.05], normal = [0.1, 0, 1] }, friction = 0.3 }\nsupports.top.face',
 )
+#: The blocks in a stage more, in which nothing moves; a support of one of both.
+RESTING = SCENE.replace("stages = [", 'supports.side = { face = "below.u0", stages = ["one"] }\nstages = [')
+RESTING = RESTING.replace("} }]", '} }, { name = "two", steps = 2 }]')
 #: A scene, what is changed in it, and words of what is said of it; none: nothing is said.
 SAID = (
     (SCENE, ("bodies.above.mesh.quadrature=[2,2,2]",), ""),
@@ -69,6 +72,9 @@ SAID = (
     (SCENE, ('loads={wind={face="above.u0",pressure=5.1}}',), "comes to 5.1 force per area"),
     (SLANTING, (), ""),
     (SLANTING, ("contacts.floor.plane={point=[0,0,0],normal=[0,0,1]}",), "is at or behind the plane"),
+    (RESTING, (), ""),
+    (RESTING, ("supports.side.stages=['two']",), ""),
+    (RESTING, ("supports.side.stages=['one','two']",), "compute the same state again"),
     (third(0.3), _DEEP, "bodies 'below' and 'third' meet"),
     (third(1.2), _DEEP, "is in no contact"),
     (BALL.replace("AXIS", "z"), ('contacts.c.slave="above.v1"',), ""),
@@ -136,24 +142,33 @@ LIMITS: tuple[tuple[str, float, float, str], ...] = (
     ("stages.one.motions.top.rotate={}", 3.1381, 3.1389, "If radians were meant, give 180"),
     ("stages.one.motions.top.rotate={}", 9.435, 9.425, "If radians were meant, give 540"),
 )
+#: The blocks pressed by a force.
+PRESSED = OF_TWO.replace('supports.top.face = "above.w1"', 'supports.top = { face = "above.w1", components = ["x", "y"], force.z = -0.01 }')
+PRESSED = PRESSED.replace(", motions.top = { translate = [0, 0, -0.02] }", "")
+FORCE = ("supports.top.force.z={}", -0.124, -0.126, "presses by 0.504 force per area of its face")
+
+
+def half(text: str) -> str:
+    """The scene on one side of a plane of symmetry."""
+    return text.replace("format = 1", "format = 1\nsymmetry = { x = 0 }")
 
 
 @case(
-    claim="Numbers are doubted from their limits on: moduli, friction, loads, elements, overlaps, tolerances and angles.",
+    claim="Numbers are doubted from their limits on: moduli, friction, loads, forces on halves, elements, overlaps, tolerances, angles.",
     tier="gate",
     bounds={"wrong": Bound(0.0, 0.0, "definition: numbers within a limit that are doubted, and beyond it that are not")},
 )
 def limits() -> dict[str, float]:
     """Of how many."""
-    return {
-        "wrong": float(
-            sum(told_of(change, within) != "" or words not in told_of(change, beyond) for change, within, beyond, words in LIMITS)
-        )
-    }
+    asked = [(OF_TWO, *limit) for limit in LIMITS] + [(text, *FORCE) for text in (PRESSED, half(PRESSED))]
+    wrong = [
+        told_of(text, change, within) != "" or words not in told_of(text, change, beyond) for text, change, within, beyond, words in asked
+    ]
+    return {"wrong": float(sum(wrong))}
 
 
-def told_of(change: str, value: float) -> str:
-    """The one sentence that is said of the blocks with a number changed; none, or that there are several."""
-    problem = Scene.from_toml(OF_TWO, overrides=(change.format(value),)).problem()
+def told_of(text: str, change: str, value: float) -> str:
+    """The one sentence that is said of blocks with a number changed; none, or that there are several."""
+    problem = Scene.from_toml(text, overrides=(change.format(value),)).problem()
     said = list(doubts(problem, Simulation(problem).state))
     return said[0] if len(said) == 1 else "several" * bool(said)

@@ -18,6 +18,7 @@ from told.wrong.singular import BLOCK, CORNER, error, explained
 from isomortar.errors import SingularSystemError
 from isomortar.harness import Bound, case
 from isomortar.march.simulation import Simulation
+from isomortar.model.constants import LARGEST_TURN
 from isomortar.scene import Scene
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.singular import explain
@@ -148,3 +149,18 @@ def points_beside() -> dict[str, float]:
     ]
     right = [2 * (total - beside) < total for beside in range(total + 1)]
     return {"wrong": float(sum(one != other for one, other in zip(told, right, strict=True)))}
+
+
+@case(
+    claim="The shortest load increment that is named is the one that was tried last, also where turns of supports make all shorter.",
+    tier="gate",
+    grid={"degrees": (0.0, 30.0, 90.0), "cuts": (0, 2)},
+    bounds={"off": Bound(0.0, 0.0, reason="definition: it began at rest, so that it ended at the load time that is named")},
+)
+def shortest_increment(degrees: float, cuts: int) -> dict[str, float]:
+    """One over it, by its words and by its load time, apart from one over the longest one that turns allow, halved as often as allowed."""
+    turning = "supports.top = { face = 'block.w1', components = ['y', 'z'], axis = [1, 0, 0] }"
+    said = error(BLOCK + turning, f"solver.max_cuts={cuts}", f"stages.press.motions.top.rotate={degrees}")
+    time, parts = re.findall(r"at load time (\S+), even with an increment of 1/(\d+) step", said)[0]
+    expected = int(np.maximum(np.ceil(degrees / LARGEST_TURN), 1.0)) * 2**cuts
+    return {"off": abs(int(parts) - expected) + abs(round(1.0 / float(time)) - expected)}
