@@ -307,3 +307,25 @@ def broad_scenes(scene: str) -> dict[str, float]:
     heard = Heard()
     list(Simulation(Scene.load(scene, steps).problem(), heard).run())
     return {"said": float(sum(NARROW.search(said) is not None for said in heard.said))}
+
+
+#: A block that is pressed on a plane and touches nothing of the others; YOUNG times as stiff as they are.
+BESIDE = """
+materials.stiff = { young = YOUNG, poisson = 0.3 }
+bodies.d = { material = "stiff", geometry = { kind = "box", lower = [0, 10, 0], upper = [1, 11, 1] }, mesh.elements = 2 }
+contacts.floor = { slave = "d.w0", plane = {} }
+supports.hand.face = "d.w1"
+"""
+
+
+@case(
+    claim="Contact that is too narrow is told beside another one that touches nothing of it, however much more that bears.",
+    tier="gate",
+    grid={"stiffer": (1.0, 1e10)},
+    bounds={"said": Bound(1.0, 1.0, "definition: sentences, on the narrow contact")},
+)
+def narrow_beside_others(stiffer: float) -> dict[str, float]:
+    """What is said of a ball on a block that does not carry it."""
+    text = BALL.replace("bodies.a = {", 'bodies.a = { material = "m",') + BESIDE.replace("YOUNG", str(10.0 * stiffer))
+    said, _ = run(text, (depth(0.025), "stages.press.motions.hand.translate=[0, 0, -0.025]"))
+    return {"said": float([words["contact"] for words in said] == ["c"])}

@@ -144,3 +144,44 @@ def bends() -> dict[str, float]:
     *_, last = Simulation(Scene.from_toml(text).problem(), heard).run()
     said = sum(bool(TOLD.search(sentence)) for sentence in heard.said) + len(told(HELD))
     return {"said": float(said), "bent": float(last.state.positions[:, 0].max() - 0.04)}
+
+
+#: What stands beside a column and touches nothing of it: a much softer block, and a much more slender mast of the same material.
+BESIDE = {
+    "a soft block": """
+materials.soft = { young = 1e-4, poisson = 0.3 }
+bodies.b = { material = "soft", geometry = { kind = "box", lower = [0, 10, 0], upper = [1, 11, 1] }, mesh.elements = 2 }
+contacts.lid = { slave = "b.w1", plane = { point = [0, 0, 2], normal = [0, 0, -1] } }
+supports.foot.face = "b.w0"
+""",
+    "a slender mast": """
+bodies.b.material = "m"
+bodies.b.geometry = { kind = "box", lower = [0, 10, 0], upper = [0.04, 10.1, 8] }
+bodies.b.mesh = { order = 3, elements = [1, 2, 16] }
+contacts.lid = { slave = "b.w1", plane = { point = [0, 0, 9], normal = [0, 0, -1] } }
+supports.foot.face = "b.w0"
+""",
+}
+
+
+@case(
+    claim="A column that bears more than Euler's load is told to buckle beside what touches nothing and is far softer or more slender, and "
+    "of a column that bears less nothing is said there.",
+    tier="gate",
+    grid={"beside": tuple(BESIDE), "end": tuple(EULER)},
+    bounds={
+        "below": Bound(0.0, 0.0, "definition: sentences at 0.92 of Euler's load"),
+        "above": Bound(1.0, 1.0, "definition: sentences at 1.08 of it that name the column"),
+        "far above": Bound(1.0, 1.0, "definition: the same at five times that load"),
+    },
+)
+def buckles_beside_others(beside: str, end: str) -> dict[str, float]:
+    """What is said at three loads."""
+    below, above, far = (
+        [
+            found[2]
+            for found in told(column(end, share, "monolithic").replace("bodies.c = {", 'bodies.c = { material = "m",') + BESIDE[beside])
+        ]
+        for share in (0.92, 1.08, 5.0)
+    )
+    return {"below": float(len(below)), "above": float(above == ["c"]), "far above": float(far == ["c"])}

@@ -115,7 +115,7 @@ TANGENTIAL_FACTOR = 10.0
 #: What multipliers resist their own change where conditions may repeat each other (theory 6.4). What no other row tells stays as it is, and
 #: the conditions are the same; it is far above round-off, and far below what other rows say.
 RESISTANCE = 1e-6
-#: Depth inside its master, as a share of the bodies' size, from which a control point that supports hold along the normal bears on it
+#: Depth inside its master, over the root of the slave's area, from which a control point that supports hold along the normal bears on it
 #: (theory 4.11): one that just touches is inside by less, by what the tolerances leave.
 SUNK = 1e-6
 #: Share of what friction bears that tractions count for at the least (theory 5.8): where nothing pulls, they are round-off.

@@ -192,10 +192,11 @@ class PairMechanics:
             elastic_slip=self.pair.contact.elastic_slip, stretch=self._stretch, smoothing=self.pair.contact.smoothing,
         )  # fmt: skip
 
-    def bear(self, kinematics: Kinematics, depth: float) -> bool:
-        """Let constraints that supports hold along the normal bear if deeper than `depth` (theory 4.11); whether there are any."""
+    def bear(self, kinematics: Kinematics) -> bool:
+        """Let constraints that supports hold along the normal bear if they are inside the master (theory 4.11); whether there are any."""
         if isinstance(kinematics, PutOff):
             return False
+        depth = constants.SUNK * np.sqrt(self.pair.area)
         alone = (self.held.bears == 0) & (kinematics.control.weight > 0)
         sunk = alone & (kinematics.control.gap > depth * kinematics.control.weight)
         self.held.bears[sunk] = 1

@@ -13,7 +13,6 @@ from isomortar._codes import PointState
 from isomortar._sparse import Ordering
 from isomortar.errors import SingularSystemError
 from isomortar.geometry.patch import FloatArray
-from isomortar.model import constants
 from isomortar.model.entities import Problem
 from isomortar.model.loads import Loads
 from isomortar.model.numbering import Numbering
@@ -216,8 +215,7 @@ class Equilibrium:
 
     def bear(self, balance: Balance) -> bool:
         """Whether constraints that supports hold along the normal are inside their master, and bear on it from now on (theory 4.11)."""
-        depth = constants.SUNK * self.numbering.size
-        return any(pair.bear(k, depth) for pair, k in zip(self.pairs, balance.kinematics, strict=True))
+        return any(pair.bear(k) for pair, k in zip(self.pairs, balance.kinematics, strict=True))
 
     def body_tangents(self, positions: FloatArray, keep_bodies: bool) -> tuple[list[Source], list[FloatArray]]:
         """Tangents of solids and of loads on them, as sources of the system with their values; with `keep_bodies` those of solids stay."""

@@ -7,10 +7,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from isomortar.errors import KernelError
-from isomortar.geometry.patch import FloatArray
+from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.solve.equilibrium import Balance, Equilibrium
 
-#: Forces that are looked at, each what the last one moves: the softest motions come first.
+#: Forces that are looked at on each body, each what the last one moves: the softest motions come first.
 FORCES = 8
 #: What a force moves along itself, beside the largest of all, below which things move against it: above, it is round-off.
 AGAINST = -0.01
@@ -41,34 +41,51 @@ class Unstable:
     def _against_force(self, positions: FloatArray) -> FloatArray | None:
         """A motion of all control points that goes against the force which makes it, shape (control points, 3) (theory 5.26); or None.
 
+        Forces act on one body at a time: a slender or soft one moves so much more that others would be lost beside it.
+        """
+        equilibrium = self._equilibrium
+        of_body = np.zeros(equilibrium.numbering.count, dtype=np.int32)
+        for number, points in enumerate(equilibrium.numbering.own.values()):
+            of_body[points] = number
+        of_unknown = of_body[equilibrium.supports.free // 3]
+        found = (self._against_force_on(np.flatnonzero(of_unknown == number).astype(np.int32)) for number in np.unique(of_unknown))
+        motion = next((motion for motion in found if motion is not None), None)
+        return None if motion is None else equilibrium.supports.spread(motion, positions)
+
+    def _against_force_on(self, unknowns: IntArray) -> FloatArray | None:
+        """A motion of the free unknowns against the force which makes it, that acts on some of them alone; or None.
+
         Forces are made orthogonal to each other; of all their sums those are taken that move things along themselves, to or fro.
         """
-        supports = self._equilibrium.supports
-        force, forces, motions = np.random.default_rng(0).standard_normal(len(supports.free)), list[FloatArray](), list[FloatArray]()
-        for _ in range(min(FORCES, len(supports.free))):
+        force, forces, motions = np.random.default_rng(0).standard_normal(len(unknowns)), list[FloatArray](), list[FloatArray]()
+        for _ in range(min(FORCES, len(unknowns))):
             forces.append(force / np.linalg.norm(force))
-            moved = self._moved_by(forces[-1])
+            moved = self._moved_by(forces[-1], unknowns)
             if moved is None:
                 return None
             motions.append(moved)
-            basis = np.array(forces)
-            force = moved - basis.T @ (basis @ moved)
-            if np.linalg.norm(force) <= NOTHING_LEFT * np.linalg.norm(moved):
+            basis, own = np.array(forces), moved[unknowns]
+            force = own - basis.T @ (basis @ own)
+            if np.linalg.norm(force) <= NOTHING_LEFT * np.linalg.norm(own):
                 break
-        if not forces:
-            return None
-        values, sums = np.linalg.eig(np.array(forces) @ np.array(motions).T)
+        own = np.array(motions)[:, unknowns]
+        values, sums = np.linalg.eig(np.array(forces) @ own.T)
         largest = np.abs(values).max()
         along = np.where(np.abs(values.imag) <= REAL * largest, values.real, 0.0)
         least = int(np.argmin(along))
         if largest <= HELD * self._softness or not along[least] < AGAINST * largest:
             return None
-        return supports.spread(np.array(motions).T @ sums[:, least].real, positions)
+        return np.asarray(np.array(motions).T @ sums[:, least].real)
 
-    def _moved_by(self, force: FloatArray) -> FloatArray | None:
-        """What a force moves; None where factors have no digits for it, of which there is another word, or there are none."""
+    def _moved_by(self, force: FloatArray, unknowns: IntArray) -> FloatArray | None:
+        """How a force on some of the free unknowns moves all.
+
+        None where factors have no digits for it, of which there is another word, or there are none.
+        """
+        forces = np.zeros(len(self._equilibrium.supports.free))
+        forces[unknowns] = force
         try:
-            moved = self._equilibrium.moved_by(force)
+            moved = self._equilibrium.moved_by(forces)
         except KernelError:
             return None
         return moved if moved is not None and np.isfinite(moved).all() else None
