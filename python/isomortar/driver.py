@@ -97,7 +97,10 @@ def _last_step(path: Path, problem: Problem, resume: bool, overwrite: bool) -> S
     if not path.is_file():
         raise ResultsError(f"{path} is no ordinary file, but a folder or a device: name another results file")
     if not is_marked(path):
-        raise ResultsError(f"{path} is no results file of isomortar, so it is not overwritten: remove it yourself, or name another file")
+        kept = (
+            "cannot be resumed: name the one to go on with, or leave --resume out" if resume else "is not overwritten: remove it yourself"
+        )
+        raise ResultsError(f"{path} is no results file of isomortar, so it {kept}, or name another file with --output")
     if overwrite:
         return None
     with Results(path) as results:

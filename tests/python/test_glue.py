@@ -18,7 +18,8 @@ from isomortar.march.simulation import Simulation
 from isomortar.model.numbering import Numbering
 from isomortar.program.getfem import GetFEM
 from isomortar.results import bodies
-from isomortar.results.definition import differences, read_problem, write_problem
+from isomortar.results.comparison import differences
+from isomortar.results.definition import read_problem, write_problem
 from isomortar.results.reader import Results
 from isomortar.scene import Scene
 

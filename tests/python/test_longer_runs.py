@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -13,6 +14,7 @@ import pytest
 import isomortar
 from isomortar.errors import ResultsError
 from isomortar.results import Results
+from isomortar.results.comparison import differences
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
 from stopped_runs import Stopped
@@ -169,6 +171,28 @@ def test_anything_else_is_refused_as_ever(tmp_path: Path, what: str) -> None:
         with pytest.raises(ResultsError, match=f"another scene.*{words}.*{LONGER}"):
             isomortar.run(scene, path, resume=True)
     assert path.read_bytes() == before
+
+
+def test_another_name_is_told_once_where_others_name_it() -> None:
+    one = Scene.from_toml(LOADED).problem()
+    for kind, name in {"bodies": "block", "contacts": "floor", "supports": "top", "loads": "wind", "stages": "press"}.items():
+        other = Scene.from_toml(re.sub(rf"\b{name}\b", "another", LOADED)).problem()
+        assert differences(one, other) == [f"{kind}.{name}: is called another in the scene"]
+
+
+def test_what_makes_others_differ_is_told_first() -> None:
+    """Entries that one of both has alone, then meshes, then the rest; the order of names where it is all."""
+    one = SCENES["block"].problem()
+    changes = {"contacts.interface.friction": 0.3, "bodies.slave.mesh.order": 3, "bodies.master.geometry.upper": [3.1, 0.75, 0.0]}
+    other = with_stages(Scene.load("iron", IRON | changes), TURN).problem()
+    assert [sentence.split(": ")[0] for sentence in differences(one, other)][:4] == [
+        "stages.back",
+        "bodies.slave.mesh",
+        "bodies.master.patch",
+        "contacts.interface.friction",
+    ]
+    swapped = replace(one, supports=one.supports[::-1])
+    assert differences(one, swapped) == ["supports: ['top', 'base'] in the file, ['base', 'top'] in the scene"]
 
 
 def test_a_shorter_scene_is_refused_and_a_file_is_as_it_was_until_there_is_more(tmp_path: Path) -> None:

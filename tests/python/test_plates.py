@@ -16,7 +16,7 @@ from isomortar.march.outlook import outlook
 from isomortar.march.simulation import Simulation
 from isomortar.model.rank import rigid_rank
 from isomortar.program.getfem import GetFEM
-from isomortar.results.definition import is_longer
+from isomortar.results.comparison import is_longer
 from isomortar.results.reader import Results
 from isomortar.scene import Scene
 from isomortar.solve.condensed import CondensedSystem

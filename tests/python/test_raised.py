@@ -20,7 +20,8 @@ from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Body, Material, Raised
 from isomortar.model.numbering import Numbering, check_raised
 from isomortar.model.raised import Rows
-from isomortar.results.definition import differences, read_problem, write_problem
+from isomortar.results.comparison import differences
+from isomortar.results.definition import read_problem, write_problem
 from isomortar.results.fields import body_points
 from isomortar.scene import Scene
 

@@ -185,6 +185,8 @@ def of_files(patch: pytest.MonkeyPatch) -> Told:
     yield "results", refusal(lambda: Scene.load("results.toml"))
     Path("scene.toml").write_text("format = = 1")
     yield "no TOML", _but_the_end(refusal(lambda: Scene.load("scene.toml")))
+    Path("twice.toml").write_text("format = 1\nformat = 1")
+    yield "no TOML, twice", refusal(lambda: Scene.load("twice.toml")).partition(")")[2]
     Path("comma.toml").write_text("format = 0,1")
     yield "no TOML, where", refusal(lambda: Scene.load("comma.toml")).partition(")")[2]
     yield "value", _but_the_end(refusal(lambda: apply_overrides({"solver": {}}, ["solver.max_cuts=[1"])))
@@ -282,6 +284,7 @@ def of_causes(patch: pytest.MonkeyPatch) -> Told:
     yield "slides", refusal(lambda: list(pushed("along", "plane", 0.24).run())).partition("Friction")[2].replace(" of", "friction of", 1)
     yield "too steep", of_block(LOADS["weight"], "plane", "monolithic", 2.0).partition("Loads")[2].replace(" push", "loads push", 1)
     yield "tips", tipping.of_block("weight", "plane", "monolithic", 0.46).partition("Loads")[2].replace(" turn", "loads turn", 1)
+    yield "onto", tipping.before(1.2).partition("Loads")[2].replace(" turn", "loads turn", 1)
     yield "lifts", said(tipping.HEAD + tipping.LOWER + tipping.LIFTED).partition("Loads")[2].replace(" move", "loads move", 1)
     equilibrium = Equilibrium(Scene.from_toml(BLOCK + 'supports.top.face = "block.w1"').problem(), Ledger())
     reference = equilibrium.numbering.reference

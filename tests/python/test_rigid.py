@@ -18,7 +18,8 @@ from isomortar.model.entities import Problem
 from isomortar.model.memory import memory_needed
 from isomortar.model.numbering import Numbering
 from isomortar.program.getfem import GetFEM
-from isomortar.results.definition import differences, read_problem, write_problem
+from isomortar.results.comparison import differences
+from isomortar.results.definition import read_problem, write_problem
 from isomortar.scene import Scene
 from isomortar.solve.record import Observer
 

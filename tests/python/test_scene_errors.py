@@ -10,6 +10,7 @@ from told.wrong.keys import CASES, GOOD
 
 from isomortar.errors import InputError
 from isomortar.scene import Scene
+from isomortar.scene.keys import settable_keys
 from isomortar.scene.schema import SceneTable
 from isomortar.scene.types import OF_THE_FILE
 
@@ -88,7 +89,7 @@ def test_bad_override(override: str, field: str | None, said: str) -> None:
         ("bodies.slave.mesh=", 3, None, "is no path of keys, e.g. solver.max_cuts"),
         ("solver.max_cuts", None, "solver.max_cuts", "is None; allowed: what a scene file can hold"),
         ("supports.top.axis", [1, 0, 1j], "supports.top.axis", "is 1j; allowed"),
-        ("solver.max_cuts", "many", "solver.max_cuts", "is 'many'; allowed: a valid integer"),
+        ("solver.max_cuts", "many", "solver.max_cuts", "is 'many'; allowed: a whole number"),
     ],
 )
 def test_bad_override_by_path(path: str, value: object, field: str | None, said: str) -> None:
@@ -107,12 +108,32 @@ def test_several_faults_are_told_at_once() -> None:
     ]
 
 
-def test_sources_that_are_no_scene(tmp_path: Path) -> None:
+def test_sources_that_are_no_scene() -> None:
     with pytest.raises(InputError, match=r"there is no scene file 'irn', and the bundled scenes are: iron, block, iron-round, press"):
         Scene.load("irn")
-    (tmp_path / "a.toml").write_text("format = = 1")
-    with pytest.raises(InputError, match=r"a is not valid TOML: .*line 1, column \d+\), where it says 'format = = 1'\. Texts"):
-        Scene.load(tmp_path / "a.toml")
+
+
+#: Texts that are no TOML, the line that is told, and the last words of what is said.
+NO_TOML = {
+    "value": ("format = = 1", "format = = 1", "numbers have a point"),
+    "end": ("format = 1\nname\n\n", "name", "'name'"),
+    "open": ("format = 1\nbodies = [1\n", "bodies = [1", "'bodies = [1'"),
+    "twice": ("a = 1\na = 2\nb = 1\n", "a = 2", "stands once"),
+    "twice at the end": ("a = 1\na = 2", "a = 2", "stands once"),
+    "table twice": ("[a]\n[a]\nb = 1\n", "[a]", "stands once"),
+}
+
+
+@pytest.mark.parametrize("what", NO_TOML)
+def test_text_that_is_no_toml_is_named_by_its_file_as_it_was_given_and_its_line(tmp_path: Path, what: str) -> None:
+    (text, line, end), path = NO_TOML[what], tmp_path / "my scene.toml"
+    path.write_text(text)
+    for read in (Scene.load, lambda file: list(settable_keys(str(file)))):
+        with pytest.raises(InputError) as error:
+            read(path)
+        assert str(error.value).startswith(f"{path} is not valid TOML: ")
+        assert f"where it says {line!r}" in str(error.value)
+        assert str(error.value).endswith(end)
 
 
 #: By the name that a message is to give it: how editors save what they call "Unicode" or "ANSI".

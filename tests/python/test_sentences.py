@@ -206,6 +206,13 @@ def of_results(_: pytest.MonkeyPatch) -> Told:
     yield "there already", refusal(lambda: ResultsWriter("run.h5", problem(), "", "0"))
     other = replace(problem(), name="other", stages=problem().stages[:1])
     yield "another scene", refusal(lambda: ResultsWriter("run.h5", other, "", "0", resume=True))
+    turning = replace(problem(), stages=(problem().stages[0], replace(problem().stages[1], name="turn")))
+    yield "another name", refusal(lambda: ResultsWriter("run.h5", turning, "", "0", resume=True))
+    tyre, road = problem().bodies
+    wider = replace(road, patch=replace(road.patch, control_points=2.0 * road.patch.control_points))
+    contacts = (problem().contacts[0], replace(problem().contacts[1], friction=0.0))
+    yield "another number", refusal(lambda: ResultsWriter("run.h5", replace(problem(), contacts=contacts), "", "0", resume=True))
+    yield "another shape", refusal(lambda: ResultsWriter("run.h5", replace(problem(), bodies=(tyre, wider)), "", "0", resume=True))
     ResultsWriter("longer.h5", problem(), "", "0")
     shorter = [replace(support, motions=support.motions[:1]) for support in problem().supports]
     short = replace(other, supports=tuple(shorter))

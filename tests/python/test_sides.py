@@ -15,7 +15,7 @@ from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Faces
 from isomortar.model.sheet import Sheet
 from isomortar.program.getfem import GetFEM
-from isomortar.results.definition import differences
+from isomortar.results.comparison import differences
 from isomortar.results.reader import Results
 from isomortar.scene import Scene
 

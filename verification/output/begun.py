@@ -12,7 +12,7 @@ import numpy as np
 from isomortar import Observer, Results, run
 from isomortar.errors import InputError, IsomortarError, ResultsError
 from isomortar.harness import Bound, case
-from isomortar.results.definition import differences
+from isomortar.results.comparison import differences
 from isomortar.results.files import claimed, replace, writing
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
@@ -77,10 +77,13 @@ def begun(states: str) -> dict[str, float]:
         stopped = path.read_bytes()
         wrong = int(first.first != 1 or first.held != [True] * 2)
         wrong += not refused(lambda: run(scene, path), InputError, "exists already") or path.read_bytes() != stopped
-        other.write_text("notes", encoding="utf-8")
-        for options in ({}, {"resume": True}, {"overwrite": True}):
-            wrong += not refused(lambda options=options: run(scene, other, **options), ResultsError, "notes.txt")  # type: ignore[misc]
-        wrong += other.read_text(encoding="utf-8") != "notes"
+        for content in ("notes", ""):
+            other.write_text(content, encoding="utf-8")
+            for option, words in {"resume": "cannot be resumed", "overwrite": "is not overwritten"}.items():
+                said = f"notes.txt is no results file of isomortar, so it {words}"
+                wrong += not refused(lambda option=option: run(scene, other, **{option: True}), ResultsError, said)  # type: ignore[arg-type, misc]
+            wrong += not refused(lambda: run(scene, other), ResultsError, "notes.txt is no results file")
+            wrong += other.read_text(encoding="utf-8") != content
         with claimed(path):
             wrong += not refused(lambda: run(scene, path, resume=True), ResultsError, "another run is writing")
         wrong += path.read_bytes() != stopped

@@ -11,7 +11,7 @@ from output.records import SCENE
 from isomortar.harness import Bound, case
 from isomortar.model.entities import Material, Motion, Problem, Stage
 from isomortar.model.supports import factor_at, moved_by, progress
-from isomortar.results.definition import is_longer
+from isomortar.results.comparison import is_longer
 from isomortar.scene import Scene
 
 #: Factors of what drives beside motions, at the ends of the stages.

@@ -15,7 +15,7 @@ from output.records import SCENE, load_steps, recorded
 from isomortar.errors import ResultsError
 from isomortar.harness import Bound, case
 from isomortar.model.entities import Problem
-from isomortar.results.definition import differences
+from isomortar.results.comparison import differences
 from isomortar.results.reader import Results
 from isomortar.results.writer import ResultsWriter
 from isomortar.scene import Scene

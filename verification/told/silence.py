@@ -18,7 +18,7 @@ from isomortar.geometry.quadrature import contact_points, volume_points
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
 from isomortar.model.entities import Body, Contact, Face, Material, Motion, Problem, RigidPlane, Stage, Support
-from isomortar.results.definition import differences
+from isomortar.results.comparison import differences
 from isomortar.scene import Scene, json_schema
 
 PUBLISHED = Path(isomortar.scene.__file__).parent / "scene.schema.json"

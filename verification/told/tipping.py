@@ -194,3 +194,36 @@ def tipping(scene: str) -> dict[str, float]:
     whole = text.replace("METHOD", "monolithic").replace("YOUNG", "10000") if "METHOD" in text else HEAD + text
     found = TOLD.search(said(whole))
     return {"others": float((found and (found[1], found[2], found[3])) != expected)}
+
+
+#: A wall before the block or behind it, and one above what lifts off.
+APART = 'contacts.wall = { slave = "block.FACE", friction = 0.1, plane = { point = [PLACE, 0, 0], normal = [NORMAL, 0, 0] } }\n'
+ABOVE = 'contacts.wall = { slave = "lower.w1", plane = { point = [0, 0, PLACE], normal = [0, 0, -1] } }\n'
+UNTIL = "until contact 'wall' closes, where it may rest"
+
+
+def before(place: float, face: str = "u1", lean: float = 0.7) -> str:
+    """What is said of a block that tips, with a wall somewhere."""
+    wall = APART.replace("FACE", face).replace("PLACE", str(place)).replace("NORMAL", "-1" if face == "u1" else "1")
+    scene = SCENE.replace("GROUND", GROUNDS["plane"] + "\n" + wall).replace("LOADS", LOADS["weight"]).replace("LEAN", str(lean))
+    return said(scene.replace("METHOD", "monolithic").replace("YOUNG", "10000"))
+
+
+@case(
+    claim="A body that tips or lifts off onto a contact that is open, and no farther than its own size, is told where it may rest; one "
+    "that goes the other way, or far, is told that it tips over.",
+    tier="gate",
+    bounds={
+        "onto": Bound(5.0, 5.0, "definition: of four gaps before a block, and one above, those that are told to close"),
+        "over": Bound(3.0, 3.0, "definition: of one that is far, one behind and one far above, those of which only the motion is told"),
+    },
+)
+def onto() -> dict[str, float]:
+    """How many."""
+    onto = [before(place) for place in (1.01, 1.2, 1.9)] + [before(-0.2, "u0", -0.7)]
+    over = [before(3.2), before(-0.2, "u0")]
+    lifted = {place: said(HEAD + LOWER + LIFTED + ABOVE.replace("PLACE", place)) for place in ("1.5", "9")}
+    return {
+        "onto": float(sum(TOLD.search(sentence) is not None and UNTIL in sentence for sentence in (*onto, lifted["1.5"]))),
+        "over": float(sum(TOLD.search(sentence) is not None and "until" not in sentence for sentence in (*over, lifted["9"]))),
+    }

@@ -11,7 +11,7 @@ from trade.turned import SCENE
 
 from isomortar.errors import InputError
 from isomortar.harness import Bound, case
-from isomortar.results.definition import differences
+from isomortar.results.comparison import differences
 from isomortar.scene import Scene
 from isomortar.trade.advice import VARIANTS
 from isomortar.trade.knobs import KNOBS, Dial, Knob

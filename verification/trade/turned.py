@@ -6,7 +6,7 @@ import re
 from itertools import pairwise
 
 from isomortar.harness import Bound, case
-from isomortar.results.definition import differences
+from isomortar.results.comparison import differences
 from isomortar.scene import Scene
 from isomortar.trade.advice import VARIANTS
 from isomortar.trade.knobs import KNOBS, changed, dials_of

@@ -55,7 +55,8 @@ def _field(fault: ErrorDetails, data: Any) -> str:
             data = data.get(key)
         elif isinstance(data, Sequence) and not isinstance(data, str) and isinstance(key, int) and key < len(data):
             data = data[key]
-            parts.append(str(data.get("name", key) if isinstance(data, dict) else key))
+            name = data.get("name") if isinstance(data, dict) else None
+            parts.append(name if isinstance(name, str) else str(key))
         elif isinstance(data, Sequence) and fault["type"] == "missing":
             parts.append(str(key))
         # What is left over are pydantic's own labels (a union's tag) and places in a value given once for all directions.
@@ -70,7 +71,14 @@ _KINDS = {
     "dataclass_type": "a table",
     "tuple_type": "a list",
     "list_type": "a list",
+    "int_type": "a whole number",
+    "int_from_float": "a whole number",
+    "float_type": "a number",
+    "bool_type": "true or false",
+    "string_type": "a text, in quotes",
 }
+#: Texts that TOML takes for a number or a truth value where they have no quotes.
+_WITHOUT_QUOTES = re.compile(r"true|false|[+-]?\d+(\.\d+)?([eE][+-]?\d+)?")
 
 
 def _given(value: Any) -> str:
@@ -84,7 +92,8 @@ def _sentence(fault: ErrorDetails) -> str:
     given, message = _given(fault["input"]), fault["msg"]
     match fault["type"]:
         case kind if kind in _KINDS:
-            return f"is {given}; allowed: {_KINDS[kind]}"
+            quoted = isinstance(fault["input"], str) and _WITHOUT_QUOTES.fullmatch(fault["input"])
+            return f"is {given}; allowed: {_KINDS[kind]}" + (", without quotes" if quoted else "")
         case "missing" | "union_tag_not_found":
             return "is missing, but must be given"
         case "union_tag_invalid":

@@ -13,8 +13,9 @@ import numpy as np
 from isomortar.errors import ResultsError
 from isomortar.model.entities import Contact, Problem
 from isomortar.results import layout
+from isomortar.results.comparison import differences, is_longer
 from isomortar.results.datasets import Datasets
-from isomortar.results.definition import differences, is_longer, write_problem, write_stages
+from isomortar.results.definition import write_problem, write_stages
 from isomortar.results.files import SEAL_SIZE, read, replace, seal
 from isomortar.results.reader import Results
 from isomortar.solve.record import AugmentationRecord, ContactRates, Observer, Rates, State, StepResult

@@ -26,9 +26,9 @@ def settable_keys(source: str | None) -> Iterator[tuple[str, str]]:
     InputError
         There is none, or it is no TOML.
     """
-    text, name, _ = read_source(source) if source else ("", "", None)
+    text = read_source(source)[0] if source else ""
     schema = json.loads((resources.files("isomortar.scene") / "scene.schema.json").read_text(encoding="utf-8"))
-    yield from _below(schema, schema["$defs"], parse(text, name), ())
+    yield from _below(schema, schema["$defs"], parse(text, source or ""), ())
 
 
 def _below(schema: Schema, tables: dict[str, Schema], content: Any, path: tuple[str, ...]) -> Iterator[tuple[str, str]]:

@@ -33,6 +33,8 @@ class Scene:
         Where its geometry files lie.
     overrides : iterable of str, or mapping of str to value
         ``KEY=VALUE`` each, or values by path, see `isomortar.scene.source.apply_overrides`.
+    source : str, optional
+        Path of the file, by which the text is named where it is no TOML; absent: the name.
 
     Attributes
     ----------
@@ -46,9 +48,9 @@ class Scene:
         Not TOML, unknown keys, impossible values; `field` is the dotted path of the key.
     """
 
-    def __init__(self, text: str, name: str, folder: Path, overrides: SceneChanges = ()) -> None:
+    def __init__(self, text: str, name: str, folder: Path, overrides: SceneChanges = (), source: str = "") -> None:
         self._text, self._folder = text, folder
-        self._data = parse(text, name)
+        self._data = parse(text, source or name)
         apply_overrides(self._data, overrides)
         try:
             self.tables = SceneTable.model_validate(self._data)
@@ -68,7 +70,7 @@ class Scene:
         overrides : iterable of str, or mapping of str to value
             Overrides of single values: ``bodies.master.mesh.order=[3, 2, 2]``, or ``{"bodies.master.mesh.order": [3, 2, 2]}``.
         """
-        return cls(*read_source(source), overrides)
+        return cls(*read_source(source), overrides, str(source))
 
     @classmethod
     def from_toml(cls, text: str, folder: str | Path = ".", overrides: SceneChanges = ()) -> Scene:

@@ -23,6 +23,12 @@ SceneChanges = Iterable[str] | Mapping[str, Any]
 _NO_NAME = re.compile("[^A-Za-z0-9_\u00a1-\ud7ff\ue000-\U0010ffff-]")
 _PATH = re.compile(r"[\w-]+(\.[\w-]+)*")
 
+#: What a message of TOML's reader may want, by words of it.
+_HINTS = {
+    "Invalid value|newline": ". Texts stand in quotes, numbers have a point",
+    "overwrite|twice": ". Each key of a table, and each [table], stands once",
+}
+
 #: Tables whose entries have names of their own: an override cannot add one.
 _NAMED = ("materials", "bodies", "contacts", "supports")
 #: One whose entries an override can add whole, `loads.wind={ ... }`, but not key by key: a name by mistake would be a load of its own.
@@ -61,9 +67,9 @@ def parse(text: str, name: str) -> dict[str, Any]:
 
 def _line(text: str, message: str) -> str:
     """The line that a message is about, as far as it is short, and what it may want."""
-    lines, found = text.split("\n"), re.search(r"at line (\d+)", message)
-    said = f", where it says {lines[int(found[1]) - 1].strip()[:60]!r}" if found else ""
-    return said + (". Texts stand in quotes, numbers have a point" if "value" in message or "newline" in message else "")
+    lines, found = text.rstrip().split("\n"), re.search(r"line (\d+)|end of document", message)
+    said = f", where it says {lines[int(found[1] or 0) - 1].strip()[:60]!r}" if found else ""
+    return said + next((words for what, words in _HINTS.items() if re.search(what, message)), "")
 
 
 def _read(text: str) -> dict[str, Any]:

@@ -99,7 +99,7 @@ CASES = {
         "is 'lower.w2', but lower has no face 'w2'",
     ),
     "missing": ('name = "turn"\n', "", "stages.1.name", "is missing, but must be given"),
-    "not a number": ("young = 10.0", 'young = "hard"', "materials.rubber.young", "is 'hard'; allowed: a valid number"),
+    "not a number": ("young = 10.0", 'young = "hard"', "materials.rubber.young", "is 'hard'; allowed: a number"),
     "Young": ("young = 10.0", "young = 0", "materials.rubber.young", "is 0; allowed: greater than 0"),
     "Poisson": ("poisson = 0.3", "poisson = 0.5", "materials.rubber.poisson", "is 0.5; allowed: less than 0.5"),
     "NaN": ("poisson = 0.3", "poisson = nan", "materials.rubber.poisson", "is nan; allowed: a finite number"),
@@ -141,7 +141,7 @@ CASES = {
         "is 0; allowed: greater than or equal to 1",
     ),
     "two elements": ("elements = [2, 2, 1]", "elements = [2, 2]", "bodies.upper.mesh.elements", "allowed: one for all directions, or 3"),
-    "half an element": ("elements = [2, 2, 1]", "elements = 2.5", "bodies.upper.mesh.elements", "is 2.5; allowed: a valid integer"),
+    "half an element": ("elements = [2, 2, 1]", "elements = 2.5", "bodies.upper.mesh.elements", "is 2.5; allowed: a whole number"),
     "size": ("elements = [2, 2, 1]", "elements = [1000, 1000, 1000]", "bodies.upper.mesh.elements", "allowed: 5000000"),
     "closed": (
         'material = "cork"',

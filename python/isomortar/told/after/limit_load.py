@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from isomortar._bindings import Control
-from isomortar.geometry.patch import FloatArray
+from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model.supports import BoolArray
 from isomortar.solve.contact import PairMechanics
 from isomortar.solve.record import ContactState, State
@@ -43,6 +43,14 @@ class Touch:
         """Whether most of the slave touches."""
         return bool(self.near.mean() >= FACE)
 
+    def is_moved(self, some: BoolArray) -> bool:
+        """Whether some of the motions do anything to it."""
+        return bool(np.any(self.closing[:, some]) or np.any(self.slipping[..., some]))
+
+    def by(self, some: BoolArray) -> Touch:
+        """The same by some of the motions alone."""
+        return replace(self, closing=self.closing[:, some], slipping=self.slipping[..., some], beside=self.beside[:, some])
+
     def lengths(self, way: FloatArray) -> FloatArray:
         """How far each slips."""
         return np.asarray(np.linalg.norm(self.slipping @ way, axis=1))
@@ -66,7 +74,7 @@ def touches_of(mechanics: Sequence[PairMechanics], state: State, displacements: 
     LostProjectionError
     """
     pairs = list(zip(mechanics, state.contacts, strict=True))
-    found = [_heights(pair, pair.kinematics(state.positions, begun).control) for pair, begun in pairs]
+    found = [heights(pair, pair.kinematics(state.positions, begun).control) for pair, begun in pairs]
     nearest = min(max((float(height.max(initial=-np.inf)) for height in found), default=-np.inf), 0.0)
     touches = []
     for (pair, begun), height in zip(pairs, found, strict=True):
@@ -78,7 +86,22 @@ def touches_of(mechanics: Sequence[PairMechanics], state: State, displacements: 
     return touches
 
 
-def _heights(pair: PairMechanics, control: Control) -> FloatArray:
+def groups_of(touches: Sequence[Touch], pieces: IntArray) -> Iterator[tuple[BoolArray, list[Touch]]]:
+    """Motions, each of a piece, of those that touch each other or by others between them, and what touches there, by these motions alone.
+
+    Loads on the rest do not matter to them, however large.
+    """
+    from scipy.sparse.csgraph import connected_components
+
+    names, of_names = np.unique(pieces, return_inverse=True)
+    moved = np.array([[touch.is_moved(pieces == name) for name in names] for touch in touches], dtype=np.float64)
+    labels = connected_components(moved.T @ moved)[1]
+    for label in np.unique(labels):
+        mine = (labels == label)[of_names]
+        yield mine, [touch.by(mine) for touch in touches if touch.is_moved(mine)]
+
+
+def heights(pair: PairMechanics, control: Control) -> FloatArray:
     """Mean gaps; minus infinity of what has no foot, or with friction no metric to measure slips in, as at a pole."""
     measured = np.all(control.metric[:, [0, 2]] > 0.0, axis=1) if pair.friction.acts else True
     return np.where(measured, mean_heights(control), -np.inf)

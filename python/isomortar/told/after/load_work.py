@@ -31,11 +31,15 @@ def borne_loads(equilibrium: Equilibrium, state: State) -> tuple[list[FreeMotion
 
 
 def load_works(equilibrium: Equilibrium, positions: FloatArray, motions: Sequence[FreeMotion]) -> FloatArray:
-    """Work of all loads, and of the forces and moments of plates, on each motion, shape (motions,); zero where it is round-off."""
+    """Work of all loads, and of the forces and moments of plates, on each motion, shape (motions,); zero where it is round-off.
+
+    Which is that of the piece's own loads: those of heavier ones have none in it.
+    """
     parts = [_parts(equilibrium, positions, motion) for motion in motions]
     works = np.array([part.sum() for part in parts])
-    largest = np.max([np.abs(part).sum() for part in parts], initial=0.0)
-    return np.where(np.abs(works) > constants.NO_PART * largest, works, 0.0)
+    pieces, largest = np.array([motion.piece for motion in motions], dtype=np.int64), np.zeros(len(equilibrium.numbering.pieces))
+    np.maximum.at(largest, pieces, [np.abs(part).sum() for part in parts])
+    return np.where(np.abs(works) > constants.NO_PART * largest[pieces], works, 0.0)
 
 
 def _parts(equilibrium: Equilibrium, positions: FloatArray, motion: FreeMotion) -> FloatArray:

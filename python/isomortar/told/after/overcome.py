@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import compress
 
 import numpy as np
 
@@ -11,7 +13,7 @@ from isomortar.model import constants
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.free_motions import FreeMotion, direction, going
 from isomortar.solve.record import State
-from isomortar.told.after.limit_load import Touch, along_contact, least_resisted, pressed_bed
+from isomortar.told.after.limit_load import Touch, along_contact, groups_of, least_resisted, pressed_bed
 from isomortar.told.after.load_work import borne_loads
 from isomortar.told.after.more_friction import more_friction
 
@@ -19,6 +21,17 @@ from isomortar.told.after.more_friction import more_friction
 ALL = 0.9
 #: Loads of more than so many times what friction can bear: a body that rolls, of which something else is to be said.
 ROLLS = 1e6
+
+
+@dataclass(frozen=True)
+class _Slide:
+    """The way on which friction resists bodies that touch least, what it can bear at each constraint, and by contact of the work on it."""
+
+    touches: list[Touch]
+    motions: list[FreeMotion]
+    way: FloatArray
+    limits: list[FloatArray]
+    borne: FloatArray
 
 
 def overcome(equilibrium: Equilibrium, state: State) -> Iterator[str]:
@@ -32,17 +45,28 @@ def overcome(equilibrium: Equilibrium, state: State) -> Iterator[str]:
         Where the last load increment ended that converged.
     """
     motions, works, touches = borne_loads(equilibrium, state)
+    if not touches:
+        return
+    groups = groups_of(touches, np.array([motion.piece for motion in motions]))
+    found = [slide for mine, near in groups if (slide := _slide(near, works[mine], list(compress(motions, mine)))) is not None]
+    slide = min(found, key=lambda slide: slide.borne.sum(), default=None)
+    if slide and not _holds(slide.touches, state, equilibrium, slide.way):
+        resist = [k for k, part in enumerate(slide.borne) if part > constants.IN_THE_WAY * slide.borne.sum()]
+        slips = [(slide.touches[k], slide.limits[k]) for k in resist]
+        more = more_friction([(touch.pair.pair.contact, limit, limit * touch.lengths(slide.way)) for touch, limit in slips])
+        yield from _said(equilibrium, [touch for touch, _ in slips], slide.motions, slide.way, float(slide.borne.sum()), more)
+
+
+def _slide(touches: list[Touch], works: FloatArray, motions: list[FreeMotion]) -> _Slide | None:
+    """Of bodies that touch; None: friction bears their loads, or beds do not, or nothing resists these."""
     along = along_contact(touches)
     bed = pressed_bed(touches, works, along) if along.size else None
     if bed is None:
-        return
+        return None
     limits = [touch.limits(bed) for touch in touches]
     way = least_resisted(touches, limits, along, works)
     borne = np.array([limit @ touch.lengths(way) for touch, limit in zip(touches, limits, strict=True)])
-    if 1.0 / ROLLS < borne.sum() < 1.0 / ALL and not _holds(touches, state, equilibrium, way):
-        resist = [k for k, part in enumerate(borne) if part > constants.IN_THE_WAY * borne.sum()]
-        more = more_friction([(touches[k].pair.pair.contact, limits[k], limits[k] * touches[k].lengths(way)) for k in resist])
-        yield from _said(equilibrium, [touches[k] for k in resist], motions, way, float(borne.sum()), more)
+    return _Slide(touches, motions, way, limits, borne) if 1.0 / ROLLS < borne.sum() < 1.0 / ALL else None
 
 
 def _holds(touches: Sequence[Touch], state: State, equilibrium: Equilibrium, way: FloatArray) -> bool:

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from itertools import compress
 
 import numpy as np
 from scipy import sparse
 
 from isomortar.errors import LostProjectionError
 from isomortar.geometry.patch import FloatArray
+from isomortar.model.rank import extent
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.feet import gaps
 from isomortar.solve.free_motions import FreeMotion, direction, going
 from isomortar.solve.record import ContactState, State
 from isomortar.solve.touching import next_to_nothing
-from isomortar.told.after.limit_load import ALONG, Touch
+from isomortar.told.after.limit_load import ALONG, Touch, groups_of, heights
 from isomortar.told.after.load_work import borne_loads
 
 #: Bodies that bear on less than this share of what is over the master are on its edge: soft ones are over it before rigid ones would be.
@@ -44,14 +47,14 @@ def tipping(equilibrium: Equilibrium, state: State) -> Iterator[str]:
     motions, works, touches = borne_loads(equilibrium, state)
     if not touches:
         return
-    of_pieces = np.bincount([motion.piece for motion in motions], works**2)
-    way = overturning(touches, works, np.sqrt([of_pieces[motion.piece] for motion in motions]))
-    if way is None:
-        return
-    try:
-        yield _said(equilibrium, state, touches, motions, way, works)
-    except LostProjectionError:
-        return
+    pieces = np.array([motion.piece for motion in motions])
+    sizes = np.sqrt(np.bincount(pieces, works**2))[pieces]
+    for mine, near in groups_of(touches, pieces):
+        way = overturning(near, works[mine], sizes[mine]) if near and np.any(works[mine]) else None
+        if way is not None:
+            with suppress(LostProjectionError):
+                yield _said(equilibrium, state, near, list(compress(motions, mine)), way, works[mine])
+            return
 
 
 def overturning(touches: Sequence[Touch], works: FloatArray, sizes: FloatArray) -> FloatArray | None:
@@ -120,11 +123,32 @@ def _said(
     else:
         how, end, cure = f"move {goes.bodies} along ({direction(goes.shift)})", "it lifts off", "Take less load that way, "
     begun = dict(zip(equilibrium.pairs, state.contacts, strict=True))
+    met = " and ".join(map(repr, _met(equilibrium, state, touches, motions, way)))
+    end += f" until contact {met} closes, where it may rest: bring it there by a support first if that is meant" if met else ""
     finer = goes.turns and any(_finer_bears(touch, state.positions, begun[touch.pair], motions, way, works) for touch in opened)
     return (
         f"loads {how} by then, which contact {contacts} could hold by a pull alone, or by what presses on less than a third of the area: "
         f"{end}. {cure}{FINER if finer else ''}or hold or move it by a support"
     )
+
+
+def _met(equilibrium: Equilibrium, state: State, touches: Sequence[Touch], motions: Sequence[FreeMotion], way: FloatArray) -> Iterator[str]:
+    """Contacts that are open all over, and closed by the motion before a body has gone by its own size."""
+    displacement = np.tensordot(way, [motion.displacement for motion in motions], 1)
+    speed = float(np.linalg.norm(displacement, axis=-1).max())
+    size = np.max([extent(equilibrium.numbering.pieces[motion.piece])[1] for motion, share in zip(motions, way, strict=True) if share])
+    for pair, begun in zip(equilibrium.pairs, state.contacts, strict=True):
+        if any(touch.pair is pair for touch in touches):
+            continue
+        step = next_to_nothing(pair)
+        start, end = (
+            heights(pair, pair.kinematics(positions, begun).control)
+            for positions in (state.positions, state.positions + step * displacement / speed)
+        )
+        over = np.isfinite(start) & np.isfinite(end)
+        closes, height = (end[over] - start[over]) / step, start[over]
+        if np.any((height < 0.0) & (-height < size * closes) & (closes > ASKEW)):
+            yield pair.pair.contact.name
 
 
 def _finer_bears(
