@@ -38,11 +38,10 @@ def drawn() -> Iterator[tuple[str, FloatArray]]:
         def without_words(figure: Figure, path: Path, **_: object) -> None:
             for text in figure.findobj(Text):
                 text.set_visible(False)  # and take no room: fonts are not the same everywhere
-            if path.suffix == ".png":
-                save(figure, path, dpi=DPI)
+            save(figure, path, dpi=DPI)
 
         with patch.object(Figure, "savefig", without_words), mpl.rc_context(mpl.rcParamsDefault):
-            plot(path, found, [Curve()])
+            plot(path, found, [Curve()], formats=["png"])
         for name in NAMES:
             yield name, np.asarray(imread(found / f"{name}.png")[..., :3], float)
 

@@ -239,10 +239,15 @@ def of_files(patch: pytest.MonkeyPatch) -> Told:
     Path("there").mkdir()
     yield "kept", re.sub(r"written: [^;]*", "written: #", refusal(lambda: files.replace(Path("there"), b"")))
     Path("file").touch()
-    yield "no folder", _but_the_end(refusal(lambda: files.make_folder(Path("file/folder"))))
-    yield "not written", _but_the_end(refusal(lambda: files.replace(Path("file/new.h5"), b"")))
+    yield "no folder", refusal(lambda: files.make_folder(Path("file/folder")))
+    yield "not written", _but_the_end(refusal(lambda: _written(Path("none/new.svg"))))
     with files.claimed(Path("run.h5")):
         yield "claimed", refusal(lambda: files.claimed(Path("run.h5")).__enter__())
+
+
+def _written(path: Path) -> None:
+    with files.writing(path) as fresh:
+        fresh.touch()
 
 
 def _but_the_end(text: str) -> str:
@@ -309,7 +314,8 @@ def on_figures(patch: pytest.MonkeyPatch) -> Told:
     found: dict[str, set[str]] = {}
 
     def read(figure: Figure, path: Path, **_: object) -> None:
-        found.setdefault(Path(path).stem, set()).update(text.get_text() for text in figure.findobj(Text))
+        found.setdefault(Path(path).name.split(".")[1], set()).update(text.get_text() for text in figure.findobj(Text))
+        Path(path).touch()
 
     writer = ResultsWriter("drawn.h5", problem(), "", "0")
     writer.recorded(step_result(1))

@@ -230,10 +230,19 @@ def test_what_cannot_be_written_leaves_no_part_of_a_new_file_and_the_old_one_as_
         with pytest.raises(KeyboardInterrupt):
             _write_a_part(path, KeyboardInterrupt())
         assert (path.read_text() if path.exists() else None) == before
+    assert [path.name for path in tmp_path.iterdir()] == ["old"]
+
+
+def test_what_a_link_leads_to_is_written_and_the_link_stays(tmp_path: Path) -> None:
+    link, file = tmp_path / "link.svg", tmp_path / "file.svg"
+    link.symlink_to(file)
+    with writing(link) as fresh:
+        fresh.write_text("whole")
+    assert link.is_symlink()
+    assert file.read_text() == "whole"
 
 
 def _write_a_part(path: Path, end: BaseException) -> None:
-    with writing(path):
-        if not path.exists():
-            path.write_text("a part")
+    with writing(path) as fresh:
+        fresh.write_text("a part")
         raise end

@@ -294,7 +294,7 @@ def test_a_step_cannot_be_recorded_twice(tmp_path: Path) -> None:
 
 def test_an_unwritable_place_is_told(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
-    with pytest.raises(ResultsError, match="cannot be written"):
+    with pytest.raises(ResultsError, match="file is a file, and no folder"):
         write(tmp_path / "file" / "run.h5", range(1))
 
 

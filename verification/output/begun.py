@@ -12,6 +12,7 @@ import numpy as np
 from isomortar import Observer, Results, run
 from isomortar.errors import InputError, IsomortarError, ResultsError
 from isomortar.harness import Bound, case
+from isomortar.harness.store import write_whole
 from isomortar.results.comparison import differences
 from isomortar.results.files import claimed, replace, writing
 from isomortar.scene import Scene
@@ -118,8 +119,8 @@ def system_refuses() -> dict[str, float]:
     """How many."""
 
     def fail(path: Path) -> None:
-        with writing(path):
-            path.write_text("half", encoding="utf-8")
+        with writing(path) as fresh:
+            fresh.write_text("half", encoding="utf-8")
             raise OSError(28, "No space left on device")
 
     with tempfile.TemporaryDirectory() as name:
@@ -127,10 +128,13 @@ def system_refuses() -> dict[str, float]:
         old, new, place = folder / "old.svg", folder / "new.svg", folder / "place.h5"
         old.write_text("whole", encoding="utf-8")
         place.mkdir()
-        wrong = int(not refused(lambda: fail(old), ResultsError, "old.svg cannot be written: No space") or not old.exists())
+        wrong = int(not refused(lambda: fail(old), ResultsError, "old.svg cannot be written: No space"))
+        wrong += old.read_text(encoding="utf-8") != "whole"
         wrong += not refused(lambda: fail(new), ResultsError, "new.svg cannot be written: No space") or new.exists()
         wrong += not refused(lambda: replace(place, b"content"), ResultsError, "what it held before is still in it")
-        wrong += not refused(lambda: replace(old / "below.h5", b"content"), ResultsError, "below.h5 cannot be written")
+        wrong += not refused(lambda: replace(old / "below.h5", b"content"), ResultsError, "old.svg is a file, and no folder")
+        wrong += not refused(lambda: write_whole(place, "content"), ResultsError, "place.h5 cannot be written")
+        wrong += not refused(lambda: write_whole(old / "below" / "page.html", ""), ResultsError, "old.svg is a file, and no folder")
         replace(new, b"one")
         replace(new, b"two")
         wrong += new.read_bytes() != b"two" or sorted(entry.name for entry in folder.iterdir()) != ["new.svg", "old.svg", "place.h5"]

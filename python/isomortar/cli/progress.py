@@ -21,7 +21,7 @@ import numpy as np
 from isomortar.cli.words import many
 from isomortar.errors import InputError
 from isomortar.model.entities import Problem
-from isomortar.results.files import is_marked, make_folder, writing
+from isomortar.results.files import is_marked, make_folder, named
 from isomortar.solve.record import AugmentationRecord, IterationRecord, Observer, StepResult
 
 if TYPE_CHECKING:
@@ -299,7 +299,7 @@ def _kept(log: str | os.PathLike[str] | None) -> Iterator[Callable[[str], None] 
     with Path(log).open("ab", buffering=0) as file:
 
         def keep(line: str) -> None:
-            with writing(Path(log)):
+            with named(Path(log)):
                 file.write(f"{datetime.now().isoformat(' ', 'milliseconds')} {line}\n".encode(errors="backslashreplace"))
 
         keep(f"isomortar {version('isomortar')}: {shlex.join(sys.argv)}")

@@ -60,21 +60,29 @@ def _with_digest(digest: str) -> bytes:
 
 
 @contextmanager
-def writing(path: Path) -> Iterator[None]:
-    """What the system refuses while `path` is written becomes an error that names it; no part of a new file is left behind.
-
-    Nor is it where the user ends it with Ctrl-C: half a film looks like a whole one.
-    """
-    new = not path.exists()
+def named(path: Path) -> Iterator[None]:
+    """What the system refuses while `path` is written becomes an error that names it."""
     try:
         yield
-    except BaseException as error:
-        if new:
-            with suppress(OSError):
-                path.unlink()
-        if isinstance(error, OSError):
-            raise ResultsError(f"{path} cannot be written: {error.strerror or error}") from error
-        raise
+    except OSError as error:
+        raise ResultsError(f"{path} cannot be written: {error.strerror or error}") from error
+
+
+@contextmanager
+def writing(path: Path) -> Iterator[Path]:
+    """Where to write what is `path` once it is whole: whatever happens meanwhile, no part of it has that name, and what had it stays.
+
+    Half a film looks like a whole one, and a kill takes nothing away.
+    """
+    whole = path.resolve()
+    fresh = whole.with_name(f".{whole.stem}.{os.getpid()}.new{whole.suffix}")
+    try:
+        with named(path):
+            yield fresh
+            fresh.replace(whole)
+    finally:
+        with suppress(OSError):
+            fresh.unlink()
 
 
 def place_for(path: Path) -> None:
@@ -94,6 +102,9 @@ def make_folder(path: Path) -> None:
     """Make a folder and those above it, where they are not there."""
     try:
         path.mkdir(parents=True, exist_ok=True)
+    except (FileExistsError, NotADirectoryError) as error:
+        file = next(above for above in (path, *path.parents) if above.exists())
+        raise ResultsError(f"folder {path} cannot be made: {file} is a file, and no folder") from error
     except OSError as error:
         raise ResultsError(f"folder {path} cannot be made: {error.strerror or error}") from error
 
@@ -107,8 +118,8 @@ def replace(path: Path, *parts: bytes) -> None:
         The system refused; the old file stands.
     """
     fresh = path.with_name(f".{path.name}.new")
+    make_folder(path.parent)
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
         with fresh.open("wb") as file:
             file.writelines(parts)
             file.flush()
@@ -135,8 +146,8 @@ def claimed(path: Path) -> Iterator[None]:
         Another run holds it, or the folder cannot be written.
     """
     lock = path.with_name(f".{path.name}.lock")
+    make_folder(path.parent)
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
         descriptor = _locked(lock)
     except BlockingIOError as error:
         raise ResultsError(f"another run is writing {path}: let it end, or name another results file") from error

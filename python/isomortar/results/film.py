@@ -82,11 +82,11 @@ def film(
             pictures.append(Image.open(drawn).convert("RGB"))
             if tell:
                 tell(len(pictures), len(shown))
-    with writing(path):
+    with writing(path) as fresh:
         if encoder:
-            _encode(encoder, pictures, path, rate)
+            _encode(encoder, pictures, fresh, rate)
         else:
-            pictures[0].save(path, FORMATS[path.suffix], save_all=True, append_images=pictures[1:], duration=round(1000.0 / rate), loop=0)
+            pictures[0].save(fresh, FORMATS[path.suffix], save_all=True, append_images=pictures[1:], duration=round(1000.0 / rate), loop=0)
     return path
 
 

@@ -64,12 +64,12 @@ def export(results_path: str | os.PathLike[str], outdir: str | os.PathLike[str])
         for time, number, parts in states(results):
             for part, (name, grids) in enumerate(parts.items()):
                 path = folder / f"{name}-{number:04d}.vtu"
-                with writing(path):
-                    write_vtu(path, grids)
+                with writing(path) as fresh:
+                    write_vtu(fresh, grids)
                 place = path.relative_to(collection.parent).as_posix()
                 ElementTree.SubElement(entries, "DataSet", timestep=repr(time), part=str(part), name=name, file=place)
-        with writing(collection):
-            ElementTree.ElementTree(root).write(collection, encoding="utf-8", xml_declaration=True)
+        with writing(collection) as fresh:
+            ElementTree.ElementTree(root).write(fresh, encoding="utf-8", xml_declaration=True)
     return collection
 
 

@@ -147,6 +147,6 @@ def _map(problem: Problem, step: StepResult, number: int, field: str, before: St
 def _save(figure: Figure, stem: Path, formats: Sequence[str]) -> list[Path]:
     paths = [stem.with_name(f"{stem.name}.{kind}") for kind in formats]
     for path in paths:
-        with writing(path):
-            figure.savefig(path, bbox_inches="tight", pad_inches=0.08)
+        with writing(path) as fresh:
+            figure.savefig(fresh, bbox_inches="tight", pad_inches=0.08)
     return paths

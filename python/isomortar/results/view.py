@@ -126,8 +126,8 @@ def view(results_path: str | os.PathLike[str], output: str | os.PathLike[str]) -
             raise ResultsError(f"{results.path} holds no load step yet: nothing to look at")
         place_for(path)
         text = _page(results)
-    with writing(path):
-        path.write_text(text, encoding="utf-8")
+    with writing(path) as fresh:
+        fresh.write_text(text, encoding="utf-8")
     return path
 
 
