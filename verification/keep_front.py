@@ -71,7 +71,7 @@ def _record(report: dict[str, Any], want: str) -> dict[str, str]:
         "class": "over-refined",
         "origin": f"isomortar trade, program {report['program'][:12]}; {report['compiler']}",
         "made": f"{report['started']}; kept by verification/keep_front.py",
-        "uncertainty": f"{report['uncertainty']:.2g} of the curve: what two over-refined runs of other orders and meshes differ by",
+        "uncertainty": f"{report['uncertainty']:.2g} of the curve: what over-refined runs of other orders and meshes differ by",
         "wanted": want,
     }
 

@@ -19,7 +19,7 @@ from told.behind import SCENE as FLOOR
 from told.beyond_edges import STRIP as BEYOND_EDGES
 from told.beyond_edges import punch
 from told.given_up import all_told, without_digits
-from told.narrow import BALLS, STRIPS, depth, strip
+from told.narrow import BALL, BALLS, STRIPS, depth, strip
 from told.passing import SCENE as BENT
 from told.unstable import column as slender
 from told.weights import column
@@ -185,6 +185,7 @@ def along_the_way(_: pytest.MonkeyPatch) -> Told:
     for name, (text, changes) in {
         "narrow": strip(*STRIPS["N2 beside it"]),
         "one row": (BALLS["one row"][0], (depth(0.05),)),
+        "two rows of dual constraints": (BALL, (depth(0.025), 'contacts.c.enforcement="dual"')),
         "one row of constraints": (BALLS["constraints at knots"][0], (*BALLS["constraints at knots"][1], depth(0.025))),
     }.items():
         observer = Warned()

@@ -47,7 +47,11 @@ def effect(dial, number):
 
 
 def synthetic():
-    own = {"elements": ["2", "3", "4", "6", "8", "12", "16"], "load steps": ["2", "4", "8", "16", "32", "64"], "order": ["2", "3", "4"]}
+    own = {
+        "elements": ["2", "3", "4", "6", "8", "12", "16", "24", "32"],
+        "load steps": ["2", "4", "8", "16", "32", "64"],
+        "order": ["2", "3", "4"],
+    }
     dials = [Dial("order of block", tuple(map(Setting, own["order"])), 0, "", part="order")]
     dials += [Dial(f"elements of block along {a}", tuple(map(Setting, own["elements"])), 2, "", part="elements") for a in "uv"]
     dials += [Dial("load steps", tuple(map(Setting, own["load steps"])), 2, "")]

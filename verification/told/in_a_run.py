@@ -13,11 +13,12 @@ from isomortar.scene import Scene
 from isomortar.solve.record import ContactResult, ContactState, StepResult
 from isomortar.told.during.advice import StepAdvice
 
-#: Two contacts of which the first one is never spoken of.
+#: Two contacts of bodies that are glued, of which the first one is never spoken of.
 SCENE = """
 format = 1
 bodies.a = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }, mesh = { order = 2, elements = 1 } }
-bodies.b = { geometry = { kind = "box", lower = [2, 0, 0], upper = [3, 1, 1] }, mesh = { order = 2, elements = 2 } }
+bodies.b = { geometry = { kind = "box", lower = [1, 0, 0], upper = [2, 1, 1] }, mesh = { order = 2, elements = 2 } }
+glue = [["a.u1", "b.u0"]]
 contacts.quiet = { slave = "a.w0", plane = {}, friction = 0.3 }
 contacts.told = { slave = "b.w0", plane = {}, friction = 0.3 }
 supports = { a.face = "a.w1", b.face = "b.w1" }

@@ -310,7 +310,7 @@ def broad_scenes(scene: str) -> dict[str, float]:
 
 
 #: A block that is pressed on a plane and touches nothing of the others; YOUNG times as stiff as they are.
-BESIDE = """
+ELSEWHERE = """
 materials.stiff = { young = YOUNG, poisson = 0.3 }
 bodies.d = { material = "stiff", geometry = { kind = "box", lower = [0, 10, 0], upper = [1, 11, 1] }, mesh.elements = 2 }
 contacts.floor = { slave = "d.w0", plane = {} }
@@ -326,6 +326,35 @@ supports.hand.face = "d.w1"
 )
 def narrow_beside_others(stiffer: float) -> dict[str, float]:
     """What is said of a ball on a block that does not carry it."""
-    text = BALL.replace("bodies.a = {", 'bodies.a = { material = "m",') + BESIDE.replace("YOUNG", str(10.0 * stiffer))
+    text = BALL.replace("bodies.a = {", 'bodies.a = { material = "m",') + ELSEWHERE.replace("YOUNG", str(10.0 * stiffer))
     said, _ = run(text, (depth(0.025), "stages.press.motions.hand.translate=[0, 0, -0.025]"))
     return {"said": float([words["contact"] for words in said] == ["c"])}
+
+
+@case(
+    claim="Contact of a ball that is too narrow for its slave is told with every way of enforcing it: of dual constraints and of those at "
+    "points forces are too large; of a slave with twice as many elements nothing is said.",
+    tier="gate",
+    grid={"enforcement": ("dual", "kts", "knots")},
+    bounds={
+        "said": Bound(1.0, 1.0, "definition: sentences of the coarse slave"),
+        "too large": Bound(at_least=0.2, reason="definition: share of the force: or there is nothing to tell of"),
+        "others": Bound(0.0, 0.0, "definition: sentences of the finer slave"),
+        "left": Bound(at_most=0.1, reason="definition: what the force of the finer slave is off by"),
+    },
+)
+def by_enforcement(enforcement: str) -> dict[str, float]:
+    """What is said of both, and how far they are off constraints on averages of a fine slave."""
+    method = ("solver.method='uzawa'",) if enforcement == "kts" else ()
+    fine = ("bodies.a.mesh.elements=[16, 16, 6]", "bodies.b.mesh.elements=[12, 12, 1]")
+    _, true = run(BALL, (depth(0.025), *fine))
+    (said, force), (others, finer) = (
+        run(BALL, (depth(0.025), f"bodies.a.mesh.elements={mesh}", f"contacts.c.enforcement='{enforcement}'", *method))
+        for mesh in ("[8, 8, 4]", "[16, 16, 6]")
+    )
+    return {
+        "said": float(len(said)),
+        "too large": force / true - 1.0,
+        "others": float(len(others)),
+        "left": abs(finer / true - 1.0),
+    }

@@ -82,7 +82,11 @@ def drawn() -> dict[str, float]:
         figures.screening(search)
         figures.curves(search, search.yardsticks[0], [answer])
     precision, (costs, changes), (left, right) = shown[0].axes[0], shown[1].axes, shown[2].axes[:2]
-    runs = [run for run in known.outcomes.values() if not run.failure and run.choice not in (search.truth.choice, search.rival.choice)]
+    runs = [
+        run
+        for run in known.outcomes.values()
+        if not run.failure and run.choice not in [truth.choice for truth in (search.truth, *search.rivals)]
+    ]
     places = {(run.cost, 100.0 * off(run, search.truth)) for run in runs}
     front = {(x, y) for x, y in places if not any((a <= x and b < y) or (a < x and b <= y) for a, b in places)}
     step = next(line for line in precision.lines if line.get_label() == "front")

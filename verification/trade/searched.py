@@ -19,7 +19,7 @@ from isomortar.trade.want import Want
 
 #: Two numbers are wanted of each run; the norm of errors is that of both.
 WANT = Want("two numbers", lambda run, _: np.array(run["two"]), lambda _: np.array([0.75, 0.25]))
-#: Targets over what two over-refined runs differ by, where these can be refined no more: nobody can tell the first.
+#: Targets over what over-refined runs differ by, where these can be refined no more: nobody can tell the first.
 SHARES = (2.5, 3.5, 8.0)
 #: What says that.
 REFUSED = "nobody could tell whether it is reached"
@@ -111,7 +111,7 @@ def forecasts(seed: int) -> dict[str, float]:
 @case(
     claim="What a search recommends has the accuracy that is asked for and is no more than a tenth dearer than the cheapest of all "
     "combinations that have it with a tenth to spare, of each order the cheapest that was run; "
-    "targets that two over-refined runs do not tell are refused, and no others.",
+    "targets that over-refined runs do not tell are refused, and no others.",
     tier="gate",
     grid={"seed": (1, 2, 3)},
     bounds={
@@ -144,14 +144,14 @@ def recommended(seed: int) -> dict[str, float]:
 def dearer(known: Known, search: Search, answer: Recommendation) -> tuple[float, float]:
     """Cost over that of the cheapest that is as near to the truth: of all combinations; order by order, at its worst, of the runs made."""
     assert search.truth
-    assert search.rival
     assert answer.best
 
     def within(runs: Iterable[Tried], share: float = 1.0) -> list[Tried]:
         return [run for run in runs if off(run, search.truth) <= share * answer.target]
 
     least, by_order = np.min([run.cost for run in within(known.all(), AIM)]), [1.0]
-    made = [run for choice, run in known.outcomes.items() if choice not in (search.truth.choice, search.rival.choice)]
+    over_refined_runs = [run.choice for run in (search.truth, *search.rivals)]
+    made = [run for choice, run in known.outcomes.items() if choice not in over_refined_runs]
     for order, found in answer.by_order.items():
         alike = [run.cost for run in within(made) if dials()[0].settings[run.choice[0]].label == str(order)]
         by_order.append((found.cost if found else math.inf) / np.min(alike) if alike else 1.0 if found is None else math.inf)

@@ -47,7 +47,7 @@ def trade(
 ) -> None:
     """The cheapest settings of a scene for an accuracy, and what every knob costs and spoils.
 
-    Two over-refined runs tell the truth and how well it is known; every knob (orders, elements, quadrature, load steps, tolerances, ways of
+    Over-refined runs tell the truth and how well it is known; every knob (orders, elements, quadrature, load steps, tolerances, ways of
     enforcing contact, ...) is turned alone; from that the cheapest combination is forecast, run, and corrected until none is cheaper. What
     is recommended is run afresh. A target that the truth does not resolve is refused, with what would be needed.
 

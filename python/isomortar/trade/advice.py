@@ -20,7 +20,7 @@ class CheaperSearch(Search):
 
     def find_truth(self, targets: Sequence[float]) -> None:  # noqa: ARG002
         """The scene as it is."""
-        self.truth = self.rival = self.own
+        self.truth, self.rivals = self.own, (self.own,)
 
     def answer(self, target: float) -> Recommendation:
         """The cheapest variant that loses no more than a target."""

@@ -28,7 +28,7 @@ def precision(search: Search, answers: Sequence[Recommendation]) -> str:
         figure = Figure(figsize=(10.6, 5.0), layout="constrained")
         axes = figure.subplots()
         axes.set(xscale="log", yscale="log", xlabel="CPU seconds", ylabel="error of what is wanted, %")
-        runs = [o for o in search.laboratory.outcomes.values() if o not in (search.truth, search.rival)]
+        runs = [o for o in search.laboratory.outcomes.values() if o not in (search.truth, *search.rivals)]
         _points(axes, search, [o for o in runs if not o.failure])
         front = pareto(search, runs)
         axes.step(

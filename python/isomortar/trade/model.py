@@ -32,16 +32,16 @@ class Yardstick:
     ----------
     want : Want
     truth : Tried
-    rival : Tried
-        Another over-refined run: how far it is from the truth is the truth's uncertainty.
+    *rivals : Tried
+        Other over-refined runs: how far they are from the truth is the truth's uncertainty.
     """
 
-    def __init__(self, want: Want, truth: Tried, rival: Tried) -> None:
+    def __init__(self, want: Want, truth: Tried, *rivals: Tried) -> None:
         self.want, self._truth = want, truth.numbers
         self.truth = self.values(truth)
         self.weights = want.weights(truth.numbers)
         self.size = want.size(self.truth, self.weights) if math.isnan(want.whole) else want.whole
-        self.uncertainty = self.error(rival)
+        self.uncertainty = max(map(self.error, rivals))
 
     def values(self, outcome: Tried) -> FloatArray:
         """What is wanted, of a run, shape (n,)."""

@@ -98,9 +98,8 @@ def _page(scene: Scene, search: Search, answers: Sequence[Recommendation], files
 def _errors(scene: Scene, search: Search, shown: Sequence[Tried]) -> list[dict[str, Any]]:
     """Errors of all that users look at, of some runs; what is nothing in the truth is left out."""
     assert search.truth
-    assert search.rival
     problem = scene.problem()
-    yardsticks = [Yardstick(wanted(text, problem), search.truth, search.rival) for text in wishes(problem)]
+    yardsticks = [Yardstick(wanted(text, problem), search.truth, *search.rivals) for text in wishes(problem)]
     return [
         {"text": y.want.text, "uncertainty": y.uncertainty, "shown": [y.error(outcome) for outcome in shown]}
         for y in yardsticks
@@ -128,7 +127,7 @@ def _data(scene: Scene, search: Search, answers: Sequence[Recommendation], start
         "truth": search.truth.numbers if search.truth else {},
         "front": [
             {"name": o.name, "error": search.error(o), "cpu_seconds": o.cost}
-            for o in figures.pareto(search, [o for o in search.laboratory.outcomes.values() if o not in (search.truth, search.rival)])
+            for o in figures.pareto(search, [o for o in search.laboratory.outcomes.values() if o not in (search.truth, *search.rivals)])
         ],
         "answers": [
             {

@@ -76,7 +76,7 @@ class Search:
     def __init__(self, laboratory: Laboratory, dials: Sequence[Dial], wants: Sequence[Want], budget: float) -> None:
         self.laboratory, self.dials, self.wants, self.budget = laboratory, dials, wants, budget
         self.truth: Tried | None = None
-        self.rival: Tried | None = None
+        self.rivals: tuple[Tried, ...] = ()  # other over-refined runs: how far they are from the truth is its own error
         self._before: Tried | None = None  # the truth before this one
 
     @cached_property
@@ -99,8 +99,12 @@ class Search:
     def yardsticks(self) -> list[Yardstick]:
         """How far from the truth, by what is wanted."""
         assert self.truth
-        assert self.rival
-        return [Yardstick(want, self.truth, self.rival) for want in self.wants]
+        return [Yardstick(want, self.truth, *self.rivals) for want in self.wants]
+
+    @property
+    def rival(self) -> Tried | None:
+        """The over-refined run that is farthest from the truth."""
+        return max(self.rivals, key=self.error, default=None)
 
     @property
     def model(self) -> Model:
@@ -125,15 +129,16 @@ class Search:
         self.laboratory.run([self.own.choice, *singles])
 
     def find_truth(self, targets: Sequence[float]) -> None:
-        """Two over-refined runs of other orders and other meshes, refined from the largest target to the smallest until they tell it.
+        """Over-refined runs of other orders and other meshes, refined from the largest target to the smallest until they tell it.
 
+        One differs in both, which may hide an error of either behind that of the other: one more differs from the truth in its mesh alone.
         They are as good as a target asks: what for 5 % spends nothing on load steps that change a thousandth may be enough for 1 % as well.
         Ends where all is told or half of the budget is spent.
 
         Raises
         ------
         IsomortarError
-            Such a run does not come to its end, or the two are one: nothing can be refined.
+            Such a run does not come to its end, or all are one: nothing can be refined.
         """
         levels = iter(range(1, 1 + max(len(dial.settings) for dial in self.dials)))
         for target in sorted(targets, reverse=True):
@@ -172,20 +177,23 @@ class Search:
         return self.laboratory.spent > self.budget
 
     def _refine(self, level: int, target: float) -> bool:
-        """Run a pair of over-refined runs; whether they tell the truth better than the pair before."""
+        """Run over-refined runs of a level; whether they tell the truth better than those before."""
         settled = self._settled(target)
-        pair = self._refined(settled, 1, level, 1), self._refined(settled, 2, max(0, level - 1), 2)
-        if self.truth and (pair[0] == self.truth.choice or self.laboratory.spent + sum(map(self._cost, pair)) > TRUTH * self.budget):
+        finest = self._refined(settled, 1, level, 1)
+        coarser = self._refined(settled, 2, max(0, level - 1), 2), self._refined(settled, 1, max(0, level - 2), 1)
+        others = [other for other in dict.fromkeys(coarser) if other != finest]
+        choices = (finest, *others)
+        if self.truth and (finest == self.truth.choice or self.laboratory.spent + sum(map(self._cost, choices)) > TRUTH * self.budget):
             return False
-        if pair[0] == pair[1]:
+        if not others:
             raise IsomortarError("nothing of the scene can be refined further, so that two runs cannot tell what the truth is")
-        truth, rival = self.laboratory.run(pair)
-        failed = [outcome for outcome in (truth, rival) if outcome.failure]
+        truth, *rivals = self.laboratory.run(choices)
+        failed = [outcome for outcome in (truth, *rivals) if outcome.failure]
         if failed and self.truth:
             return False
         if failed:
             raise IsomortarError(f"an over-refined run, which tells the truth, does not come to its end: {failed[0].failure}")
-        self._before, self.truth, self.rival = self.truth, truth, rival
+        self._before, self.truth, self.rivals = self.truth, truth, tuple(rivals)
         return True
 
     def _refined(self, settled: set[int], orders: int, meshes: int, last: int) -> Choice:
@@ -221,11 +229,12 @@ class Search:
         """
         if choice in self.laboratory.outcomes:
             return 0.0
-        before = [outcome for outcome in (self.own, self.truth, self.rival) if outcome]
+        before = [outcome for outcome in (self.own, self.truth, *self.rivals) if outcome]
         near = min(before, key=lambda outcome: sum(a != b for a, b in zip(outcome.choice, choice, strict=True)))
         fit = 1.0
         if self.truth and self._before:
-            fit = math.log(max(1.0, self.truth.cost / self._before.cost)) / self._growth(self._before.choice, self.truth.choice)
+            foretold = self._growth(self._before.choice, self.truth.choice)  # nothing, where no setting alone was dearer
+            fit = math.log(max(1.0, self.truth.cost / self._before.cost)) / foretold if foretold > 0.0 else fit
         return near.cost * math.exp(fit * self._growth(near.choice, choice))
 
     def _growth(self, start: Choice, end: Choice) -> float:
@@ -244,12 +253,11 @@ class Search:
             return "what is wanted is nothing in this scene, or no more than over-refined runs differ by"
         finer = (RESOLVED * self.uncertainty / target) ** (1.0 / RATE)
         assert self.truth
-        assert self.rival
-        needed = duration((self.truth.cost + self.rival.cost) * finer**COST)
+        needed = duration(sum(run.cost for run in (self.truth, *self.rivals)) * finer**COST)
         return (
-            f"two over-refined runs differ by {self.uncertainty:.2g} in what is wanted, and {target:g} is less than {RESOLVED:g} times "
+            f"over-refined runs differ by {self.uncertainty:.2g} in what is wanted, and {target:g} is less than {RESOLVED:g} times "
             f"that: nobody could tell whether it is reached. Meshes about {finer:.1f} times finer would tell, some {needed} "
-            f"of the processor for the two (--budget is for all runs, {TRUTH:.0%} of it for these)"
+            f"of the processor for these (--budget is for all runs, {TRUTH:.0%} of it for them)"
         )
 
     def _orders(self) -> Iterator[tuple[int, dict[int, int]]]:
@@ -267,7 +275,7 @@ class Search:
 
     def _cheapest(self, target: float, kept: Mapping[int, int]) -> Tried | None:
         """The cheapest of the runs within a target, with some dials `kept` at a setting; None: there is none."""
-        truths = (self.truth, self.rival)
+        truths = (self.truth, *self.rivals)
         alike = [o for o in self.laboratory.outcomes.values() if o not in truths and all(o.choice[n] == s for n, s in kept.items())]
         return min((o for o in alike if self.error(o) <= target), key=lambda o: o.cost, default=None)
 

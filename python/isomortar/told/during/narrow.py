@@ -25,6 +25,10 @@ from isomortar.told.during.softness import softness
 #: cylinders on blocks were off by up to a third. A single row of smooth functions along a line cost less than 7 %, two rows a tenth, more
 #: rows less than 5 %. Rows count once at planes of symmetry, too: those of the image hardly matter down here.
 ROWS = 1.3
+#: The same of `dual` constraints, in both directions: there forces of balls on blocks were 13 to 130 % too large, with more rows by 16 % at
+#: the most; and of constraints at all Gauss points (`kts`), as a share of those of an element: by 26 to 90 %, with more by less than 8 %.
+#: Not beside planes of symmetry, whose other side has as many.
+DUAL_ROWS, SHARE_OF_ELEMENT = 2.02, 0.5
 #: Rows of a contact that is told up to which finer elements along that direction are advised, and share of all rows from which on they are
 #: not: an element across a strip is meant.
 ENOUGH, ALL = 2.5, 0.8
@@ -46,6 +50,8 @@ class Bearing:
         How many rows of constraints do along each coordinate of the slave face (theory 9.9).
     of : tuple of int
         How many rows there are.
+    least : ndarray, shape (2,)
+        Rows below which there are too few along both.
     kinks : tuple of bool
         Whether functions of the face have kinks along each coordinate.
     round : tuple of bool
@@ -58,6 +64,7 @@ class Bearing:
 
     rows: FloatArray
     of: tuple[int, int]
+    least: FloatArray
     kinks: tuple[bool, bool]
     round: tuple[bool, bool]
     depth: float
@@ -66,8 +73,8 @@ class Bearing:
     @property
     def too_narrow(self) -> bool:
         """Whether it is told."""
-        few = self.rows < ROWS
-        return bool(np.all(few | self.round) or np.any(few & self.kinks)) or self.costs > COSTS
+        few = (self.rows < self.least) & (self.rows < ALL * np.array(self.of))
+        return bool(np.all(few | self.round) or np.any((self.rows < ROWS) & self.kinks)) or self.costs > COSTS
 
 
 class Narrow:
@@ -139,12 +146,21 @@ def bearing(equilibrium: Equilibrium, mechanics: PairMechanics, balance: Balance
     ratio = depth / pressed if pressed > 0.0 else 0.0
     (first, round_first), (second, round_second) = (_sums(mechanics.pair.places, borne, axis) for axis in (0, 1))
     rows = np.array([np.sum(sums) ** 2 / (sums @ sums) for sums in (first, second)])
-    u, v = (
-        direction.order == 1 or direction.family == "L"
-        for direction in Sheet.of(equilibrium.problem, mechanics.pair.contact.slave).directions
-    )
+    directions = Sheet.of(equilibrium.problem, mechanics.pair.contact.slave).directions
+    u, v = (direction.order == 1 or direction.family == "L" for direction in directions)
     round_poles, counts = (round_first, round_second), (len(first), len(second))
-    return Bearing(rows, counts, (u, v), round_poles, depth, (ratio - FREE) / (ratio + ADDED))
+    by_element = [count / direction.elements for count, direction in zip(counts, directions, strict=True)]
+    least = _least(equilibrium.problem, mechanics.pair.contact, np.array(by_element))
+    return Bearing(rows, counts, least, (u, v), round_poles, depth, (ratio - FREE) / (ratio + ADDED))
+
+
+def _least(problem: Problem, contact: Contact, by_element: FloatArray) -> FloatArray:
+    """Rows below which a contact is too narrow where there are so few along both coordinates; `by_element`: how many each has."""
+    if contact.enforcement == "dual" and problem.images == 1:
+        return np.full(2, DUAL_ROWS)
+    if contact.enforcement == "kts" and problem.images == 1:
+        return np.asarray(np.maximum(ROWS, SHARE_OF_ELEMENT * by_element))
+    return np.full(2, ROWS)
 
 
 def _sums(places: FloatArray, borne: FloatArray, axis: int) -> tuple[FloatArray, bool]:
@@ -178,7 +194,7 @@ def _told(problem: Problem, contact: Contact, found: Bearing, step: int) -> str:
     few = [letter for letter, rows, count in sides if rows <= max(ENOUGH, least) and rows < ALL * count]
     few = few or [letter for letter, is_round in zip(letters, found.round, strict=True) if not is_round]
     between = f", and between these it is about {found.depth:.2g} inside its master or apart from it" if deep else ""
-    share = percent(found.costs) if deep else "a fifth"
+    share = percent(found.costs) if deep else "a third" if np.any(found.least > ROWS) else "a fifth"
     stage = problem.stages[problem.stage_of(step)].name
     return (
         f"contact {contact.name!r}, load step {step}, the last of stage {stage!r}: it is too narrow for its slave {contact.slave.words}: "
