@@ -16,7 +16,7 @@ from isomortar.told.during.advice import StepAdvice
 #: Two contacts of bodies that are glued, of which the first one is never spoken of.
 SCENE = """
 format = 1
-bodies.a = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }, mesh = { order = 2, elements = 1 } }
+bodies.a = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }, mesh = { order = 2, elements = [1, 2, 2] } }
 bodies.b = { geometry = { kind = "box", lower = [1, 0, 0], upper = [2, 1, 1] }, mesh = { order = 2, elements = 2 } }
 glue = [["a.u1", "b.u0"]]
 contacts.quiet = { slave = "a.w0", plane = {}, friction = 0.3 }
