@@ -13,16 +13,14 @@ from isomortar.scene import Scene
 from isomortar.solve.record import ContactResult, ContactState, StepResult
 from isomortar.told.during.advice import StepAdvice
 
-#: Two contacts of bodies that are glued, of which the first one is never spoken of.
+#: Two contacts of a body, of which the first one is never spoken of.
 SCENE = """
 format = 1
-bodies.a = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }, mesh = { order = 2, elements = [1, 2, 2] } }
-bodies.b = { geometry = { kind = "box", lower = [1, 0, 0], upper = [2, 1, 1] }, mesh = { order = 2, elements = 2 } }
-glue = [["a.u1", "b.u0"]]
-contacts.quiet = { slave = "a.w0", plane = {}, friction = 0.3 }
+bodies.b = { geometry = { kind = "box", lower = [2, 0, 0], upper = [3, 1, 1] }, mesh = { order = 2, elements = 2 } }
+contacts.quiet = { slave = "b.u1", plane = { point = [3.5, 0, 0], normal = [-1, 0, 0] } }
 contacts.told = { slave = "b.w0", plane = {}, friction = 0.3 }
-supports = { a.face = "a.w1", b.face = "b.w1" }
-stages = [{ name = "press", steps = 5, motions.a.translate = [0, 0, -0.01], motions.b.translate = [0, 0, -0.01] }]
+supports.b.face = "b.w1"
+stages = [{ name = "press", steps = 5, motions.b.translate = [0, 0, -0.01] }]
 """
 #: Words of what is said.
 SAID = {"left": "have left the master", "beside": "wholly beside", "never": "never closed", "spurious": "spurious work"}
