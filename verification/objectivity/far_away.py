@@ -57,3 +57,29 @@ def about_the_origin() -> dict[str, float]:
         "moments": float(np.max([np.abs(there[name][1] - expected[name]).max() for name in here]) / largest),
         "balance": float(np.abs(there["slave"][1] + there["master"][1]).max() / largest),
     }
+
+
+#: A round punch of flat elements, along whose averaged normals a block is pressed.
+ROUND = """
+format = 1
+solver.newton_tolerance = 1e-11
+bodies.upper.geometry = { kind = "bowl", half_width = 0.5, bottom = 0, rise = 0.2, top = 0.5 }
+bodies.upper.mesh = { family = "L", order = 1, elements = [4, 4, 1] }
+bodies.lower = { geometry = { kind = "box", lower = [-1, -1, -0.5], upper = [1, 1, 0.001] }, mesh = { order = 2, elements = [8, 8, 1] } }
+contacts.c = { slave = "lower.w1", master = "upper.w0", projection = "averaged" }
+supports = { top.face = "upper.w1", base.face = "lower.w0" }
+stages = [{ name = "one", steps = 1, motions.top.translate = [0, 0, -0.05] }]
+"""
+
+
+@case(
+    claim="Far from the origin half of a scene, by a plane of symmetry across any axis, bears what it does there.",
+    tier="gate",
+    grid={"axis": ("x", "y")},
+    bounds={"forces": Bound(at_most=1e-8, reason="theory: Newton's method leaves 1e-11 of the inner forces; of the largest force")},
+)
+def halves(axis: str) -> dict[str, float]:
+    """Largest difference, over the largest force."""
+    problem = Scene.from_toml(f"{ROUND}symmetry.{axis} = 0.0\n").problem()
+    here, there = (next(iter(Simulation(of).run())).contacts[0].force_slave for of in (problem, moved(problem, 8.0 * AWAY)))
+    return {"forces": float(np.abs(here - there).max() / np.abs(here).max())}

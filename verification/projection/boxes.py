@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 
 from isomortar.harness import Bound, case
@@ -45,6 +47,15 @@ supports = { top.face = "slave.w1", below.face = "master.w0" }
 stages = [{ name = "rest", steps = 1 }]
 """
 
+#: A master whose lower face has other weights than its upper one: lines that cross it lean, by up to 2.
+LEANING = re.sub(
+    r"bodies\.master\..*\nbodies\.master\..*",
+    "bodies.master.rigid = true\nbodies.master.patch = { order = 1, weights = [1, 9, 1, 9, 1, 1, 1, 1], "
+    "knots = [[0, 0, 1, 1], [0, 0, 1, 1], [0, 0, 1, 1]], control_points = "
+    "[[0, 0, -0.2], [4, 0, -0.2], [0, 1, -0.2], [4, 1, -0.2], [0, 0, 0], [4, 0, 0], [0, 1, 0], [4, 1, 0]] }",
+    WEDGE,
+)
+
 
 @case(
     claim="What is told of how deep a master is goes for all of it, and is no more than its functions' sizes ask for.",
@@ -62,3 +73,21 @@ def depths(family: str, order: int) -> dict[str, float]:
     deepest = float(np.hypot(3.0, 2.0))  # at the edge of both sides
     spread = 4.0 ** (order - 1) if family == "L" else 1.0
     return {"missed": float(np.maximum(deepest - told, 0.0)), "more": told / deepest / spread}
+
+
+@case(
+    claim="A master whose faces have different weights is no less deep than lines that cross it are long, and at most its diagonal.",
+    tier="gate",
+    bounds={
+        "missed": Bound(at_most=1e-12, reason="definition: nowhere is more of the body below; round-off"),
+        "more": Bound(at_most=1.0 + 1e-12, reason="definition: no two points are farther apart; over the diagonal"),
+    },
+)
+def leaning_depths() -> dict[str, float]:
+    """By how much the longest line is longer than what is told, and this over the diagonal."""
+    equilibrium = Equilibrium(Scene.from_toml(LEANING).problem(), Ledger())
+    told = Separation(equilibrium.pairs[0].pair)._depth(equilibrium.numbering.reference)
+    above = np.linspace(0.0, 4.0, 401)
+    below = 36.0 * above / (4.0 + 8.0 * above)
+    longest = float(np.hypot(below - above, 0.2).max())
+    return {"missed": float(np.maximum(longest - told, 0.0)), "more": told / float(np.linalg.norm([4.0, 1.0, 0.2]))}

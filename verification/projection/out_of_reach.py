@@ -75,3 +75,42 @@ def apart(master: str) -> dict[str, float]:
         found["apart"] += said
         found["near"] += bears
     return {name: float(count) for name, count in found.items()}
+
+
+@case(
+    claim="Whether a block and its master are apart is the same whichever of them has moved there; never where one may have passed through "
+    "the other on the way, nor where some pressure acted before.",
+    tier="gate",
+    bounds={
+        "other": Bound(0.0, 0.0, "definition: ways of which it is said of one that moves, and not of the other"),
+        "through": Bound(0.0, 0.0, "definition: ways through the master of which it is said"),
+        "acted": Bound(0.0, 0.0, "definition: ways of which it is said with pressures at their start"),
+        "apart": Bound(at_least=10.0, reason="definition: of 60 ways some are apart, or nothing is told"),
+    },
+)
+def who_moves() -> dict[str, float]:
+    """How many of 60 ways by chance, of which half go through the master, are told wrongly, and how many are apart."""
+    equilibrium = Equilibrium(Scene.from_toml(SCENE.format(master=MASTERS["face"])).problem(), Ledger())
+    separation, numbering, random = Separation(equilibrium.pairs[0].pair), equilibrium.numbering, np.random.default_rng(7)
+
+    def said(start: FloatArray, end: FloatArray, body: str, acts: bool = False) -> bool:
+        """Of a block at two places from the master, where one body moves."""
+        places = []
+        for place in (start, end):
+            positions = numbering.reference.copy()
+            positions[np.unique(numbering.points[body])] += place if body == "slave" else -place
+            places.append(positions)
+        separation.begin(places[0], acts)
+        return separation.holds(places[1])
+
+    found = {"other": 0, "through": 0, "acted": 0, "apart": 0}
+    for k in range(60):
+        start, end = random.uniform((-2.5, -2.5, 0.6), (2.5, 2.5, 3.0), (2, 3))
+        if k % 2:  # through the master's middle
+            start, end = np.array([0.3, 0.3, 1.0]) * start / 2.5, np.array([0.1, 0.1, -1.0]) * end
+        slave = said(start, end, "slave")
+        found["other"] += slave != said(start, end, "other")
+        found["through"] += k % 2 == 1 and slave
+        found["acted"] += said(start, end, "slave", acts=True)
+        found["apart"] += slave
+    return {name: float(count) for name, count in found.items()}

@@ -33,10 +33,10 @@ def scene(geometry: str, face: str) -> str:
     ).replace("FACE", face)
 
 
-def weighted(weight: float) -> str:
-    """That of a rigid block of one element, of which the weights in the middle of its top, and below, are this."""
+def weighted(weight: float, all_along: bool = False) -> str:
+    """That of a rigid block of one element, of which the weights in the middle of its top, or all along the line at y = 0, are this."""
     points = [[x, y, z] for z, y, x in product((-0.3, 0.0), (-1.5, 0.0, 1.5), (-1.5, 0.0, 1.5))]
-    weights = [weight if x == y == 0.0 else 1.0 for x, y, _ in points]
+    weights = [weight if y == 0.0 and (all_along or x == 0.0) else 1.0 for x, y, _ in points]
     knots = [[0, 0, 0, 1, 1, 1], [0, 0, 0, 1, 1, 1], [0, 0, 1, 1]]
     patch = f"{{ order = [2, 2, 1], knots = {knots}, control_points = {points}, weights = {weights} }}"
     return SCENE.replace("MASTER", f"{{ rigid = true, patch = {patch} }}").replace("FACE", "w1")
@@ -44,6 +44,11 @@ def weighted(weight: float) -> str:
 
 #: The ring's end, on which circles and rays are coordinates; a flat face with straight ones; one whose coordinates stretch.
 TURNING, STRAIGHT, STRETCHING = scene(_RING, "w0"), scene(_BOX, "w1"), weighted(30.0)
+#: What another body elsewhere is, by which lengths are no smaller.
+FAR = """
+bodies.far = { rigid = true, geometry = { kind = "box", lower = [1000, 0, 0], upper = [1001, 1, 1] } }
+supports.far.face = "far.w0"
+"""
 #: Over the straight face's edge, round which feet go: that is no turn of coordinates.
 OVER_AN_EDGE = (
     'contacts.c.master=["b.w1", "b.u1"]',
@@ -65,7 +70,8 @@ def run(text: str, changes: tuple[str, ...] = ()) -> tuple[list[str], float]:
 
 @case(
     claim="Friction on a master whose coordinates turn along the way is told of, once, and by about as much as it is off; with "
-    "twenty load steps, along averaged normals, without friction and on straight coordinates nothing is said.",
+    "twenty load steps, along averaged normals, without friction and on straight coordinates nothing is said, and the same with a body "
+    "far away.",
     tier="gate",
     bounds={
         "said": Bound(1.0, 1.0, "definition: sentences of the ring's end in two load steps"),
@@ -76,10 +82,11 @@ def run(text: str, changes: tuple[str, ...] = ()) -> tuple[list[str], float]:
         "true": Bound(at_least=5.0, reason="definition: or there is nothing to tell of"),
         "true, in twenty": Bound(at_most=2.9, reason="definition: what is not told"),
         "others": Bound(0.0, 0.0, "definition: sentences of the other scenes"),
+        "far": Bound(0.0, 0.0, "definition: whether with a body far away something else is said"),
     },
 )
 def turning() -> dict[str, float]:
-    """What is said of the ring's end, and how far off the force is; how much is said of six others."""
+    """What is said of the ring's end, and how far off the force is; how much is said of seven others, and whether one is as the first."""
     said, _ = run(TURNING, ("stages.s.steps=2",))
     (only,), off = run(TURNING)
     found = BESIDE.search(only)
@@ -87,6 +94,7 @@ def turning() -> dict[str, float]:
     finer, left = run(TURNING, ("stages.s.steps=20",))
     others = [run(TURNING, ('contacts.c.projection="averaged"',)), run(TURNING, ("contacts.c.friction=0",)), run(STRAIGHT)]
     others += [run(STRAIGHT, ("stages.s.motions.top.translate=[0.4, 0.4, 0]",)), run(STRAIGHT, OVER_AN_EDGE)]
+    others += [run(weighted(3.0, all_along=True))]
     return {
         "said": float(len(said)),
         "step": float(found[2]),
@@ -94,6 +102,7 @@ def turning() -> dict[str, float]:
         "true": abs(off),
         "true, in twenty": abs(left),
         "others": float(len(finer) + sum(len(words) for words, _ in others)),
+        "far": float(run(TURNING + FAR)[0] != [only]),
     }
 
 

@@ -119,7 +119,7 @@ def punches(slave: str) -> dict[str, float]:
     tier="gate",
     bounds={
         "directions": Bound(1.0, 1.0, "definition: that u and v are told of a square punch"),
-        "rings": Bound(2.0, 2.0, "definition: of a ring on a foot below and one at its seam those told, round the ring"),
+        "rings": Bound(1.0, 1.0, "definition: sentences of a ring on a foot below and of one at its seam, round it: the same"),
         "a half": Bound(at_most=0.0, reason="definition: shares that are told of a half less those of the whole, per cent"),
         "others": Bound(0.0, 0.0, "definition: sentences of a wide punch, and of a soft one"),
     },
@@ -135,7 +135,25 @@ def other_punches() -> dict[str, float]:
     apart = abs(float(half[0][1]) - float(whole[0][1])) if half and whole else np.inf
     return {
         "directions": float(bool(square) and square[0][2] == "u and v"),
-        "rings": float(sum(bool(said) and said[0][2] == "u" for said in rings)),
+        "rings": float(len({said[0] for said in rings})) if all(said and said[0][2] == "u" for said in rings) else np.inf,
         "a half": apart,
         "others": float(len(wide) + len(soft)),
     }
+
+
+@case(
+    claim="Of square punches both widths are told, within a quarter of an element in the mean, whatever their edges are near.",
+    tier="gate",
+    bounds={
+        "other": Bound(0.0, 0.0, "definition: punches of which another number of sentences is said, or not to refine both ways"),
+        "off": Bound(at_most=0.25, reason="definition: two of the eight parts of an element that are looked at; in elements"),
+    },
+)
+def squares() -> dict[str, float]:
+    """How many of four are told otherwise, and the largest difference of the mean of both widths."""
+    other, off = 0, []
+    for half in (0.17, 0.23, 0.3, 0.35):
+        said, _ = run(punch(BLOCK, half), "[4, 4, 2]", "2")
+        other += [words[2] for words in said] != ["u and v"]
+        off += [abs(float(np.mean([float(width) for width in re.findall(r"(\S+) along", words[0])])) - 4.0 * half) for words in said]
+    return {"other": float(other), "off": float(np.max(off, initial=0.0))}

@@ -24,6 +24,7 @@ TOLD = {
     "flat": (FLAT, ()),
     "edges on lines of the plate": (FLAT.replace("0.3", "0.5"), ("bodies.plate.mesh.elements=[4,4,1]",)),
     "a little apart": (FLAT.replace("0.3, 0]", "0.3, 0.01]"), ()),
+    "farther apart": (FLAT.replace("0.3, 0]", "0.3, 0.1]"), ()),
     "overlapping": (FLAT.replace("0.3, 0]", "0.3, -0.01]"), ()),
     "along averaged normals": (FLAT, ('contacts.c.projection="averaged"',)),
     "by dual functions": (FLAT, ('contacts.c.enforcement="dual"',)),
@@ -45,9 +46,13 @@ QUIET = {
 }
 
 
-def told(punch: str, changes: tuple[str, ...]) -> list[tuple[str, str]]:
+#: Another contact, of the same faces the other way round.
+BOTH_WAYS = 'contacts.d = { slave = "punch.w0", master = "plate.w1" }\n'
+
+
+def told(punch: str, changes: tuple[str, ...], more: str = "") -> list[tuple[str, str]]:
     """Faces that are told to end within others, and these."""
-    warnings = outlook(Scene.from_toml(SCENE.replace("PUNCH", punch), overrides=changes).problem()).warnings
+    warnings = outlook(Scene.from_toml(SCENE.replace("PUNCH", punch) + more, overrides=changes).problem()).warnings
     return [words for warning in warnings for words in re.findall(r"Exchange the two: (.*) ends within (.*)$", warning)]
 
 
@@ -64,4 +69,5 @@ def exchanged() -> dict[str, float]:
     """How many of each kind."""
     silent = [name for name, scene in TOLD.items() if told(*scene) != [("punch.v1" if ROUND in scene else "punch.w0", "plate.w1")]]
     doubted = [name for name, scene in QUIET.items() if told(*scene)]
+    doubted += ["both ways"] if told(FLAT, (), BOTH_WAYS) else []
     return {"silent": float(len(silent)), "doubted": float(len(doubted))}

@@ -97,7 +97,9 @@ def _run(over: BoolArray, bears: FloatArray, closed: bool) -> tuple[float, int]:
     `over`, `bears`: by lines and places, which begin anew after the last where the face meets itself.
     """
     line = int(np.argmax(bears.sum(axis=1)))
-    over, bears, first = over[line], bears[line], int(np.argmax(bears[line]))
+    # Along an edge of the master some points beyond it are nearer to places within than those within: lines beside tell of these.
+    beside_it = np.asarray(over[max(line - 1, 0) : line + 2].any(axis=0))
+    over, bears, first = beside_it, bears[line], int(np.argmax(bears[line]))
     if over.all():
         return len(over) / PARTS, 0
     if closed:
