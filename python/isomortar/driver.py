@@ -77,14 +77,15 @@ def compute(scene: Scene, problem: Problem, path: Path, observer: Observer, resu
         def open_writer() -> ResultsWriter:
             return ResultsWriter(path, problem, scene.to_toml(), version("isomortar"), scene.record.states, resume, not resume)
 
-        recorder = _Recorder(open_writer, observer)
+        recorder, steps = _Recorder(open_writer, observer), 0
         try:
             for _ in Simulation(problem, recorder, last).run():
-                pass
+                steps += 1
         except ConvergenceError:
             recorder.ended()
             raise
-        recorder.ended()
+        if steps:  # where all was there the file stays as it is
+            recorder.ended()
     return Results(path)
 
 

@@ -19,6 +19,7 @@ CHANGES: dict[str, tuple[dict[str, Any], str]] = {
     "family": ({"bodies.slave.mesh.family": "L"}, "bodies.slave.mesh: "),
     "order of a master": ({"bodies.master.mesh.order": 3}, "bodies.master.mesh: "),
     "a master that cuts": ({"bodies.master.mesh.elements": [5, 2, 1], "bodies.master.mesh.order": 1}, "bodies.master.mesh: "),
+    "order of a face": ({"bodies.slave.mesh.contact_order": 3}, "bodies.slave.mesh: "),
     "grading": ({"bodies.slave.mesh.grading": [2.0, 1.0, 1.0]}, "bodies.slave.patch: another shape, or other sizes of as many elements"),
     "shape": ({"bodies.slave.geometry.rise": 0.2}, "bodies.slave.patch: another shape, or other sizes of as many elements"),
     "shape of a master": ({"bodies.master.geometry.upper": [3.1, 0.75, 0.0]}, "bodies.master.patch: another shape, or other sizes"),

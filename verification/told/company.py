@@ -67,3 +67,38 @@ def company(heavy: str) -> dict[str, float]:
         "silent": float(sum(over(s) > 0.0 for s in (rests, *tips))),
         "on top": abs(over(said(pile.replace("young = 100", f"young = {50.0 * below}"))) / 2.5 - 1.0),
     }
+
+
+#: Two blocks far from each other: one leans, the other is pushed along or up.
+APART = """
+format = 1
+materials.m = { young = 1e4, poisson = 0.3 }
+bodies.a = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 2] }, mesh = { elements = [2, 2, 1] }, material = "m" }
+bodies.b = { geometry = { kind = "box", lower = [8, 0, 0], upper = [9, 1, 0.3] }, mesh = { elements = [2, 2, 1] }, material = "m" }
+contacts.a = { slave = "a.w0", plane = {}, friction = 0.9 }
+contacts.b = { slave = "b.w0", plane = {}, friction = 0.3 }
+loads.a = { body = "a", weight = [LEAN, 0, -1] }
+loads.b = { body = "b", weight = OTHER }
+stages = [{ name = "p", steps = 2 }]
+"""
+#: Loads of both, and what is said of each.
+EACH = {
+    "tips, and holds barely": ("0.7", "[0.285, 0, -1]", ("turn body 'a'", "body 'b'")),
+    "tips, and slides": ("0.7", "[0.5, 0, -1]", ("turn body 'a'", "push body 'b'")),
+    "tips, and lifts": ("0.7", "[0, 0, 1]", ("turn body 'a'", "move body 'b'")),
+    "tips, and rests": ("0.7", "[0, 0, -1]", ("turn body 'a'",)),
+    "rests, and lifts": ("0.1", "[0, 0, 1]", ("move body 'b'",)),
+}
+
+
+@case(
+    claim="Of bodies that do not touch each is told what its own loads do, whatever is told of another one.",
+    tier="gate",
+    grid={"loads": tuple(EACH)},
+    bounds={"missing": Bound(0.0, 0.0, "definition: bodies of which nothing, or something else, is said")},
+)
+def each_by_itself(loads: str) -> dict[str, float]:
+    """Of how many."""
+    lean, other, words = EACH[loads]
+    sentence = said(APART.replace("LEAN", lean).replace("OTHER", other))
+    return {"missing": float(sum(word not in sentence for word in words))}

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from isomortar.errors import ConvergenceError
 from isomortar.harness import Bound, case
 from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
+from isomortar.told.after.causes import causes
 
 #: A block that comes down onto another one, or beside it.
 SCENE = """
@@ -17,14 +19,14 @@ contacts.pair = {{ slave = "upper.w0", master = "lower.w1", projection = "{proje
 supports = {{ hand.face = "upper.w1", base.face = "lower.w0" }}
 stages = [{{ name = "press", steps = 2, motions.hand.translate = [0, 0, -0.2] }}]
 """
-BESIDE, APART = "is wholly beside its master", "apart at the start"
+BESIDE, APART, OVER = "is wholly beside its master", "apart at the start", "goes over an edge"
 #: How far apart they are: within the way of the motion, twice that and more, and beyond the reach of averaged normals.
 GAPS = (0.1, 0.6, 1.0, 3.0, 20.0)
 
 
 @case(
     claim="A face opposite its master is said to be apart from it where it cannot close, by either projection, and never to be beside "
-    "it; one beside it is said to be that.",
+    "it, nor, where a load step is given up, to go over its edge; one beside it is said to be that.",
     tier="gate",
     grid={"projection": ("closest", "averaged"), "order": (1, 2)},
     bounds={"wrong": Bound(0.0, 0.0, "definition: sentences that are untrue or missing, of five distances, opposite and beside")},
@@ -35,7 +37,9 @@ def opposite(projection: str, order: int) -> dict[str, float]:
     for gap in GAPS:
         for aside in (0.0, 5.0):
             text = SCENE.format(aside=aside, end=aside + 1.0, gap=gap, top=gap + 1.0, order=order, projection=projection)
-            said = " ".join(Simulation(Scene.from_toml(text).problem()).doubts())
+            simulation = Simulation(Scene.from_toml(text).problem())
+            said, likely = " ".join(simulation.doubts()), " ".join(causes(simulation.equilibrium, simulation.state, ConvergenceError("")))
             wrong += (BESIDE in said) != (aside > 0.0)
+            wrong += (OVER in likely) != (aside > 0.0)
             wrong += (APART in said) != (aside == 0.0 and gap > 0.4)
     return {"wrong": float(wrong)}

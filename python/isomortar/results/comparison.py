@@ -12,7 +12,7 @@ from isomortar.results.definition import plain
 #: What a problem has several of, each by its name.
 _KINDS = ("bodies", "contacts", "supports", "stages", "loads")
 #: What bodies and contacts have from meshes where nobody asks for another.
-_OF_MESHES = ("quadrature", "subcells", "projection", "by_default")
+_OF_MESHES = ("raised", "raised.face", "raised.orders", "quadrature", "subcells", "projection", "by_default")
 
 #: Leaves of a problem by dotted path.
 Leaves = dict[str, Any]

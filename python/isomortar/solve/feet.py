@@ -5,6 +5,8 @@ A point that is open may have any foot, also one of many that are as near: of su
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from isomortar import _bindings
@@ -12,6 +14,8 @@ from isomortar._bindings import Projections, Response, SlaveArrays
 from isomortar._codes import Status
 from isomortar.errors import LostProjectionError
 from isomortar.geometry.patch import FloatArray
+from isomortar.model.entities import Contact, Problem
+from isomortar.model.numbering import Numbering
 from isomortar.model.pairs import Pair
 
 #: Doubts with friction alone: the kernel's about a foot on a C0 line, and one of ours beside a pole.
@@ -80,6 +84,17 @@ class Feet:
         point = slave_points(self._pair, positions)[q]
         point[np.abs(point) <= 1e-12 * np.abs(positions).max()] = 0.0  # round-off is no place
         return "({:.4g}, {:.4g}, {:.4g})".format(*(point + self._origin))
+
+
+def closest_depths(problem: Problem, contact: Contact, positions: FloatArray) -> FloatArray:
+    """How deep a contact's slave points are in its master by closest points, shape (points,), whatever its projection.
+
+    Below zero before the master; not a number beside it. Along averaged normals feet are found up to a depth and a distance alone.
+    """
+    pair = Pair(replace(contact, projection="closest"), problem, Numbering(problem))
+    none = np.zeros(len(pair.slave.area), dtype=np.int32)
+    closest = _bindings.project_points(pair.slave, pair.master, positions, np.zeros((len(none), 2)), none)
+    return np.where(closest.found > 0, gaps(pair, positions, closest), np.nan)
 
 
 def gaps(pair: Pair, positions: FloatArray, projections: Projections) -> FloatArray:

@@ -15,6 +15,7 @@ from isomortar.model.entities import Body, Contact, Problem
 from isomortar.model.sheet import Sheet
 from isomortar.solve.contact import PairMechanics
 from isomortar.solve.equilibrium import Equilibrium
+from isomortar.solve.feet import closest_depths
 from isomortar.solve.record import State
 from isomortar.told.after.overcome import overcome
 from isomortar.told.after.sliding import sliding
@@ -53,8 +54,11 @@ def causes(equilibrium: Equilibrium, state: State, error: Exception) -> Iterator
     if isinstance(error, PathError):
         yield _path(error.error, problem.settings.max_cuts)
         return
-    judgements = (list(judge(equilibrium, state)) for judge in (sliding, overcome, tipping))
-    yield from next(filter(None, judgements), [])
+    told = set[int]()
+    for judge in (sliding, overcome, tipping):
+        found = [(pieces, sentence) for pieces, sentence in judge(equilibrium, state) if told.isdisjoint(pieces)]
+        yield from (sentence for _, sentence in found)
+        told.update(*(pieces for pieces, _ in found))
     yield from _flat(problem.deformable, equilibrium.solid.smallest_jacobians(positions))
     for body in problem.deformable:
         yield from _lengths(body, LENGTHS_BENT if isinstance(error, SingularSystemError) else LENGTHS)
@@ -66,7 +70,7 @@ def causes(equilibrium: Equilibrium, state: State, error: Exception) -> Iterator
         yield from _short_slip(problem, contact)
     if BESIDE not in str(error):
         for pair in equilibrium.pairs:
-            yield from _over_the_edge(pair, positions)
+            yield from _over_the_edge(problem, pair, positions)
 
 
 def _path(error: float, cuts: int) -> str:
@@ -78,13 +82,15 @@ def _path(error: float, cuts: int) -> str:
     return f"balance and contact were met, and the shortest increment is too long for that: {', '.join([*ways, 'or take more load steps'])}"
 
 
-def _over_the_edge(pair: PairMechanics, positions: FloatArray) -> Iterator[str]:
+def _over_the_edge(problem: Problem, pair: PairMechanics, positions: FloatArray) -> Iterator[str]:
     """A slave that goes over an edge of its master, in elements of which a part only has anything below."""
-    elements = pair.initial(positions).projected.reshape(pair.pair.slave.elements, -1) > 0
+    contact = pair.pair.contact
+    found = np.isfinite(closest_depths(problem, contact, positions)) if contact.averaged else pair.initial(positions).projected > 0
+    elements = found.reshape(pair.pair.slave.elements, -1)
     partly = elements.any(axis=1) & ~elements.all(axis=1)
     if partly.any() or not elements.any():
         yield (
-            f"contact {pair.pair.contact.name!r}: the slave goes over an edge of its master; {np.count_nonzero(~elements)} of its "
+            f"contact {contact.name!r}: the slave goes over an edge of its master; {np.count_nonzero(~elements)} of its "
             f"{elements.size} quadrature points are {BESIDE} by then, and few bear what comes. Refine the slave, use a larger master, end "
             "the motion earlier, or bring the slave onto its master from above"
         )

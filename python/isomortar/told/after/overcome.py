@@ -34,8 +34,8 @@ class _Slide:
     borne: FloatArray
 
 
-def overcome(equilibrium: Equilibrium, state: State) -> Iterator[str]:
-    """Sentences, without a capital, on bodies whose loads friction cannot bear at the pressures that hold them otherwise (theory 9.11).
+def overcome(equilibrium: Equilibrium, state: State) -> Iterator[tuple[set[int], str]]:
+    """Pieces and sentences, without a capital, on bodies whose loads friction cannot bear at the pressures that hold them (theory 9.11).
 
     Parameters
     ----------
@@ -47,14 +47,15 @@ def overcome(equilibrium: Equilibrium, state: State) -> Iterator[str]:
     motions, works, touches = borne_loads(equilibrium, state)
     if not touches:
         return
-    groups = groups_of(touches, np.array([motion.piece for motion in motions]))
-    found = [slide for mine, near in groups if (slide := _slide(near, works[mine], list(compress(motions, mine)))) is not None]
-    slide = min(found, key=lambda slide: slide.borne.sum(), default=None)
-    if slide and not _holds(slide.touches, state, equilibrium, slide.way):
+    for mine, near in groups_of(touches, np.array([motion.piece for motion in motions])):
+        slide = _slide(near, works[mine], list(compress(motions, mine)))
+        if slide is None or _holds(slide.touches, state, equilibrium, slide.way):
+            continue
         resist = [k for k, part in enumerate(slide.borne) if part > constants.IN_THE_WAY * slide.borne.sum()]
         slips = [(slide.touches[k], slide.limits[k]) for k in resist]
         more = more_friction([(touch.pair.pair.contact, limit, limit * touch.lengths(slide.way)) for touch, limit in slips])
-        yield from _said(equilibrium, [touch for touch, _ in slips], slide.motions, slide.way, float(slide.borne.sum()), more)
+        said = _said(equilibrium, [touch for touch, _ in slips], slide.motions, slide.way, float(slide.borne.sum()), more)
+        yield from (({motion.piece for motion in slide.motions}, sentence) for sentence in said)
 
 
 def _slide(touches: list[Touch], works: FloatArray, motions: list[FreeMotion]) -> _Slide | None:

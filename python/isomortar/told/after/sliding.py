@@ -23,8 +23,8 @@ ALL = 0.9
 HOLDS = 0.1
 
 
-def sliding(equilibrium: Equilibrium, state: State) -> Iterator[str]:
-    """Sentences, without a capital, on bodies that nothing but friction keeps from going along with their loads, which has no more to give.
+def sliding(equilibrium: Equilibrium, state: State) -> Iterator[tuple[set[int], str]]:
+    """Pieces and sentences, without a capital, on bodies that friction alone keeps from going along with their loads, and has no more.
 
     Parameters
     ----------
@@ -47,9 +47,12 @@ def sliding(equilibrium: Equilibrium, state: State) -> Iterator[str]:
         if most > 0.0 and borne > ALL * most and along > HOLDS * np.linalg.norm(friction, axis=1).sum():
             contacts = " and ".join(repr(pair.pair.contact.name) for pair, _ in pairs)
             yield (
-                f"friction of contact {contacts} bears {100.0 * borne / most:.0f} % of what it can by then, and nothing else keeps "
-                f"{named(piece, piece[0].name)} from going along with its loads: beyond that it slides, and is nowhere at rest. Take "
-                f"smaller loads or {more_friction(limits)}, or hold or move it by a support"
+                {number},
+                (
+                    f"friction of contact {contacts} bears {100.0 * borne / most:.0f} % of what it can by then, and nothing else keeps "
+                    f"{named(piece, piece[0].name)} from going along with its loads: beyond that it slides, and is nowhere at rest. Take "
+                    f"smaller loads or {more_friction(limits)}, or hold or move it by a support"
+                ),
             )
 
 

@@ -34,8 +34,8 @@ FINER = "refine the slave, whose outermost control points bear within its edge, 
 OPENS = 0.25
 
 
-def tipping(equilibrium: Equilibrium, state: State) -> Iterator[str]:
-    """Sentences, without a capital, on bodies that loads turn over an edge of what bears them, or lift (theory 9.12).
+def tipping(equilibrium: Equilibrium, state: State) -> Iterator[tuple[set[int], str]]:
+    """Pieces and sentences, without a capital, on bodies that loads turn over an edge of what bears them, or lift (theory 9.12).
 
     Parameters
     ----------
@@ -53,8 +53,7 @@ def tipping(equilibrium: Equilibrium, state: State) -> Iterator[str]:
         way = overturning(near, works[mine], sizes[mine]) if near and np.any(works[mine]) else None
         if way is not None:
             with suppress(LostProjectionError):
-                yield _said(equilibrium, state, near, list(compress(motions, mine)), way, works[mine])
-            return
+                yield set(pieces[mine]), _said(equilibrium, state, near, list(compress(motions, mine)), way, works[mine])
 
 
 def overturning(touches: Sequence[Touch], works: FloatArray, sizes: FloatArray) -> FloatArray | None:
@@ -123,7 +122,7 @@ def _said(
     else:
         how, end, cure = f"move {goes.bodies} along ({direction(goes.shift)})", "it lifts off", "Take less load that way, "
     begun = dict(zip(equilibrium.pairs, state.contacts, strict=True))
-    met = " and ".join(map(repr, _met(equilibrium, state, touches, motions, way)))
+    met = " or ".join(map(repr, _met(equilibrium, state, touches, motions, way)))
     end += f" until contact {met} closes, where it may rest: bring it there by a support first if that is meant" if met else ""
     finer = goes.turns and any(_finer_bears(touch, state.positions, begun[touch.pair], motions, way, works) for touch in opened)
     return (

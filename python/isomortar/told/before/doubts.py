@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
 
-from isomortar import _bindings
 from isomortar.errors import FoldedElementError
 from isomortar.geometry.patch import MAX_ORDER, FloatArray, IntArray
 from isomortar.model import constants
@@ -17,12 +15,11 @@ from isomortar.model.contact_checks import SAME_WAY, something_turns
 from isomortar.model.contrasts import element_lengths
 from isomortar.model.entities import Body, Contact, Face, Problem
 from isomortar.model.memory import memory_needed, memory_of_machine
-from isomortar.model.numbering import Numbering, ends_apart
-from isomortar.model.pairs import Pair
+from isomortar.model.numbering import ends_apart
 from isomortar.model.rational import QUADRATURE_TOLD, quadrature_error, too_few_points
 from isomortar.model.rational_faces import pressure_error, too_few_points_of
 from isomortar.model.stance import FACING, Stance, stance
-from isomortar.solve.feet import gaps
+from isomortar.solve.feet import closest_depths
 from isomortar.solve.record import State
 from isomortar.told.before.edges import of_edges
 from isomortar.told.before.faces import of_faces
@@ -148,13 +145,11 @@ def _overlaps(found: Stance) -> bool:
 def _inside_and_before(problem: Problem, contact: Contact, positions: FloatArray, feet: IntArray) -> tuple[int, int]:
     """How many slave quadrature points without a foot are inside their master, and before it, as closest points tell.
 
-    Along averaged normals feet are found up to a depth and a distance; by closest points there are no others.
+    Along averaged normals feet are found up to a depth and a distance; by closest points they are all.
     """
     if feet.all() or not contact.averaged:
         return 0, 0
-    pair = Pair(replace(contact, projection="closest"), problem, Numbering(problem))
-    closest = _bindings.project_points(pair.slave, pair.master, positions, np.zeros((len(feet), 2)), np.zeros_like(feet))
-    depths = gaps(pair, positions, closest)[(feet == 0) & (closest.found > 0)]
+    depths = closest_depths(problem, contact, positions)[feet == 0]
     return int(np.count_nonzero(depths > 0.0)), int(np.count_nonzero(depths <= 0.0))
 
 
