@@ -31,7 +31,7 @@ def tables() -> str:
     """A table for each group of a results file in alphabetical order: datasets with type, unit and meaning."""
     with TemporaryDirectory() as folder:
         path = Path(folder) / "results.h5"
-        isomortar.run(isomortar.Scene.from_toml(_SCENE), path)
+        isomortar.run(isomortar.Scene.from_toml(_SCENE), path, isomortar.Observer())
         with h5py.File(path) as file:
             rows: dict[str, dict[str, str]] = {}
             file.visititems(lambda name, entry: _note(rows, name, entry))
