@@ -31,6 +31,7 @@ from told.wrong.singular import CORNER
 
 from isomortar.errors import IsomortarError
 from isomortar.march.simulation import Simulation
+from isomortar.model.entities import Face
 from isomortar.model.plates import rotation
 from isomortar.results.reader import Results
 from isomortar.results.writer import ResultsWriter
@@ -114,6 +115,10 @@ def along_the_way(_: pytest.MonkeyPatch) -> Told:
     (yield "large beside the master", *StepAdvice(problem(), 0, half).after_step(2, beyond, wild))
     gone = (replace(measured[0], active=0, excluded=96), measured[1])
     (yield "beside", *advice.after_step(4, gone, calm))
+    tread, ground = problem().contacts
+    averaged = replace(problem(), contacts=(replace(tread, master=Face("tyre", "v0"), projection="averaged"), ground))
+    far = StepAdvice(averaged, 0, calm).after_step(2, (replace(gone[0], active=1), gone[1]), calm)
+    yield from zip(("left or far", "beside or far"), far, strict=True)
     assert list(advice.after_step(5, gone, calm)) == []
     (yield "opened", *advice.at_the_end({}))
     advice = StepAdvice(problem(), 0, calm)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from told.runs import Heard
+
 from isomortar.errors import ConvergenceError
 from isomortar.harness import Bound, case
 from isomortar.march.simulation import Simulation
@@ -43,3 +45,18 @@ def opposite(projection: str, order: int) -> dict[str, float]:
             wrong += (OVER in likely) != (aside > 0.0)
             wrong += (APART in said) != (aside == 0.0 and gap > 0.4)
     return {"wrong": float(wrong)}
+
+
+@case(
+    claim="A slave that is pulled straight off its master, farther than averaged normals reach, is not said to be beside it and no more.",
+    tier="gate",
+    grid={"projection": ("closest", "averaged")},
+    bounds={"wrong": Bound(0.0, 0.0, "definition: sentences that it is beside its master, without that it may be beyond their reach")},
+)
+def pulled_off(projection: str) -> dict[str, float]:
+    """How many."""
+    text = SCENE.format(aside=0.0, end=1.0, gap=-0.02, top=0.98, order=2, projection=projection).replace("-0.2]", "5]")
+    heard = Heard()
+    list(Simulation(Scene.from_toml(text).problem(), heard).run())
+    beside = [said for said in heard.said if BESIDE in said]
+    return {"wrong": float(sum("beyond the reach" not in said for said in beside) + (len(beside) != (projection == "averaged")))}

@@ -12,6 +12,8 @@ from isomortar.told.during.borne import Borne
 
 #: Control pressures this many times above the field's largest value oscillate.
 OSCILLATION = 1.5
+#: Along averaged normals feet are found up to a distance: what is farther away has none, although the master may be opposite.
+FAR = " (or gone beyond the reach of its averaged normals)"
 #: Spurious work over friction work above which the master is too coarse.
 SPURIOUS = 0.02
 
@@ -30,6 +32,7 @@ class StepAdvice:
 
     def __init__(self, problem: Problem, step: int, states: Sequence[ContactState]) -> None:
         self._slaves = {contact.name: contact.slave.words for contact in problem.contacts}
+        self._far = {contact.name: FAR if contact.averaged else "" for contact in problem.contacts}
         self._borne = Borne(problem, states)
         self._begun = self._last = step
         self._closed = {name: step for name, state in zip(self._slaves, states, strict=True) if np.any(state.pressure)}
@@ -58,13 +61,13 @@ class StepAdvice:
         """Warnings of slave points that have left the master; of `points` so many were `excluded` before."""
         if result.active and result.excluded > excluded and self._first(name, "leaving"):
             yield (
-                f"contact {name!r}, load step {step}: {result.excluded - excluded} slave quadrature points have left the master; what "
-                "they carried is gone in a jump. Use a larger master or smaller load steps"
+                f"contact {name!r}, load step {step}: {result.excluded - excluded} slave quadrature points have left the master"
+                f"{self._far[name]}; what they carried is gone in a jump. Use a larger master or smaller load steps"
             )
         if result.excluded == points > excluded and self._first(name, "beside"):
             yield (
-                f"contact {name!r}, load step {step}: the slave face {self._slaves[name]} is wholly beside its master now, and touches "
-                "nothing. Use a larger master, or look at the motions"
+                f"contact {name!r}, load step {step}: the slave face {self._slaves[name]} is wholly beside its master now{self._far[name]}"
+                ", and touches nothing. Use a larger master, or look at the motions"
             )
 
     def at_the_end(self, unseen: Mapping[str, float]) -> Iterator[str]:
