@@ -89,7 +89,7 @@ def test_a_damaged_file_is_measured_again(root, damage):
 def test_pages_are_utf_8_in_any_locale(tmp_path):
     """They say what ASCII cannot, which may be all that the system's text is."""
     words = f"pathlib.Path({str(tmp_path / 'page')!r}), chr(0x2264)"
-    code = f"import pathlib; from isomortar.harness.store import write_whole; write_whole({words})"
+    code = f"import pathlib; from isomortar.results.files import write_whole; write_whole({words})"
     ascii_alone = {"LC_ALL": "C", "PYTHONCOERCECLOCALE": "0", "PYTHONUTF8": "0"}
     subprocess.run([sys.executable, "-c", code], env=os.environ | ascii_alone, check=True)
     assert (tmp_path / "page").read_bytes() == "\u2264".encode()

@@ -16,7 +16,7 @@ from isomortar.errors import InputError
 from isomortar.harness.cases import Bound, Case, Cell, Words
 from isomortar.harness.measurement import Measurement, restored
 from isomortar.harness.runner import Result
-from isomortar.harness.store import write_whole
+from isomortar.results.files import write_whole
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,8 @@ from extremes.statements import AsEnded, statement
 from isomortar.harness.cases import Tier
 from isomortar.harness.collection import collect
 from isomortar.harness.runner import Result, select
-from isomortar.harness.store import write_whole
 from isomortar.harness.study import Conclusion, Study
+from isomortar.results.files import write_whole
 
 
 def study(folder: Path, tier: Tier) -> Study:

@@ -13,7 +13,8 @@ from orders.analysis import CURVES, Analysis, Point
 from orders.finding import summary
 
 from isomortar.harness.report import percent, plain, template
-from isomortar.harness.store import identity, write_whole
+from isomortar.harness.store import identity
+from isomortar.results.files import write_whole
 
 
 def write(folder: Path, analysis: Analysis, started: datetime) -> Path:

@@ -12,9 +12,8 @@ import numpy as np
 from isomortar import Observer, Results, run
 from isomortar.errors import InputError, IsomortarError, ResultsError
 from isomortar.harness import Bound, case
-from isomortar.harness.store import write_whole
 from isomortar.results.comparison import differences
-from isomortar.results.files import claimed, replace, writing
+from isomortar.results.files import claimed, replace, write_whole, writing
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
 

@@ -20,7 +20,8 @@ from paper.settled import Settled
 
 from isomortar.harness.report import percent, plain, template
 from isomortar.harness.statement import STATEMENT_STATES, Judgement
-from isomortar.harness.store import identity, write_whole
+from isomortar.harness.store import identity
+from isomortar.results.files import write_whole
 
 
 @dataclass(frozen=True)

@@ -15,9 +15,9 @@ from published.others import OWN, PROGRAMS
 from isomortar.harness.figures import look, page_style, svg_text
 from isomortar.harness.report import template
 from isomortar.harness.runner import Result
-from isomortar.harness.store import write_whole
 from isomortar.harness.study import Conclusion
 from isomortar.results import style
+from isomortar.results.files import write_whole
 
 #: Numbers of a case by discretisation.
 Found = Mapping[str, Mapping[str, Any]]

@@ -20,7 +20,8 @@ from isomortar.harness.measurement import restored
 from isomortar.harness.references import Reference, dataset_name, made_by, write_reference
 from isomortar.harness.report import template
 from isomortar.harness.runner import Result
-from isomortar.harness.store import identity, write_whole
+from isomortar.harness.store import identity
+from isomortar.results.files import write_whole
 
 #: The number of a cell by which it states how far off its others are, relative to their largest values, measured by two refinements.
 MEASURED = "uncertainty"

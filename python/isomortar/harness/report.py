@@ -22,7 +22,8 @@ from isomortar.harness.compare import CHECK_STATES, Check, worst
 from isomortar.harness.measurement import restored
 from isomortar.harness.orders import Convergence
 from isomortar.harness.runner import Result
-from isomortar.harness.store import identity, write_whole
+from isomortar.harness.store import identity
+from isomortar.results.files import write_whole
 
 #: Cases with more numbers than this have them in narrow columns: two digits, a history only where it changed.
 WIDE = 4

@@ -21,8 +21,9 @@ from isomortar.harness.measurement import restored
 from isomortar.harness.report import plain, template
 from isomortar.harness.runner import Result
 from isomortar.harness.statement import STATEMENT_STATES, Judgement, NotMeasuredError
-from isomortar.harness.store import identity, write_whole
+from isomortar.harness.store import identity
 from isomortar.harness.study import Conclusion
+from isomortar.results.files import write_whole
 
 
 @dataclass(frozen=True)

@@ -12,9 +12,7 @@ import os
 import platform
 import re
 import subprocess
-import threading
 from collections.abc import Iterable, Iterator
-from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -22,7 +20,7 @@ from typing import Any
 from isomortar._compiled import KERNEL
 from isomortar.harness.cases import Case, Cell
 from isomortar.harness.measurement import Measurement
-from isomortar.results.files import make_folder, named
+from isomortar.results.files import write_whole
 
 _PACKAGE = Path(__file__).parent.parent
 #: Names what cases declare themselves with.
@@ -56,28 +54,6 @@ class Store:
 
     def _path(self, cell: Cell) -> Path:
         return self.folder / cell.case.family / f"{cell.case.function.__name__}-{cell_key(cell)[:20]}.json"
-
-
-def write_whole(path: Path, text: str) -> None:
-    """Write a file so that a reader finds the old or the new one, never a part.
-
-    Raises
-    ------
-    ResultsError
-        The system refused; the old file stands, and no part of the new one is left.
-    """
-    part = path.with_name(f".{path.name}.{os.getpid()}-{threading.get_ident()}.part")
-    make_folder(path.parent)
-    try:
-        with named(path):
-            with part.open("w", encoding="utf-8") as file:  # not a temporary file, which only its owner may read
-                file.write(text)
-                file.flush()
-                os.fsync(file.fileno())
-            part.replace(path)
-    finally:
-        with suppress(OSError):
-            part.unlink()
 
 
 def cell_key(cell: Cell, program: str | None = None) -> str:

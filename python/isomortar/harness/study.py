@@ -16,7 +16,8 @@ from isomortar.errors import InputError
 from isomortar.harness.cases import Case, Cell, Settings
 from isomortar.harness.collection import module_at
 from isomortar.harness.runner import Result
-from isomortar.harness.store import Store, write_whole
+from isomortar.harness.store import Store
+from isomortar.results.files import write_whole
 from isomortar.scene.scene import Scene
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import fcntl
 import hashlib
 import os
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -75,14 +76,27 @@ def writing(path: Path) -> Iterator[Path]:
     Half a film looks like a whole one, and a kill takes nothing away.
     """
     whole = path.resolve()
-    fresh = whole.with_name(f".{whole.stem}.{os.getpid()}.new{whole.suffix}")
+    fresh = whole.with_name(f".{whole.stem}.{os.getpid()}-{threading.get_native_id()}.new{whole.suffix}")
     try:
         with named(path):
             yield fresh
-            fresh.replace(whole)
+            _put(fresh, whole)
     finally:
         with suppress(OSError):
             fresh.unlink()
+
+
+def write_whole(path: Path, text: str) -> None:
+    """Write a file so that a reader finds the old or the new one, never a part, in a folder that is made where it is not there.
+
+    Raises
+    ------
+    ResultsError
+        The system refused; the old file stands, and no part of the new one is left.
+    """
+    make_folder(path.parent)
+    with writing(path) as fresh:
+        fresh.write_text(text, encoding="utf-8")
 
 
 def place_for(path: Path) -> None:
@@ -122,10 +136,7 @@ def replace(path: Path, *parts: bytes) -> None:
     try:
         with fresh.open("wb") as file:
             file.writelines(parts)
-            file.flush()
-            os.fsync(file.fileno())
-        fresh.replace(path)
-        _flush_folder(path.parent)
+        _put(fresh, path)
     except OSError as error:
         kept = "; what it held before is still in it" if path.exists() else ""
         raise ResultsError(f"{path} cannot be written: {error.strerror or error}{kept}") from error
@@ -176,9 +187,16 @@ def _locked(lock: Path) -> int:
         os.close(descriptor)
 
 
-def _flush_folder(folder: Path) -> None:
-    """Have the operating system put the folder's entries on the disk."""
-    descriptor = os.open(folder, os.O_RDONLY)
+def _put(fresh: Path, whole: Path) -> None:
+    """Give a new file its name once the disk has all of it, and have the disk know the name."""
+    _flush(fresh)
+    fresh.replace(whole)
+    _flush(whole.parent)
+
+
+def _flush(path: Path) -> None:
+    """Have the operating system put a file, or a folder's entries, on the disk."""
+    descriptor = os.open(path, os.O_RDONLY)
     try:
         os.fsync(descriptor)
     finally:

@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from isomortar.harness.report import percent, plain, template
-from isomortar.harness.store import identity, write_whole
+from isomortar.harness.store import identity
+from isomortar.results.files import write_whole
 from isomortar.scene.scene import Scene
 from isomortar.scene.source import as_options
 from isomortar.solve.timing import PHASES

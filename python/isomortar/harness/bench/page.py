@@ -17,7 +17,7 @@ from isomortar.harness.bench.processes import Answer
 from isomortar.harness.bench.record import HISTORY, Record, as_data
 from isomortar.harness.bench.standings import LIMIT_STATES, standings, state
 from isomortar.harness.history import change_points
-from isomortar.harness.store import write_whole
+from isomortar.results.files import write_whole
 
 PAGE, DATA = "bench.html", "bench.json"
 

@@ -11,7 +11,7 @@ from typing import Any
 from isomortar.harness.mutants.campaign import Attacked
 from isomortar.harness.mutants.score import CLASSES, Score
 from isomortar.harness.report import template
-from isomortar.harness.store import write_whole
+from isomortar.results.files import write_whole
 
 
 def write(path: Path, score: Score, settings: dict[str, Any]) -> None:
