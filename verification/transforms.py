@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import combinations
+from typing import cast
 
 import numpy as np
 
-from isomortar.geometry.patch import FACES, Direction, FloatArray, Patch, opposite
-from isomortar.model.entities import Contact, Edge, Face, Faces, Load, Motion, Problem, RigidPlane, Support
+from isomortar.geometry.patch import FACES, Closed, Direction, FloatArray, Patch
+from isomortar.model.entities import Body, Contact, Edge, Face, Faces, Load, Motion, Problem, Raised, RigidPlane, Support
 
 Vector = tuple[float, float, float]
 
@@ -58,17 +59,13 @@ def _moved_contact(contact: Contact, by: FloatArray) -> Contact:
 def mirrored(problem: Problem) -> Problem:
     """The mirror image in the plane x = 0, direction u reversed to keep the volume positive."""
     mirror = np.diag([-1.0, 1.0, 1.0])
-    image = with_patches(problem, lambda patch: reversed_along(replace(patch, control_points=patch.control_points @ mirror), (0,)))
-    names = {face: face if face[0] != "u" else opposite(face) for face in FACES}
-    return _renamed(
-        replace(
-            image,
-            contacts=tuple(_turned_contact(contact, mirror) for contact in problem.contacts),
-            supports=tuple(_turned_support(support, mirror, -1.0) for support in problem.supports),
-            loads=tuple(_turned_load(load, mirror) for load in problem.loads),
-        ),
-        {body.name: names for body in problem.bodies},
+    image = replace(
+        with_patches(problem, lambda patch: replace(patch, control_points=patch.control_points @ mirror)),
+        contacts=tuple(_turned_contact(contact, mirror) for contact in problem.contacts),
+        supports=tuple(_turned_support(support, mirror, -1.0) for support in problem.supports),
+        loads=tuple(_turned_load(load, mirror) for load in problem.loads),
     )
+    return _oriented(image, [body.name for body in problem.bodies], (0, 1, 2), (0,))
 
 
 def scaled(problem: Problem, length: float, stress: float) -> Problem:
@@ -101,12 +98,8 @@ def with_weights(problem: Problem, factor: float) -> Problem:
 
 def relabelled(problem: Problem) -> Problem:
     """Bodies in reverse order, directions u and v of every body reversed, then u, v, w called w, u, v."""
-    bodies = tuple(
-        replace(body, patch=permuted(reversed_along(body.patch, (0, 1))), quadrature=(*body.quadrature[1:], body.quadrature[0]))
-        for body in reversed(problem.bodies)
-    )
-    faces = {face: "wuv"["uvw".index(face[0])] + (face[1] if face[0] == "w" else "10"[int(face[1])]) for face in FACES}
-    return _renamed(replace(problem, bodies=bodies), {body.name: faces for body in bodies})
+    renamed = _oriented(problem, [body.name for body in problem.bodies], (1, 2, 0), (2, 0))
+    return replace(renamed, bodies=renamed.bodies[::-1])
 
 
 def reversed_along(patch: Patch, axes: tuple[int, ...]) -> Patch:
@@ -133,15 +126,49 @@ def orientations() -> tuple[tuple[tuple[int, int, int], tuple[int, ...]], ...]:
 
 def oriented(problem: Problem, name: str, order: tuple[int, int, int], axes: tuple[int, ...]) -> Problem:
     """The problem with the directions of a body named in another order, some of them reversed."""
-    names = {}
+    return _oriented(problem, [name], order, axes)
+
+
+def _oriented(problem: Problem, names: list[str], order: tuple[int, int, int], axes: tuple[int, ...]) -> Problem:
+    faces = {}
     for face in FACES:
         axis = order.index("uvw".index(face[0]))
-        names[face] = "uvw"[axis] + (face[1] if axis not in axes else "10"[int(face[1])])
+        faces[face] = "uvw"[axis] + (face[1] if axis not in axes else "10"[int(face[1])])
+    renamed = _renamed(problem, dict.fromkeys(names, faces))
+    return replace(
+        renamed,
+        bodies=tuple(_oriented_body(body, order, axes, faces) if body.name in names else body for body in problem.bodies),
+        contacts=tuple(
+            replace(contact, quadrature=_along_the_face(contact.quadrature, before.slave.face, order))
+            if before.slave.body in names
+            else contact
+            for contact, before in zip(renamed.contacts, problem.contacts, strict=True)
+        ),
+    )
 
-    body = problem.body(name)
-    first, second, third = (body.quadrature[axis] for axis in order)
-    new = replace(body, patch=reversed_along(permuted(body.patch, order), axes), quadrature=(first, second, third))
-    return _renamed(replace(problem, bodies=tuple(new if old is body else old for old in problem.bodies)), {name: names})
+
+def _oriented_body(body: Body, order: tuple[int, int, int], axes: tuple[int, ...], faces: dict[str, str]) -> Body:
+    closed = sorted(faces[f"{letter}0"][0] for letter in body.closed or "")
+    return replace(
+        body,
+        patch=reversed_along(permuted(body.patch, order), axes),
+        quadrature=_in_order(body.quadrature, order),
+        closed=None if body.closed is None else cast("Closed", "".join(closed)),
+        raised=body.raised and Raised(faces[body.raised.face], _in_order(body.raised.orders, order)),
+    )
+
+
+def _in_order(values: tuple[int, int, int], order: tuple[int, int, int]) -> tuple[int, int, int]:
+    first, second, third = (values[axis] for axis in order)
+    return first, second, third
+
+
+def _along_the_face(values: tuple[int, int], face: str, order: tuple[int, int, int]) -> tuple[int, int]:
+    """What a slave face has along its two coordinates, which come in cyclic order after that across it."""
+    axis = "uvw".index(face[0])
+    of_body = {(axis + 1) % 3: values[0], (axis + 2) % 3: values[1]}
+    across = order.index(axis)
+    return of_body[order[(across + 1) % 3]], of_body[order[(across + 2) % 3]]
 
 
 def _renamed(problem: Problem, names: dict[str, dict[str, str]]) -> Problem:

@@ -3,18 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import cast
 
 import numpy as np
 from enforcement.tables import ELEMENTS, POINTWISE, SIZE, at_points, plate, side_of
 from patch_tests.contact import functions, knots
 
-from isomortar.geometry.primitives import ring
+from isomortar.geometry.patch import FloatArray
+from isomortar.geometry.primitives import box, ring
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
+from isomortar.model.enforcement import SlaveSide, slave_side
+from isomortar.model.enforcement.integration import integrated
 from isomortar.model.enforcement.side import PointSide
-from isomortar.model.entities import Body, Enforcement, Material
+from isomortar.model.entities import Body, Contact, Enforcement, Face, Material, Problem, Stage
+from isomortar.model.numbering import Numbering
 
 _ROUND_OFF = Bound(at_most=1e-13, reason="round-off: of sums over some tens of numbers")
+#: Of a unit cube of order 2, along x, y and z.
+ELEMENTS_OF_CUBE = (4, 3, 2)
 KINDS = ("N1", "N2", "N3", "N5")
 
 
@@ -84,3 +91,59 @@ def first_moments(method: Enforcement, kind: str) -> dict[str, float]:
     expected = SIZE[0] * SIZE[1] * np.array([1.0 / 2.0 + 0.5 / 3.0, 1.25 / 2.0])  # the width is 1 + u / 2
     whole = 1.25 * SIZE[0] * SIZE[1]
     return {"area": abs(float(area.sum()) / whole - 1.0), "moment": float(np.abs(found / expected - 1.0).max())}
+
+
+def _points(side: SlaveSide, reference: FloatArray) -> FloatArray:
+    """Where the quadrature points of a slave are, shape (points, 3)."""
+    shape = side.arrays.shape
+    nodes = np.repeat(shape.nodes, len(shape.values) // len(shape.nodes), axis=0)
+    return np.einsum("qa,qai->qi", shape.values, reference[side.arrays.point[nodes]])
+
+
+@case(
+    claim="Contacts have as many quadrature points along each direction of the slave as they are given.",
+    tier="gate",
+    grid={"face": ("u1", "v0", "w0"), "way": ("mortar", "dual", "kts", "cells")},
+    bounds={"wrong": Bound(0.0, 0.0, "definition: the first number is of the first direction after that across the face, in turns")},
+)
+def points_along(face: str, way: str) -> dict[str, float]:
+    """Directions along which there are other points than those of Gauss's rule in each element, of given numbers."""
+    counts = (3, 5)
+    patch = mesh(box((0.0, 0.0, 0.0), (1.0, 1.0, 1.0)), ("N", "N", "N"), (2, 2, 2), ELEMENTS_OF_CUBE)
+    axis = "uvw".index(face[0])
+    shift = np.eye(3)[axis] * (1.0 if face[1] == "1" else -1.0)
+    master = replace(patch, control_points=patch.control_points + shift)
+    bodies = tuple(Body(name, one, Material(), (3, 3, 3)) for name, one in (("slave", patch), ("master", master)))
+    enforcement = cast("Enforcement", "mortar" if way == "cells" else way)
+    other = Face("master", face[0] + "10"[int(face[1])])
+    contact = Contact("c", Face("slave", face), other, 0.0, counts, enforcement=enforcement, subcells=int(way == "cells"))
+    problem = Problem("points", bodies, (contact,), (), (Stage("none", 1),))
+    numbering = Numbering(problem)
+    found = _points(slave_side(contact, problem, numbering), numbering.reference)
+    wrong = 0
+    for count, along in zip(counts, ((axis + 1) % 3, (axis + 2) % 3), strict=True):
+        each = ELEMENTS_OF_CUBE[along]
+        expected = (np.arange(each)[:, None] + 0.5 * (1.0 + np.polynomial.legendre.leggauss(count)[0])).ravel() / each
+        places = np.unique(np.round(found[:, along], 12))
+        wrong += len(places) != len(expected) or float(np.abs(places - expected).max()) > 1e-11
+    return {"wrong": float(wrong)}
+
+
+@case(
+    claim="Cells get points enough along each direction for products of its own functions with those of either side, and one more at most.",
+    tier="gate",
+    grid={"face": ("u1", "v0", "w0"), "master": (1, 3)},
+    bounds={"wrong": Bound(0.0, 0.0, "theory: Gauss's rule of n points is exact up to order 2 n - 1")},
+)
+def points_of_cells(face: str, master: int) -> dict[str, float]:
+    """Directions along which there are fewer, or many more."""
+    orders, axis = (1, 5, 2), "uvw".index(face[0])
+    cube = box((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
+    slave, other = (mesh(cube, ("N", "N", "N"), of, elements) for of, elements in ((orders, (2, 2, 2)), ((master,) * 3, (3, 3, 3))))
+    shift = np.eye(3)[axis] * (1.0 if face[1] == "1" else -1.0)
+    patches = {"slave": slave, "master": replace(other, control_points=other.control_points + shift)}
+    bodies = tuple(Body(name, patch, Material(), (7, 7, 7)) for name, patch in patches.items())
+    contact = Contact("c", Face("slave", face), Face("master", face[0] + "10"[int(face[1])]), 0.0, (1, 1))
+    found = integrated(contact, Problem("points", bodies, (contact,), (), (Stage("none", 1),))).quadrature
+    products = [orders[along] + max(orders[along], master) for along in ((axis + 1) % 3, (axis + 2) % 3)]
+    return {"wrong": float(sum(not order <= 2 * points - 1 <= order + 3 for points, order in zip(found, products, strict=True)))}

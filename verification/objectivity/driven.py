@@ -21,8 +21,8 @@ from isomortar.solve.record import StepResult
 _PAD = """
 format = 1
 bodies.pad.geometry = { kind = "wedge", bottom = [-0.5, 0.4], top = [-0.4, 0.5], y = [-0.4, 0.45], z = [0, 0.4] }
-bodies.pad.mesh = { order = 2, elements = [3, 2, 1], grading = [0.5, 1, 1] }
-contacts.floor = { slave = "pad.w0", plane = {}, friction = 0.3, quadrature = [4, 4] }
+bodies.pad.mesh = { order = [2, 3, 2], elements = [3, 2, 1], grading = [0.5, 1, 1], quadrature = [3, 4, 5] }
+contacts.floor = { slave = "pad.w0", plane = {}, friction = 0.3, quadrature = [4, 6] }
 supports.begin = { face = "pad.w1", centre = [0.1, 0.2, 0.4], axis = [1, 2, 3], stages = ["begin"] }
 supports.side = { edge = "pad.u0.v0", components = ["y"], stages = ["begin", "press"] }
 [supports.top]
