@@ -189,6 +189,10 @@ def of_files(patch: pytest.MonkeyPatch) -> Told:
     yield "no TOML, twice", refusal(lambda: Scene.load("twice.toml")).partition(")")[2]
     Path("comma.toml").write_text("format = 0,1")
     yield "no TOML, where", refusal(lambda: Scene.load("comma.toml")).partition(")")[2]
+    Path("quote.toml").write_text('name = "a\nformat = 1')
+    yield "no TOML, quote", refusal(lambda: Scene.load("quote.toml")).partition(")")[2]
+    Path("braces.toml").write_text("a = { b = 1,\nc = 2 }")
+    yield "no TOML, braces", refusal(lambda: Scene.load("braces.toml")).partition(")")[2]
     yield "value", _but_the_end(refusal(lambda: apply_overrides({"solver": {}}, ["solver.max_cuts=[1"])))
     writer = ResultsWriter("run.h5", problem(), "", "0", states="last")
     yield "plotted: no step", refusal(lambda: plot("run.h5", "figures"))

@@ -120,6 +120,13 @@ NO_TOML = {
     "open": ("format = 1\nbodies = [1\n", "bodies = [1", "'bodies = [1'"),
     "twice": ("a = 1\na = 2\nb = 1\n", "a = 2", "stands once"),
     "twice at the end": ("a = 1\na = 2", "a = 2", "stands once"),
+    "quote": ('format = 1\nname = "a\n[bodies]\n', 'name = "a', "unless they are three"),
+    "other quote": ("format = 1\nname = 'a\n[bodies]\n", "name = 'a", "unless they are three"),
+    "quotes": ('format = 1\ntitle = """a\n[bodies]\n', 'title = """a', "unless they are three"),
+    "other quotes": ("format = 1\ntitle = '''a\n[bodies]\n", "title = '''a", "unless they are three"),
+    "quote at the end": ('format = 1\nname = "a', 'name = "a', "unless they are three"),
+    "braces": ("format = 1\na = { b = 1,\nc = 2 }\n", "a = { b = 1,", "on one line"),
+    "no key": ("a. = 1\n", "a. = 1", "'a. = 1'"),
     "table twice": ("[a]\n[a]\nb = 1\n", "[a]", "stands once"),
 }
 

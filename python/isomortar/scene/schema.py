@@ -148,7 +148,7 @@ class ContactTable(Table):
     enforcement: Enforcement = "mortar"
     """What is constrained: averages of gap and slip ("mortar", "dual"), or values at Gauss points ("kts"), "knots", "greville", "demko"."""
     quadrature: PerSurfaceDirection[GaussPoints] | None = None
-    """Gauss points per slave contact element, or cell (w0: along u, v; u0: v, w; v0: w, u); default: Table 1 of the paper, or what cells need."""
+    """Gauss points per slave element, or cell (w0: along u, v; u0: v, w; v0: w, u); default: Table 1 of the paper, or what cells need."""
     subcells: Annotated[int, Field(strict=True, ge=0, le=5)] | None = None
     """How many times over slave elements are cut along the master's knot lines; default: as lines need, 0 where quadrature is given."""
     reference_area: Positive | None = None

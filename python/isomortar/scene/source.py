@@ -26,6 +26,8 @@ _PATH = re.compile(r"[\w-]+(\.[\w-]+)*")
 #: What a message of TOML's reader may want, by words of it.
 _HINTS = {
     "Invalid value|newline": ". Texts stand in quotes, numbers have a point",
+    "character '.n'|Expected \"'|Unterminated": ". A text ends at quotes as those that begin it: on the same line, unless they are three",
+    "key part.*says.*{": ". A table in braces stands on one line",
     "overwrite|twice": ". Each key of a table, and each [table], stands once",
 }
 
@@ -68,8 +70,16 @@ def parse(text: str, name: str) -> dict[str, Any]:
 def _line(text: str, message: str) -> str:
     """The line that a message is about, as far as it is short, and what it may want."""
     lines, found = text.rstrip().split("\n"), re.search(r"line (\d+)|end of document", message)
-    said = f", where it says {lines[int(found[1] or 0) - 1].strip()[:60]!r}" if found else ""
-    return said + next((words for what, words in _HINTS.items() if re.search(what, message)), "")
+    number = _unclosed(text, message) if found and not found[1] else int(found[1]) - 1 if found else 0
+    said = f", where it says {lines[number].strip()[:60]!r}" if found else ""
+    return said + next((words for what, words in _HINTS.items() if re.search(what, message + said)), "")
+
+
+def _unclosed(text: str, message: str) -> int:
+    """Number of the line, from 0, on which what goes on to the end begins: a text at the last of its quotes; else the last line."""
+    single = re.search('Expected "(\'+)"', message)
+    quotes = single[1] if single else '"""' if text.count('"""') % 2 else ""
+    return text.count("\n", 0, text.rindex(quotes) if quotes else len(text.rstrip()))
 
 
 def _read(text: str) -> dict[str, Any]:
