@@ -19,8 +19,8 @@ _BUNDLED = resources.files("isomortar.scene") / "bundled"
 #: Overrides of single values: ``KEY=VALUE`` each, or values by path.
 SceneChanges = Iterable[str] | Mapping[str, Any]
 
-#: What the name of a scene has none of (`SceneName`), and half a character, which is no text.
-_NO_NAME = re.compile("[^A-Za-z0-9_\u00a1-\ud7ff\ue000-\U0010ffff-]")
+#: What the name of a scene has none of (`SceneName`).
+_NO_NAME = re.compile(r"[\x00-,./:-@\[-^`{-\xa0]")
 _PATH = re.compile(r"[\w-]+(\.[\w-]+)*")
 
 #: What a message of TOML's reader may want, by words of it.
@@ -56,7 +56,8 @@ def read_source(source: str | Path) -> tuple[str, str, Path]:
     path = Path(source)
     if not path.is_file():
         raise InputError(f"there is no scene file {str(source)!r}, and the bundled scenes are: {listed(str(source), names)}")
-    return read_text(path), _NO_NAME.sub("_", path.stem), path.parent
+    stem = path.stem.encode(errors="replace").decode()  # half a character, which is no text, becomes "?"
+    return read_text(path), _NO_NAME.sub("_", stem), path.parent
 
 
 def parse(text: str, name: str) -> dict[str, Any]:
