@@ -11,7 +11,7 @@ import numpy as np
 
 from isomortar.harness import Bound, case
 from isomortar.scene import Scene
-from isomortar.trade.knobs import Dial, Setting, dials_of
+from isomortar.trade.knobs import Dial, Setting, changed, dials_of, faces_in_contact
 from isomortar.trade.laboratory import Choice, Laboratory, Tried
 from isomortar.trade.model import Yardstick
 from isomortar.trade.search import RESOLVED, Search
@@ -77,3 +77,54 @@ def own_error(worth: float) -> dict[str, float]:
         assert search.truth
         told.append(search.uncertainty / known.off(search.truth.choice))
     return {"told over real": float(np.min(told))}
+
+
+#: A quarter of a ring, glued to a box whose coordinates are others, and to a box behind both, and pressed onto a plane.
+GLUED = """
+format = 1
+glue = [["ring.u0", "box.u1"], ["box.u0", "end.u1"]]
+bodies.box = { geometry = { kind = "box", lower = [-1, -0.2, 1], upper = [0, 0.2, 2] }, mesh = { elements = [2, 1, 3], order = 1 } }
+bodies.end = { geometry = { kind = "box", lower = [-2, -0.2, 1], upper = [-1, 0.2, 2] }, mesh = { elements = [1, 1, 3], order = 1 } }
+[bodies.ring]
+geometry = { kind = "ring", inner = 1, outer = 2, width = 0.4, angles = [0, 90] }
+mesh = { elements = [2, 3, 1], order = [2, 1, 1] }
+[contacts]
+side = { slave = "CONTACT", plane = { point = [0, 0, 2], normal = [0, 0, -1] }, friction = 0 }
+[supports]
+under.face = "ring.u1"
+[[stages]]
+name = "press"
+steps = 5
+motions.under.translate = [0, 0, 0.1]
+"""
+#: Scenes by name: bundled ones by their own.
+REFINED = {
+    **{name: name for name in ("block", "iron", "iron-round", "press", "reversal", "tire", "twist")},
+    "glued": GLUED.replace("CONTACT", "ring.v1"),
+    "glued behind": GLUED.replace("CONTACT", "end.w1"),
+}
+
+
+@case(
+    claim="Over-refined runs have more elements along every direction of each body, and higher orders along its faces in contact, also "
+    "where bodies that are glued can not be refined one by one.",
+    tier="gate",
+    grid={"scene": tuple(REFINED)},
+    bounds={
+        "as coarse": Bound(0.0, 0.0, "definition: directions with no more elements than the scene has"),
+        "as low": Bound(0.0, 0.0, "definition: directions along faces in contact with no higher order"),
+    },
+)
+def refined_throughout(scene: str) -> dict[str, float]:
+    """How many, of the dearest settings of what refines."""
+    text = REFINED[scene]
+    own = Scene.load(text) if text == scene else Scene.from_toml(text)
+    dials = [dial for dial in dials_of(own) if dial.part]
+    finest = changed(own, [dial.settings[-1] for dial in dials]).problem()
+    before, after = ({b.name: b.patch.directions for b in problem.bodies} for problem in (own.problem(), finest))
+    pairs = [(name, letter, one, other) for name in before for letter, one, other in zip("uvw", before[name], after[name], strict=True)]
+    touching = faces_in_contact(own)
+    return {
+        "as coarse": float(sum(other.elements <= one.elements for _, _, one, other in pairs)),
+        "as low": float(sum(other.order <= one.order for name, letter, one, other in pairs if letter in touching.get(name, ""))),
+    }

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from isomortar.errors import InputError
 from isomortar.geometry.net import Net, misfit
 from isomortar.geometry.patch import IntArray
@@ -19,6 +21,26 @@ def pieces(problem: Problem) -> tuple[tuple[Body, ...], ...]:
     for names in (frozenset(together[body.name]) for body in problem.bodies):
         found[names] = tuple(body for body in problem.bodies if body.name in names)
     return tuple(found.values())
+
+
+def shared_directions(problem: Problem) -> tuple[tuple[tuple[str, str], ...], ...]:
+    """Directions that have one mesh, as faces that are glued share it: each body and letter once, with all that it shares it with."""
+    places = [(body.name, letter) for body in problem.bodies for letter in "uvw"]
+    together = {place: {place} for place in places}
+    for number, joint in enumerate(problem.glue):
+        alike = zip(*(_along(problem.body(f.body), p) for f, p in zip(joint, shared_points(problem, number), strict=True)), strict=True)
+        for one, other in alike:
+            both = together[one] | together[other]
+            together |= dict.fromkeys(both, both)
+    return tuple(dict.fromkeys(tuple(place for place in places if place in together[start]) for start in places))
+
+
+def _along(body: Body, points: IntArray) -> tuple[tuple[str, str], tuple[str, str]]:
+    """The directions that the rows, and the columns, of a face's control points follow."""
+    net = np.array(np.unravel_index(points, [d.count for d in reversed(body.patch.directions)]))[::-1]
+    first = int(np.flatnonzero(net[:, 1] != net[:, 0])[0])
+    second = next(axis for axis in range(3) if axis != first and np.ptp(net[axis]) > 0)
+    return (body.name, "uvw"[first]), (body.name, "uvw"[second])
 
 
 def named(piece: tuple[Body, ...], body: str) -> str:

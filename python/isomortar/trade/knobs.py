@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -12,6 +13,7 @@ from isomortar.errors import InputError
 from isomortar.geometry.patch import MAX_ORDER, Direction
 from isomortar.geometry.quadrature import volume_points
 from isomortar.model.entities import Body, Contact, Face, Projection, RigidPlane
+from isomortar.model.glue import shared_directions
 from isomortar.scene.scene import Scene
 from isomortar.trade.want import Want
 
@@ -114,22 +116,35 @@ def _possible(scene: Scene, dial: Dial, wants: Sequence[Want]) -> Dial:
 
 
 def _orders(scene: Scene, spoils: str) -> Iterator[Dial]:
-    """Order of each body along its faces in contact."""
-    for name, letters in faces_in_contact(scene).items():
-        body = scene.whole().body(name)
-        own = max(order for axis, order in zip("uvw", body.orders, strict=True) if axis in letters)
-        families = {d.family for axis, d in directions(body) if axis in letters}
+    """Order of each body along its faces in contact, and of what is glued to it along these."""
+    for places in _contact_places(scene):
+        names = list(dict.fromkeys(name for name, _ in places))
+        along = [(axis, d) for name in names for axis, d in directions(scene.whole().body(name)) if (name, axis) in places]
+        own, families = max(d.order for _, d in along), {d.family for _, d in along}
+        lowest = [lowest_order(scene, name, "".join(axis for of, axis in places if of == name)) for name in names]
         highest = min(HIGHEST, *(MAX_ORDER[family] for family in families))
-        orders = sorted({own, *range(max(2, lowest_order(scene, name, letters)), highest + 1)})
-        settings = [Setting(str(order), None if order == own else _order(name, letters, order)) for order in orders]
-        yield Dial(f"order of {name}", tuple(settings), orders.index(own), spoils, part="order")
+        orders = sorted({own, *range(max(2, *lowest), highest + 1)})
+        settings = [Setting(str(order), None if order == own else _order(names, places, order)) for order in orders]
+        yield Dial(f"order of {' and '.join(names)}", tuple(settings), orders.index(own), spoils, part="order")
 
 
-def _order(name: str, letters: str, order: int) -> Changes:
+def _contact_places(scene: Scene) -> list[set[tuple[str, str]]]:
+    """Directions along the faces in contact of each body, with those that have to share their mesh: bodies and letters."""
+    found: list[set[tuple[str, str]]] = []
+    shared = shared_directions(scene.whole())
+    for name, letters in faces_in_contact(scene).items():
+        own = {place for group in shared for place in group if any((name, letter) in group for letter in letters)}
+        found = [*(places for places in found if not places & own), own.union(*(places for places in found if places & own))]
+    return found
+
+
+def _order(names: Sequence[str], places: set[tuple[str, str]], order: int) -> Changes:
     def overrides(scene: Scene) -> list[str]:
-        body = scene.whole().body(name)
-        orders = [order if axis in letters else own for axis, own in zip("uvw", body.orders, strict=True)]
-        return [f"bodies.{name}.mesh.order={orders}", *stated(body, ("family", "elements"))]
+        found = []
+        for body in (scene.whole().body(name) for name in names):
+            orders = [order if (body.name, axis) in places else d.order for axis, d in directions(body)]
+            found += [f"bodies.{body.name}.mesh.order={orders}", *stated(body, ("family", "elements"))]
+        return found
 
     return overrides
 
@@ -152,21 +167,23 @@ def _contact_order(name: str, letters: str) -> Changes:
 
 
 def _elements(scene: Scene, spoils: str) -> Iterator[Dial]:
-    """Elements of each body by direction."""
-    for body in scene.whole().bodies:
-        spans = {axis: d.elements for axis, d in zip("uvw", coarse_geometry(scene, body.name).directions, strict=True)}
-        for axis, direction in directions(body):
-            own, span = direction.elements, spans[axis]
-            counts = sorted({own, *(span * max(1, round(own * factor / span)) for factor in MESHES)})
-            settings = [Setting(str(count), None if count == own else _element(body.name, axis, count)) for count in counts]
-            yield Dial(f"elements of {body.name} along {axis}", tuple(settings), counts.index(own), spoils, part="elements")
+    """Elements of each body by direction; of bodies that are glued those that have to be as many."""
+    for places in shared_directions(scene.whole()):
+        own = scene.whole().body(places[0][0]).patch.directions["uvw".index(places[0][1])].elements
+        span = math.lcm(*(coarse_geometry(scene, name).directions["uvw".index(axis)].elements for name, axis in places))
+        counts = sorted({own, *(span * max(1, round(own * factor / span)) for factor in MESHES)})
+        settings = [Setting(str(count), None if count == own else _element(places, count)) for count in counts]
+        name = " and ".join(f"{name} along {axis}" for name, axis in places)
+        yield Dial(f"elements of {name}", tuple(settings), counts.index(own), spoils, part="elements")
 
 
-def _element(name: str, letter: str, count: int) -> Changes:
+def _element(places: Sequence[tuple[str, str]], count: int) -> Changes:
     def overrides(scene: Scene) -> list[str]:
-        body = scene.whole().body(name)
-        counts = [count if axis == letter else d.elements for axis, d in directions(body)]
-        return [f"bodies.{name}.mesh.elements={counts}", *stated(body, ("family", "order"))]
+        found = []
+        for body in (scene.whole().body(name) for name in dict.fromkeys(name for name, _ in places)):
+            counts = [count if (body.name, axis) in places else d.elements for axis, d in directions(body)]
+            found += [f"bodies.{body.name}.mesh.elements={counts}", *stated(body, ("family", "order"))]
+        return found
 
     return overrides
 
@@ -174,6 +191,8 @@ def _element(name: str, letter: str, count: int) -> Changes:
 def _volume_points(scene: Scene, spoils: str) -> Iterator[Dial]:
     """Quadrature points of each body's elements, fewer or more than its own."""
     for body in scene.whole().bodies:
+        if body.rigid:  # nothing is integrated
+            continue
         yield Dial(f"quadrature of {body.name}", _more_or_fewer(body.name, -1, 0, 1), 1, spoils)
 
 
