@@ -78,6 +78,7 @@ class Search:
         self.truth: Tried | None = None
         self.rivals: tuple[Tried, ...] = ()  # other over-refined runs: how far they are from the truth is its own error
         self._before: Tried | None = None  # the truth before this one
+        self._stirring: set[int] = set()  # meshes that change what is wanted beside finer ones alone
 
     @cached_property
     def own(self) -> Tried:
@@ -133,6 +134,7 @@ class Search:
 
         One differs in both, which may hide an error of either behind that of the other: one more differs from the truth in its mesh alone.
         They are as good as a target asks: what for 5 % spends nothing on load steps that change a thousandth may be enough for 1 % as well.
+        Meshes that change nothing either are looked at once more beside the finer ones.
         Ends where all is told or half of the budget is spent.
 
         Raises
@@ -142,7 +144,7 @@ class Search:
         """
         levels = iter(range(1, 1 + max(len(dial.settings) for dial in self.dials)))
         for target in sorted(targets, reverse=True):
-            while self.truth is None or RESOLVED * self.uncertainty > target:
+            while self.truth is None or self._stirs(target) or RESOLVED * self.uncertainty > target:
                 level = next(levels, None)
                 if level is None or not self._refine(level, target):
                     return
@@ -180,7 +182,7 @@ class Search:
         """Run over-refined runs of a level; whether they tell the truth better than those before."""
         settled = self._settled(target)
         finest = self._refined(settled, 1, level, 1)
-        coarser = self._refined(settled, 2, max(0, level - 1), 2), self._refined(settled, 1, max(0, level - 2), 1)
+        coarser = self._coarser(self._refined(settled, 2, level, 2), 1), self._coarser(finest, 2)
         others = [other for other in dict.fromkeys(coarser) if other != finest]
         choices = (finest, *others)
         if self.truth and (finest == self.truth.choice or self.laboratory.spent + sum(map(self._cost, choices)) > TRUTH * self.budget):
@@ -213,14 +215,38 @@ class Search:
 
         return tuple(min(len(d.settings) - 1, setting(number, d)) for number, d in enumerate(self.dials))
 
+    def _coarser(self, choice: Choice, by: int) -> Choice:
+        """With meshes that are so many settings coarser along each direction, but none coarser than the scene's own."""
+        return tuple(max(d.own, s - by) if d.part == "elements" else s for d, s in zip(self.dials, choice, strict=True))
+
+    def _stirs(self, target: float) -> bool:
+        """Whether meshes that are settled beside the scene's own ones are not beside finer ones: a slave on a finer master, say."""
+        assert self.truth
+        beside, settled = self._coarser(self.truth.choice, 2), self._settled(target)
+        meshes = {number for number in settled if self.dials[number].part == "elements"}
+        stirring = meshes if self._moved(beside, meshes) > self._limit(target) else set()
+        if len(stirring) > 1:
+            stirring = {number for number in meshes if self._moved(beside, {number}) > self._limit(target)} or meshes
+        self._stirring |= stirring
+        return bool(stirring)
+
+    def _moved(self, choice: Choice, meshes: set[int]) -> float:
+        """By how much a setting more of some meshes changes what is wanted; nothing where such a run fails."""
+        finer = tuple(setting + (number in meshes) for number, setting in enumerate(choice))
+        before, after = self.laboratory.run([choice, finer])
+        return max(y.norm(y.values(after) - y.values(before)) if y.told(before) and y.told(after) else 0.0 for y in self.yardsticks)
+
+    def _limit(self, target: float) -> float:
+        """What changes less of what is wanted is next to nothing, beside the error that the truth may have or has."""
+        return SETTLED * max(target / RESOLVED, self.uncertainty if self.truth else 0.0)
+
     def _settled(self, target: float) -> set[int]:
-        """Dials whose next dearer setting changes next to nothing of what is wanted, beside the error that the truth may have or has."""
+        """Dials whose next dearer setting changes next to nothing of what is wanted, and did so beside finer meshes."""
         known = self.truth or self.own
         yardsticks = self.yardsticks if self.truth else [Yardstick(want, known, known) for want in self.wants]
-        limit = SETTLED * max(target / RESOLVED, *(yardstick.uncertainty for yardstick in yardsticks))
         model = Model(self.dials, self.laboratory.own, self.laboratory.outcomes, yardsticks)
         dearer = {number: dial.own + 1 for number, dial in enumerate(self.dials) if dial.own + 1 in model.settings(number)}
-        return {number for number, setting in dearer.items() if model.effect(number, setting) <= limit}
+        return {number for number, setting in dearer.items() if model.effect(number, setting) <= self._limit(target)} - self._stirring
 
     def _cost(self, choice: Choice) -> float:
         """CPU seconds that an over-refined run will take about: what the nearest of those before took, and one setting alone.
