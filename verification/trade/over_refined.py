@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
-from isomortar.trade.knobs import Dial, Setting, changed, dials_of, faces_in_contact
+from isomortar.trade.knobs import KNOBS, Dial, Setting, changed, dials_of, faces_in_contact
 from isomortar.trade.laboratory import Choice, Laboratory, Tried
 from isomortar.trade.model import Yardstick
 from isomortar.trade.search import RESOLVED, Search
@@ -168,3 +169,43 @@ def refined_throughout(scene: str) -> dict[str, float]:
         "as coarse": float(sum(other.elements <= one.elements for _, _, one, other in pairs)),
         "as low": float(sum(other.order <= one.order for name, letter, one, other in pairs if letter in touching.get(name, ""))),
     }
+
+
+#: A block pressed and dragged, by augmentations that end early.
+DRAGGED = """
+format = 1
+bodies.block.geometry = { kind = "bowl", half_width = 0.5, bottom = 0.0, rise = 0.2, top = 0.8 }
+bodies.block.mesh = { order = [2, 2, 1], elements = [3, 3, 1] }
+contacts.floor = { slave = "block.w0", plane = { normal = [0, 0, 1] }, friction = 0.3 }
+supports.top = { face = "block.w1" }
+stages = [{ name = "press", steps = 1, motions.top.translate = [0, 0, -0.2] },
+          { name = "drag", steps = 2, motions.top.translate = [0.1, 0, 0] }]
+[solver]
+method = "METHOD"
+augmentation_tolerance = 0.1
+newton_tolerance = 1e-3
+complementarity_tolerance = 1e-3
+"""
+
+
+@case(
+    claim="How far load steps are iterated is refined in over-refined runs, by either method: they have the forces of exact contact "
+    "conditions.",
+    tier="gate",
+    grid={"method": ("monolithic", "uzawa")},
+    bounds={
+        "left": Bound(at_most=0.1, reason="definition: share of the scene's own error that the dearest tolerance leaves"),
+        "off": Bound(at_least=1e-6, reason="definition: what the scene's own tolerance is off by, or there is nothing to refine"),
+    },
+)
+def iterated_to_the_end(method: str) -> dict[str, float]:
+    """Errors of the force along the drag."""
+    own = Scene.from_toml(DRAGGED.replace("METHOD", method))
+    (dial,) = dials_of(own, knobs=[knob for knob in KNOBS if knob.name == "tolerance"])
+    exact = own.to_toml(), ['solver.method="monolithic"', "solver.newton_tolerance=1e-12", "solver.complementarity_tolerance=1e-12"]
+    true, ours, best = (
+        np.array([step.reactions[0].force for step in Simulation(scene.problem()).run()])
+        for scene in (Scene.from_toml(exact[0], overrides=exact[1]), own, changed(own, [dial.settings[-1]]))
+    )
+    off, left = (float(np.linalg.norm(run - true) / np.linalg.norm(true)) for run in (ours, best))
+    return {"left": left / off, "off": off}

@@ -19,8 +19,12 @@ from isomortar.trade.want import Want
 
 #: Numbers of elements over the scene's own, and of load steps: these double, so that runs have load steps in common to be compared at.
 MESHES, STEPS = (1 / 3, 1 / 2, 2 / 3, 1.0, 4 / 3, 5 / 3, 2.0, 2.5, 3.0), (1 / 8, 1 / 4, 1 / 2, 1.0, 2.0, 4.0)
-#: Tolerances of Newton's method over the scene's own; those of the contact conditions go along.
-TOLERANCES, LOOSEST = (1e5, 1e3, 1.0, 1e-2), 1e-3
+#: Tolerances of Newton's method over the scene's own; those of the contact conditions go along. The loosest of each method that are tried.
+TOLERANCES = (1e5, 1e3, 1.0, 1e-2)
+LOOSEST = {
+    "monolithic": {"newton_tolerance": 1e-3, "complementarity_tolerance": 1e-3},
+    "uzawa": {"newton_tolerance": 1e-3, "augmentation_tolerance": 0.1},
+}
 #: Elastic slip over the size of the slave body.
 SLIPS = (1e-2, 1e-3)
 #: Pressure times distance of smooth contact over Young's modulus times the size of the slave body.
@@ -245,11 +249,12 @@ def _load_steps(scene: Scene, spoils: str) -> Iterator[Dial]:
 def _tolerances(scene: Scene, spoils: str) -> Iterator[Dial]:
     """How far a load step is iterated."""
     solver = scene.whole().settings
+    loosest = LOOSEST[solver.method]
 
     def setting(factor: float) -> Setting:
-        keys = {"newton_tolerance": solver.newton_tolerance, "complementarity_tolerance": solver.complementarity_tolerance}
-        values = [f"solver.{key}={min(LOOSEST, factor * own):g}" for key, own in keys.items()]
-        return Setting(f"{min(LOOSEST, factor * solver.newton_tolerance):.0e}", None if factor == 1.0 else given(values))
+        values = [f"solver.{key}={min(most, factor * getattr(solver, key)):g}" for key, most in loosest.items()]
+        label = f"{min(loosest['newton_tolerance'], factor * solver.newton_tolerance):.0e}"
+        return Setting(label, None if factor == 1.0 else given(values))
 
     yield Dial("tolerance", tuple(setting(factor) for factor in TOLERANCES), TOLERANCES.index(1.0), spoils)
 
