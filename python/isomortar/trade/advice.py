@@ -10,6 +10,7 @@ import numpy as np
 
 from isomortar.model.entities import RigidPlane
 from isomortar.scene.scene import Scene
+from isomortar.scene.source import in_a_line, parse
 from isomortar.trade.knobs import KNOBS, Changes, Dial, Knob, Setting, dials_of, directions, faces_in_contact, given, stated
 from isomortar.trade.search import Recommendation, Search
 from isomortar.trade.want import Want
@@ -48,7 +49,22 @@ def _rigid(scene: Scene, spoils: str) -> Iterator[Dial]:
     masters = [face.body for contact in problem.contacts if not isinstance(contact.master, RigidPlane) for face in contact.master.faces]
     for name in dict.fromkeys(masters):
         if name not in slaves and not problem.body(name).rigid:
-            yield Dial(f"{name} rigid", (Setting("yes", given([f"bodies.{name}.rigid=true"])), Setting("no")), 1, spoils, refines=False)
+            yield Dial(f"{name} rigid", (Setting("yes", _made_rigid(name)), Setting("no")), 1, spoils, refines=False)
+
+
+def _made_rigid(name: str) -> Changes:
+    """A body given anew where it has what a rigid one has not: an override takes nothing away."""
+
+    def changes(scene: Scene) -> list[str]:
+        body = scene.tables.bodies[name]
+        if body.material is None and body.mesh.quadrature is None:
+            return [f"bodies.{name}.rigid=true"]
+        table = parse(scene.to_toml(), name)["bodies"][name] | {"rigid": True}
+        table.pop("material", None)
+        table.get("mesh", {}).pop("quadrature", None)
+        return [f"bodies.{name}={in_a_line(table)}"]
+
+    return changes
 
 
 def _frictionless(scene: Scene, spoils: str) -> Iterator[Dial]:
