@@ -82,10 +82,11 @@ def compute(scene: Scene, problem: Problem, path: Path, observer: Observer, resu
             for _ in Simulation(problem, recorder, last).run():
                 steps += 1
         except ConvergenceError:
-            recorder.ended()
+            recorder.keep()
             raise
         if steps:  # where all was there the file stays as it is
-            recorder.ended()
+            recorder.keep()
+            recorder.complain()
     return Results(path)
 
 
@@ -114,16 +115,21 @@ def _last_step(path: Path, problem: Problem, resume: bool, overwrite: bool) -> S
 
 
 class _Recorder(Observer):
-    """Writes each recorded step, then tells the observer. The file is opened when the simulation has accepted the problem."""
+    """Writes each recorded step, then tells the observer. The file is opened when the simulation has accepted the problem.
+
+    A warning that Python is to make an error of is raised when its load step is on the disk, so that a run can go on behind it.
+    """
 
     def __init__(self, open_writer: Callable[[], ResultsWriter], observer: Observer) -> None:
         self._open_writer, self._observer = open_writer, observer
+        self._complaint: IsomortarWarning | None = None
 
     def started(self, total_steps: int, first_step: int) -> None:
         self._writer = self._open_writer()
         self._observer.started(total_steps, first_step)
 
     def iteration(self, step: int, time: float, augmentation: int, record: IterationRecord) -> None:
+        self.keep()  # load steps may take long, and be stopped
         self._observer.iteration(step, time, augmentation, record)
 
     def augmented(self, step: int, time: float, record: AugmentationRecord) -> None:
@@ -135,14 +141,23 @@ class _Recorder(Observer):
     def recorded(self, result: StepResult) -> None:
         self._writer.recorded(result)
         self._observer.recorded(result)
+        self.complain()
 
     def warned(self, message: str) -> None:
         self._writer.warned(message)
-        self._observer.warned(message)
+        try:
+            self._observer.warned(message)
+        except IsomortarWarning as complaint:
+            self._complaint = self._complaint or complaint
 
-    def ended(self) -> None:
+    def keep(self) -> None:
         """Have all on the disk that was told."""
-        self._writer.ended()
+        self._writer.keep()
+
+    def complain(self) -> None:
+        """Raise what a warning was made an error of."""
+        if self._complaint is not None:
+            raise self._complaint
 
 
 class _Aloud(Observer):

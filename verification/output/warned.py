@@ -11,8 +11,10 @@ from pathlib import Path
 
 import h5py
 from output.heard import Hearing
+from typer.testing import CliRunner
 
 from isomortar import view
+from isomortar.cli.commands import app
 from isomortar.cli.info import information, lines
 from isomortar.driver import run
 from isomortar.errors import ConvergenceError, IsomortarWarning
@@ -20,7 +22,7 @@ from isomortar.harness import Bound, case
 from isomortar.results.files import sealed
 from isomortar.results.reader import Results
 from isomortar.scene import Scene
-from isomortar.solve.record import Observer, StepResult
+from isomortar.solve.record import IterationRecord, Observer, StepResult
 
 #: A bar of a law for small strains, far from a rough wall with kinks: warned of before a run, in its first load step, and at its end.
 SCENE = """
@@ -114,3 +116,65 @@ def warned() -> dict[str, float]:
         else:
             unlike += 1
     return {"kinds": float(len(kept)), "unlike": float(unlike)}
+
+
+class StoppingIn(Observer):
+    """Ends a run in a load step, as Ctrl-C does."""
+
+    def __init__(self, step: int) -> None:
+        self._step = step
+
+    def iteration(self, step: int, time: float, augmentation: int, record: IterationRecord) -> None:  # noqa: ARG002
+        """Of a load step."""
+        if step == self._step:
+            raise KeyboardInterrupt
+
+
+def held(path: Path) -> tuple[str, ...]:
+    """The warnings of a results file."""
+    with Results(path) as results:
+        return results.warnings
+
+
+def by_errors(path: Path) -> tuple[int, int]:
+    """Load steps of a run whose warnings Python makes errors of, and how often it had to be resumed for that."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", IsomortarWarning)
+        for times in range(10):
+            try:
+                with run(Scene.from_toml(SCENE), path, resume=True) as results:
+                    return len(results.steps), times
+            except IsomortarWarning:
+                continue
+    return 0, 10
+
+
+@case(
+    claim="What is told before a load step is in the results file when that is stopped; a run that is resumed, be it whole, ends with all "
+    "warnings of its file; and where Python makes errors of them, a run ends behind the load step that they are of, and can be resumed.",
+    tier="gate",
+    bounds={
+        "lost": Bound(0.0, 0.0, "definition: sentences that were told, and are not in the file, or not told again at the end"),
+        "steps": Bound(3.0, 3.0, "definition: load steps, where warnings are errors"),
+        "times": Bound(3.0, 1.0, "definition: how often that is resumed: every load step can warn"),
+    },
+)
+def stopped() -> dict[str, float]:
+    """How many sentences are lost, and how far a run comes."""
+    with tempfile.TemporaryDirectory() as name:
+        folder, scene = Path(name), Path(name) / "bar.toml"
+        scene.write_text(SCENE, encoding="utf-8")
+        with run(Scene.from_toml(SCENE), folder / "whole.h5", Observer()) as results:
+            kept = results.warnings
+        lost = 0
+        for step, due in ((1, kept[:-2]), (2, kept[:-1])):
+            with suppress(KeyboardInterrupt):
+                run(Scene.from_toml(SCENE), folder / f"in_{step}.h5", StoppingIn(step))
+            lost += len(set(due) - set(held(folder / f"in_{step}.h5")))
+        for file in ("whole.h5", "in_2.h5"):
+            told = CliRunner().invoke(app, ["run", str(scene), "--resume", "--output", str(folder / file)])
+            now = held(folder / file)
+            lost += sum(f"warning: {sentence}" not in told.output for sentence in now) + (f"{len(now)} warnings" not in told.output)
+        steps, times = by_errors(folder / "errors.h5")
+        lost += len(set(kept[:-1]) - set(held(folder / "errors.h5")))  # one that is resumed does not know of all load steps
+    return {"lost": float(lost), "steps": float(steps), "times": float(times)}

@@ -132,7 +132,7 @@ def run(
         except BaseException as error:  # Ctrl-C and want of memory too
             observer.stopped(path, error)
             raise
-        observer.finished()
+        observer.finished(results.warnings)
     dismiss()
     with results:
         if cost:

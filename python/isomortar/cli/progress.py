@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import shlex
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from datetime import datetime
 from enum import IntEnum
@@ -111,8 +111,13 @@ class Progress(Observer):
         self._done = result.step
         self._work += np.reshape([contact.work for contact in result.contacts], (-1, 2))
 
-    def finished(self) -> None:
-        """Say that all is done, what averaged normals cost, and how many warnings there were to read."""
+    def finished(self, kept: Iterable[str] = ()) -> None:
+        """Say that all is done, what averaged normals cost, and how many warnings there were to read.
+
+        `kept`: those that the results file holds, of which a run that was resumed has told a part before.
+        """
+        for message in kept:
+            self.warned(message)
         for contact, (friction, spurious) in zip(self._problem.contacts, self._work, strict=True):
             if contact.averaged and friction > 0.0:
                 self._say(f"contact {contact.name!r}: spurious work is {spurious / friction:.2%} of the friction work")

@@ -110,7 +110,7 @@ class ResultsWriter(Observer):
             raise ResultsError(f"{self.path} exists already: resume it, overwrite it, or name another results file")
 
     def warned(self, message: str) -> None:
-        """Append the warning, if it is not there yet; it is on the disk with the next load step, or at the end."""
+        """Append the warning, if it is not there yet; it is on the disk with the next load step, or by `keep`."""
         if "warnings" not in self._file["log"]:
             self._datasets.make("log", {"warnings": layout.LOG["warnings"]})
         if message.encode() not in self._file["log/warnings"][()]:
@@ -124,8 +124,8 @@ class ResultsWriter(Observer):
         self._append(result)
         self._store()
 
-    def ended(self) -> None:
-        """Put on the disk what was told after the last load step."""
+    def keep(self) -> None:
+        """Put on the disk what was told since the last load step."""
         if self._unstored:
             self._store()
 
