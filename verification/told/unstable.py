@@ -185,3 +185,41 @@ def buckles_beside_others(beside: str, end: str) -> dict[str, float]:
         for share in (0.92, 1.08, 5.0)
     )
     return {"below": float(len(below)), "above": float(above == ["c"]), "far above": float(far == ["c"])}
+
+
+#: A column of two glued halves that is held in its middle, where that takes no force, and let go while nothing else changes.
+LET_GO = """
+format = 1
+materials.m = { young = 1e4, poisson = 0 }
+bodies.c = { geometry = { kind = "box", lower = [0, 0, 0], upper = [0.02, 0.1, 1] }, mesh = { order = 3, elements = [1, 2, 8] } }
+bodies.d = { geometry = { kind = "box", lower = [0.02, 0, 0], upper = [0.04, 0.1, 1] }, mesh = { order = 3, elements = [1, 2, 8] } }
+glue = [["c.u1", "d.u0"]]
+contacts.wall = { slave = "d.u1", plane = { point = [1, 0, 0], normal = [-1, 0, 0] } }
+supports = { base.face = "c.w0", other.face = "d.w0", side = { edge = "c.u1.w1", components = ["x"], stages = ["press"] } }
+loads = { one = { face = "c.w1", traction = [0, 0, -PRESSURE] }, other = { face = "d.w1", traction = [0, 0, -PRESSURE] } }
+solver.method = "METHOD"
+stages = [{ name = "press", steps = 2 }, { name = "let", steps = 1 }]
+"""
+
+
+@case(
+    claim="A column that is let go while nothing moves, so that its load step takes no solve, is told to buckle above Euler's load, and "
+    "below it is not.",
+    tier="gate",
+    grid={"method": ("monolithic", "uzawa")},
+    bounds={
+        "below": Bound(0.0, 0.0, "definition: sentences at 0.92 of Euler's load"),
+        "above": Bound(1.0, 1.0, "definition: sentences at 1.08 of it, of the last load step"),
+        "solves": Bound(0.0, 0.0, "definition: iterations of that load step, or nothing is tried"),
+    },
+)
+def let_go(method: str) -> dict[str, float]:
+    """What is said."""
+    below, above = list[str](), list[str]()
+    for share, said in ((0.92, below), (1.08, above)):
+        heard, strain = Heard(), share * EULER["free"] * np.pi**2 * BENDING / (1e4 * AREA)
+        text = LET_GO.replace("PRESSURE", f"{1e4 * strain:.9f}").replace("METHOD", method)
+        *_, last = Simulation(Scene.from_toml(text).problem(), heard).run()
+        said += [found[1] for sentence in heard.said if (found := TOLD.search(sentence))]
+    solves = sum(len(record.iterations) - 1 for record in last.augmentations)
+    return {"below": float(len(below)), "above": float(above == ["3"]), "solves": float(solves)}

@@ -350,6 +350,11 @@ class Equilibrium:
         assert self._system is not None, "nothing was solved before"
         return self._system.solve_again(right)
 
+    @property
+    def was_solved(self) -> bool:
+        """Whether there has been a system to solve since these supports hold."""
+        return self._system is not None
+
     def moved_by(self, forces: FloatArray) -> FloatArray | None:
         """What forces on the free unknowns move, by the factors of the last `solve` (theory 5.26); None before there are any."""
         if self._system is None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import count
@@ -116,6 +117,7 @@ class Newton(ABC, Generic[Iterated, Corrected]):
             if self._converged(iterate) and not moves:
                 reopened = self._reopened(iterate)
                 if reopened is iterate:
+                    self._have_factors(iterate)
                     return Converged(iterate, tuple(log), observed_order(log, self._round_off(iterate.balance)))
                 iterate, keep = reopened, False
             following, notes = self._by_kept_factors(iterate) if keep else None, (KEPT_FACTORS,)
@@ -133,6 +135,12 @@ class Newton(ABC, Generic[Iterated, Corrected]):
             iterate = following
         toggling = self._trail.toggling(self._equilibrium.pairs)
         raise ConvergenceError(f"Newton's method stopped at {iterate.left} after {iteration} iterations{toggling}")
+
+    def _have_factors(self, iterate: Iterated) -> None:
+        """Factors for who asks whether it is stable, where no solve has made any since supports were released (theory 5.26)."""
+        if not self._equilibrium.was_solved:
+            with suppress(FoldedElementError, LostProjectionError, SingularSystemError):
+                self._correct(iterate, None, False)
 
     def _nearest(self, positions: FloatArray, penalties: Sequence[float | Scales]) -> list[FloatArray | None]:
         """Pressures that close what loads close first, from some positions on; None of pairs that they do not close (theory 6.8)."""
