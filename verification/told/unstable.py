@@ -128,6 +128,45 @@ def rubs(elements: int, friction: float) -> dict[str, float]:
     return {"said": float(said), "against": float(found)}
 
 
+def softest(simulation: Simulation) -> float:
+    """Least eigenvalue of the bodies' own stiffness at the end of a run, of all free unknowns without contact, over the largest."""
+    equilibrium, positions, step = simulation.equilibrium, simulation.state.positions, 1e-6
+    free, columns = equilibrium.supports.free, []
+    for unknown in free:
+        one = np.zeros(positions.size)
+        one[unknown] = step
+        ahead, behind = (equilibrium.solid.forces(positions + sign * one.reshape(-1, 3)) for sign in (1.0, -1.0))
+        columns.append((ahead - behind).ravel()[free] / (2.0 * step))
+    values = np.linalg.eigvalsh(0.5 * (np.array(columns) + np.array(columns).T))
+    return float(values[0] / values[-1])
+
+
+@case(
+    claim="A block whose stiffness is definite even without its floor is not said to buckle, however high the friction is that it slips "
+    "under, where motions do go against their forces.",
+    tier="gate",
+    grid={"poisson": (-0.99, -0.7, 0.45), "friction": (5.0, 10.0)},
+    bounds={
+        "said": Bound(0.0, 0.0, "definition: sentences"),
+        "softest": Bound(at_least=1e-5, reason="definition: least over largest eigenvalue of the block's own stiffness: it cannot buckle"),
+    },
+)
+def jams(poisson: float, friction: float) -> dict[str, float]:
+    """What is said of a press by a twentieth."""
+    text = (
+        BLOCK.replace("ORDER", "2")
+        .replace("ELEMENTS", "3")
+        .replace("ASIDE", "0")
+        .replace("-0.1", "-0.05")
+        .replace("steps = 2", "steps = 1")
+    )
+    text = f"{text.replace('FRICTION', str(friction)).replace('WIDE', '1')}\nmaterials.m.poisson = {poisson}\n"
+    heard = Heard()
+    simulation = Simulation(Scene.from_toml(text).problem(), heard)
+    list(simulation.run())
+    return {"said": float(sum(bool(TOLD.search(sentence)) for sentence in heard.said)), "softest": softest(simulation)}
+
+
 @case(
     claim="Of a column that a load across lets bend nothing is said: it is where it comes to rest; nor is of one that is held everywhere.",
     tier="gate",

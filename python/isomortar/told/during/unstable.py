@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 
 import numpy as np
 
-from isomortar.errors import KernelError
+from isomortar.errors import FoldedElementError, KernelError
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.solve.equilibrium import Balance, Equilibrium
 
@@ -18,6 +19,8 @@ AGAINST = -0.01
 REAL = 1e-6
 #: What a force moves times stiffness, by modulus and size of the bodies, up to which all is held, and nothing moves but by round-off.
 HELD = 1e-8
+#: How far bodies are taken along a motion, over their size, to see what they resist it by: strains of it alone count, and above round-off.
+NEXT = 1e-6
 #: Share of a motion that is not among forces before below which there are no others.
 NOTHING_LEFT = 1e-10
 
@@ -33,13 +36,14 @@ class Unstable:
 
     def after_stage(self, balance: Balance, step: int) -> Iterator[str]:
         """Warnings that the end of a stage gives rise to, by the factors of its last tangent."""
-        motion = None if self._told else self._against_force(balance.positions)
+        motions = () if self._told else self._against_force(balance.positions)
+        motion = next((motion for motion in motions if not balance.slipping or self._gives_way(motion, balance.positions)), None)
         if motion is not None:
             self._told = True
             yield self._sentence(motion, step)
 
-    def _against_force(self, positions: FloatArray) -> FloatArray | None:
-        """A motion of all control points that goes against the force which makes it, shape (control points, 3) (theory 5.26); or None.
+    def _against_force(self, positions: FloatArray) -> Iterator[FloatArray]:
+        """Motions of all control points that go against the forces which make them, shape (control points, 3) (theory 5.26).
 
         Forces act on one body at a time: a slender or soft one moves so much more that others would be lost beside it.
         """
@@ -49,8 +53,19 @@ class Unstable:
             of_body[points] = number
         of_unknown = of_body[equilibrium.supports.free // 3]
         found = (self._against_force_on(np.flatnonzero(of_unknown == number).astype(np.int32)) for number in np.unique(of_unknown))
-        motion = next((motion for motion in found if motion is not None), None)
-        return None if motion is None else equilibrium.supports.spread(motion, positions)
+        return (equilibrium.supports.spread(motion, positions) for motion in found if motion is not None)
+
+    def _gives_way(self, motion: FloatArray, positions: FloatArray) -> bool:
+        """Whether the bodies' own forces go along with a motion (theory 5.27); what is about to fold does.
+
+        What slips under high friction goes against its force while the bodies resist: it jams, and nothing buckles.
+        """
+        equilibrium = self._equilibrium
+        small = motion * (NEXT * equilibrium.numbering.size / np.abs(motion).max())
+        with equilibrium.ledger.phase("solid"), suppress(FoldedElementError):
+            change = equilibrium.solid.forces(positions + small) - equilibrium.solid.forces(positions - small)
+            return bool(np.sum(change * motion) < 0.0)
+        return True
 
     def _against_force_on(self, unknowns: IntArray) -> FloatArray | None:
         """A motion of the free unknowns against the force which makes it, that acts on some of them alone; or None.
