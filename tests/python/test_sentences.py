@@ -21,6 +21,7 @@ from told.beyond_edges import punch
 from told.given_up import all_told, without_digits
 from told.narrow import BALL, BALLS, STRIPS, depth, strip
 from told.passing import SCENE as BENT
+from told.unstable import LYING
 from told.unstable import column as slender
 from told.weights import column
 from told.word_by_word import KINDS as OF_SCENES
@@ -187,6 +188,9 @@ def along_the_way(_: pytest.MonkeyPatch) -> Told:
     list(Simulation(Scene.from_toml(slender("sliding", 1.08, "monolithic")).problem(), observer).run())
     at = re.compile(r"(control point) \d+, along \(.*?\)")  # the way has a sign or its opposite
     yield "unstable", next(at.sub(r"\1 #, along (#)", said) for said in observer.said if "not stable" in said)
+    observer = Warned()
+    list(Simulation(Scene.from_toml(LYING.replace("FRICTION", "0")).problem(), observer).run())
+    yield "goes off", next(at.sub(r"\1 #, along (#)", said) for said in observer.said if "not stable" in said)
     for name, (text, changes) in {
         "narrow": strip(*STRIPS["N2 beside it"]),
         "one row": (BALLS["one row"][0], (depth(0.05),)),

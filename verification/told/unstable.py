@@ -59,9 +59,19 @@ BENDING, AREA = 1e4 * 0.1 * 0.04**3 / 12.0, 0.1 * 0.04
 #: Euler's loads over pi^2 EI / L^2, by what holds the upper end: nothing, its turn, its turn and its way as well.
 EULER = {"free": 0.25, "sliding": 1.0, "sticking": 4.0}
 TOLD = re.compile(
-    r"load step (\d+), the last of stage '\w+': the equilibrium is not stable: body '(\w+)' buckles, or snaps, .* control point \d+, along "
-    r"\((.*?)\) or against that"
+    r"load step (\d+), the last of stage '\w+': the equilibrium is not stable: body '(\w+)' (?:buckles, or snaps,|goes off, or tips over, "
+    r"as a whole) where .* control point \d+, along \((.*?)\) or against that"
 )
+#: A block that lies on a larger one by its weight alone.
+LYING = """
+format = 1
+bodies.base = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }, mesh.elements = 4 }
+bodies.block = { geometry = { kind = "box", lower = [0.2, 0.2, 1], upper = [0.8, 0.8, 1.6] }, mesh.elements = 3 }
+contacts.c = { slave = "block.w0", master = "base.w1", friction = FRICTION }
+supports.foot.face = "base.w0"
+loads.weight = { body = "block", weight = [0, 0, -0.1] }
+stages = [{ name = "lie", steps = 2 }]
+"""
 
 
 def told(text: str) -> list[re.Match[str]]:
@@ -224,6 +234,26 @@ def buckles_beside_others(beside: str, end: str) -> dict[str, float]:
         for share in (0.92, 1.08, 5.0)
     )
     return {"below": float(len(below)), "above": float(above == ["c"]), "far above": float(far == ["c"])}
+
+
+@case(
+    claim="A block that lies without friction in the middle of another one, from where it slides off to any side, is told to go off as a "
+    "whole, along the ground; with friction nothing is said, and what buckles is told to buckle.",
+    tier="gate",
+    bounds={
+        "goes": Bound(1.0, 1.0, "definition: sentences without friction, that it goes as a whole, and aside"),
+        "lies": Bound(0.0, 0.0, "definition: sentences with friction"),
+        "buckles": Bound(1.0, 1.0, "definition: sentences on a column, that it buckles"),
+    },
+)
+def goes_off() -> dict[str, float]:
+    """What is said."""
+    goes, lies = (told(LYING.replace("FRICTION", friction)) for friction in ("0", "0.3"))
+    return {
+        "goes": float(sum("as a whole" in found[0] and abs(float(found[3].split(",")[2])) < 0.1 for found in goes)),
+        "lies": float(len(lies)),
+        "buckles": float(sum("buckles" in found[0] for found in told(column("sliding", 1.08, "monolithic")))),
+    }
 
 
 #: A column of two glued halves that is held in its middle, where that takes no force, and let go while nothing else changes.

@@ -9,6 +9,7 @@ import numpy as np
 
 from isomortar.errors import FoldedElementError, KernelError
 from isomortar.geometry.patch import FloatArray, IntArray
+from isomortar.model.rank import motions_left, moved
 from isomortar.solve.equilibrium import Balance, Equilibrium
 
 #: Forces that are looked at on each body, each what the last one moves: the softest motions come first.
@@ -21,6 +22,8 @@ REAL = 1e-6
 HELD = 1e-8
 #: How far bodies are taken along a motion, over their size, to see what they resist it by: strains of it alone count, and above round-off.
 NEXT = 1e-6
+#: Share of a motion that no rigid one makes up to which a body goes as a whole.
+DEFORMS = 0.1
 #: Share of a motion that is not among forces before below which there are no others.
 NOTHING_LEFT = 1e-10
 
@@ -40,7 +43,7 @@ class Unstable:
         motion = next((motion for motion in motions if not balance.slipping or self._gives_way(motion, balance.positions)), None)
         if motion is not None:
             self._told = True
-            yield self._sentence(motion, step)
+            yield self._sentence(motion, balance.positions, step)
 
     def _against_force(self, positions: FloatArray) -> Iterator[FloatArray]:
         """Motions of all control points that go against the forces which make them, shape (control points, 3) (theory 5.26).
@@ -75,11 +78,11 @@ class Unstable:
         force, forces, motions = np.random.default_rng(0).standard_normal(len(unknowns)), list[FloatArray](), list[FloatArray]()
         for _ in range(min(FORCES, len(unknowns))):
             forces.append(force / np.linalg.norm(force))
-            moved = self._moved_by(forces[-1], unknowns)
-            if moved is None:
+            way = self._moved_by(forces[-1], unknowns)
+            if way is None:
                 return None
-            motions.append(moved)
-            basis, own = np.array(forces), moved[unknowns]
+            motions.append(way)
+            basis, own = np.array(forces), way[unknowns]
             force = own - basis.T @ (basis @ own)
             if np.linalg.norm(force) <= NOTHING_LEFT * np.linalg.norm(own):
                 break
@@ -100,19 +103,32 @@ class Unstable:
         forces = np.zeros(len(self._equilibrium.supports.free))
         forces[unknowns] = force
         try:
-            moved = self._equilibrium.moved_by(forces)
+            way = self._equilibrium.moved_by(forces)
         except KernelError:
             return None
-        return moved if moved is not None and np.isfinite(moved).all() else None
+        return way if way is not None and np.isfinite(way).all() else None
 
-    def _sentence(self, motion: FloatArray, step: int) -> str:
+    def _is_rigid(self, motion: FloatArray, positions: FloatArray, point: int) -> bool:
+        """Whether what a control point belongs to, with all that is glued to it, goes as a rigid body that supports leave free."""
+        equilibrium, numbering = self._equilibrium, self._equilibrium.numbering
+        number = numbering.piece_of(point)
+        own, piece = numbering.piece_points(number), numbering.pieces[number]
+        free = motions_left(equilibrium.problem, piece, equilibrium.supports.stage)
+        if not len(free):
+            return False
+        rigid = np.column_stack([moved(piece, amounts, positions[own]).ravel() for amounts in free])
+        way = motion[own].ravel()
+        return bool(np.linalg.norm(way - rigid @ np.linalg.lstsq(rigid, way, rcond=None)[0]) <= DEFORMS * np.linalg.norm(way))
+
+    def _sentence(self, motion: FloatArray, positions: FloatArray, step: int) -> str:
         """On the control point that goes farthest."""
         problem, numbering = self._equilibrium.problem, self._equilibrium.numbering
         point = int(np.argmax(np.linalg.norm(motion, axis=1)))
+        how = "goes off, or tips over, as a whole" if self._is_rigid(motion, positions, point) else "buckles, or snaps,"
         along = ", ".join(f"{value:g}" for value in np.round(motion[point] / np.linalg.norm(motion[point]), 2) + 0.0)
         return (
             f"load step {step}, the last of stage {problem.stages[problem.stage_of(step)].name!r}: the equilibrium is not stable: body "
-            f"{numbering.body_of(point)!r} buckles, or snaps, where it is let, most at control point {point}, along ({along}) or against "
+            f"{numbering.body_of(point)!r} {how} where it is let, most at control point {point}, along ({along}) or against "
             "that. What is computed is one equilibrium of several, and not the one that bodies come to. Let a small load push them that "
             "way in short load steps, or hold them there by a support"
         )
