@@ -21,6 +21,7 @@ from told.beyond_edges import punch
 from told.given_up import all_told, without_digits
 from told.narrow import BALL, BALLS, STRIPS, depth, strip
 from told.passing import SCENE as BENT
+from told.long_masters import CAP
 from told.unstable import LYING
 from told.unstable import column as slender
 from told.weights import column
@@ -184,6 +185,9 @@ def along_the_way(_: pytest.MonkeyPatch) -> Told:
     observer = Warned()
     list(Simulation(Scene.from_toml(punch(BEYOND_EDGES, 0.2)).problem(), observer).run())
     yield "beyond edges", observer.said[0]
+    observer = Warned()
+    list(Simulation(Scene.from_toml(CAP.replace("ORDER", "2").replace("MANY", "3").replace("YOUNG", "10")).problem(), observer).run())
+    yield "long masters", observer.said[0]
     observer = Warned()
     list(Simulation(Scene.from_toml(slender("sliding", 1.08, "monolithic")).problem(), observer).run())
     at = re.compile(r"(control point) \d+, along \(.*?\)")  # the way has a sign or its opposite

@@ -16,6 +16,7 @@ from isomortar.solve.free_motions import free_motions
 from isomortar.solve.metric import traction_norms
 from isomortar.solve.record import ContactState, State
 from isomortar.told.after.more_friction import more_friction
+from isomortar.told.during.borne import round_off
 
 #: Share of what friction can bear above which a body is about to slide: what the last load increment before adds is less than the rest.
 ALL = 0.9
@@ -36,7 +37,11 @@ def sliding(equilibrium: Equilibrium, state: State) -> Iterator[tuple[set[int], 
     for number, piece in enumerate(equilibrium.numbering.pieces):
         motions = [motion.displacement for motion in found if motion.piece == number]
         names = {body.name for body in piece}
-        pairs = [(pair, begun) for pair, begun in zip(equilibrium.pairs, state.contacts, strict=True) if _bodies(pair) & names]
+        pairs = [
+            (pair, begun)
+            for pair, begun in zip(equilibrium.pairs, state.contacts, strict=True)
+            if _bodies(pair) & names and begun.pressure.max(initial=0.0) > round_off(equilibrium.problem, pair.pair.contact)
+        ]
         if not motions or not pairs:
             continue
         borne = float(sum(_borne(pair, state.positions, begun) for pair, begun in pairs))

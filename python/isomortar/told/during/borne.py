@@ -27,7 +27,7 @@ class Borne:
     """
 
     def __init__(self, problem: Problem, states: Sequence[ContactState]) -> None:
-        self._round_off = [_round_off(problem, contact) for contact in problem.contacts]
+        self._round_off = [round_off(problem, contact) for contact in problem.contacts]
         self._tolerance = problem.settings.newton_tolerance
         bodies = [_bodies(problem, contact) for contact in problem.contacts]
         self._shared = np.array([bool(one & other) for one in bodies for other in bodies]).reshape(2 * (len(bodies),))
@@ -44,7 +44,7 @@ class Borne:
         return pressure > max(self._round_off[number], self._tolerance * self._highest[number])
 
 
-def _round_off(problem: Problem, contact: Contact) -> float:
+def round_off(problem: Problem, contact: Contact) -> float:
     """Pressure up to which a contact bears nothing, by the modulus of the softest body of both sides."""
     moduli = [body.modulus for side in _sides(contact) for body in Sheet.of(problem, side).bodies if not body.rigid]
     return NO_PRESSURE * min(moduli, default=0.0)

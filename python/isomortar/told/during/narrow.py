@@ -17,8 +17,10 @@ from isomortar.solve.contact import PairMechanics, PutOff
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.feet import gaps
 from isomortar.solve.record import ContactState
+from isomortar.told.during import long_masters
 from isomortar.told.during.beyond_edges import beyond_edges, told
 from isomortar.told.during.borne import Borne
+from isomortar.told.during.long_masters import long_master
 from isomortar.told.during.softness import softness
 
 #: Rows that bear contact below which it is told, in both directions, or in one with functions that have kinks: there forces of balls and
@@ -111,6 +113,11 @@ class Narrow:
             if over is not None and over.too_stiff:
                 del self._watched[number]
                 yield told(self._problem, mechanics.pair.contact, over, step)
+                continue
+            lies = long_master(self._equilibrium, mechanics.pair, balance, number)
+            if lies is not None and lies.too_stiff:
+                del self._watched[number]
+                yield long_masters.told(self._problem, mechanics.pair.contact, lies, step)
 
 
 def forces(pair: Pair, pressure: FloatArray, projections: Projections) -> FloatArray:

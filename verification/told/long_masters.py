@@ -1,0 +1,98 @@
+"""What is said of masters whose elements are too long for what a finer slave presses in, against forces of finer masters."""
+
+from __future__ import annotations
+
+import re
+
+from told.runs import Heard
+
+from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
+from isomortar.scene import Scene
+
+#: A cap that is pressed into a block by a twentieth of its radius.
+CAP = """
+format = 1
+materials = { soft = { young = 10, poisson = 0.3 }, other = { young = YOUNG, poisson = 0.3 } }
+bodies.cap.material = "other"
+bodies.cap.mesh = { order = 2, elements = [8, 8, 2] }
+bodies.cap.geometry = { kind = "cap", radius = 1, half_width = 0.4, bottom = 1, top = 1.6 }
+bodies.block.material = "soft"
+bodies.block.geometry = { kind = "box", lower = [-1, -1, 0], upper = [1, 1, 1] }
+bodies.block.mesh = { order = ORDER, elements = [MANY, MANY, 4] }
+contacts.c = { slave = "cap.w0", master = "block.w1", friction = 0, projection = "closest" }
+supports = { foot.face = "block.w0", hand.face = "cap.w1" }
+stages = [{ name = "press", steps = 1, motions.hand.translate = [0, 0, -0.05] }]
+"""
+#: A part of a cylinder, and a strip of a block.
+CYLINDER = """
+format = 1
+materials = { soft = { young = 10, poisson = 0.3 }, other = { young = YOUNG, poisson = 0.3 } }
+bodies.cap.material = "other"
+bodies.cap.mesh = { order = 2, elements = [8, 2, 1] }
+bodies.cap.geometry = { kind = "ring", inner = 0.4, outer = 1, width = 0.4, centre = [0, 0.2, 2], angles = [150, 210] }
+bodies.block.material = "soft"
+bodies.block.geometry = { kind = "box", lower = [-1, 0, 0], upper = [1, 0.4, 1] }
+bodies.block.mesh = { order = ORDER, elements = [MANY, 2, 4] }
+contacts.c = { slave = "cap.v1", master = "block.w1", friction = 0, projection = "closest" }
+supports.foot.face = "block.w0"
+supports.hand.face = "cap.v0"
+supports.front = { face = "cap.w0", components = ["y"] }
+supports.back = { face = "cap.w1", components = ["y"] }
+supports.left = { face = "block.v0", components = ["y"] }
+supports.right = { face = "block.v1", components = ["y"] }
+stages = [{ name = "press", steps = 1, motions.hand.translate = [0, 0, -0.05] }]
+"""
+SCENES = {"cap": (CAP, "u and v"), "cylinder": (CYLINDER, "u")}
+TOLD = re.compile(
+    r"contact 'c', load step 1, the last of stage 'press': elements of its master block.w1 are too long for it, and too stiff: .* by about "
+    r"(\d+) %, pressures by more. Take twice as many elements or more along (u and v|u|v) \(bodies.block"
+)
+
+
+def pressed(text: str, order: int, many: int, young: int) -> tuple[list[re.Match[str]], float]:
+    """What is said of a master of so many elements, under a slave of some modulus, and the force."""
+    heard, scene = Heard(), text.replace("ORDER", str(order)).replace("MANY", str(many)).replace("YOUNG", str(young))
+    *_, last = Simulation(Scene.from_toml(scene).problem(), heard).run()
+    return [found for said in heard.said if (found := TOLD.search(said))], float(last.contacts[0].force_slave[2])
+
+
+@case(
+    claim="A master whose elements are too long for what a finer slave presses in, be that as soft or ten times stiffer, is told, once, "
+    "along the directions that are too coarse, and by about as much as the force is too large; of one that is fine nothing is said.",
+    tier="gate",
+    grid={"scene": tuple(SCENES), "order": (2, 3), "young": (10, 100)},
+    bounds={
+        "said": Bound(1.0, 1.0, "definition: sentences of three elements"),
+        "off": Bound(at_least=0.1, reason="definition: share by which the force of these is too large, or there is nothing to tell of"),
+        "told over off": Bound(at_most=2.5, at_least=0.4, reason="definition: an estimate, of which the order of magnitude counts"),
+        "fine": Bound(0.0, 0.0, "definition: sentences of twelve elements"),
+    },
+)
+def long_masters(scene: str, order: int, young: int) -> dict[str, float]:
+    """What is said of a coarse master and of a fine one."""
+    text, along = SCENES[scene]
+    said, force = pressed(text, order, 3, young)
+    fine, true = pressed(text, order, 12, young)
+    off = force / true - 1.0
+    return {
+        "said": float([found[2] for found in said] == [along]),
+        "off": off,
+        "told over off": 0.01 * float(said[0][1]) / off if said else 0.0,
+        "fine": float(len(fine)),
+    }
+
+
+@case(
+    claim="Of a block on another one that is as wide, and a single element, nothing is said, however soft that is.",
+    tier="gate",
+    grid={"young": (10, 100, 1000)},
+    bounds={"said": Bound(0.0, 0.0, "definition: sentences")},
+)
+def as_wide(young: int) -> dict[str, float]:
+    """What is said."""
+    text = CAP.replace(
+        'kind = "cap", radius = 1, half_width = 0.4, bottom = 1, top = 1.6', 'kind = "box", lower = [-1, -1, 1], upper = [1, 1, 2]'
+    )
+    said, _ = pressed(text, 2, 1, young)
+    return {"said": float(len(said))}
