@@ -19,9 +19,9 @@ from told.behind import SCENE as FLOOR
 from told.beyond_edges import STRIP as BEYOND_EDGES
 from told.beyond_edges import punch
 from told.given_up import all_told, without_digits
+from told.long_masters import CAP
 from told.narrow import BALL, BALLS, STRIPS, depth, strip
 from told.passing import SCENE as BENT
-from told.long_masters import CAP
 from told.unstable import LYING
 from told.unstable import column as slender
 from told.weights import column
