@@ -230,14 +230,14 @@ def onto() -> dict[str, float]:
 
 
 #: A block that a load presses onto another one and then lifts; friction has borne next to nothing by then, and all of what it can.
-LIFTED = """
+REVERSED = """
 format = 1
 bodies.low = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }, mesh.elements = 2 }
 bodies.block = { geometry = { kind = "box", lower = [0.2, 0.2, 1], upper = [0.8, 0.8, 1.6] }, mesh.elements = 2 }
 contacts.floor = { slave = "block.w0", master = "low.w1", friction = FRICTION }
 supports.table.face = "low.w0"
 loads.push = { face = "block.w1", traction = [0, 0, -1] }
-solver = { max_cuts = 5, max_iterations = 15, method = "METHOD" }
+solver = { max_cuts = 2, max_iterations = 15, method = "METHOD" }
 stages = [{ name = "press", steps = 2 }, { name = "lift", steps = 2, loads.push = -1 }]
 """
 
@@ -245,7 +245,7 @@ stages = [{ name = "press", steps = 2 }, { name = "lift", steps = 2, loads.push 
 @case(
     claim="A block that its load lifts after it has pressed it is told to lift off, and not to slide for want of friction.",
     tier="gate",
-    grid={"method": ("monolithic", "uzawa"), "friction": (0.3, 3.0)},
+    grid={"method": ("monolithic", "uzawa"), "friction": (0.1, 0.3)},
     bounds={
         "lifts": Bound(1.0, 1.0, "definition: that it moves up and lifts off"),
         "slides": Bound(0.0, 0.0, "definition: that friction bears so much of what it can"),
@@ -253,7 +253,7 @@ stages = [{ name = "press", steps = 2 }, { name = "lift", steps = 2, loads.push 
 )
 def lifted(method: str, friction: float) -> dict[str, float]:
     """What is said."""
-    sentence = said(LIFTED.replace("METHOD", method).replace("FRICTION", str(friction)))
+    sentence = said(REVERSED.replace("METHOD", method).replace("FRICTION", str(friction)))
     found = TOLD.search(sentence)
     lifts = found is not None and found[1] == "move" and found[3] == "0, 0, 1" and "lifts off" in sentence
     return {"lifts": float(lifts), "slides": float("of what it can" in sentence)}
