@@ -21,6 +21,7 @@ from isomortar.told.during import long_masters
 from isomortar.told.during.beyond_edges import beyond_edges, told
 from isomortar.told.during.borne import Borne
 from isomortar.told.during.long_masters import long_master
+from isomortar.told.during.pulling import pulls
 from isomortar.told.during.softness import softness
 
 #: Rows that bear contact below which it is told, in both directions, or in one with functions that have kinks: there forces of balls and
@@ -115,7 +116,7 @@ class Narrow:
                 yield told(self._problem, mechanics.pair.contact, over, step)
                 continue
             lies = long_master(self._equilibrium, mechanics.pair, balance, number)
-            if lies is not None and lies.too_stiff:
+            if lies is not None and lies.too_stiff and not pulls(self._equilibrium, balance, number):
                 del self._watched[number]
                 yield long_masters.told(self._problem, mechanics.pair.contact, lies, step)
 

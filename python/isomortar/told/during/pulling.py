@@ -29,26 +29,27 @@ class Pulling:
     def after_step(self, balance: Balance, step: int) -> Iterator[str]:
         """Warnings that the end of a load step gives rise to."""
         for number, contact in enumerate(self._equilibrium.problem.contacts):
-            if contact.name not in self._told and self._pulls(balance, number):
+            if contact.name not in self._told and pulls(self._equilibrium, balance, number):
                 self._told.add(contact.name)
                 yield _sentence(contact, step)
 
-    def _pulls(self, balance: Balance, number: int) -> bool:
-        """Whether normal forces of a contact act out of its slave's body.
 
-        They are looked at point by point, the pressure there as if it pressed: what functions of both signs make of it at control points,
-        and a field of theirs below zero, tell nothing of where the slave's face looks.
-        """
-        pair, response = self._equilibrium.pairs[number].pair, balance.responses[number]
-        if not np.any(response.state):
-            return False
-        slave, everywhere = point_by_point(pair, balance.positions)
-        loads = pair.slave.area * np.abs(pair.field(response.pressure))
-        forces = np.zeros_like(everywhere)  # without friction, whose part along the slave's own normal has any sign
-        _bindings.contact_forces(slave, pair.master, everywhere, balance.kinematics[number].projections, _pressing(loads), forces)
-        on_slave = -forces[slave.point]
-        out = np.einsum("ij,ij->i", on_slave, _outward(pair, balance.positions))
-        return bool(np.maximum(out, 0.0).sum() > PULLING * np.linalg.norm(on_slave, axis=1).sum())
+def pulls(equilibrium: Equilibrium, balance: Balance, number: int) -> bool:
+    """Whether normal forces of a contact act out of its slave's body.
+
+    They are looked at point by point, the pressure there as if it pressed: what functions of both signs make of it at control points,
+    and a field of theirs below zero, tell nothing of where the slave's face looks.
+    """
+    pair, response = equilibrium.pairs[number].pair, balance.responses[number]
+    if not np.any(response.state):
+        return False
+    slave, everywhere = point_by_point(pair, balance.positions)
+    loads = pair.slave.area * np.abs(pair.field(response.pressure))
+    forces = np.zeros_like(everywhere)  # without friction, whose part along the slave's own normal has any sign
+    _bindings.contact_forces(slave, pair.master, everywhere, balance.kinematics[number].projections, _pressing(loads), forces)
+    on_slave = -forces[slave.point]
+    out = np.einsum("ij,ij->i", on_slave, _outward(pair, balance.positions))
+    return bool(np.maximum(out, 0.0).sum() > PULLING * np.linalg.norm(on_slave, axis=1).sum())
 
 
 def _pressing(loads: FloatArray) -> Response:
