@@ -27,7 +27,7 @@ from isomortar.results.vectors import contact_vectors
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
 
-#: No body has two directions alike; one has weights, one is of a single element, one of small strains.
+#: No body has two directions alike; one has weights, one is of a single element of orders above two, one of small strains.
 SCENE = """
 format = 1
 materials.hard = { young = 3, poisson = 0.2 }
@@ -46,7 +46,7 @@ mesh = { order = [3, 1, 2], elements = [4, 1, 1] }
 material = "hard"
 [bodies.cap]
 geometry = { kind = "cap", centre = [4, 0], radius = 1, half_width = 0.5, bottom = 0, top = 1 }
-mesh = { order = [3, 2, 4], elements = [1, 1, 1] }
+mesh = { order = [3, 5, 4], elements = [1, 1, 1] }
 material = "hard"
 [contacts]
 under = { slave = "block.w0", master = "base.w1", friction = 0.3, subcells = 0 }
@@ -66,7 +66,7 @@ GRADIENT = np.array([[1.1, 0.05, -0.02], [0.03, 0.95, 0.04], [-0.06, 0.01, 1.05]
 SHIFT = np.array([0.3, -0.2, 0.5])
 #: Places within each cell.
 PLACES = np.random.default_rng(6).uniform(0.05, 0.95, (4, 3))
-_ROUND_OFF = "round-off: sums of products of polynomials of orders up to four"
+_ROUND_OFF = "round-off: sums of products of polynomials of orders up to five"
 
 
 @dataclass(frozen=True)
