@@ -64,13 +64,14 @@ class _Plane:
 
 
 def _planes(problem: Problem) -> list[_Plane]:
-    """The rigid planes of a problem, each of them once; a face in contact with one that looks the same way has a floor of its own."""
+    """The rigid planes of a problem, each once, by whatever point; a face that touches one that looks the same way has its own floor."""
     planes = [(contact, contact.master) for contact in problem.contacts if isinstance(contact.master, RigidPlane)]
-    found = dict[tuple[object, object], _Plane]()
+    found = dict[tuple[float, object], _Plane]()
     for contact, plane in planes:
         touching = frozenset(face for other, level in planes if level.normal == plane.normal for face in other.slave.faces)
         before = [b.name for b in problem.bodies if _heights(b.patch.control_points, plane).min() >= -constants.NO_PART * b.size]
-        found.setdefault((plane.point, plane.normal), _Plane(contact.name, plane, touching, frozenset(before)))
+        height = float(_heights(np.zeros(3), plane))
+        found.setdefault((height, plane.normal), _Plane(contact.name, plane, touching, frozenset(before)))
     return list(found.values())
 
 
