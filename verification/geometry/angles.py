@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from isomortar.harness import Bound, case
 from isomortar.model.entities import Body, Material
 from isomortar.model.numbering import check_closed
@@ -31,3 +33,19 @@ def quarters(degrees: int) -> dict[str, float]:
         if ring.closed:
             check_closed(Body("ring", patch, Material(), (3, 2, 2), ring.closed))
     return {"parts": float(parts), "slit": float(slit), "off": float(off)}
+
+
+@case(
+    claim="Arcs up to half of a circle are smooth, however long; longer ones are only continuous where their parts meet.",
+    tier="gate",
+    bounds={"wrong": Bound(0.0, 0.0, "definition: arcs with another number of lines on which they are only continuous")},
+)
+def smooth() -> dict[str, float]:
+    """How many, of arcs of all whole degrees."""
+    wrong = 0
+    for degrees in range(1, 361):
+        (round_it, *_) = RingTable(kind="ring", inner=1.0, outer=2.0, width=1.0, angles=(10.0, 10.0 + degrees)).patch().directions
+        inner, repeated = np.unique(round_it.knots, return_counts=True)
+        joints = np.count_nonzero(repeated[1:-1] >= round_it.order)
+        wrong += joints != (0 if degrees <= 180 else len(inner) - 2)
+    return {"wrong": float(wrong)}

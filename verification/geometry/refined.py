@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 from rational_functions import shares
+from scipy.interpolate import BSpline
 
 from isomortar.errors import InputError
 from isomortar.geometry.faces import CELLS, cells
@@ -179,3 +180,30 @@ def cells_of_faces(elements: int) -> dict[str, float]:
         worst = np.maximum(worst, [np.abs(error).max() for error in errors])
         few += len(found.areas) < CELLS**2 or len(found.areas) % (elements if axis == 2 else 1) != 0
     return dict(zip(("area", "normal", "thickness"), map(float, worst), strict=True)) | {"few": float(few)}
+
+
+@case(
+    claim="Lagrange elements beside NURBS have polynomials along their own directions: weights that vary along these alone are gone, and "
+    "others count from the first along NURBS.",
+    tier="gate",
+    grid={"along": ("u", "v", "w")},
+    bounds={
+        "first": Bound(at_most=0.0, reason="definition: weights of the first functions along NURBS, at any node, are one"),
+        "ratios": Bound(at_most=1e-12, reason=_ROUND_OFF),
+    },
+)
+def mixed(along: str) -> dict[str, float]:
+    """Largest differences from one, and from ratios of the weights that a random body has at the nodes."""
+    random, worst, axis = np.random.default_rng(47), np.zeros(2), "uvw".index(along)
+    for _ in range(PATCHES):
+        directions = (line(random, 1.0), line(random, 1.0), line(random, 1.0))
+        patch = Patch(directions, *body(random, directions))
+        elements, orders = [d.elements for d in directions], [d.order for d in directions]
+        made = mesh(patch, ["L" if k == axis else "N" for k in range(3)], [2 if k == axis else p for k, p in enumerate(orders)], elements)
+        weights = np.moveaxis(made.weights.reshape(made.shape, order="F"), axis, 0)
+        net = np.moveaxis(patch.weights.reshape(patch.shape, order="F"), axis, 0)
+        own = directions[axis]
+        there = BSpline.design_matrix(made.directions[axis].greville, own.knots, own.order) @ net.reshape(len(net), -1)
+        ratios = (there / there[:, :1]).reshape(weights.shape)
+        worst = np.maximum(worst, [np.abs(weights[:, 0, 0] - 1.0).max(), np.abs(weights / ratios - 1.0).max()])
+    return {"first": float(worst[0]), "ratios": float(worst[1])}
