@@ -106,6 +106,14 @@ def by_hand() -> Problem:
     )
 
 
+def of_two_orders(low: int, high: int) -> bool:
+    """Whether a body of an order and a higher one at its contact has other numbers of Gauss points."""
+    mesh = ["bodies.block.geometry={ kind = 'box', lower = [0, 0, 0], upper = [1, 1, 1] }", f"bodies.block.mesh.order=[{low}, {low}, 1]"]
+    (block,) = Scene.from_toml(SILENT, overrides=[*mesh, f"bodies.block.mesh.contact_order={high}"]).problem().bodies
+    points = int(np.maximum(POINTS["N"][0][low - 1], high + 1))
+    return block.quadrature != (points, points, POINTS["N"][0][0])
+
+
 def leaves(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
     """What a schema says, by where."""
     if isinstance(value, dict):
@@ -138,6 +146,9 @@ def keys() -> dict[str, float]:
         "scene": Bound(0.0, 0.0, "definition: what differs where all is said"),
         "by hand": Bound(0.0, 0.0, "definition: what differs from what is made in Python"),
         "points": Bound(0.0, 0.0, "definition: orders with other numbers of Gauss points"),
+        "two orders": Bound(
+            0.0, 0.0, "definition: bodies of two orders with other numbers: those of the lower one, and one more than the higher"
+        ),
     },
 )
 def silence() -> dict[str, float]:
@@ -152,6 +163,7 @@ def silence() -> dict[str, float]:
         "scene": float(len(differences(silent, spoken))),
         "by hand": float(len(differences(silent, by_hand())) + (silent.settings != by_hand().settings)),
         "points": float(wrong),
+        "two orders": float(sum(of_two_orders(low, high) for low in range(1, 4) for high in range(low + 1, 7))),
     }
 
 
