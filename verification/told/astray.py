@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 from itertools import product
+from types import SimpleNamespace
+from unittest.mock import patch
 
 import numpy as np
 from told.runs import Heard
@@ -11,6 +13,9 @@ from told.runs import Heard
 from isomortar.harness import Bound, case
 from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
+from isomortar.told.during.astray import BESIDE as BESIDE_LIMIT
+from isomortar.told.during.astray import BORNE as BORNE_LIMIT
+from isomortar.told.during.astray import Astray
 
 #: A block that is dragged along y, straight on, over a face at z = 0.
 SCENE = """
@@ -121,3 +126,27 @@ def stretching() -> dict[str, float]:
         [text for text in run(STRETCHING, changes)[0] if BORNE.search(text)] for changes in ((), ("bodies.a.mesh.elements=[8, 8, 1]",))
     )
     return {"said": float(len(said)), "others": float(len(finer) + len(run(weighted(1.0))[0]))}
+
+
+@case(
+    claim="That friction goes astray, and that it is more than the law takes it for, are told once each, whichever comes first.",
+    tier="gate",
+    grid={"first": ("beside", "borne", "both")},
+    bounds={"wrong": Bound(0.0, 0.0, "definition: load steps after which something else is told")},
+)
+def each_once(first: str) -> dict[str, float]:
+    """How many of five, between which nothing is wrong once, and all is twice."""
+    beside, borne, both, neither = (2.0 * BESIDE_LIMIT, 1.0), (0.0, 2.0 * BORNE_LIMIT), (2.0 * BESIDE_LIMIT, 2.0 * BORNE_LIMIT), (0.0, 1.0)
+    one, other = {"beside": (beside, borne), "borne": (borne, beside), "both": (both, neither)}[first]
+    watch, nowhere = Astray(Simulation(Scene.from_toml(TURNING).problem()).equilibrium), SimpleNamespace(kinematics=[None])
+    wrong, told = 0, set[str]()
+    for found in (one, neither, other, both, both):
+        with patch("isomortar.told.during.astray.astray", return_value=found):
+            said = list(watch.after_step(nowhere, 1))  # type: ignore[arg-type]
+        new = {name for name, is_there in zip((BESIDE, BORNE), (found[0] > BESIDE_LIMIT, found[1] > BORNE_LIMIT), strict=True) if is_there}
+        expected = {name.pattern for name in new} - told
+        wrong += {name.pattern for name in (BESIDE, BORNE) for words in said if name.search(words)} != expected or len(said) != len(
+            expected
+        )
+        told |= expected
+    return {"wrong": float(wrong)}
