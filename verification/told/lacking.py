@@ -1,0 +1,92 @@
+"""What is said of supports that push a slave behind a plane, or bring bodies together with no contact, and of slaves of several bodies."""
+
+from __future__ import annotations
+
+from isomortar.harness import Bound, case
+from isomortar.march.outlook import outlook
+from isomortar.scene import Scene
+
+#: A block above a plane, of which supports move the slave face along x.
+PUSHED = """
+format = 1
+bodies.block = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }, mesh.elements = [2, 2, 2] }
+contacts.floor = { slave = "block.w0", plane = { normal = [SLANT, 0, 1] } }
+supports.top = { face = "block.w1", components = ["x", "y"], force.z = -0.01 }
+supports.sole = { face = "block.w0", components = [HELD] }
+stages = [{ name = "go", steps = 4, motions.sole.translate = [ALONG, 0, 0] }]
+"""
+BEHIND = "of its slave control points behind the plane, by"
+#: Slant of the plane, components that are held, their way, and whether that leads behind the plane without a way out.
+SUPPORTS = (
+    ("0", '"x"', "0.1", False),
+    ("1", '"x"', "-0.1", False),
+    ("1", '"x", "y"', "-0.1", False),
+    ("1", '"x", "y", "z"', "-0.1", True),
+    ("1", '"x", "z"', "-0.1", True),
+    ("1", '"x", "y", "z"', "0.1", False),
+    ("0", '"x", "y", "z"', "-0.1", False),
+)
+#: A block that is brought to another one by one of its supports, and kept by the other, which stays: which of both is first is no matter.
+MEETING = """
+format = 1
+bodies.low = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }, mesh.elements = [1, 1, 1] }
+bodies.high = { geometry = { kind = "box", lower = [0, 0, 1.1], upper = [1, 1, 2] }, mesh.elements = [1, 1, 1] }
+supports.base.face = "low.w0"
+FIRST
+SECOND
+stages = [{ name = "go", steps = 4, motions.mover.translate = [0, 0, -WAY] }]
+"""
+MOVER, GUIDE = 'supports.mover.face = "high.w1"', 'supports.guide = { face = "high.u0", components = ["x"] }'
+MEET = "bodies 'low' and 'high' meet, and no contact is between them"
+#: Two blocks that are glued, one soft and one stiff, on a finer one that is between them in stiffness.
+ON_A_FINER_ONE = """
+format = 1
+materials = { soft = { young = 1 }, firm = { young = 10 }, stiff = { young = STIFF } }
+bodies.a = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }, mesh = { order = 1 }, material = "soft" }
+bodies.b = { geometry = { kind = "box", lower = [1, 0, 0], upper = [2, 1, 1] }, mesh = { order = 1 }, material = "stiff" }
+bodies.base.geometry = { kind = "box", lower = [-0.5, -0.5, -1], upper = [2.5, 2.5, 0] }
+bodies.base.mesh = { order = 1, elements = [24, 24, 1] }
+bodies.base.material = "firm"
+glue = [["a.u1", "b.u0"]]
+contacts.c = { slave = ["a.w0", "b.w0"], master = "base.w1", quadrature = [4, 2], projection = "closest" }
+supports = { base.face = "base.w0", top.face = "b.w1" }
+stages = [{ name = "press", steps = 4, motions.top.translate = [0, 0, -0.01] }]
+"""
+#: Elements of the base are 1/8 long, points of the slave 1 / sqrt(8) apart: twice as many as that takes are to be given.
+POINTS = "quadrature points of the slave are 2.8 elements of its softer or equal master apart"
+CURE = "contacts.c.quadrature = [23, 12]"
+
+
+def warnings(text: str, **values: str) -> list[str]:
+    """What is said of a scene with some words replaced."""
+    for word, value in values.items():
+        text = text.replace(word, value)
+    return list(outlook(Scene.from_toml(text).problem()).warnings)
+
+
+@case(
+    claim="Of supports it is said what they push behind a plane, and of nothing that can give way; of bodies that one of several supports "
+    "brings together that they have no contact; and of slaves of several bodies that their points are few for the stiffest of these.",
+    tier="gate",
+    bounds={
+        "supports": Bound(0.0, 0.0, "definition: scenes of which something else is said of supports"),
+        "meeting": Bound(0.0, 0.0, "definition: scenes of bodies that meet and are not told, or do not"),
+        "points": Bound(0.0, 0.0, "definition: slaves of which something else is said of points"),
+    },
+)
+def lacking() -> dict[str, float]:
+    """How many of seven, four, and three."""
+    supports = 0
+    for slant, held, along, behind in SUPPORTS:
+        said = warnings(PUSHED, SLANT=slant, HELD=held, ALONG=along)
+        supports += any(BEHIND in warning for warning in said) != behind
+    meeting = 0
+    for first, second in ((MOVER, GUIDE), (GUIDE, MOVER)):
+        for way, meets in (("0.1", True), ("0.05", False)):
+            said = warnings(MEETING, FIRST=first, SECOND=second, WAY=way)
+            meeting += any(MEET in warning for warning in said) != meets
+    points = 0
+    for stiff, few in (("10", True), ("100", True), ("5", False)):
+        said = [warning for warning in warnings(ON_A_FINER_ONE, STIFF=stiff) if "quadrature points of the slave" in warning]
+        points += [POINTS in warning and CURE in warning for warning in said] != [True] * few
+    return {"supports": float(supports), "meeting": float(meeting), "points": float(points)}
