@@ -48,7 +48,7 @@ class LongMaster:
 
     @property
     def costs(self) -> float:
-        """Share of the force that this adds to it, by an estimate (theory 9.65)."""
+        """Share of the force that this adds to it, by an estimate (theory 9.15)."""
         return float(1.0 / (1.0 - self.softness * min(MOST, float(np.linalg.norm(self.kept)))) - 1.0)
 
     @property
@@ -58,7 +58,7 @@ class LongMaster:
 
 
 def long_master(equilibrium: Equilibrium, pair: Pair, balance: Balance, number: int) -> LongMaster | None:
-    """How a contact that bears lies on elements of its master (theory 9.65); None on rigid planes, and beside planes of symmetry."""
+    """How a contact that bears lies on elements of its master (theory 9.15); None on rigid planes, and beside planes of symmetry."""
     projections, problem = balance.kinematics[number].projections, equilibrium.problem
     forces = pair.slave.area * np.maximum(pair.field(balance.responses[number].pressure), 0.0) * (projections.found > 0)
     if not isinstance(pair.contact.master, Face) or problem.images > 1 or not forces.any():
