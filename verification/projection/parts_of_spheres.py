@@ -1,4 +1,4 @@
-"""Parts of a sphere that end at its pole: there they have an edge that is one point, and beside it nothing is below."""
+"""Parts of a sphere, and of a disc, that end at its pole: there they have an edge that is one point, and beside it nothing is below."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 from projection.closest_points import Surface
 
 from isomortar.errors import LostProjectionError
-from isomortar.geometry.primitives import sphere
+from isomortar.geometry.primitives import ring, sphere
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
 
@@ -36,6 +36,29 @@ def round_a_pole(kind: str, degrees: float) -> dict[str, float]:
     above, there = angle < np.radians(degrees), found.found == 1
     apart = face.points(found.xi) - targets / np.linalg.norm(targets, axis=1)[:, None]
     return {"other": float(np.count_nonzero(above != there)), "foot": float(np.linalg.norm(apart[above & there], axis=1).max())}
+
+
+@case(
+    claim="Round the middle of a part of a disc, the end of a cylinder, what is above the part has its foot there, and all else is beside "
+    "it, on either end.",
+    grid={"kind": ("N2", "N3", "L2"), "degrees": (90.0, 180.0, 270.0), "face": ("w0", "w1")},
+    bounds={
+        "other": Bound(0.0, 0.0, "definition: points that are above the part and have no foot, or beside it and have one"),
+        "foot": Bound(at_most=1e-9, reason="round-off: a disc is flat; coordinates beside the middle have fewer digits"),
+    },
+)
+def round_a_middle(kind: str, degrees: float, face: str) -> dict[str, float]:
+    """How many points, and the largest distance of a foot from the point straight below; `degrees`: how far round the part goes."""
+    order = int(kind[1:])
+    part = mesh(ring((0.0, 0.0, 0.0), 0.0, 1.0, 0.5, (0.0, degrees), "z"), (kind[0],) * 3, (order, order, 1), (12, 4, 1))  # type: ignore[arg-type]
+    random = np.random.default_rng(order)
+    angle, off = random.uniform(0.0, 2.0 * np.pi, TARGETS), random.uniform(0.01, FAR, TARGETS)
+    out = np.array([0.0, 0.0, 1.0 if face == "w0" else -1.0])
+    below = np.column_stack([off * np.cos(angle), off * np.sin(angle), np.zeros(TARGETS)]) + 0.25 * out
+    found = Surface(part, face).project(below + 0.1 * out)
+    above, there = angle < np.radians(degrees), found.found == 1
+    feet = Surface(part, face).points(found.xi)
+    return {"other": float(np.count_nonzero(above != there)), "foot": float(np.linalg.norm((feet - below)[above & there], axis=1).max())}
 
 
 @case(
