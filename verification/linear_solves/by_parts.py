@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from functools import partial
 from typing import IO
 
 import numpy as np
@@ -326,3 +327,40 @@ def handles_of_bodies() -> dict[str, float]:
         "solved": float(kernel.condensed_solve(handle, np.ones(2 * LENGTH))[-1]),
         "released twice": float(kernel.sparse_release(handle)),
     }
+
+
+@case(
+    claim="Matrices and right-hand sides that are not finite are refused by their row, in bodies and beside them, and factors stay.",
+    tier="gate",
+    grid={"value": ("nan", "inf", "-inf")},
+    bounds={
+        "others": Bound(0.0, 0.0, "definition: numbers that are taken, or refused by another row"),
+        "stays": Bound(at_most=0.0, reason="definition: the same factors give the same bits"),
+    },
+)
+def not_finite(value: str) -> dict[str, float]:
+    """How many, of right-hand sides and of matrices; largest change of a solution."""
+    random = np.random.default_rng(14)
+    (matrix, on_face), block = body(random), added(random)
+    bodies, right = factors(matrix, on_face), random.standard_normal(matrix.shape[0] + OTHERS)
+    bodies.factorise(matrix.data, block)
+    solution, others = bodies.solve(right), 0
+    for row in (0, 7, matrix.shape[0] - 1, matrix.shape[0], len(right) - 1):
+        spoilt = right.copy()
+        spoilt[row] = float(value)
+        others += _row_refused(partial(bodies.solve, spoilt)) != row
+    stays = float(np.abs(bodies.solve(right) - solution).max())
+    for row in (0, 7, matrix.shape[0] - 1):
+        entries = matrix.data.copy()
+        entries[matrix.indptr[row]] = float(value)
+        others += _row_refused(partial(bodies.factorise, entries, block)) != row
+    return {"others": float(others), "stays": stays}
+
+
+def _row_refused(action: Callable[[], object]) -> int | None:
+    """The row by which something is refused; None: it is not."""
+    try:
+        action()
+    except KernelError as error:
+        return error.place
+    return None

@@ -56,7 +56,7 @@ def of_bodies() -> str:
     pattern = Pattern(np.arange(0, n * n + 1, n, dtype=np.int32), np.tile(np.arange(n, dtype=np.int32), n))
     positions = reference + np.random.default_rng(3).uniform(-0.02, 0.02, reference.shape)
     bits, point = hashlib.sha256(), np.arange(n, dtype=np.int32)
-    for weights in (np.ones(n), np.asarray(1.0 + 0.1 * (point % 3))):
+    for weights in np.stack([np.ones(n), 1.0 + 0.1 * (point % 3)]):
         for often in (True, False):
             forces, tangent = np.zeros_like(reference), np.zeros((n * n, 3, 3))
             body = BodyArrays(patch_arrays(replace(patch, weights=weights), point), (3, 4, 3), reference, often)
