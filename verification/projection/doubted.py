@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -31,20 +32,33 @@ KINDS = (
     (Status.NO_SLIP, "slips have no measure there", True),
 )
 
+#: Where coordinates count from within a run of a scene that is far away, in those of the scene.
+ORIGIN = np.array([50.0, -30.0, 0.0])
+
+
+def gauss_points(count: int) -> np.ndarray:
+    """Quadrature points of the slave's face, so many by direction in each of four elements along x, shape (points, 3)."""
+    share = 0.5 + 0.5 * np.polynomial.legendre.leggauss(count)[0]
+    element, y, x = np.meshgrid(np.arange(4), share, share, indexing="ij")
+    return np.column_stack([0.25 * (element + x).ravel(), y.ravel(), np.zeros(x.size)])
+
 
 @case(
     claim="A doubtful foot is refused by its point, in words of its doubt, where contact acts; one that cannot slip, with friction alone.",
     tier="gate",
     grid={"friction": (0.0, 0.3)},
-    bounds={"wrong": Bound(0.0, 0.0, "definition: feet that are refused for something else, or for nothing, or should not be")},
+    bounds={
+        "wrong": Bound(0.0, 0.0, "definition: feet that are refused for something else, or for nothing, or should not be"),
+        "places": Bound(at_most=0.0051, reason="definition: where points are in the coordinates of the scene; four digits are told"),
+    },
 )
 def doubted(friction: float) -> dict[str, float]:
-    """How many, of every point by every doubt, under contact in every element alone."""
+    """How many, of every point by every doubt, under contact in every element alone; how far told places are off."""
     equilibrium = Equilibrium(Scene.from_toml(SCENE.replace("FRICTION", str(friction))).problem(), Ledger())
     positions, pair = equilibrium.numbering.reference, equilibrium.pairs[0]
     found = pair.kinematics(positions, equilibrium.initial_state().contacts[0]).projections
-    feet, nodes, points = Feet(pair.pair, np.zeros(3)), pair.pair.slave.test.nodes, len(found.found)
-    wrong = 0
+    feet, nodes, points = Feet(pair.pair, ORIGIN), pair.pair.slave.test.nodes, len(found.found)
+    wrong, off, places = 0, 0.0, ORIGIN + gauss_points(round(np.sqrt(pair.pair.slave.per_element)))
     for status, words, without_slips in KINDS:
         for q in range(points):
             doubt = np.zeros(points, dtype=np.int32)
@@ -58,4 +72,6 @@ def doubted(friction: float) -> dict[str, float]:
                     wrong += refused
                 except LostProjectionError as error:
                     wrong += not refused or error.place != q or words not in str(error)
-    return {"wrong": float(wrong)}
+                    told = re.search(r" at \((\S+), (\S+), (\S+)\), with a gap of", str(error))
+                    off = float(np.maximum(off, np.abs(np.array(told.groups(), float) - places[q]).max() if told else np.inf))
+    return {"wrong": float(wrong), "places": off}
