@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+import tomllib
 from collections.abc import Callable, Iterator
 from itertools import product
 from pathlib import Path
@@ -176,7 +177,8 @@ def sizes() -> dict[str, float]:
 
 
 @case(
-    claim="An override sets the value that its path names, of stages by name or by number, and no other; what is not there is refused.",
+    claim="An override sets the value that its path names, of stages by name or by number, and no other; what is not there is refused, "
+    "by what is, but for a load that is whole.",
     tier="gate",
     bounds={"wrong": WRONG},
 )
@@ -190,6 +192,12 @@ def overrides() -> dict[str, float]:
             wrong += steps != [7 if k == number else (1, 2, 1, 1)[k] for k in range(4)]
     for path in ("stages.4.steps=7", "stages.-1.steps=7", "stages.e.steps=7", "supports.side.face=block.u0", "bodies.ball.rigid=true"):
         wrong += not refusal(lambda path=path: Scene.from_toml(DRIVEN, overrides=[path]))  # type: ignore[misc]
+    for path in ("supports.side.face=block.u0", "bodies.ball.rigid=true", "loads.gust.pressure=1"):
+        table = path.partition(".")[0]
+        told = refusal(lambda path=path: Scene.from_toml(DRIVEN, overrides=[path]))  # type: ignore[misc]
+        wrong += f"an override changes what the scene has; {table} there: {next(iter(tomllib.loads(DRIVEN)[table]))}" not in told
+    added = Scene.from_toml(DRIVEN, overrides=['loads.gust={ face = "block.u0", pressure = 3 }']).tables.loads
+    wrong += list(added) != ["weight", "press", "gust"] or added["gust"].pressure != 3.0
     for path in ("format.x=1", "title", "=1", "title=[1", "title=a b", "stages.0=1", "title=1\ntitle=2"):
         wrong += not refusal(lambda path=path: Scene.from_toml(DRIVEN, overrides=[path]))  # type: ignore[misc]
     by_path = Scene.from_toml(DRIVEN, overrides={"stages.c.steps": np.int64(4), "supports.moved.axis": np.array([1.0, 0.0, 0.0])}).tables
