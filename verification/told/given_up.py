@@ -135,6 +135,30 @@ def freely(young: float) -> dict[str, float]:
     return {"silent": float(sum(words not in error(block + components) for components, words in told.items()))}
 
 
+#: A rigid ram above a block, which a force takes away from it.
+TAKEN_AWAY = """
+format = 1
+bodies.low = { geometry = { kind = "box", lower = [-1, -1, -1], upper = [1, 1, 0] }, mesh.elements = [2, 2, 1] }
+bodies.ram = { rigid = true, geometry = { kind = "box", lower = [-0.5, -0.5, 0.2], upper = [0.5, 0.5, 0.5] }, mesh.order = 1 }
+contacts.c = { slave = "low.w1", master = "ram.w0" }
+supports.base.face = "low.w0"
+supports.hand = { face = "ram.w1", components = ["x", "y"], force.z = 0.1 }
+stages = [{ name = "take", steps = 2 }]
+solver.max_cuts = 2
+"""
+
+
+@case(
+    claim="A rigid body that a force takes away from all contact is told to move freely, by both methods.",
+    tier="gate",
+    grid={"method": ("monolithic", "uzawa")},
+    bounds={"silent": Bound(0.0, 0.0, "definition: rigid bodies that are free and are not told")},
+)
+def rigid_freely(method: str) -> dict[str, float]:
+    """Whether it is not."""
+    return {"silent": float("body 'ram' can move along (0, 0, 1) freely" not in error(TAKEN_AWAY, f"solver.method={method}"))}
+
+
 @case(
     claim="Where less than half of the quadrature points are on the master, a deformation that nothing resists is put down to those that "
     "are beside it; else not.",
