@@ -73,6 +73,8 @@ NO_NUMBERS = (
     np.ma.masked,
     np.ma.array([1.0, 2.0], mask=[False, True]),
     2**53 + 1,
+    -(2**53) - 1,
+    np.array([1, 2**53 + 1], np.uint64),
     1j,
     [1.0, [2.0]],
     np.array([1.0], object),
