@@ -56,6 +56,20 @@ stages = [{ name = "press", steps = 4, motions.top.translate = [0, 0, -0.01] }]
 POINTS = "quadrature points of the slave are 2.8 elements of its softer or equal master apart"
 CURE = "contacts.c.quadrature = [23, 12]"
 
+#: A slave of two elements, a short one of a tenth next to the pole of a dome and a long one, both a fifth wide, so far from the pole.
+BESIDE_A_POLE = """
+format = 1
+bodies.a.geometry = { kind = "box", lower = [FROM, -0.1, 0], upper = [TO, 0.1, 0.5] }
+bodies.a.mesh = { family = "L", order = 1, elements = [2, 1, 1], grading = [9, 1, 1] }
+bodies.dome.geometry = { kind = "sphere", centre = [0, 0, -1], inner = 0.5, outer = 1, latitudes = [0, 90] }
+bodies.dome.mesh = { order = 2, elements = [8, 1, 4] }
+contacts.c = { slave = "a.w0", master = "dome.v1", friction = 0.3, projection = "closest" }
+supports = { base.face = "dome.w1", top.face = "a.w1" }
+stages = [{ name = "press", steps = 4, motions.top.translate = [0, 0, -0.001] }]
+"""
+#: The middle of the short element may be as far away as the long one is large, root of 0.18, and no farther.
+FAR = {0.05: True, 0.3: True, 0.36: True, 0.39: False, 0.6: False}
+
 
 def warnings(text: str, **values: str) -> list[str]:
     """What is said of a scene with some words replaced."""
@@ -66,16 +80,18 @@ def warnings(text: str, **values: str) -> list[str]:
 
 @case(
     claim="Of supports it is said what they push behind a plane, and of nothing that can give way; of bodies that one of several supports "
-    "brings together that they have no contact; and of slaves of several bodies that their points are few for the stiffest of these.",
+    "brings together that they have no contact; of slaves of several bodies that their points are few for the stiffest of these; and of "
+    "friction that it may come to a pole, by the largest of the slave's cells.",
     tier="gate",
     bounds={
         "supports": Bound(0.0, 0.0, "definition: scenes of which something else is said of supports"),
         "meeting": Bound(0.0, 0.0, "definition: scenes of bodies that meet and are not told, or do not"),
         "points": Bound(0.0, 0.0, "definition: slaves of which something else is said of points"),
+        "poles": Bound(0.0, 0.0, "definition: slaves beside a pole that are not told, or that are and are not"),
     },
 )
 def lacking() -> dict[str, float]:
-    """How many of seven, four, and three."""
+    """How many of seven, four, three, and five."""
     supports = 0
     for slant, held, along, behind in SUPPORTS:
         said = warnings(PUSHED, SLANT=slant, HELD=held, ALONG=along)
@@ -89,4 +105,8 @@ def lacking() -> dict[str, float]:
     for stiff, few in (("10", True), ("100", True), ("5", False)):
         said = [warning for warning in warnings(ON_A_FINER_ONE, STIFF=stiff) if "quadrature points of the slave" in warning]
         points += [POINTS in warning and CURE in warning for warning in said] != [True] * few
-    return {"supports": float(supports), "meeting": float(meeting), "points": float(points)}
+    poles = 0
+    for far, told in FAR.items():
+        said = warnings(BESIDE_A_POLE, FROM=str(far), TO=str(far + 1.0))
+        poles += any("has a pole, an edge that is one point" in warning for warning in said) != told
+    return {"supports": float(supports), "meeting": float(meeting), "points": float(points), "poles": float(poles)}
