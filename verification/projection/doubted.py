@@ -75,3 +75,26 @@ def doubted(friction: float) -> dict[str, float]:
                     told = re.search(r" at \((\S+), (\S+), (\S+)\), with a gap of", str(error))
                     off = float(np.maximum(off, np.abs(np.array(told.groups(), float) - places[q]).max() if told else np.inf))
     return {"wrong": float(wrong), "places": off}
+
+
+@case(
+    claim="Forces of a contact are refused where a foot does not follow its point, and not where nothing acts.",
+    tier="gate",
+    bounds={"wrong": Bound(0.0, 0.0, "definition: doubts that forces are made of, or that are refused where nothing acts")},
+)
+def asked() -> dict[str, float]:
+    """Of how many kinds, with contact all over and with none."""
+    equilibrium = Equilibrium(Scene.from_toml(SCENE.replace("FRICTION", "0.3")).problem(), Ledger())
+    positions, pair, start = equilibrium.numbering.reference, equilibrium.pairs[0], equilibrium.initial_state().contacts[0]
+    kinematics, wrong = pair.kinematics(positions, start), 0
+    for status, _, _ in KINDS:
+        doubt = np.full(len(kinematics.projections.found), status, dtype=np.int32)
+        doubtful = replace(kinematics, projections=replace(kinematics.projections, doubt=doubt))
+        for acts in (True, False):
+            response = pair.bearing(replace(start, pressure=np.full(len(start.pressure), float(acts))))
+            try:
+                pair.add_forces(positions, doubtful, response, np.zeros_like(positions))
+                wrong += acts
+            except LostProjectionError:
+                wrong += not acts
+    return {"wrong": float(wrong)}
