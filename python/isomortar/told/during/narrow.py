@@ -39,6 +39,8 @@ ENOUGH, ALL = 2.5, 0.8
 COSTS = 0.1
 #: Depth over what forces press in up to which it costs nothing, and what is added below the line: fitted to the same scenes.
 FREE, ADDED = 0.5, 2.0
+#: Shares of the force that narrow contact costs: on one row of averages, and by other constraints, of which balls on blocks tell no better.
+FEW, OTHERWISE = "a fifth", "50 %, at the worst by 200 %"
 #: Share of the largest force of a contact below which it opens, or hardly begins: its last row is no fault of the mesh.
 LIGHT = 0.1
 
@@ -62,7 +64,7 @@ class Bearing:
     depth : float
         Of the quadrature points, root of the mean square where there is pressure: averages of it are zero.
     costs : float
-        Share of the force that this costs, by an estimate; below zero it costs nothing (theory 9.10).
+        Share of the force that this costs constraints on averages, by an estimate; below zero it costs nothing (theory 9.10).
     """
 
     rows: FloatArray
@@ -202,7 +204,7 @@ def _told(problem: Problem, contact: Contact, found: Bearing, step: int) -> str:
     few = [letter for letter, rows, count in sides if rows <= max(ENOUGH, least) and rows < ALL * count]
     few = few or [letter for letter, is_round in zip(letters, found.round, strict=True) if not is_round]
     between = f", and between these it is about {found.depth:.2g} inside its master or apart from it" if deep else ""
-    share = percent(found.costs) if deep else "a third" if np.any(found.least > ROWS) else "a fifth"
+    share = OTHERWISE if contact.enforcement != "mortar" else percent(found.costs) if deep else FEW
     stage = problem.stages[problem.stage_of(step)].name
     return (
         f"contact {contact.name!r}, load step {step}, the last of stage {stage!r}: it is too narrow for its slave {contact.slave.words}: "
