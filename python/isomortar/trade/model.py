@@ -102,7 +102,8 @@ class Model:
                     self._costs[key] = change if abs(change) > NOISE else 0.0
                     self._effects[key] = [y.values(outcome) - y.values(base) for y in yardsticks]
         self._centres = [o for o in self._centres if all((n, s) in self._effects for n, s in enumerate(o.choice))]
-        self._from = [(np.array(o.choice), o.cost, [y.values(o) - y.truth for y in yardsticks]) for o in self._centres]
+        self._choices = np.array([o.choice for o in self._centres])
+        self._errors = [[y.values(o) - y.truth for y in yardsticks] for o in self._centres]
 
     def settings(self, number: int) -> Iterator[int]:
         """The settings of a dial that were tried alone."""
@@ -117,8 +118,9 @@ class Model:
         if choice in self._failed:
             return Forecast(math.inf, math.inf)
         wanted = np.array(choice)
-        near, cost, errors = min(self._from, key=lambda centre: int((centre[0] != wanted).sum()))
-        errors, lost = [error.copy() for error in errors], [0.0] * len(errors)
+        centre = int(np.argmin(np.count_nonzero(self._choices != wanted, axis=1)))
+        near, cost = self._choices[centre], self._centres[centre].cost
+        errors, lost = [error.copy() for error in self._errors[centre]], [0.0] * len(self._yardsticks)
         for number in map(int, np.flatnonzero(near != wanted)):
             here, there = (number, int(near[number])), (number, int(wanted[number]))
             cost *= math.exp(self._costs[there] - self._costs[here])
