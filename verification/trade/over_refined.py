@@ -120,6 +120,27 @@ def own_error_of_two(scene: str) -> dict[str, float]:
     return {"told over real": told_over_real(*TOGETHER[scene])}
 
 
+@case(
+    claim="Who is told that more of the processor would tell a target gets further with more: where the finest meshes that are tried do "
+    "not tell it, that is said.",
+    tier="gate",
+    bounds={
+        "budget": Bound(0.0, 0.0, "definition: targets of which a budget is said to be what is missing where none would do"),
+        "meshes": Bound(0.0, 0.0, "definition: targets of which meshes are said to be what is missing where a budget would do"),
+    },
+)
+def what_is_missing() -> dict[str, float]:
+    """How many of each, without a limit and with one."""
+    wrong = []
+    for budget, missing in ((math.inf, "begin with finer meshes"), (12.0, "--budget")):
+        known = Sharp([LONG], lambda n: 0.12 / n)
+        search = Search(known, known.dials, [Want("one", lambda run, _: np.array([run["one"]]), lambda _: np.ones(1))], budget)
+        search.screen()
+        search.find_truth([1e-4])
+        wrong.append(missing not in search.answer(1e-4).why)
+    return dict(zip(("budget", "meshes"), map(float, wrong), strict=True))
+
+
 #: A quarter of a ring, glued to a box whose coordinates are others, and to a box behind both, and pressed onto a plane.
 GLUED = """
 format = 1

@@ -78,6 +78,7 @@ class Search:
         self.truth: Tried | None = None
         self.rivals: tuple[Tried, ...] = ()  # other over-refined runs: how far they are from the truth is its own error
         self._before: Tried | None = None  # the truth before this one
+        self._finest = False  # whether the truth has the dearest settings that there are
         self._stirring: set[int] = set()  # meshes that change what is wanted beside finer ones alone
 
     @cached_property
@@ -185,7 +186,8 @@ class Search:
         coarser = self._coarser(self._refined(settled, 2, level, 2), 1), self._coarser(finest, 2)
         others = [other for other in dict.fromkeys(coarser) if other != finest]
         choices = (finest, *others)
-        if self.truth and (finest == self.truth.choice or self.laboratory.spent + sum(map(self._cost, choices)) > TRUTH * self.budget):
+        self._finest = self.truth is not None and finest == self.truth.choice
+        if self._finest or (self.truth and self.laboratory.spent + sum(map(self._cost, choices)) > TRUTH * self.budget):
             return False
         if not others:
             raise IsomortarError("nothing of the scene can be refined further, so that two runs cannot tell what the truth is")
@@ -279,12 +281,14 @@ class Search:
             return "what is wanted is nothing in this scene, or no more than over-refined runs differ by"
         finer = (RESOLVED * self.uncertainty / target) ** (1.0 / RATE)
         assert self.truth
-        needed = duration(sum(run.cost for run in (self.truth, *self.rivals)) * finer**COST)
-        return (
+        told = (
             f"over-refined runs differ by {self.uncertainty:.2g} in what is wanted, and {target:g} is less than {RESOLVED:g} times "
-            f"that: nobody could tell whether it is reached. Meshes about {finer:.1f} times finer would tell, some {needed} "
-            f"of the processor for these (--budget is for all runs, {TRUTH:.0%} of it for them)"
+            f"that: nobody could tell whether it is reached. Meshes about {finer:.1f} times finer would tell"
         )
+        if self._finest:
+            return f"{told}, and none that are finer are tried: begin with finer meshes in the scene"
+        needed = duration(sum(run.cost for run in (self.truth, *self.rivals)) * finer**COST)
+        return f"{told}, some {needed} of the processor for these (--budget is for all runs, {TRUTH:.0%} of it for them)"
 
     def _orders(self) -> Iterator[tuple[int, dict[int, int]]]:
         """Orders that all bodies in contact can have, and the settings that are kept for each."""
