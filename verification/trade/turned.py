@@ -65,18 +65,18 @@ THERE = {
     claim="Each dial of a trade or of advice has the scene itself at its own setting; each other one changes what the dial is called by "
     "and nothing else that does not follow from it; settings that refine have no fewer unknowns and load steps than those before them.",
     tier="gate",
-    grid={"of": list(THERE)},
+    grid={"of": list(THERE), "tolerance": (1e-9, 1e-5, 1e-3)},
     bounds={
         "own": Bound(0.0, 0.0, "definition: dials whose own setting changes the scene"),
-        "nothing": Bound(0.0, 0.0, "definition: other settings that do not"),
+        "nothing": Bound(0.0, 0.0, "definition: other settings that do not, or change as much as the one before"),
         "elsewhere": Bound(0.0, 0.0, "definition: changes of what a dial is not called by, and settings that leave that alone"),
         "cheaper": Bound(0.0, 0.0, "definition: settings that refine to fewer unknowns or load steps"),
         "missing": Bound(0.0, 0.0, "definition: dials that there are not, or that nobody knows"),
     },
 )
-def settings(of: str) -> dict[str, float]:
-    """How many of each."""
-    scene = Scene.from_toml(SCENE)
+def settings(of: str, tolerance: float) -> dict[str, float]:
+    """How many of each, of the scene with some tolerance, the loosest that there is as well."""
+    scene = Scene.from_toml(SCENE, overrides=[f"solver.{name}_tolerance={tolerance}" for name in ("newton", "complementarity")])
     own = scene.problem()
     dials = dials_of(scene, knobs=KNOBS if of == "trade" else VARIANTS)
     found = dict.fromkeys(("own", "nothing", "elsewhere", "cheaper"), 0)
@@ -86,7 +86,7 @@ def settings(of: str) -> dict[str, float]:
         others = [changes for number, changes in enumerate(paths) if number != dial.own]
         meant = called(dial.name)
         found["own"] += bool(paths[dial.own])
-        found["nothing"] += sum(not changes for changes in others)
+        found["nothing"] += sum(not changes for changes in others) + sum(not differences(*pair) for pair in pairwise(problems))
         found["elsewhere"] += sum(not any(re.match(meant, path) for path in changes) for changes in others)
         found["elsewhere"] += sum(not re.match(f"{meant}|{FOLLOWS}", path) for changes in others for path in changes)
         sizes = [(sum(len(body.patch.weights) for body in problem.bodies), problem.total_steps) for problem in problems]

@@ -247,16 +247,18 @@ def _load_steps(scene: Scene, spoils: str) -> Iterator[Dial]:
 
 
 def _tolerances(scene: Scene, spoils: str) -> Iterator[Dial]:
-    """How far a load step is iterated."""
+    """How far a load step is iterated; tolerances that are as loose as may be are there once."""
     solver = scene.whole().settings
     loosest = LOOSEST[solver.method]
+    tried = [{key: min(most, factor * getattr(solver, key)) for key, most in loosest.items()} for factor in TOLERANCES]
+    own = tried[TOLERANCES.index(1.0)]
+    tried = [values for number, values in enumerate(tried) if values not in tried[:number]]
 
-    def setting(factor: float) -> Setting:
-        values = [f"solver.{key}={min(most, factor * getattr(solver, key)):g}" for key, most in loosest.items()]
-        label = f"{min(loosest['newton_tolerance'], factor * solver.newton_tolerance):.0e}"
-        return Setting(label, None if factor == 1.0 else given(values))
+    def setting(values: dict[str, float]) -> Setting:
+        keys = [f"solver.{key}={value:g}" for key, value in values.items()]
+        return Setting(f"{values['newton_tolerance']:.0e}", None if values == own else given(keys))
 
-    yield Dial("tolerance", tuple(setting(factor) for factor in TOLERANCES), TOLERANCES.index(1.0), spoils)
+    yield Dial("tolerance", tuple(map(setting, tried)), tried.index(own), spoils)
 
 
 def _methods(scene: Scene, spoils: str) -> Iterator[Dial]:
