@@ -84,15 +84,16 @@ def long_masters(scene: str, order: int, young: int) -> dict[str, float]:
 
 
 @case(
-    claim="Of a block on another one that is as wide, and a single element, nothing is said, however soft that is.",
+    claim="Of a block on another one that is as wide, and a single element, nothing is said, however soft that is; nor is of a cap whose "
+    "own elements are as long.",
     tier="gate",
     grid={"young": (10, 100, 1000)},
-    bounds={"said": Bound(0.0, 0.0, "definition: sentences")},
+    bounds={"said": Bound(0.0, 0.0, "definition: sentences of both")},
 )
 def as_wide(young: int) -> dict[str, float]:
     """What is said."""
     text = CAP.replace(
         'kind = "cap", radius = 1, half_width = 0.4, bottom = 1, top = 1.6', 'kind = "box", lower = [-1, -1, 1], upper = [1, 1, 2]'
     )
-    said, _ = pressed(text, 2, 1, young)
-    return {"said": float(len(said))}
+    as_long = CAP.replace("[8, 8, 2]", "[2, 2, 2]")
+    return {"said": float(len(pressed(text, 2, 1, young)[0]) + len(pressed(as_long, 2, 6, young)[0]))}

@@ -54,8 +54,8 @@ def few_points(problem: Problem, contact: Contact) -> Iterator[str]:
     if isinstance(contact.master, RigidPlane):
         return
     slave, master = Sheet.of(problem, contact.slave), Sheet.of(problem, contact.master)
-    apart = _element_size(slave) / (2**contact.subcells * np.sqrt(np.prod(contact.quadrature)))
-    share = float(_element_size(master) / apart)
+    apart = element_size(slave) / (2**contact.subcells * np.sqrt(np.prod(contact.quadrature)))
+    share = float(element_size(master) / apart)
     if share < ENOUGH and max(body.modulus for body in slave.bodies) >= _softest(master):
         needed = [int(np.ceil(2.0 * points / share)) for points in contact.quadrature]
         yield (
@@ -69,7 +69,7 @@ def _softest(sheet: Sheet) -> float:
     return min(body.modulus for body in sheet.bodies)
 
 
-def _element_size(sheet: Sheet) -> float:
+def element_size(sheet: Sheet) -> float:
     """Typical length of the elements at a side of a contact."""
     lengths = element_lengths(sheet.patch)
     return float(np.sqrt(np.prod([np.median(of_direction) for of_direction in lengths[:2]])))

@@ -11,6 +11,7 @@ from isomortar.model.entities import Contact, Face, Problem
 from isomortar.model.pairs import Pair
 from isomortar.model.sheet import Sheet
 from isomortar.solve.equilibrium import Balance, Equilibrium
+from isomortar.told.before.pairing import element_size
 from isomortar.told.during.softness import softness
 
 #: Share of what a master gives way by that its elements keep back, by one over the width of contact in these, and what is taken from that:
@@ -22,6 +23,8 @@ SMOOTH = 2.0
 WIDE = 4.0
 #: Share of the master's elements from which on contact is as wide as the master: nothing beside it is to be bent down.
 ALL = 0.8
+#: Elements of the master are too long for a finer slave: longer than its own by this factor. Where they are not both are too long.
+FINER = 1.2
 #: Share of the force that this adds from which on it is told.
 COSTS = 0.1
 #: A direction is too coarse where it keeps back this share of what the other one does.
@@ -58,12 +61,15 @@ class LongMaster:
 
 
 def long_master(equilibrium: Equilibrium, pair: Pair, balance: Balance, number: int) -> LongMaster | None:
-    """How a contact that bears lies on elements of its master (theory 9.15); None on rigid planes, and beside planes of symmetry."""
+    """How a contact that bears lies on elements of its master (theory 9.15); None on planes, under slaves no finer, and beside mirrors."""
     projections, problem = balance.kinematics[number].projections, equilibrium.problem
     forces = pair.slave.area * np.maximum(pair.field(balance.responses[number].pressure), 0.0) * (projections.found > 0)
     if not isinstance(pair.contact.master, Face) or problem.images > 1 or not forces.any():
         return None
-    directions = Sheet.of(problem, pair.contact.master).directions
+    slave_side, master_side = Sheet.of(problem, pair.contact.slave), Sheet.of(problem, pair.contact.master)
+    if not element_size(master_side) > FINER * element_size(slave_side):
+        return None
+    directions = master_side.directions
     bounds = [direction.boundaries for direction in directions]
     places = np.stack([np.interp(projections.xi[:, k], b, np.arange(len(b))) for k, b in enumerate(bounds)], axis=1)
     mean = forces @ places / forces.sum()
