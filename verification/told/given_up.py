@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from told.shared import THREE
 from told.word_by_word import SENTENCES
 from told.wrong.causes import said, scene
 from told.wrong.contacts import PRESS
@@ -57,6 +58,7 @@ def of_causes() -> Iterator[tuple[str, str]]:
     }
     yield from ((name, "\n".join(said(scene(**changed)))) for name, changed in changes.items())
     yield "thin, bent", "\n".join(said(scene(TOP=1.0004), SingularSystemError("")))
+    yield "shared edge", "\n".join(said(Simulation(Scene.from_toml(THREE).problem())))
     flat: Simulation = scene()
     positions = flat.state.positions.copy()
     positions[np.unique(flat.equilibrium.numbering.points["lower"]), 2] *= 0.05

@@ -9,6 +9,7 @@ from itertools import product
 import numpy as np
 from told.wrong.singular import CORNER
 
+from isomortar.errors import ConvergenceError
 from isomortar.harness import Bound, case
 from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
@@ -56,3 +57,48 @@ def shared(floor: float, wall: float) -> dict[str, float]:
         numbers = [int(found[1]) if (found := TOLD.match(sentence)) else 0 for sentence in said]
         wrong += numbers != [1 + count % 3] * (states in SHARED and floor + wall > 0.0)
     return {"wrong": float(wrong)}
+
+
+#: Two blocks beside each other that are pressed onto a third one, and bulge against each other on it.
+THREE = """
+format = 1
+bodies.base = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }, mesh.elements = 2 }
+bodies.left = { geometry = { kind = "box", lower = [0, 0, 1], upper = [0.5, 1, 2] }, mesh.elements = 2 }
+bodies.right = { geometry = { kind = "box", lower = [0.5, 0, 1], upper = [1, 1, 2] }, mesh.elements = 2 }
+contacts.one = { slave = "left.w0", master = "base.w1" }
+contacts.two = { slave = "right.w0", master = "base.w1" }
+contacts.three = { slave = "left.u1", master = "right.u0" }
+supports = { foot.face = "base.w0", near.face = "left.w1", far.face = "right.w1" }
+solver = { max_cuts = 2 }
+stages = [{ name = "press", steps = 1, motions.near.translate = [0, 0, -0.1], motions.far.translate = [0, 0, -0.1] }]
+"""
+#: What is advised there, as changes of the scene.
+CURES = {
+    "friction from one": ("contacts.three.friction=0",),
+    "refine": ("bodies.left.mesh.elements=4", "bodies.right.mesh.elements=4"),
+    "uzawa": ("solver.method=uzawa",),
+}
+
+
+def ending(changes: tuple[str, ...] = ()) -> str:
+    """Why that is given up; nothing, where it is not."""
+    try:
+        list(Simulation(Scene.from_toml(THREE, overrides=changes).problem()).run())
+    except ConvergenceError as error:
+        return str(error)
+    return ""
+
+
+@case(
+    claim="A load step that is given up where what sticks to one master is pushed along by another one is told that, with the contacts, "
+    "and each cure that it names lets it converge.",
+    tier="gate",
+    bounds={
+        "told": Bound(1.0, 1.0, "definition: sentences on the contacts that share an edge"),
+        "cured": Bound(3.0, 3.0, "definition: cures that help"),
+    },
+)
+def pushed_along() -> dict[str, float]:
+    """How many."""
+    told = ending().count("Contacts 'one' and 'three' touch on 4 slave control points at the edge between their faces")
+    return {"told": float(told), "cured": float(sum(not ending(changes) for changes in CURES.values()))}

@@ -18,6 +18,7 @@ from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.feet import closest_depths
 from isomortar.solve.record import State
 from isomortar.told.after.overcome import overcome
+from isomortar.told.after.shared_edges import shared_edges
 from isomortar.told.after.sliding import sliding
 from isomortar.told.after.tipping import tipping
 from isomortar.told.before.pairing import few_points
@@ -59,6 +60,8 @@ def causes(equilibrium: Equilibrium, state: State, error: Exception) -> Iterator
         found = [(pieces, sentence) for pieces, sentence in judge(equilibrium, state) if told.isdisjoint(pieces)]
         yield from (sentence for _, sentence in found)
         told.update(*(pieces for pieces, _ in found))
+    if not isinstance(error, SingularSystemError):  # that tells by itself what repeats
+        yield from shared_edges(equilibrium, state)
     yield from _flat(problem.deformable, equilibrium.solid.smallest_jacobians(positions))
     for body in problem.deformable:
         yield from _lengths(body, LENGTHS_BENT if isinstance(error, SingularSystemError) else LENGTHS)
