@@ -32,7 +32,7 @@ TIPS = (
 PILE = (
     HEAD + BLOCK + ON_TOP + FLOOR.replace("FRICTION", "0.3") + 'contacts.mid = { slave = "top.w0", master = "block.w1", friction = 0.2 }\n'
 )
-#: Weights beside a light one of 2, or below it up to the third.
+#: Weights beside a light one of 2, or below it up to 1e7 times that.
 HEAVY = {"as heavy": 2.0, "of stone": 2e3, "of lead": 2e5, "a house": 2e9}
 
 
@@ -44,7 +44,7 @@ def sentence(scene: str, weight: float) -> str:
 
 @case(
     claim="Of a body that friction can not hold, or that loads tip over, the same is said beside another one that rests, however heavy it "
-    "is; and of one that lies on another one, up to 1e5 times as heavy.",
+    "is; and of one that lies on another one, up to 1e7 times as heavy.",
     tier="gate",
     grid={"heavy": tuple(HEAVY)},
     bounds={
@@ -57,7 +57,7 @@ def sentence(scene: str, weight: float) -> str:
 def company(heavy: str) -> dict[str, float]:
     """How far off, and how many."""
     weight = HEAVY[heavy]
-    below = weight if weight < 1e6 else HEAVY["of lead"]
+    below = min(weight, 2e7)
     tips = [sentence(TIPS.replace("LEAN", lean).replace("YOUNG", young), weight) for lean, young in (("0.7", "10000"), ("0.41", "100"))]
     rests = sentence(SLIDES.replace("FORWARDS", "0.5"), weight)
     pile = PILE.replace('block = { body = "block", weight = [1, 0, -2] }', f'block = {{ body = "block", weight = [0, 0, {-below}] }}')

@@ -16,6 +16,8 @@ from isomortar.solve.touching import mean_heights, next_to_nothing
 
 #: Rates of gaps, beside the largest one of all motions, below which a motion is along the contact: faces are flat to some digits.
 ALONG = 1e-3
+#: Roots of what friction resists motions by, beside the largest, below which it resists none: that of a light body is far less.
+RESISTS = 1e-7
 #: Share of a slave's constraints that touch from which on its moments are known: of less the place is not, before it is pressed.
 FACE = 0.5
 #: Iterations in which a bed of springs, and the motion that friction resists least, are found, or there are none.
@@ -170,9 +172,11 @@ def least_resisted(touches: Sequence[Touch], limits: Sequence[FloatArray], along
     lengths, way = np.ones(len(limit)), np.zeros(len(work))
     for _ in range(ITERATIONS):
         shares = (slips / np.sqrt(lengths)[:, None, None]).reshape(-1, len(work))
-        stiffness = shares.T @ shares
-        found = np.linalg.lstsq(stiffness, work, rcond=ALONG**3)[0]
-        if not work @ found > 0.0 or np.linalg.norm(stiffness @ found - work) > ALONG * np.linalg.norm(work):
+        _, values, ways = np.linalg.svd(shares, full_matrices=False)
+        resists = values > RESISTS * values.max(initial=0.0)
+        values, ways = values[resists], ways[resists]
+        found = ways.T @ (ways @ work / values**2)
+        if not work @ found > 0.0 or np.linalg.norm(ways.T @ (ways @ work) - work) > ALONG * np.linalg.norm(work):
             return np.zeros(len(works))
         way = found / (work @ found)
         lengths = np.linalg.norm(slips @ way, axis=1) / np.sqrt(np.where(limit > 0.0, limit, 1.0))
