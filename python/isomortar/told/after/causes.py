@@ -60,7 +60,7 @@ def causes(equilibrium: Equilibrium, state: State, error: Exception) -> Iterator
         found = [(pieces, sentence) for pieces, sentence in judge(equilibrium, state) if told.isdisjoint(pieces)]
         yield from (sentence for _, sentence in found)
         told.update(*(pieces for pieces, _ in found))
-    if not isinstance(error, SingularSystemError):  # that tells by itself what repeats
+    if not told and not isinstance(error, SingularSystemError):  # that tells by itself what repeats
         yield from shared_edges(equilibrium, state)
     yield from _flat(problem.deformable, equilibrium.solid.smallest_jacobians(positions))
     for body in problem.deformable:
