@@ -7,7 +7,6 @@ import re
 from told.runs import Heard
 
 from isomortar.harness import Bound, case
-from isomortar.march.outlook import outlook
 from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
 
@@ -76,48 +75,3 @@ def passing() -> dict[str, float]:
     """How many of eleven, and in a stage of several load steps."""
     others = [name for name, (level, changes, said) in SCENES.items() if told(level, changes) != said]
     return {"others": float(len(others)), "early": before_the_end()}
-
-
-#: Two blocks that are pressed together on both sides of a thin sheet, by more than that is thick.
-SHEET = """
-format = 1
-bodies.sheet = { geometry = { kind = "box", lower = [0, 0, 0], upper = [2, 2, THICK] }, mesh.elements = [4, 4, 1] }
-bodies.upper = { geometry = { kind = "box", lower = [0.5, 0.5, THICK], upper = [1.5, 1.5, 1] }, mesh.elements = 3 }
-bodies.lower = { geometry = { kind = "box", lower = [0.5, 0.5, -1], upper = [1.5, 1.5, 0] }, mesh.elements = 3 }
-contacts.above = { slave = "upper.w0", master = "sheet.w1" }
-contacts.below = { slave = "lower.w1", master = "sheet.w0" }
-supports = { foot.face = "lower.w0", hand.face = "upper.w1" }
-stages = [{ name = "press", steps = 2, motions.hand.translate = [0, 0, -0.1] }]
-"""
-#: Two blocks on a table, one of which is pressed onto that and drawn into the other.
-NEIGHBOURS = """
-format = 1
-bodies.table = { geometry = { kind = "box", lower = [0, 0, -1], upper = [3, 1, 0] }, mesh.elements = [6, 2, 2] }
-bodies.left = { geometry = { kind = "box", lower = [0.2, 0, 0], upper = [1.2, 1, 1] }, mesh.elements = 2 }
-bodies.right = { geometry = { kind = "box", lower = [1.3, 0, 0], upper = [2.3, 1, 1] }, mesh.elements = 2 }
-contacts = { one = { slave = "left.w0", master = "table.w1" }, two = { slave = "right.w0", master = "table.w1" } }
-supports = { foot.face = "table.w0", hand.face = "left.w1", hold.face = "right.w1" }
-stages = [{ name = "draw", steps = 4, motions.hand.translate = [0.4, 0, -0.02] }]
-"""
-
-
-@case(
-    claim="Blocks that a thin sheet keeps apart are not said to meet, though they go farther than that is thick; of two blocks on one "
-    "table, of which one is drawn into the other, that is said.",
-    tier="gate",
-    grid={"thick": (0.02, 0.05, 0.1)},
-    bounds={
-        "kept apart": Bound(0.0, 0.0, "definition: sentences on blocks beside a sheet, before the run and in it"),
-        "into each other": Bound(1.0, 1.0, "definition: sentences on those on a table, before the run"),
-    },
-)
-def keeps_apart(thick: float) -> dict[str, float]:
-    """How many."""
-    heard = Heard()
-    list(Simulation(Scene.from_toml(SHEET.replace("THICK", str(thick))).problem(), heard).run())
-    warnings = outlook(Scene.from_toml(NEIGHBOURS).problem()).warnings
-    words = "nothing keeps them apart"
-    return {
-        "kept apart": float(sum(words in said for said in heard.said)),
-        "into each other": float(sum(words in said for said in warnings)),
-    }

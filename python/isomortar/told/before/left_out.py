@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from itertools import combinations
 
 import numpy as np
@@ -11,7 +11,7 @@ from isomortar.geometry.patch import FloatArray, Patch
 from isomortar.model.constants import SAME_POINT
 from isomortar.model.entities import Body, Face, Problem
 from isomortar.model.glue import pieces
-from isomortar.told.before.meeting import depth, meet
+from isomortar.told.before.meeting import meet
 
 
 def of_what_is_left_out(problem: Problem) -> Iterator[str]:
@@ -40,24 +40,11 @@ def _in_contact(problem: Problem) -> list[set[str]]:
 def without_contact(problem: Problem) -> list[tuple[str, str]]:
     """Bodies that are at or in each other, or come to be by their supports, and neither in contact nor glued."""
     whole, found = _pieces(problem), []
-    gone = {body.name: np.vstack([np.zeros(3), _ways(problem, body, whole)]) for body in problem.bodies}
     for one, other in unrelated(problem):
-        ways = gone[one.name] - gone[other.name]
-        places = np.unique(ways, axis=0, return_index=True)[1]
-        if any(meet(one, other, ways[place]) and not _between(problem, one, other, gone, place) for place in places):
+        ways = [np.zeros(3), *(a - b for a, b in zip(_ways(problem, one, whole), _ways(problem, other, whole), strict=True))]
+        if any(meet(one, other, way) for way in np.unique(ways, axis=0)):
             found.append((one.name, other.name))
     return found
-
-
-def _between(problem: Problem, one: Body, other: Body, gone: Mapping[str, FloatArray], place: int) -> bool:
-    """Whether a body that is in contact with both is between them: one of them goes farther into it than they go into each other."""
-    sides = _in_contact(problem)
-    into = depth(one, other, gone[one.name][place] - gone[other.name][place])
-    for third in problem.bodies:
-        ends = [body for body in (one, other) if any({body.name, third.name} <= names for names in sides)]
-        if len(ends) == 2 and any(depth(end, third, gone[end.name][place] - gone[third.name][place]) > into for end in ends):
-            return True
-    return False
 
 
 def unrelated(problem: Problem) -> Iterator[tuple[Body, Body]]:

@@ -35,12 +35,12 @@ def meet(one: Body, other: Body, way: FloatArray) -> bool:
     )
 
 
-def depth(one: Body, other: Body, way: FloatArray | None = None) -> float:
-    """By how much parts of the outside of a body that has gone some way are inside another one at most, or the other way round; else 0."""
-    gone = np.zeros(3) if way is None else way
-    if not _common_size(one, other, gone):
+def depth(one: Body, other: Body) -> float:
+    """By how much parts of the outside of one body are inside another one at most, or the other way round; 0 where they are not."""
+    still = np.zeros(3)
+    if not _common_size(one, other, still):
         return 0.0
-    found = (_heights(one, other, gone), _heights(other, one, -gone))
+    found = (_heights(one, other, still), _heights(other, one, still))
     return float(np.max([np.max(-h.above[~h.beside], initial=0.0) for h in found]))
 
 
