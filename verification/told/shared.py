@@ -102,3 +102,38 @@ def pushed_along() -> dict[str, float]:
     """How many."""
     told = ending().count("Contacts 'one' and 'three' touch on 4 slave control points at the edge between their faces")
     return {"told": float(told), "cured": float(sum(not ending(changes) for changes in CURES.values()))}
+
+
+#: Two patches glued to one, each with a contact with the same plane, that are pressed farther than they are thick.
+_SIDE_BY_SIDE = """
+format = 1
+solver = { method = "uzawa", max_cuts = 0, max_iterations = 12 }
+glue = [["left.u1", "right.u0"]]
+bodies.left = { geometry = { kind = "box", lower = [-1, 0, 0], upper = [0, 1, 0.5] }, mesh = { order = 2, elements = [3, 3, 2] } }
+bodies.right = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 0.5] }, mesh = { order = 2, elements = [3, 3, 2] } }
+contacts.one = { slave = "left.w0", plane = {}, friction = 0.3 }
+contacts.other = { slave = "right.w0", plane = {}, friction = 0.3 }
+supports = { near.face = "left.w1", far.face = "right.w1" }
+[[stages]]
+name = "press"
+steps = 1
+motions = { near.translate = [0, 0, -0.02], far.translate = [0, 0, -0.02] }
+[[stages]]
+name = "push"
+steps = 1
+motions = { near.translate = [0.4, 0, -0.3], far.translate = [0.4, 0, -0.3] }
+"""
+
+
+@case(
+    claim="Where faces of glued patches go on from each other on one plane nothing is said of an edge.",
+    tier="gate",
+    bounds={"said": Bound(0.0, 0.0, "definition: sentences"), "given up": Bound(1.0, 1.0, "definition: there is something to say")},
+)
+def side_by_side() -> dict[str, float]:
+    """How often it is."""
+    try:
+        list(Simulation(Scene.from_toml(_SIDE_BY_SIDE).problem()).run())
+    except ConvergenceError as error:
+        return {"said": float("at the edge" in str(error)), "given up": 1.0}
+    return {"said": 0.0, "given up": 0.0}

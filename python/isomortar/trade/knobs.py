@@ -122,7 +122,7 @@ def _possible(scene: Scene, dial: Dial, wants: Sequence[Want]) -> Dial:
 def _orders(scene: Scene, spoils: str) -> Iterator[Dial]:
     """Order of each body along its faces in contact, and of what is glued to it along these."""
     for places in _contact_places(scene):
-        names = list(dict.fromkeys(name for name, _ in places))
+        names = [body.name for body in scene.whole().bodies if any(body.name == name for name, _ in places)]
         along = [(axis, d) for name in names for axis, d in directions(scene.whole().body(name)) if (name, axis) in places]
         own, families = max(d.order for _, d in along), {d.family for _, d in along}
         lowest = [lowest_order(scene, name, "".join(axis for of, axis in places if of == name)) for name in names]

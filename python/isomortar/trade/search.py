@@ -224,6 +224,8 @@ class Search:
     def _stirs(self, target: float) -> bool:
         """Whether meshes that are settled beside the scene's own ones are not beside finer ones: a slave on a finer master, say."""
         assert self.truth
+        if self.laboratory.spent > TRUTH * self.budget:
+            return False
         beside, settled = self._coarser(self.truth.choice, 2), self._settled(target)
         meshes = {number for number in settled if self.dials[number].part == "elements"}
         stirring = meshes if self._moved(beside, meshes) > self._limit(target) else set()

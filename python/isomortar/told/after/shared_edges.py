@@ -8,6 +8,7 @@ from itertools import combinations
 import numpy as np
 
 from isomortar.errors import LostProjectionError
+from isomortar.model.entities import Contact
 from isomortar.model.supports import BoolArray
 from isomortar.solve.contact import PairMechanics
 from isomortar.solve.equilibrium import Equilibrium
@@ -23,12 +24,18 @@ def shared_edges(equilibrium: Equilibrium, state: State) -> Iterator[str]:
         first, second = one.pair, other.pair
         _, mine, theirs = np.intersect1d(first.slave.point, second.slave.point, return_indices=True)
         count = int(np.count_nonzero(touching[i][mine] & touching[j][theirs]))
-        if count and first.contact.slave != second.contact.slave and (one.friction.acts or other.friction.acts):
+        rough = [repr(pair.pair.contact.name) for pair in (one, other) if pair.friction.acts]
+        if count and rough and _adjoin(first.contact, second.contact):
             yield (
                 f"contacts {first.contact.name!r} and {second.contact.name!r} touch on {count} slave control points at the edge between "
-                "their faces, and what sticks to one master there is pushed along by the other one: take friction from one of the two, or "
-                f"refine towards that edge{cure}"
+                "their faces, and what sticks to one master there is pushed along by the other one: take friction from "
+                f"{' or '.join(rough)}, or refine towards that edge{cure}"
             )
+
+
+def _adjoin(one: Contact, other: Contact) -> bool:
+    """Whether slaves are faces of a body that meet at an angle; those of bodies that are glued side by side may go on from each other."""
+    return any(a.body == b.body and a.face[0] != b.face[0] for a in one.slave.faces for b in other.slave.faces)
 
 
 def _touching(pair: PairMechanics, state: State, number: int) -> BoolArray:

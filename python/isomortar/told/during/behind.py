@@ -14,6 +14,8 @@ from isomortar.model.entities import Body, Face, Problem, RigidPlane, unit
 
 #: Depth over the size of a body from which it is behind a plane: faces in contact are, too, by less than their elements see.
 PASSED = 0.01
+#: Decimals of heights of planes, over the largest size of a body, in which those of one plane by different points of it are the same.
+DIGITS = 9
 
 
 class Behind:
@@ -66,11 +68,11 @@ class _Plane:
 def _planes(problem: Problem) -> list[_Plane]:
     """The rigid planes of a problem, each once, by whatever point; a face that touches one that looks the same way has its own floor."""
     planes = [(contact, contact.master) for contact in problem.contacts if isinstance(contact.master, RigidPlane)]
-    found = dict[tuple[float, object], _Plane]()
+    found, size = dict[tuple[float, object], _Plane](), max(body.size for body in problem.bodies)
     for contact, plane in planes:
         touching = frozenset(face for other, level in planes if level.normal == plane.normal for face in other.slave.faces)
         before = [b.name for b in problem.bodies if _heights(b.patch.control_points, plane).min() >= -constants.NO_PART * b.size]
-        height = float(_heights(np.zeros(3), plane))
+        height = round(float(_heights(np.zeros(3), plane)) / size, DIGITS)
         found.setdefault((height, plane.normal), _Plane(contact.name, plane, touching, frozenset(before)))
     return list(found.values())
 
