@@ -110,3 +110,44 @@ def lacking() -> dict[str, float]:
         said = warnings(BESIDE_A_POLE, FROM=str(far), TO=str(far + 1.0))
         poles += any("has a pole, an edge that is one point" in warning for warning in said) != told
     return {"supports": float(supports), "meeting": float(meeting), "points": float(points), "poles": float(poles)}
+
+
+#: A punch that goes past the pad between it and a base; two blocks on a floor, of which one is pushed into the other.
+_PAST = """
+format = 1
+bodies.punch = { geometry = { kind = "box", lower = [-2, -2, 0.2], upper = [2, 2, 1] }, mesh = { order = 2, elements = [4, 4, 1] } }
+bodies.pad = { geometry = { kind = "box", lower = [-0.5, -0.5, 0], upper = [0.5, 0.5, 0.2] }, mesh = { order = 2, elements = [4, 4, 2] } }
+bodies.base = { geometry = { kind = "box", lower = [-3, -3, -1], upper = [3, 3, 0] }, mesh = { order = 2, elements = [4, 4, 1] } }
+contacts.upper = { slave = "pad.w1", master = "punch.w0" }
+contacts.lower = { slave = "pad.w0", master = "base.w1" }
+supports = { top.face = "punch.w1", ground.face = "base.w0" }
+stages = [{ name = "press", steps = 5, motions.top.translate = [0, 0, -0.25] }]
+"""
+_ALONG = """
+format = 1
+bodies.left = { geometry = { kind = "box", lower = [-1, 0, 0], upper = [0, 1, 1] }, mesh = { order = 2, elements = 2 } }
+bodies.right = { geometry = { kind = "box", lower = [0.01, 0, 0], upper = [1.01, 1, 1] }, mesh = { order = 2, elements = 2 } }
+bodies.floor = { geometry = { kind = "box", lower = [-3, -3, -1], upper = [3, 3, 0] }, mesh = { order = 2, elements = [4, 4, 1] } }
+contacts.one = { slave = "left.w0", master = "floor.w1" }
+contacts.other = { slave = "right.w0", master = "floor.w1" }
+supports = { left.face = "left.w1", right.face = "right.w1", ground.face = "floor.w0" }
+[[stages]]
+name = "press"
+steps = 5
+motions = { left.translate = [0, 0, -0.05], right.translate = [0, 0, -0.05] }
+[[stages]]
+name = "push"
+steps = 2
+motions.left.translate = [0.04, 0, 0]
+"""
+
+
+@case(
+    claim="A body that two others touch keeps these apart neither beside it nor along it: it is said that they meet.",
+    tier="gate",
+    bounds={"silent": Bound(0.0, 0.0, "definition: scenes of which it is not")},
+)
+def past_what_both_touch() -> dict[str, float]:
+    """How many of two."""
+    pairs = {_PAST: "bodies 'punch' and 'base' meet", _ALONG: "bodies 'left' and 'right' meet"}
+    return {"silent": float(sum(not any(words in warning for warning in warnings(text)) for text, words in pairs.items()))}

@@ -143,7 +143,7 @@ def said_of(text: str) -> list[str]:
 )
 def bent_and_round() -> dict[str, float]:
     """What is said."""
-    beginnings = ((-180, 180), (90, 450), (-90, 270))
+    beginnings = ((-180, 180), (0, 360), (90, 450))
     said = [said_of(_TUBE.replace("BEGIN", str(begin)).replace("END", str(end))) for begin, end in beginnings]
     other = sum(len(words) != 1 or words != said[1] or "more along u (bodies.tube" not in words[0] for words in said)
     return {"beam": float(len(said_of(_BEAM))), "tubes": float(other)}
