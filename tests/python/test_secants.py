@@ -1,5 +1,6 @@
 """Corrections by kept factors learn from the iterations before, and change what they cost alone."""
 
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from isomortar.march.simulation import Simulation
 from isomortar.model.constants import MAX_SECANTS
 from isomortar.model.entities import Problem
 from isomortar.scene import Scene
+from isomortar.solve.bordered import Correction, from_lengths, in_lengths
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.record import StepResult
 from isomortar.solve.secants import Secants
@@ -64,6 +66,19 @@ def test_nothing_is_learnt_of_nothing() -> None:
     secants = Secants()
     secants.learn(np.zeros((2, 3)), np.zeros((2, 3)))
     np.testing.assert_array_equal(secants.improved(np.ones((2, 3))), np.ones((2, 3)))
+
+
+@pytest.mark.parametrize("active", [True, False])
+def test_a_correction_in_lengths_is_the_same_again(active: bool) -> None:
+    scale, random = np.array([2.0, 30.0, 0.04]), np.random.default_rng(5)
+    correction = Correction(random.random((4, 3)), (random.random(5),), (random.random((5, 2)),))
+    borders: Any = [SimpleNamespace(column_scale=scale) if active else None]
+    lengths = in_lengths(correction.positions, correction.multipliers, borders)
+    np.testing.assert_allclose(lengths[12:15] * (scale if active else 1.0), [correction.pressures[0][0], *correction.tractions[0][0]])
+    again = from_lengths(lengths, correction, borders)
+    np.testing.assert_array_equal(again.positions, correction.positions)
+    np.testing.assert_allclose(again.pressures[0], correction.pressures[0], rtol=1e-15)
+    np.testing.assert_allclose(again.tractions[0], correction.tractions[0], rtol=1e-15)
 
 
 def pressed() -> Problem:

@@ -110,7 +110,7 @@ def iterations_by_kept_factors(results: list[StepResult]) -> Iterator[tuple[int,
 
 @pytest.mark.parametrize("method", ["monolithic", "uzawa"])
 def test_factors_are_kept_while_they_serve(method: str) -> None:
-    keeping = small_iron(method=method)
+    keeping = small_iron(method=method, penalty_normal=20.0, penalty_tangential=2.0)
     others = tuple(measure for measure in keeping.settings.measures if measure != "keeping")
     afresh = replace(keeping, settings=replace(keeping.settings, measures=others))
     one, other = run(keeping), run(afresh)
@@ -124,6 +124,7 @@ def test_factors_are_kept_while_they_serve(method: str) -> None:
         assert now.residual <= constants.KEPT_SHARE * before.residual, "after a change of penalties, or of states, others are made"
         assert augmentation > 1 or now.iteration > 1, "an increment begins with a tangent of its own"
         assert method == "uzawa" or (before.active, before.slip) == (now.active, now.slip)
+    assert sum(result.cuts for result in (*one, *other)) == 0  # a cut is another path, with friction another solution
     np.testing.assert_allclose(one[-1].state.positions, other[-1].state.positions, atol=1e-8)
 
 
@@ -212,9 +213,9 @@ def test_unconverged_step_is_cut_and_then_named() -> None:
     assert listener.tried_next == [(4, 4.0, 0.5), (4, 3.5, 0.25)]
 
 
-@pytest.mark.parametrize("method", ["monolithic", "uzawa"])
-def test_a_loop_that_ends_too_early_says_which_states_change(method: str) -> None:
-    with pytest.raises(ConvergenceError, match="after 2 iterations; constraints 5, 6, 9, 10 change their states"):
+@pytest.mark.parametrize(("method", "which"), [("monolithic", "5, 9"), ("uzawa", "5, 6, 9, 10")])
+def test_a_loop_that_ends_too_early_says_which_states_change(method: str, which: str) -> None:
+    with pytest.raises(ConvergenceError, match=f"after 2 iterations; constraints {which} change their states"):
         run(small_iron(method=method, max_iterations=2, max_cuts=0))
 
 

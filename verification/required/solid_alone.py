@@ -14,6 +14,7 @@ from isomortar.model.solid import Solid
 from isomortar.model.supports import Supports
 from isomortar.scene import Scene
 from isomortar.solve.condensed import Bodies, CondensedSystem
+from isomortar.solve.secants import Secants
 from isomortar.solve.system import LinearSystem, Source, block_product, entries
 from isomortar.solve.timing import Ledger
 from isomortar.told.during.unstable import FORCES
@@ -31,6 +32,8 @@ stages = [{ name = "bend", steps = 4, motions.right = { translate = [0.04, 0, 0.
 
 class Plain:
     """Newton's method with factors that are kept, for one body, from where the last load step leads; `ledger` counts what it did.
+
+    Corrections by kept factors learn from the steps before.
 
     It asks at its end whether the equilibrium is stable.
     """
@@ -68,7 +71,7 @@ class Plain:
         given = self.supports.increment(start, step)
         tangent = self._factorise(start)
         right = self.solid.forces(start) + block_product(self.solid.pattern, tangent, given)
-        return self._corrected(start, right) + given
+        return start + self._correction(right) + given
 
     def _balanced(self, positions: FloatArray, keep: bool) -> FloatArray:
         """Positions at which forces are in balance."""
@@ -76,7 +79,9 @@ class Plain:
         while left > self.problem.settings.newton_tolerance:
             if not keep:
                 self._factorise(positions)
-            positions, before = self._corrected(positions, forces), left
+            correction, before = self._correction(forces), left
+            self.secants.reach(positions, correction)
+            positions = positions + (self.secants.improved(correction) if keep else correction)
             forces, left = self._residual(positions)
             keep = left <= constants.KEPT_SHARE * before
         return positions
@@ -88,12 +93,13 @@ class Plain:
     def _factorise(self, positions: FloatArray) -> FloatArray:
         _, tangent = self.solid.forces_and_tangent(positions)
         self.system.factorise([tangent])
+        self.secants = Secants()
         return tangent
 
-    def _corrected(self, positions: FloatArray, forces: FloatArray) -> FloatArray:
-        correction = np.zeros_like(positions)
+    def _correction(self, forces: FloatArray) -> FloatArray:
+        correction = np.zeros_like(forces)
         correction.ravel()[self.free] = -self.system.solve(forces.ravel()[self.free])
-        return positions + correction
+        return correction
 
 
 #: Counts of what both do.

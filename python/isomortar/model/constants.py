@@ -85,8 +85,8 @@ SQUARED = (1e-80, 1e80)
 # ---- Newton's method (theory 6.5, 6.6, 7.5)
 
 #: Factors are kept as long as a solve with them leaves at most this share of the residual: it saves the tangents and their factors, most
-#: of an iteration, and three such solves gain two digits. Those of bodies are, as long as they miss no more of it (theory 5.24).
-KEPT_SHARE = 0.2
+#: of an iteration, and each such solve makes the next one better. Those of bodies are, as long as they miss no more of it (theory 5.24).
+KEPT_SHARE = 0.7
 #: So many steps correct solves with kept factors at most: eight take a few more solves, twenty as many and more tangents.
 MAX_SECANTS = 12
 #: A step does so if this share of what it changed is in none of later ones: of less, round-off would count.

@@ -18,7 +18,7 @@ from isomortar._bindings import Law, Response
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model import constants
 from isomortar.model.supports import BoolArray
-from isomortar.solve.contact import Blocks, PairMechanics, pressure_share
+from isomortar.solve.contact import Blocks, Multipliers, PairMechanics, pressure_share
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.metric import median, tangent_lengths
 from isomortar.solve.singular import PairConditions
@@ -32,6 +32,11 @@ class Correction:
     positions: FloatArray
     pressures: tuple[FloatArray, ...]
     tractions: tuple[FloatArray, ...]
+
+    @property
+    def multipliers(self) -> list[Multipliers]:
+        """Corrections of control pressures and tractions, by pair."""
+        return list(zip(self.pressures, self.tractions, strict=True))
 
 
 @dataclass(frozen=True)
@@ -132,6 +137,25 @@ def solve_with_kept_factors(
     size = len(equilibrium.supports.free) + sum(int(np.count_nonzero(b.equation >= 0)) for b in borders if b is not None)
     right = _right_hand_side(equilibrium, balance, targets, borders, [], [], None, size)
     return _correction(equilibrium, equilibrium.solve_again(right), balance, targets, borders)
+
+
+def in_lengths(positions: FloatArray, multipliers: Sequence[Multipliers], borders: Sequence[Border | None]) -> FloatArray:
+    """Positions and multipliers as one vector, multipliers over the scales of their columns (theory 6.4)."""
+    parts = zip(multipliers, _column_scales(borders), strict=True)
+    return np.concatenate([positions.ravel(), *((np.column_stack(pair) / scale).ravel() for pair, scale in parts)])
+
+
+def from_lengths(vector: FloatArray, like: Correction, borders: Sequence[Border | None]) -> Correction:
+    """The correction that `in_lengths` makes a vector of, with as many control points and constraints as another one."""
+    sizes = [like.positions.size, *(3 * len(pressures) for pressures in like.pressures)]
+    positions, *multipliers = np.split(vector, np.cumsum(sizes[:-1]))
+    changes = [pair.reshape(-1, 3) * scale for pair, scale in zip(multipliers, _column_scales(borders), strict=True)]
+    return Correction(positions.reshape(like.positions.shape), tuple(c[:, 0] for c in changes), tuple(c[:, 1:] for c in changes))
+
+
+def _column_scales(borders: Sequence[Border | None]) -> list[FloatArray]:
+    """Scales of the multipliers' columns, by pair; ones where nothing is active, and multipliers are zero."""
+    return [np.ones(3) if border is None else border.column_scale for border in borders]
 
 
 def _correction(

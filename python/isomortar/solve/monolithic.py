@@ -13,7 +13,7 @@ from isomortar._codes import PointState
 from isomortar.errors import ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
-from isomortar.solve.bordered import Border, Correction, solve_bordered, solve_with_kept_factors
+from isomortar.solve.bordered import Border, Correction, from_lengths, in_lengths, solve_bordered, solve_with_kept_factors
 from isomortar.solve.contact import Kinematics, Multipliers
 from isomortar.solve.distances import apart, largest, round_off
 from isomortar.solve.equilibrium import Balance, Equilibrium
@@ -23,6 +23,7 @@ from isomortar.solve.metric import contravariant
 from isomortar.solve.newton import Converged, Iterate, Newton
 from isomortar.solve.record import IterationRecord, State
 from isomortar.solve.scales import Scales
+from isomortar.solve.secants import Secants
 
 #: Note of an iteration whose positions and multipliers went on from the last increment.
 EXTRAPOLATION = "extrapolation"
@@ -94,6 +95,7 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
         super().__init__(equilibrium, start, scales)
         self._margin = constants.SLIP_MARGIN if "margin" in self._settings.measures else 0.0
         self._borders: list[Border | None] = []
+        self._secants = Secants()
 
     def first(self) -> _BorderedIterate:
         """The converged state of the last increment as the first iterate (theory 6.5).
@@ -203,17 +205,23 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
     def _solved(self, iterate: _BorderedIterate, prescribed: FloatArray | None, keep_bodies: bool) -> Correction:
         solved = solve_bordered(self._equilibrium, iterate.balance, iterate.laws, iterate.targets, prescribed, keep_bodies)
         correction, self._borders = solved
+        self._secants = Secants()
         return correction
 
     def _correct_again(self, iterate: _BorderedIterate) -> Correction:
-        return solve_with_kept_factors(self._equilibrium, iterate.balance, iterate.targets, self._borders)
+        """Correction by the factors of the last tangent, by what the steps since then tell of others (theory 7.6)."""
+        correction = solve_with_kept_factors(self._equilibrium, iterate.balance, iterate.targets, self._borders)
+        here = in_lengths(iterate.balance.positions, iterate.multipliers, self._borders)
+        lengths = in_lengths(correction.positions, correction.multipliers, self._borders)
+        self._secants.reach(here, lengths)
+        return from_lengths(self._secants.improved(lengths), correction, self._borders)
 
     def _serve(self, iterate: _BorderedIterate, following: _BorderedIterate) -> bool:
         return following.states == iterate.states and super()._serve(iterate, following)
 
     def _moved(self, iterate: _BorderedIterate, correction: Correction, share: float) -> _BorderedIterate:
-        changes = zip(iterate.multipliers, correction.pressures, correction.tractions, strict=True)
-        multipliers = [(pressure + share * dp, traction + share * dt) for (pressure, traction), dp, dt in changes]
+        changes = zip(iterate.multipliers, correction.multipliers, strict=True)
+        multipliers = [(pressure + share * dp, traction + share * dt) for (pressure, traction), (dp, dt) in changes]
         return self._evaluate(self._equilibrium.moved(iterate.balance.positions, share * correction.positions), multipliers)
 
     def _reversals(self, k: int, iterate: _BorderedIterate, correction: Correction) -> np.ndarray:

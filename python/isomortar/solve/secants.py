@@ -12,9 +12,21 @@ class Secants:
     """The last steps between iterates, and by how much each changed the correction by kept factors (theory 7.6)."""
 
     def __init__(self) -> None:
+        self._last: tuple[FloatArray, FloatArray] | None = None  # an iterate, and its correction
         self._known: list[tuple[FloatArray, FloatArray]] = []  # changes, of length one, and what steps are more, the last one first
         self._products = np.zeros((0, 0))  # of the changes with each other
         self._chosen: list[int] = []  # changes that are no combination of later ones
+
+    def leave(self) -> None:
+        """The next iterate is not a step from the last one: other forces are balanced there."""
+        self._last = None
+
+    def reach(self, iterate: FloatArray, correction: FloatArray) -> None:
+        """Come to an iterate with its correction by the factors; the step to it from the last one is taken in."""
+        if self._last is not None:
+            before, its_correction = self._last
+            self.learn(iterate - before, its_correction - correction)
+        self._last = iterate, correction
 
     def learn(self, step: FloatArray, change: FloatArray) -> None:
         """Take in a step, and the correction before it less the one after it, both of any one shape."""

@@ -30,16 +30,17 @@ class _PositionNewton(Newton[Iterate, FloatArray]):
         super().__init__(equilibrium, start, scales)
         self._closes = False  # whether the first iterate has constraints closed whatever they bear
         self._secants = Secants()
-        self._last: tuple[FloatArray, FloatArray] | None = None  # positions with these laws, and the correction there by these factors
 
     def held(self, laws: Sequence[Law], positions: FloatArray) -> Iterate:
         """The first iterate with these laws, where the last augmentation ended."""
-        self._laws, self._last, self._closes, self._loads_closed = laws, None, False, []
+        self._laws, self._closes, self._loads_closed = laws, False, []
+        self._secants.leave()
         return self._evaluate(positions)
 
     def first(self, laws: Sequence[Law], positions: FloatArray) -> Iterate:
         """The same at the start of an increment, with that closed which loads close first."""
-        self._laws, self._last = laws, None
+        self._laws = laws
+        self._secants.leave()
         return self._closing(positions, frictionless=False)
 
     def _closing(self, positions: FloatArray, frictionless: bool) -> Iterate:
@@ -75,16 +76,14 @@ class _PositionNewton(Newton[Iterate, FloatArray]):
         increment = prescribed if prescribed is not None else np.zeros_like(iterate.balance.positions)
         correction = self._equilibrium.correction(iterate.balance, self._laws, increment, keep_bodies)
         self._secants = Secants()
-        self._last = None if moves or self._closes else (iterate.balance.positions, correction)  # not of these laws' forces alone
+        if not moves and not self._closes:  # else it is not of these laws' forces alone
+            self._secants.reach(iterate.balance.positions, correction)
         self._closes = False
         return iterate, correction, ()
 
     def _correct_again(self, iterate: Iterate) -> FloatArray:
-        positions, correction = iterate.balance.positions, self._equilibrium.kept_correction(iterate.balance)
-        if self._last is not None:
-            before, its_correction = self._last
-            self._secants.learn(positions - before, its_correction - correction)
-        self._last = positions, correction
+        correction = self._equilibrium.kept_correction(iterate.balance)
+        self._secants.reach(iterate.balance.positions, correction)
         return self._secants.improved(correction)
 
     def _update(self, iterate: Iterate, correction: FloatArray, iteration: int) -> tuple[Iterate, tuple[str, ...]]:
