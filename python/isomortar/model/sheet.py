@@ -18,6 +18,7 @@ from isomortar.geometry.faces import cells
 from isomortar.geometry.net import BESIDE, Net
 from isomortar.geometry.patch import Direction, IntArray, Patch, opposite
 from isomortar.model import constants
+from isomortar.model.contrasts import element_lengths
 from isomortar.model.entities import Body, Face, Problem
 from isomortar.model.numbering import Numbering, patch_arrays
 from isomortar.model.remembered import remembered
@@ -78,6 +79,11 @@ class Sheet:
     def size(self) -> float:
         """Extent of the largest of its bodies along a coordinate."""
         return max(body.size for body in self.bodies)
+
+    @property
+    def element_size(self) -> float:
+        """Typical length of its elements along the face."""
+        return float(np.sqrt(np.prod([np.median(lengths) for lengths in element_lengths(self.patch)[:2]])))
 
     @property
     def rigid(self) -> bool:

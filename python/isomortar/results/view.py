@@ -24,7 +24,7 @@ from isomortar.results import style
 from isomortar.results.bezier import at_parts, functions_at, rational
 from isomortar.results.bodies import plane_corners, towards
 from isomortar.results.fields import contact_surfaces
-from isomortar.results.files import place_for, writing
+from isomortar.results.files import place_for, write_whole
 from isomortar.results.paraview import states
 from isomortar.results.ranges import Dimension, narrowest
 from isomortar.results.reader import Results
@@ -126,8 +126,7 @@ def view(results_path: str | os.PathLike[str], output: str | os.PathLike[str]) -
             raise ResultsError(f"{results.path} holds no load step yet: nothing to look at")
         place_for(path)
         text = _page(results)
-    with writing(path) as fresh:
-        fresh.write_text(text, encoding="utf-8")
+    write_whole(path, text)
     return path
 
 

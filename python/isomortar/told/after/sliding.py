@@ -16,7 +16,7 @@ from isomortar.solve.free_motions import free_motions
 from isomortar.solve.metric import traction_norms
 from isomortar.solve.record import ContactState, State
 from isomortar.told.after.more_friction import more_friction
-from isomortar.told.during.borne import round_off
+from isomortar.told.borne import round_off
 
 #: Share of what friction can bear above which a body is about to slide: what the last load increment before adds is less than the rest.
 ALL = 0.9

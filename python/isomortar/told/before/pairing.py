@@ -6,7 +6,6 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from isomortar.model.contrasts import element_lengths
 from isomortar.model.entities import Contact, Face, Problem, RigidPlane
 from isomortar.model.sheet import Sheet
 from isomortar.solve.contact import PairMechanics
@@ -54,8 +53,8 @@ def few_points(problem: Problem, contact: Contact) -> Iterator[str]:
     if isinstance(contact.master, RigidPlane):
         return
     slave, master = Sheet.of(problem, contact.slave), Sheet.of(problem, contact.master)
-    apart = element_size(slave) / (2**contact.subcells * np.sqrt(np.prod(contact.quadrature)))
-    share = float(element_size(master) / apart)
+    apart = slave.element_size / (2**contact.subcells * np.sqrt(np.prod(contact.quadrature)))
+    share = float(master.element_size / apart)
     if share < ENOUGH and max(body.modulus for body in slave.bodies) >= _softest(master):
         needed = [int(np.ceil(2.0 * points / share)) for points in contact.quadrature]
         yield (
@@ -67,12 +66,6 @@ def few_points(problem: Problem, contact: Contact) -> Iterator[str]:
 def _softest(sheet: Sheet) -> float:
     """Modulus of the softest of a sheet's bodies."""
     return min(body.modulus for body in sheet.bodies)
-
-
-def element_size(sheet: Sheet) -> float:
-    """Typical length of the elements at a side of a contact."""
-    lengths = element_lengths(sheet.patch)
-    return float(np.sqrt(np.prod([np.median(of_direction) for of_direction in lengths[:2]])))
 
 
 def _area(points: np.ndarray) -> float:

@@ -8,7 +8,7 @@ import numpy as np
 
 from isomortar.model.entities import Problem
 from isomortar.solve.record import ContactResult, ContactState
-from isomortar.told.during.borne import Borne
+from isomortar.told.borne import Borne
 
 #: Control pressures this many times above the field's largest value oscillate.
 OSCILLATION = 1.5

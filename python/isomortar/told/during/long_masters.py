@@ -12,7 +12,6 @@ from isomortar.model.entities import Contact, Face, Problem
 from isomortar.model.pairs import Pair
 from isomortar.model.sheet import Sheet
 from isomortar.solve.equilibrium import Balance, Equilibrium
-from isomortar.told.before.pairing import element_size
 from isomortar.told.during.softness import softness
 
 #: Share of what a master gives way by that its elements keep back, by one over the width of contact in these, and what is taken from that:
@@ -73,7 +72,7 @@ def long_master(equilibrium: Equilibrium, pair: Pair, balance: Balance, number: 
     if not isinstance(pair.contact.master, Face) or problem.images > 1 or not forces.any():
         return None
     slave_side, master_side = Sheet.of(problem, pair.contact.slave), Sheet.of(problem, pair.contact.master)
-    if not element_size(master_side) > FINER * element_size(slave_side):
+    if not master_side.element_size > FINER * slave_side.element_size:
         return None
     widths = _widths(master_side, projections.xi, forces / forces.sum())
     narrow = np.divide(1.0, widths, out=np.full(2, np.inf), where=widths > 0.0)

@@ -17,9 +17,9 @@ from isomortar.solve.contact import PairMechanics, PutOff
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.feet import gaps
 from isomortar.solve.record import ContactState
+from isomortar.told.borne import Borne
 from isomortar.told.during import long_masters
 from isomortar.told.during.beyond_edges import beyond_edges, told
-from isomortar.told.during.borne import Borne
 from isomortar.told.during.long_masters import long_master
 from isomortar.told.during.pulling import pulls
 from isomortar.told.during.softness import softness
