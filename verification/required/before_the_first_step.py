@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import tracemalloc
+from unittest.mock import patch
 
 from isomortar.harness import Bound, case
 from isomortar.march.simulation import Simulation
 from isomortar.model.checks import check
+from isomortar.model.stance import _on_face
 from isomortar.scene import Scene
 
 #: A plate half of whose control points are held, and nothing else.
@@ -39,3 +41,15 @@ def looked_at() -> dict[str, float]:
     """Twelve elements along each side, and forty-eight."""
     (few, fewer), (many, more) = taken(12), taken(48)
     return {"growth": (many / more) / (few / fewer)}
+
+
+@case(
+    claim="How a slave and its master stand is found out once from the scene's file to its first load step.",
+    tier="gate",
+    bounds={"times": Bound(1, 1, reason="definition: what is known of a problem is not found out of the same problem again")},
+)
+def found_out_once() -> dict[str, float]:
+    """How often it is found out of two blocks."""
+    with patch("isomortar.model.stance._on_face", wraps=_on_face) as stands:
+        list(Simulation(Scene.load("block").problem()).doubts())
+    return {"times": float(stands.call_count)}

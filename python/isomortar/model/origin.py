@@ -34,8 +34,14 @@ def about(problem: Problem, origin: FloatArray) -> Problem:
 
 
 def by_near_points(problem: Problem) -> Problem:
-    """The problem with each rigid plane given by a point near the slave's body: far from it, coordinates of feet have few digits left."""
-    return replace(problem, contacts=tuple(_by_near_point(problem, contact) for contact in problem.contacts))
+    """The problem with each rigid plane given by a point near the slave's body: far from it, coordinates of feet have few digits left.
+
+    Itself, where they are: of another one all would be made anew that is remembered.
+    """
+    contacts = tuple(_by_near_point(problem, contact) for contact in problem.contacts)
+    if all(near is contact for near, contact in zip(contacts, problem.contacts, strict=True)):
+        return problem
+    return replace(problem, contacts=contacts)
 
 
 def _by_near_point(problem: Problem, contact: Contact) -> Contact:
