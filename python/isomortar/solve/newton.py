@@ -184,8 +184,9 @@ class Newton(ABC, Generic[Iterated, Corrected]):
         """The next iterate, by the whole correction or a share of it, and what acted."""
 
     def _serve(self, iterate: Iterated, following: Iterated) -> bool:
-        """Whether factors that led from one iterate to the next are good enough for another solve."""
-        return following.merit <= constants.KEPT_SHARE * iterate.merit
+        """Whether factors that led from one iterate to the next are good enough for another solve (theory 6.6)."""
+        share = constants.KEPT_SHARE if following.states == iterate.states else constants.KEPT_CHANGED
+        return following.merit <= share * iterate.merit
 
     def _bodies_serve(self, led: tuple[Iterated, Iterated] | None) -> bool:
         """Whether the bodies' part of factors that led from one iterate to another is good enough for another tangent (theory 5.24)."""
