@@ -9,6 +9,7 @@ import numpy as np
 from output.records import SCENE
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Material, Motion, Problem, Stage
 from isomortar.model.supports import factor_at, moved_by, progress
 from isomortar.results.comparison import is_longer
@@ -164,3 +165,30 @@ def more_steps_of_held() -> dict[str, float]:
         for stage in (3, 4)
     )
     return {"wrong": float(wrong + abs(len(longer.stages) - 5))}
+
+
+#: A block that a support has pressed aside, and lets go of in the last stage.
+_LET_GO = """
+format = 1
+bodies.block = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }, mesh = { order = 2, elements = [1, 1, 1] } }
+supports.base.face = "block.w0"
+supports.hand = { face = "block.w1", stages = ["press"] }
+stages = [{ name = "press", steps = 1, motions.hand.translate = [0.1, 0, 0] }, { name = "let-go", steps = STEPS }]
+"""
+
+
+@case(
+    claim="A file is gone on with where a support is released in its last stage, and that gets no longer: what it bore fades by its end.",
+    tier="gate",
+    grid={"steps": (2, 4)},
+    bounds={
+        "wrong": Bound(0.0, 0.0, "definition: what is said of the scene is where its control points come in the load steps that there are"),
+    },
+)
+def goes_on_as_it_fades(steps: int) -> dict[str, float]:
+    """Whether a scene with another last stage and one after it is said to go on although it goes elsewhere, or the other way."""
+    stored = Scene.from_toml(_LET_GO.replace("STEPS", "2")).problem()
+    given = Scene.from_toml(_LET_GO.replace("STEPS", str(steps)).replace(" }]", ' }, { name = "after", steps = 1 }]')).problem()
+    results = zip(Simulation(stored).run(), Simulation(given).run(), strict=False)
+    off = float(np.max([np.abs(one.state.positions - other.state.positions).max() for one, other in results]))
+    return {"wrong": float(is_longer(stored, given) != (off < 1e-6))}

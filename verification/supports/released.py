@@ -203,8 +203,10 @@ steps = 1
 
 
 @case(
-    claim="A support by force and moment that is released is recorded as staying where it was, in a run that goes on from any step too.",
+    claim="A support by force and moment that is released is recorded as staying where it was, wherever the origin is, in a run that goes "
+    "on from any step too.",
     tier="gate",
+    grid={"away": (0, 128)},
     bounds={
         "way": Bound(0.0, 0.0, "definition: displacement and centre of what does not hold any more do not change"),
         "angle": Bound(0.0, 0.0, "definition: nor does its rotation"),
@@ -213,9 +215,10 @@ steps = 1
         "resumed": Bound(0.0, 0.0, "definition: the bits of the whole run"),
     },
 )
-def stays() -> dict[str, float]:
+def stays(away: int) -> dict[str, float]:
     """Displacement, centre and rotation after the release off those before; how far and by how much it went; the same of resumed runs."""
-    found = problem(_PLATE, "monolithic")
+    text = _PLATE.replace("[-0.5, -0.5, 0], upper = [0.5,", f"[{away - 0.5}, -0.5, 0], upper = [{away + 0.5},")
+    found = problem(text.replace("centre = [0,", f"centre = [{away},"), "monolithic")
     results = list(Simulation(found).run())
     (held, *left) = (result.reactions[0] for result in results[1:])
     resumed = [
