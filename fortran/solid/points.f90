@@ -36,11 +36,11 @@ contains
     det = a(:, 1, 1) * b(:, 1, 1) + a(:, 2, 1) * b(:, 2, 1) + a(:, 3, 1) * b(:, 3, 1)
   end subroutine cofactors
 
-  !> The smaller one of two numbers, or the one that is not above zero, of both the `first`, not the `second`.
+  !> The smaller one of two numbers, `first` and `second`, or the one that is none, which `min` would drop.
   elemental real(wp) function least(first, second)
     real(wp), intent(in) :: first, second
 
-    least = merge(second, first, first > 0.0_wp .and. .not. second >= first)
+    least = merge(second, first, first >= -huge(first) .and. .not. second >= first)
   end function least
 
   !> Derivatives by the parameters of a rational field: `slope` (lane, component, parameter) (theory 1.3).

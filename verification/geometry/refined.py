@@ -13,6 +13,7 @@ from isomortar.geometry.faces import CELLS, cells
 from isomortar.geometry.halves import upper_half
 from isomortar.geometry.patch import FACES, Direction, FloatArray, Patch
 from isomortar.geometry.primitives import box
+from isomortar.geometry.refinement import cut as cut_up
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
 
@@ -130,12 +131,12 @@ def _mirrored(
 
 @case(
     claim="A body is halved wherever it is, though round-off of its place is more than that of its size, and however small or large it is; "
-    "where one point is off by more than round-off it is not its own mirror image.",
+    "where one point, or one weight, is off by more than round-off it is not its own mirror image.",
     tier="gate",
     grid={"size": (1e-6, 1.0, 1e6), "away": (0.0, 1e3, 1e5)},
     bounds={
         "refused": Bound(0.0, 0.0, "definition: bodies whose points are mirror images to a bit or two of where they are"),
-        "taken": Bound(0.0, 0.0, "definition: bodies with a point that is off"),
+        "taken": Bound(0.0, 0.0, "definition: bodies with a point, or a weight, that is off"),
     },
 )
 def halved_anywhere(size: float, away: float) -> dict[str, float]:
@@ -152,7 +153,35 @@ def halved_anywhere(size: float, away: float) -> dict[str, float]:
                 taken += off == 1e-9
             except InputError:
                 refused += off != 1e-9
+            try:
+                upper_half(replace(patch, weights=1.0 + off * np.eye(1, len(patch.weights), 5)[0]), axis, place)
+                taken += off == 1e-9
+            except InputError:
+                refused += off != 1e-9
     return {"refused": float(refused), "taken": float(taken)}
+
+
+@case(
+    claim="Graded elements get longer by the same factor all along a direction, but where a span of the geometry ends, and fill its spans.",
+    tier="gate",
+    grid={"grading": (0.01, 0.5, 1.0, 30.0)},
+    bounds={
+        "factor": Bound(at_most=1e-11, reason=_ROUND_OFF),
+        "spans": Bound(at_most=1e-15, reason=_ROUND_OFF),
+    },
+)
+def graded(grading: float) -> dict[str, float]:
+    """Factors of neighbours in a span off the one whose power is the grading; ends of spans that are none of elements."""
+    factors, ends = [0.0], [0.0]
+    for spans, parts in ((1, 1), (1, 4), (2, 3), (3, 2), (4, 5), (5, 1)):
+        lines = np.cumsum(np.append(0.0, 1.0 + np.arange(spans) ** 2))
+        direction = Direction("N", 1, np.pad(lines, 1, mode="edge"))
+        boundaries = cut_up(direction, spans * parts, grading)
+        wanted = grading ** (1.0 / max(1, spans * parts - 1))
+        lengths = np.diff(boundaries).reshape(spans, parts)
+        factors += list(np.abs(lengths[:, 1:] / lengths[:, :-1] / wanted - 1.0).ravel())
+        ends += list(np.abs(boundaries[::parts] - lines) / lines[-1])
+    return {"factor": float(np.max(factors)), "spans": float(np.max(ends))}
 
 
 @case(

@@ -59,7 +59,7 @@ def thin_body(projection: str, order: int) -> dict[str, float]:
     equilibrium = Equilibrium(Scene.from_toml(text).problem(), Ledger())
     return {
         "within": float(np.min([found(equilibrium, THICKNESS * share, had) for share in WITHIN for had in (0, 1)])),
-        "behind": float(np.max([found(equilibrium, THICKNESS * share, 0) for share in BEHIND])),
+        "behind": float(np.max(np.abs([found(equilibrium, THICKNESS * share, 0) for share in BEHIND]))),
         "through": float(np.max([found(equilibrium, THICKNESS * share, 1) for share in BEHIND])),
     }
 

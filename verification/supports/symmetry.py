@@ -203,9 +203,37 @@ def half_of_only_kink(family: str) -> dict[str, float]:
     return half_of_whole(text, [f"bodies.base.mesh.family={[family] * 3}", "bodies.base.mesh.elements=[1, 2, 1]"])
 
 
-def half_of_whole(text: str, overrides: Sequence[str] = ()) -> dict[str, float]:
+#: The base of `CURVED`, with u and v the other way round: planes of symmetry are at the ends of its coordinates.
+_BACKWARDS = """{ order = [1, 1, 1], knots = [[0, 0, 1, 1], [0, 0, 1, 1], [0, 0, 1, 1]], control_points = [
+    [0.8, 0.6, -0.5], [-0.8, 0.6, -0.5], [0.8, -0.6, -0.5], [-0.8, -0.6, -0.5],
+    [0.8, 0.6, -0.001], [-0.8, 0.6, -0.001], [0.8, -0.6, -0.001], [-0.8, -0.6, -0.001]] }"""
+
+
+@case(
+    claim="Half of two symmetric bodies is that of the whole along averaged normals, at whichever end of its master the plane is, and "
+    "wherever that is.",
+    tier="gate",
+    grid={"plane": ("at the start", "at the end", "far away")},
+    bounds={
+        "forces": Bound(at_most=1e-9, reason="theory: the same equations by symmetry; Newton's method stops at 1e-12"),
+        "sliding": Bound(at_least=1.0, reason="definition: points slip in some load step"),
+    },
+)
+def half_at_an_end(plane: str) -> dict[str, float]:
+    """The same of a master that has one element from the plane to its edge."""
+    text = CURVED.format(projection="averaged", order=[1] * 3).replace("elements = [4, 6, 2]", "elements = [4, 2, 2]")
+    box = 'geometry = { kind = "box", lower = [-0.8, -0.6, -0.5], upper = [0.8, 0.6, -0.001] }'
+    assert box in text, "the base is a box"
+    if plane == "at the end":
+        return half_of_whole(text.replace(box, f"patch = {_BACKWARDS}"))
+    place = 64.0 if plane == "far away" else 0.0
+    there = text.replace("[0.0, 0.0], half", f"[0.0, {place}], half").replace(box, box.replace("-0.6", f"{place - 0.6}"))
+    return half_of_whole(there.replace(" 0.6, -0.001", f" {place + 0.6}, -0.001"), place=place)
+
+
+def half_of_whole(text: str, overrides: Sequence[str] = (), place: float = 0.0) -> dict[str, float]:
     """Half of a scene against the whole: relative error of the forces of all load steps, and load steps with slip."""
-    problems = [Scene.from_toml(text, overrides=[*overrides, *cut]).problem() for cut in (["symmetry={y=0.0}"], [])]
+    problems = [Scene.from_toml(text, overrides=[*overrides, *cut]).problem() for cut in ([f"symmetry={{y={place}}}"], [])]
     halves, wholes = (list(Simulation(problem).run()) for problem in problems)
     half, whole = (np.array([result.reactions[0].force for result in results]) for results in (halves, wholes))
     sliding = [result.contacts[0].slip > 0 for result in halves]
