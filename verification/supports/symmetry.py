@@ -210,10 +210,9 @@ _BACKWARDS = """{ order = [1, 1, 1], knots = [[0, 0, 1, 1], [0, 0, 1, 1], [0, 0,
 
 
 @case(
-    claim="Half of two symmetric bodies is that of the whole along averaged normals, at whichever end of its master the plane is, and "
-    "wherever that is.",
+    claim="Half of two symmetric bodies is that of the whole along averaged normals, at whichever end of its master the plane is.",
     tier="gate",
-    grid={"plane": ("at the start", "at the end", "far away")},
+    grid={"plane": ("at the start", "at the end")},
     bounds={
         "forces": Bound(at_most=1e-9, reason="theory: the same equations by symmetry; Newton's method stops at 1e-12"),
         "sliding": Bound(at_least=1.0, reason="definition: points slip in some load step"),
@@ -224,16 +223,12 @@ def half_at_an_end(plane: str) -> dict[str, float]:
     text = CURVED.format(projection="averaged", order=[1] * 3).replace("elements = [4, 6, 2]", "elements = [4, 2, 2]")
     box = 'geometry = { kind = "box", lower = [-0.8, -0.6, -0.5], upper = [0.8, 0.6, -0.001] }'
     assert box in text, "the base is a box"
-    if plane == "at the end":
-        return half_of_whole(text.replace(box, f"patch = {_BACKWARDS}"))
-    place = 64.0 if plane == "far away" else 0.0
-    there = text.replace("[0.0, 0.0], half", f"[0.0, {place}], half").replace(box, box.replace("-0.6", f"{place - 0.6}"))
-    return half_of_whole(there.replace(" 0.6, -0.001", f" {place + 0.6}, -0.001"), place=place)
+    return half_of_whole(text.replace(box, f"patch = {_BACKWARDS}") if plane == "at the end" else text)
 
 
-def half_of_whole(text: str, overrides: Sequence[str] = (), place: float = 0.0) -> dict[str, float]:
+def half_of_whole(text: str, overrides: Sequence[str] = ()) -> dict[str, float]:
     """Half of a scene against the whole: relative error of the forces of all load steps, and load steps with slip."""
-    problems = [Scene.from_toml(text, overrides=[*overrides, *cut]).problem() for cut in ([f"symmetry={{y={place}}}"], [])]
+    problems = [Scene.from_toml(text, overrides=[*overrides, *cut]).problem() for cut in (["symmetry={y=0.0}"], [])]
     halves, wholes = (list(Simulation(problem).run()) for problem in problems)
     half, whole = (np.array([result.reactions[0].force for result in results]) for results in (halves, wholes))
     sliding = [result.contacts[0].slip > 0 for result in halves]
