@@ -33,10 +33,10 @@ TOLD, SILENT = (0.93, 0.95, 0.98), (0.5, 0.8, 0.87)
 ARM = np.hypot(*np.meshgrid(np.linspace(-2.995, 2.995, 600), np.linspace(-1.495, 1.495, 300))).mean()
 
 
-def borne(share: float) -> float:
+def borne(share: float, poisson: float = 0.0) -> float:
     """Per cent of friction that are told to be borne where the plate pushes by a share of it; 0: nothing is told."""
     force = f"{{ x = {0.3 * share}, z = -1 }}"
-    text = SCENE.replace("HELD", '"y"').replace("FORCE", force).replace(", MOMENT", "")
+    text = SCENE.replace("HELD", '"y"').replace("FORCE", force).replace(", MOMENT", "").replace("poisson = 0", f"poisson = {poisson}")
     simulation = Simulation(Scene.from_toml(text).problem())
     list(simulation.run())
     said = [BEARS.search(sentence) for _, sentence in sliding(simulation.equilibrium, simulation.state)]
@@ -57,11 +57,13 @@ def turned(moment: float) -> tuple[float, float]:
 
 @case(
     claim="A body that friction alone keeps from going along with its loads is told of where that bears nine tenths of what it can, by "
-    "what share that is; a moment that turns one is told by its size, whatever size the body has.",
+    "what share that is, and not one that is squeezed out to all sides against friction; a moment that turns one is told by its size, "
+    "whatever size the body has.",
     tier="gate",
     bounds={
         "share": Bound(at_most=0.51, reason="definition: per cent are whole numbers; of equal pressures all friction goes one way"),
         "silent": Bound(0.0, 0.0, "definition: bodies that are told of, of which friction bears less"),
+        "squeezed": Bound(0.0, 0.0, "definition: bodies that are told of though nothing pushes them along, of rubber on its friction"),
         "moment": Bound(at_most=0.01, reason="round-off: three digits are told"),
         "limit": Bound(at_most=0.2, reason="discretisation: control points for the floor's area"),
     },
@@ -72,6 +74,7 @@ def told_to_slide() -> dict[str, float]:
     return {
         "share": float(np.abs([borne(share) - 100.0 * share for share in TOLD]).max()),
         "silent": float(np.count_nonzero([borne(share) for share in SILENT])),
+        "squeezed": float(np.count_nonzero(borne(0.0, poisson=0.45))),
         "moment": abs(moment - 1.0),
         "limit": abs(limit - 1.0),
     }
