@@ -215,21 +215,33 @@ _BACKWARDS = """{ order = [1, 1, 1], knots = [[0, 0, 1, 1], [0, 0, 1, 1], [0, 0,
     grid={"plane": ("at the start", "at the end")},
     bounds={
         "forces": Bound(at_most=1e-9, reason="theory: the same equations by symmetry; Newton's method stops at 1e-12"),
+        "works": Bound(at_most=1e-9, reason="theory: as above, of friction, and of pressures along averaged normals, which is far less"),
         "sliding": Bound(at_least=1.0, reason="definition: points slip in some load step"),
     },
 )
 def half_at_an_end(plane: str) -> dict[str, float]:
-    """The same of a master that has one element from the plane to its edge."""
+    """The same of a master that has one element from the plane to its edge, and the relative error of the works of contact."""
     text = CURVED.format(projection="averaged", order=[1] * 3).replace("elements = [4, 6, 2]", "elements = [4, 2, 2]")
     box = 'geometry = { kind = "box", lower = [-0.8, -0.6, -0.5], upper = [0.8, 0.6, -0.001] }'
     assert box in text, "the base is a box"
-    return half_of_whole(text.replace(box, f"patch = {_BACKWARDS}") if plane == "at the end" else text)
+    halves, wholes = both(text.replace(box, f"patch = {_BACKWARDS}") if plane == "at the end" else text)
+    half, whole = (np.array([result.contacts[0].work for result in results]) for results in (halves, wholes))
+    return off(halves, wholes) | {"works": float((np.abs(half - whole).max(axis=0) / np.abs(whole).max(axis=0)).max())}
 
 
 def half_of_whole(text: str, overrides: Sequence[str] = ()) -> dict[str, float]:
     """Half of a scene against the whole: relative error of the forces of all load steps, and load steps with slip."""
-    problems = [Scene.from_toml(text, overrides=[*overrides, *cut]).problem() for cut in (["symmetry={y=0.0}"], [])]
-    halves, wholes = (list(Simulation(problem).run()) for problem in problems)
+    return off(*both(text, overrides))
+
+
+def both(text: str, overrides: Sequence[str] = ()) -> tuple[list[StepResult], list[StepResult]]:
+    """Load steps of half of a scene, and of the whole."""
+    half, whole = (Scene.from_toml(text, overrides=[*overrides, *cut]).problem() for cut in (["symmetry={y=0.0}"], []))
+    return list(Simulation(half).run()), list(Simulation(whole).run())
+
+
+def off(halves: Sequence[StepResult], wholes: Sequence[StepResult]) -> dict[str, float]:
+    """Relative error of forces, and load steps with slip."""
     half, whole = (np.array([result.reactions[0].force for result in results]) for results in (halves, wholes))
     sliding = [result.contacts[0].slip > 0 for result in halves]
     return {"forces": float(np.abs(half - whole).max() / np.abs(whole).max()), "sliding": float(sum(sliding))}
