@@ -185,3 +185,28 @@ def on_an_axis() -> dict[str, float]:
     found = [places.least(patch.control_points * [1.0, share, 1.0]).value for share in squeezed]
     _, jacobian, heard = run(CYLINDER)
     return {"off": float(np.abs(np.array(found) / squeezed - 1.0).max()), "J": jacobian, "heard": float(heard.warnings)}
+
+
+#: A column of Hooke's law that is pressed to a fifth of its height at once.
+HOOKE = """
+format = 1
+materials.m = { young = 10.0, poisson = 0.0, law = "linear-elastic" }
+bodies.b.geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }
+supports = { top.face = "b.w1", base.face = "b.w0" }
+stages = [{ name = "press", steps = 1, motions.top.translate = [0, 0, -0.8] }]
+"""
+
+
+@case(
+    claim="Of a body of Hooke's law, whatever its volume, no load step is cut and nothing is said of its J.",
+    tier="gate",
+    bounds={
+        "J": Bound(at_most=1e-12, reason="definition: a fifth of its height; how far off"),
+        "force": Bound(at_most=1e-12, reason="theory: Young's modulus times strain and area; a relative difference"),
+        "heard": Bound(0.0, 0.0, "definition: cuts and warnings"),
+    },
+)
+def of_small_strains() -> dict[str, float]:
+    """Of a column that comes to where the J of another law would have fallen."""
+    force, jacobian, heard = run(HOOKE)
+    return {"J": abs(jacobian - 0.2), "force": float(abs(force[2] / -8.0 - 1.0)), "heard": float(heard.cuts + heard.warnings)}
