@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable
 from dataclasses import replace
 from unittest.mock import patch
@@ -14,7 +15,7 @@ from trade.searched import WANT, Known, dials, off, size
 
 from isomortar.harness import Bound, case
 from isomortar.trade import figures
-from isomortar.trade.laboratory import Tried
+from isomortar.trade.laboratory import Choice, Tried
 from isomortar.trade.search import Search
 
 
@@ -129,3 +130,37 @@ def _screened(search: Search, known: Known, costs: Axes, changes: Axes) -> tuple
                 worst = np.maximum(worst, abs(near[0].xy[0] / exact - 1.0) if near else 1.0)  # type: ignore[attr-defined]
                 count += 1
     return float(worst), count, rows
+
+
+class Nothing(Known):
+    """Runs of which nothing comes."""
+
+    def formula(self, choice: Choice) -> Tried:
+        """The run of a choice."""
+        run = super().formula(choice)
+        return replace(run, numbers=run.numbers | {"two": np.zeros(2)})
+
+
+@case(
+    claim="Figures of a trade whose wish is nothing in the scene are drawn without a division by it, and a target is refused with that.",
+    tier="gate",
+    bounds={
+        "warnings": Bound(0.0, 0.0, "definition: of what draws and divides"),
+        "told": Bound(1.0, 1.0, "definition: one target, which is refused"),
+    },
+)
+def of_nothing() -> dict[str, float]:
+    """What NumPy and Matplotlib warn of, and whether the target is refused with the reason."""
+    search = Search(Nothing(1), dials(), [WANT], math.inf)
+    search.screen()
+    search.find_truth([0.1])
+    answer = search.answer(0.1)
+    with warnings.catch_warnings(record=True) as heard:
+        warnings.simplefilter("always")
+        for draw in (
+            figures.precision,
+            lambda *of: figures.screening(of[0]),
+            lambda *of: figures.curves(of[0], of[0].yardsticks[0], of[1]),
+        ):
+            draw(search, [answer])
+    return {"warnings": float(len(heard)), "told": float("what is wanted is nothing in this scene" in answer.why)}

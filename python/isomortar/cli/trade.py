@@ -129,7 +129,7 @@ def _conduct(
         search.find_truth(targets)
         answers = [search.answer(target) for target in targets]
     path = page.write(folder, scene, search, answers, started)
-    print("\n".join([*(page.sentence(search, answer) for answer in answers), str(path)]))
+    print("\n".join([*(page.spoken(search, answer) for answer in answers), str(path)]))
     if not all(answer.best for answer in answers):
         raise typer.Exit(FAILED)
 

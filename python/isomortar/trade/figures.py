@@ -41,7 +41,8 @@ def precision(search: Search, answers: Sequence[Recommendation]) -> str:
         axes.plot(
             search.own.cost, 100 * search.error(search.own), "o", markersize=11, markerfacecolor="none", color=style.BLACK, label="as it is"
         )
-        _unresolved(axes, search)
+        if math.isfinite(search.uncertainty):
+            _unresolved(axes, search)
         _failed(axes, [o for o in runs if o.failure])
         _ticks(axes)
         figure.legend(*axes.get_legend_handles_labels(), loc="outside upper left", ncols=8)
@@ -76,7 +77,8 @@ def screening(search: Search) -> str:
         costs.set_yticklabels([dial.name for dial in reversed(dials)])
         costs.axvline(1.0, color=style.BLACK, linewidth=0.8)
         changes.set(xscale="log", xlabel="change of what is wanted, %")
-        changes.axvline(100 * search.error(search.own), color=style.BLACK, linewidth=0.8, linestyle=(0, (4, 3)))
+        if math.isfinite(search.error(search.own)):  # of nothing it is no share
+            changes.axvline(100 * search.error(search.own), color=style.BLACK, linewidth=0.8, linestyle=(0, (4, 3)))
         lowest = max(changes.get_xlim()[0], 1e-6)
         changes.set_xlim(lowest, changes.get_xlim()[1])
         for axes in (costs, changes):
@@ -89,8 +91,8 @@ def screening(search: Search) -> str:
 
 
 def curves(search: Search, yardstick: Yardstick, answers: Sequence[Recommendation]) -> str:
-    """What is wanted: of the truth, of the scene as it is, and of what was recommended; nothing where that is one number."""
-    if len(yardstick.truth) == 1:
+    """What is wanted: of the truth, of the scene as it is, and of what was recommended; nothing where that is one number, or zero."""
+    if len(yardstick.truth) == 1 or not np.any(yardstick.truth):
         return ""
     with page_style():
         figure = Figure(figsize=(10.6, 3.6), layout="constrained")

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from isomortar.errors import InputError
-from isomortar.harness.cases import Cell
-from isomortar.harness.measurement import Measurement
+from isomortar.harness.cases import Cell, Words
+from isomortar.harness.measurement import Measurement, restored
 from isomortar.harness.runner import Result, Submit, run, start
 from isomortar.harness.store import Store
 from isomortar.harness.study import Run
@@ -19,8 +19,8 @@ from isomortar.scene.scene import Scene
 from isomortar.trade.knobs import Dial, changed
 from isomortar.trade.run import traded
 
-#: Numbers that are not told of every contact: a face of several has no grid, and points may have no foot.
-UNTOLD = ("area", "gap")
+#: What need not be finite: numbers that are not told of every contact (a face of several has no grid, points may have no foot), and words.
+UNTOLD = ("area", "gap", "warnings")
 #: The number of a setting, by dial.
 Choice = tuple[int, ...]
 
@@ -40,6 +40,12 @@ class Tried:
     def cost(self) -> float:
         """CPU seconds of the computation, or until it failed."""
         return self.seconds if self.failure else float(self.numbers["cpu_seconds"])
+
+    @property
+    def warnings(self) -> list[str]:
+        """What the run warned of."""
+        said = restored(self.numbers.get("warnings"), Words)
+        return said.text.splitlines() if said else []
 
 
 class Laboratory:

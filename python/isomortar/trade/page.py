@@ -41,6 +41,16 @@ def sentence(search: Search, answer: Recommendation) -> str:
     return "; ".join([*parts, *rest]) + "."
 
 
+def spoken(search: Search, answer: Recommendation) -> str:
+    """The answer as a terminal shows it, with what the recommended scene warns of."""
+    return "\n".join([sentence(search, answer), *(f"  warning: {warning}" for warning in _warnings(answer))])
+
+
+def _warnings(answer: Recommendation) -> list[str]:
+    """What the recommended scene warns of when it is run."""
+    return answer.best.warnings if answer.best else []
+
+
 def write(folder: Path, scene: Scene, search: Search, answers: Sequence[Recommendation], started: datetime) -> Path:
     """Write ``report.html``, ``report.json`` and a scene file a recommendation; returns the path of the page."""
     files = {answer.target: _recommended(folder, search, answer) for answer in answers}
@@ -79,6 +89,7 @@ def _page(scene: Scene, search: Search, answers: Sequence[Recommendation], files
                 "target": a.target,
                 "best": a.best,
                 "sentence": sentence(search, a),
+                "warnings": _warnings(a),
                 "file": files[a.target],
                 "overrides": as_options(search.laboratory.overrides(a.best.choice)) if a.best else "",
             }
@@ -134,6 +145,7 @@ def _data(scene: Scene, search: Search, answers: Sequence[Recommendation], start
             {
                 "target": a.target,
                 "sentence": sentence(search, a),
+                "warnings": _warnings(a),
                 "error": a.error,
                 "cpu_seconds": a.best.cost if a.best else math.nan,
                 "overrides": search.laboratory.overrides(a.best.choice) if a.best else [],

@@ -11,13 +11,13 @@ import numpy as np
 from isomortar.accuracy.sampling import Grid, slave_grid, values_at
 from isomortar.errors import LostProjectionError
 from isomortar.geometry.patch import FloatArray
-from isomortar.harness.cases import Bound, Shown, measured
+from isomortar.harness.cases import Bound, Shown, Words, measured
 from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
 from isomortar.results.fields import ContactSurface, contact_surfaces
 from isomortar.results.gaps import gaps
 from isomortar.scene.scene import Scene
-from isomortar.solve.record import StepResult
+from isomortar.solve.record import Observer, StepResult
 from isomortar.solve.timing import PHASES
 
 
@@ -40,14 +40,16 @@ from isomortar.solve.timing import PHASES
         "cuts": Shown("load increments that were cut"),
         "phases": Shown("CPU seconds of solid, projection, contact, factors, solves"),
         "cpu_seconds": Shown("of the computation alone"),
+        "warnings": Shown("what it warned of, each once, a line a warning"),
     },
 )
 def traded(scene: str) -> dict[str, Any]:
     """Curves and last fields of a scene file, and what they cost."""
     loaded = Scene.load(scene)
     problem = loaded.problem()
+    told = _Told()
     start = time.process_time()
-    steps = list(Simulation(problem).run())
+    steps = list(Simulation(problem, told).run())
     seconds = time.process_time() - start
     grids = [slave_grid(loaded, problem, n) if len(c.slave.faces) == 1 else None for n, c in enumerate(problem.contacts)]
     fields = [_fields(problem, step, grids) for step in steps]
@@ -72,7 +74,18 @@ def traded(scene: str) -> dict[str, Any]:
         "cuts": sum(step.cuts for step in steps),
         "phases": [phases[name] for name in PHASES],
         "cpu_seconds": seconds,
+        "warnings": Words("\n".join(dict.fromkeys(told.warnings))),
     }
+
+
+class _Told(Observer):
+    """Keeps what a run warns of."""
+
+    def __init__(self) -> None:
+        self.warnings: list[str] = []
+
+    def warned(self, message: str) -> None:
+        self.warnings.append(message)
 
 
 def stage_times(problem: Problem) -> FloatArray:
