@@ -53,17 +53,23 @@ class Sharp(Laboratory):
     error : callable
         From elements by direction to the error.
     worth : float
+    steps : sequence of int
+        Numbers of load steps, likewise; the error depends on these last.
     """
 
-    def __init__(self, elements: Sequence[Sequence[int]], error: Callable[..., float], worth: float = 1.0) -> None:
+    def __init__(
+        self, elements: Sequence[Sequence[int]], error: Callable[..., float], worth: float = 1.0, steps: Sequence[int] = (1,)
+    ) -> None:
         meshes = [Dial(f"elements {k}", tuple(map(Setting, map(str, of))), 0, "", part="elements") for k, of in enumerate(elements)]
         order = Dial("order", tuple(map(Setting, "234")), 0, "", part="order")
-        super().__init__(None, (*meshes, order), Path(), None, lambda _: None)  # type: ignore[arg-type]
-        self.dials, self._elements, self._error, self._worth = (*meshes, order), elements, error, worth
+        of_stage = Dial("load steps", tuple(map(Setting, map(str, steps))), 0, "")
+        self.dials, self._error, self._worth = (*meshes, of_stage, order), error, worth
+        self._counts = (*elements, steps)
+        super().__init__(None, self.dials, Path(), None, lambda _: None)  # type: ignore[arg-type]
 
     def off(self, choice: Choice) -> float:
         """Its error."""
-        counts = (of[n] for of, n in zip(self._elements, choice, strict=False))
+        counts = (of[n] for of, n in zip(self._counts, choice, strict=False))
         return float(self._error(*counts) / self._worth ** choice[-1])
 
     def _measured(self, choices: Sequence[Choice], *_: Any, **__: Any) -> dict[Choice, Tried]:
@@ -97,14 +103,14 @@ LONG = (12, 16, 20, 24, 30, 36)
 )
 def own_error(worth: float) -> dict[str, float]:
     """The smaller one of a loose and a tight target."""
-    return {"told over real": told_over_real([LONG], lambda n: 0.12 / n, worth)}
+    return {"told over real": told_over_real([LONG], lambda n, _: 0.12 / n, worth)}
 
 
 #: Errors of two meshes: one that is no matter until the other is finer, as of a slave on a coarse master; one that has few settings.
 TOGETHER: dict[str, tuple[Sequence[Sequence[int]], Callable[..., float]]] = {
-    "a slave on a coarse master": ([LONG, (4, 5, 7, 8, 10, 12)], lambda master, slave: np.maximum(0.6 / master, 0.16 / slave)),
-    "a slave that yields more": ([LONG, (4, 5, 7, 8, 10, 12)], lambda master, slave: np.hypot(0.6 / master, 0.16 / slave)),
-    "few settings": ([LONG, (4, 8, 12)], lambda along, round_it: 0.2 / along + 0.2 / round_it),
+    "a slave on a coarse master": ([LONG, (4, 5, 7, 8, 10, 12)], lambda master, slave, _: np.maximum(0.6 / master, 0.16 / slave)),
+    "a slave that yields more": ([LONG, (4, 5, 7, 8, 10, 12)], lambda master, slave, _: np.hypot(0.6 / master, 0.16 / slave)),
+    "few settings": ([LONG, (4, 8, 12)], lambda along, round_it, _: 0.2 / along + 0.2 / round_it),
 }
 
 
@@ -133,12 +139,31 @@ def what_is_missing() -> dict[str, float]:
     """How many of each, without a limit and with one."""
     wrong = []
     for budget, missing in ((math.inf, "begin with finer meshes"), (12.0, "--budget")):
-        known = Sharp([LONG], lambda n: 0.12 / n)
+        known = Sharp([LONG], lambda n, _: 0.12 / n)
         search = Search(known, known.dials, [Want("one", lambda run, _: np.array([run["one"]]), lambda _: np.ones(1))], budget)
         search.screen()
         search.find_truth([1e-4])
         wrong.append(missing not in search.answer(1e-4).why)
     return dict(zip(("budget", "meshes"), map(float, wrong), strict=True))
+
+
+@case(
+    claim="What changes nothing alone is refined where a target is not told without it: load steps that matter beside finer meshes.",
+    tier="gate",
+    bounds={
+        "refused": Bound(0.0, 0.0, "definition: the dearest settings tell the target"),
+        "told over real": TOLD,
+    },
+)
+def settled_alone() -> dict[str, float]:
+    """Whether the target is refused, and what is said of the truth's own error over the real one."""
+    known = Sharp([LONG], lambda n, steps: np.maximum(0.05 * (12 / n) ** 6, 0.3 / steps), steps=(8, 16, 32, 64, 128))
+    search = Search(known, known.dials, [Want("one", lambda run, _: np.array([run["one"]]), lambda _: np.ones(1))], math.inf)
+    search.screen()
+    search.find_truth([0.01])
+    assert search.truth
+    refused = RESOLVED * search.uncertainty > 0.01
+    return {"refused": float(refused), "told over real": search.uncertainty / known.off(search.truth.choice)}
 
 
 #: A quarter of a ring, glued to a box whose coordinates are others, and to a box behind both, and pressed onto a plane.

@@ -79,7 +79,7 @@ class Search:
         self.rivals: tuple[Tried, ...] = ()  # other over-refined runs: how far they are from the truth is its own error
         self._before: Tried | None = None  # the truth before this one
         self._finest = False  # whether the truth has the dearest settings that there are
-        self._stirring: set[int] = set()  # meshes that change what is wanted beside finer ones alone
+        self._stirring: set[int] = set()  # dials that may change what is wanted beside finer settings of others alone
 
     @cached_property
     def own(self) -> Tried:
@@ -182,6 +182,9 @@ class Search:
     def _refine(self, level: int, target: float) -> bool:
         """Run over-refined runs of a level; whether they tell the truth better than those before."""
         settled = self._settled(target)
+        if self.truth and self._refined(settled, 1, level, 1) == self.truth.choice:
+            self._stirring |= settled  # what does nothing alone may do something beside finer settings
+            settled = set()
         finest = self._refined(settled, 1, level, 1)
         coarser = self._coarser(self._refined(settled, 2, level, 2), 1), self._coarser(finest, 2)
         others = [other for other in dict.fromkeys(coarser) if other != finest]
