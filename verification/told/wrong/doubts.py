@@ -296,6 +296,7 @@ DOUBTFUL = {
     ),
     "spans": (_GRADED, "", "", "lost in round-off"),
     "locks in bending": (SHEET, "", "", "times too stiff in bending"),
-    "locks": (_RUBBER.replace("POISSON", "0.4999"), "", "", "Take order 4 or more"),
-    "locks at any order": (_RUBBER.replace("POISSON", "0.4999999999999"), "", "", "Take a Poisson's ratio that is lower"),
+    "locks": (_RUBBER.replace("POISSON", "0.4999"), "", "", "some 5 % too large"),
+    "locks next to 0.5": (_RUBBER.replace("POISSON", "0.4999999999999"), "", "", "or a Poisson's ratio that is lower"),
+    "locks several times": (_RUBBER.replace("POISSON", "0.4999"), "order = 3", 'family = "L", order = 1', "several times too large"),
 }

@@ -38,8 +38,8 @@ NEAR = 0.5
 SIZE_RATIO = 100.0
 #: Coefficients of friction above this one are of no pair of materials (dry metals and rubber: up to 1.5), and make things stick.
 HIGH_FRICTION = 2.0
-#: Bulk over shear modulus above which elements of order 1 lock; a tenfold of it for every order more (docs/method.md).
-LOCKING = 10.0
+#: By how much forces may come out too large by locking before that is told.
+LOCKING = 0.05
 #: Lengths of elements along a direction further apart cost pressures at the short ones all digits but two: 1e-16 times their square.
 SPANS = 1e7
 
@@ -96,16 +96,25 @@ def doubts(problem: Problem, state: State) -> Iterator[str]:
 
 
 def _locking(body: Body) -> Iterator[str]:
-    """Elements that are too stiff for their Poisson's ratio (theory 9.1)."""
+    """Elements that are too stiff for their Poisson's ratio."""
     order = min(direction.order for direction in body.patch.directions)
-    ratio, limit = body.material.bulk / body.material.shear, LOCKING * 10.0 ** (order - 1)
-    if ratio > limit:
-        needed = order + int(np.ceil(np.log10(ratio / limit)))
-        cure = f"Take order {needed} or more in all directions, or" if needed <= MAX_ORDER["N"] else "Take"
+    share = _too_stiff(body, order)
+    if share > LOCKING:
+        size = "several times" if share > 1.0 else f"some {float(f'{100.0 * share:.1g}'):g} %"
+        needed = next(other for other in range(order + 1, MAX_ORDER["L"] + 1) if _too_stiff(body, other) <= LOCKING)
         yield (
-            f"body {body.name!r}: with Poisson's ratio {body.material.poisson:.15g} elements of order {order} lock, and forces come out "
-            f"far too large. {cure} a Poisson's ratio that is lower"
+            f"body {body.name!r}: with Poisson's ratio {body.material.poisson:.15g} its elements of order {order} lock, and forces come "
+            f"out {size} too large, more where it bends. Take order {needed} in all directions, shorter elements, or a Poisson's ratio "
+            "that is lower"
         )
+
+
+def _too_stiff(body: Body, order: int) -> float:
+    """About by how much forces come out too large (theory 9.1)."""
+    lengths = element_lengths(body.patch)
+    long = max(float(np.median(along)) for along in lengths) / min(float(along.sum()) for along in lengths)
+    held = 0.1 * long * np.sqrt(max(0.0, body.material.bulk / body.material.shear - 13 / 6))
+    return float(8.0 * held**2 if order == 1 else 4.0 ** (1 - order) * held / (1.0 + held))
 
 
 def _spans(body: Body) -> Iterator[str]:
