@@ -102,3 +102,36 @@ def called(name: str) -> str:
         if match := re.fullmatch(pattern, name):
             return meant.format(*(word.replace(" ", "_") for word in match.groups() or (name,)))
     return UNKNOWN
+
+
+#: The same, on one more body that the base is glued to.
+GLUED = SCENE.replace("format = 1", 'format = 1\nglue = [["base.w0", "under.w1"]]').replace(
+    'ground.face = "base.w0"', 'ground.face = "under.w0"'
+)
+GLUED += """
+[bodies.under]
+geometry = { kind = "box", lower = [-1.5, -0.5, -1], upper = [3, 2.5, -0.5] }
+mesh = { order = [1, 1, 3], elements = [1, 2, 1] }
+"""
+
+
+@case(
+    claim="Advice lowers orders in depth of bodies in contact and of those that they are glued to, of each by itself, and nothing else.",
+    tier="gate",
+    grid={"body": ("base", "under")},
+    bounds={
+        "settings": Bound(at_least=1, reason="definition: lower orders than the scene has"),
+        "elsewhere": Bound(0.0, 0.0, "definition: changes of another body, or along the joint"),
+    },
+)
+def in_depth(body: str) -> dict[str, float]:
+    """How many of each."""
+    scene = Scene.from_toml(GLUED)
+    own, found = scene.problem(), {"settings": 0, "elsewhere": 0}
+    for dial in dials_of(scene, knobs=VARIANTS):
+        for setting in dial.settings[: dial.own] if dial.name == f"order of {body} across" else ():
+            for before, after in zip(own.bodies, changed(scene, [setting]).problem().bodies, strict=True):
+                lower = [a < b for a, b in zip(after.orders, before.orders, strict=True)]
+                found["settings"] += before.name == body and lower == [False, False, True]
+                found["elsewhere"] += (before.name != body and any(lower)) or lower[:2] != [False, False]
+    return {name: float(count) for name, count in found.items()}

@@ -11,7 +11,7 @@ import numpy as np
 from isomortar.model.entities import RigidPlane
 from isomortar.scene.scene import Scene
 from isomortar.scene.source import in_a_line, parse
-from isomortar.trade.knobs import KNOBS, Changes, Dial, Knob, Setting, dials_of, directions, faces_in_contact, given, stated
+from isomortar.trade.knobs import KNOBS, Changes, Dial, Knob, Setting, contact_places, dials_of, directions, given, stated
 from isomortar.trade.search import Recommendation, Search
 from isomortar.trade.want import Want
 
@@ -76,15 +76,14 @@ def _frictionless(scene: Scene, spoils: str) -> Iterator[Dial]:
 
 
 def _orders_across(scene: Scene, spoils: str) -> Iterator[Dial]:
-    """Lower orders of bodies away from their faces in contact."""
-    for name, letters in faces_in_contact(scene).items():
-        body = scene.whole().body(name)
-        across = [axis for axis in "uvw" if axis not in letters]
-        own = {axis: d.order for axis, d in directions(body) if axis in across}
-        if across and max(own.values()) > 1 and not body.rigid:
-            highest = max(own.values())
-            settings = tuple(Setting(str(p), None if p == highest else _across(name, across, p)) for p in range(1, highest + 1))
-            yield Dial(f"order of {name} across", settings, highest - 1, spoils)
+    """Lower orders of bodies away from faces in contact, their own and those of bodies that they are glued to."""
+    along = set().union(*contact_places(scene))
+    for body in scene.whole().deformable:
+        across = [axis for axis in "uvw" if (body.name, axis) not in along]
+        highest = max((d.order for axis, d in directions(body) if axis in across), default=1)
+        if highest > 1:
+            settings = tuple(Setting(str(p), None if p == highest else _across(body.name, across, p)) for p in range(1, highest + 1))
+            yield Dial(f"order of {body.name} across", settings, highest - 1, spoils)
 
 
 def _across(name: str, axes: list[str], order: int) -> Changes:

@@ -121,7 +121,7 @@ def _possible(scene: Scene, dial: Dial, wants: Sequence[Want]) -> Dial:
 
 def _orders(scene: Scene, spoils: str) -> Iterator[Dial]:
     """Order of each body along its faces in contact, and of what is glued to it along these."""
-    for places in _contact_places(scene):
+    for places in contact_places(scene):
         names = [body.name for body in scene.whole().bodies if any(body.name == name for name, _ in places)]
         along = [(axis, d) for name in names for axis, d in directions(scene.whole().body(name)) if (name, axis) in places]
         own, families = max(d.order for _, d in along), {d.family for _, d in along}
@@ -132,7 +132,7 @@ def _orders(scene: Scene, spoils: str) -> Iterator[Dial]:
         yield Dial(f"order of {' and '.join(names)}", tuple(settings), orders.index(own), spoils, part="order")
 
 
-def _contact_places(scene: Scene) -> list[set[tuple[str, str]]]:
+def contact_places(scene: Scene) -> list[set[tuple[str, str]]]:
     """Directions along the faces in contact of each body, with those that have to share their mesh: bodies and letters."""
     found: list[set[tuple[str, str]]] = []
     shared = shared_directions(scene.whole())
