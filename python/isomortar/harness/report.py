@@ -114,7 +114,7 @@ def percent(value: float) -> str:
     """A relative error as people read it."""
     if not math.isfinite(value):
         return "-"
-    return f"{100 * value:.3g} %" if value >= 1e-6 else f"{value:.1e}"
+    return f"{float(f'{100 * value:.3g}'):g} %"
 
 
 def stated(value: float, in_percent: bool) -> str:
