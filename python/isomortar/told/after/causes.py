@@ -20,7 +20,7 @@ from isomortar.solve.record import State
 from isomortar.told.after.overcome import overcome
 from isomortar.told.after.shared_edges import shared_edges
 from isomortar.told.after.sliding import sliding
-from isomortar.told.after.tipping import tipping
+from isomortar.told.after.tipping import giving_way, tipping
 from isomortar.told.before.pairing import few_points
 
 #: Volume ratios below this one are those of elements about to fold.
@@ -56,7 +56,7 @@ def causes(equilibrium: Equilibrium, state: State, error: Exception) -> Iterator
         yield _path(error.error, problem.settings.max_cuts)
         return
     told = set[int]()
-    for judge in (sliding, overcome, tipping):
+    for judge in (sliding, overcome, tipping, giving_way):
         found = [(pieces, sentence) for pieces, sentence in judge(equilibrium, state) if told.isdisjoint(pieces)]
         yield from (sentence for _, sentence in found)
         told.update(*(pieces for pieces, _ in found))

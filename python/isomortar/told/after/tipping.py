@@ -1,9 +1,10 @@
-"""Bodies that loads tip over, or lift: contact, which presses and rubs and does not pull, has nothing that would balance these."""
+"""Bodies that loads tip over, lift, or tip and slide: contact presses, and rubs as far as it presses, and has nothing to balance these."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from itertools import compress
 
 import numpy as np
@@ -11,6 +12,7 @@ from scipy import sparse
 
 from isomortar.errors import LostProjectionError
 from isomortar.geometry.patch import FloatArray
+from isomortar.model.glue import named
 from isomortar.model.rank import extent
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.feet import gaps
@@ -24,8 +26,12 @@ from isomortar.told.after.load_work import borne_loads
 EDGE = 1.0 / 3.0
 #: Directions along a face in which slips are looked at: all others are off by less than four per cent.
 DIRECTIONS = 12
-#: Friction in place of what contacts have: that bodies slide is another matter.
+#: Friction in place of what contacts have where bodies tip alone: that they slide is another matter.
 STICKS = 10.0
+#: Of slips along so many directions the longest is longer than the slip along the nearest one by less than this.
+BETWEEN = 1.0 / np.cos(np.pi / DIRECTIONS)
+#: Friction so many times as large is advised where it would do.
+MORE = 2.0
 #: Rates of opening, beside the speed of what touches, above which a motion opens it.
 ASKEW = 0.1
 #: What helps where the slave goes on beyond that.
@@ -44,27 +50,63 @@ def tipping(equilibrium: Equilibrium, state: State) -> Iterator[tuple[set[int], 
     state : State
         Where the last load increment ended that converged.
     """
+    for bodies in _loaded(equilibrium, state):
+        way = overturning(bodies.touches, bodies.works, bodies.sizes)
+        if way is not None:
+            with suppress(LostProjectionError):
+                yield bodies.pieces, _said(equilibrium, state, bodies, way)
+
+
+def giving_way(equilibrium: Equilibrium, state: State) -> Iterator[tuple[set[int], str]]:
+    """The same on bodies that slide and tip at once, as in a corner, by the friction that contacts have (theory 9.12).
+
+    Nothing is said where there are pressures, however large, by which contacts would bear the loads.
+    """
+    for bodies in _loaded(equilibrium, state):
+        if overturning(bodies.touches, bodies.works, bodies.sizes, [_friction(touch) for touch in bodies.touches]) is not None:
+            yield bodies.pieces, _gives_way(equilibrium, bodies)
+
+
+@dataclass(frozen=True)
+class _Loaded:
+    """Bodies that touch each other, by the numbers of their pieces, with what they touch; motions, works on these, and their sizes."""
+
+    pieces: set[int]
+    touches: list[Touch]
+    motions: list[FreeMotion]
+    works: FloatArray
+    sizes: FloatArray
+
+
+def _loaded(equilibrium: Equilibrium, state: State) -> Iterator[_Loaded]:
+    """Bodies that loads would move; a heavy one that they do not touch does not matter to the sizes of works."""
     motions, works, touches = borne_loads(equilibrium, state)
     if not touches:
         return
     pieces = np.array([motion.piece for motion in motions])
     sizes = np.sqrt(np.bincount(pieces, works**2))[pieces]
     for mine, near in groups_of(touches, pieces):
-        way = overturning(near, works[mine], sizes[mine]) if near and np.any(works[mine]) else None
-        if way is not None:
-            with suppress(LostProjectionError):
-                yield set(pieces[mine]), _said(equilibrium, state, near, list(compress(motions, mine)), way, works[mine])
+        if near and np.any(works[mine]):
+            yield _Loaded(set(pieces[mine]), near, list(compress(motions, mine)), works[mine], sizes[mine])
 
 
-def overturning(touches: Sequence[Touch], works: FloatArray, sizes: FloatArray) -> FloatArray | None:
+def _friction(touch: Touch) -> float:
+    """The coefficient of a contact, no less for the directions between those looked at; what a cohesion bears has no limit here."""
+    contact = touch.pair.pair.contact
+    return STICKS if contact.cohesion > 0.0 else BETWEEN * contact.friction
+
+
+def overturning(
+    touches: Sequence[Touch], works: FloatArray, sizes: FloatArray, friction: Sequence[float] | None = None
+) -> FloatArray | None:
     """The motion on which loads do most work beyond what contact takes up, all of it or on a share EDGE of its area (theory 9.12).
 
     Its amounts add up to one: as few motions as can be. `sizes` are those of the works of the motion's body: a heavy one beside it does
-    not matter. None: there is no motion that opens much of a contact.
+    not matter. Without `friction` bodies stick, and the motion opens much of a contact. None: there is no such motion.
     """
     from scipy.optimize import linprog
 
-    table, costs = _resistance(touches)
+    table, costs = _resistance(touches, friction or [STICKS] * len(touches))
     for crushed in (False, True):
         limits = np.append(np.zeros(table.shape[0]), 1.0)
         total = np.repeat([1.0, 0.0], [2 * len(works), len(costs)])
@@ -75,14 +117,14 @@ def overturning(touches: Sequence[Touch], works: FloatArray, sizes: FloatArray) 
             continue
         way: FloatArray = np.diff(found.x[: 2 * len(works)].reshape(2, -1)[::-1], axis=0)[0]
         size = sizes[np.abs(way) > ALONG * np.abs(way).max()].max(initial=0.0) / np.abs(works).max()
-        if -found.fun > ALONG * size > 0.0 and any(_opened(touch, way) > OPENS for touch in touches):
+        if -found.fun > ALONG * size > 0.0 and (friction or any(_opened(touch, way) > OPENS for touch in touches)):
             return way
     return None
 
 
-def _resistance(touches: Sequence[Touch]) -> tuple[sparse.csr_array, FloatArray]:
+def _resistance(touches: Sequence[Touch], friction: Sequence[float]) -> tuple[sparse.csr_array, FloatArray]:
     """Rows that no motion, forwards or backwards, makes positive but as far as it presses constraints, and what that costs each of them."""
-    rates = [_rates(touch) for touch in touches]
+    rates = [_rates(touch, coefficient) for touch, coefficient in zip(touches, friction, strict=True)]
     pressed = [np.full((len(own) // len(touch.share), 1), 1.0) for own, touch in zip(rates, touches, strict=True)]
     each = sparse.block_diag([part for part, touch in zip(pressed, touches, strict=True) for _ in touch.share])
     beside = np.concatenate([touch.beside for touch in touches])
@@ -91,13 +133,13 @@ def _resistance(touches: Sequence[Touch]) -> tuple[sparse.csr_array, FloatArray]
     return sparse.hstack([moves, -moves, presses], format="csr"), np.concatenate([touch.share / EDGE for touch in touches])
 
 
-def _rates(touch: Touch) -> FloatArray:
+def _rates(touch: Touch, friction: float) -> FloatArray:
     """Mean rates of closing, and with friction of slips along some directions as well, shape (n * directions, motions)."""
     if not touch.pair.friction.acts:
         return touch.closing / touch.weight[:, None]
     angles = 2.0 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS
     slips = np.einsum("ad,nam->ndm", [np.cos(angles), np.sin(angles)], touch.slipping)
-    rates = (touch.closing[:, None] + STICKS * slips) / touch.weight[:, None, None]
+    rates = (touch.closing[:, None] + friction * slips) / touch.weight[:, None, None]
     return np.asarray(rates).reshape(-1, rates.shape[2])
 
 
@@ -109,10 +151,9 @@ def _opened(touch: Touch, way: FloatArray) -> float:
     return float(1.0 - touch.share @ ~opens) if opens.any() or opens_more.any() else 0.0
 
 
-def _said(
-    equilibrium: Equilibrium, state: State, touches: Sequence[Touch], motions: Sequence[FreeMotion], way: FloatArray, works: FloatArray
-) -> str:
+def _said(equilibrium: Equilibrium, state: State, bodies: _Loaded, way: FloatArray) -> str:
     """On the bodies that go, and what opens."""
+    touches, motions, works = bodies.touches, bodies.motions, bodies.works
     goes = going(equilibrium.numbering, motions, way)
     opened = [touch for touch in touches if _opened(touch, way) > OPENS]
     contacts = " and ".join(repr(touch.pair.pair.contact.name) for touch in opened)
@@ -128,6 +169,19 @@ def _said(
     return (
         f"loads {how} by then, which contact {contacts} could hold by a pull alone, or by what presses on less than a third of the area: "
         f"{end}. {cure}{FINER if finer else ''}or hold or move it by a support"
+    )
+
+
+def _gives_way(equilibrium: Equilibrium, bodies: _Loaded) -> str:
+    """On bodies that slide, tip or both; with normality they would open what they slide on, and no direction is told."""
+    pieces = [equilibrium.numbering.pieces[number] for number in sorted(bodies.pieces)]
+    names = " and ".join(named(piece, piece[0].name) for piece in pieces)
+    contacts = " and ".join(repr(touch.pair.pair.contact.name) for touch in bodies.touches)
+    held = overturning(bodies.touches, bodies.works, bodies.sizes, [MORE * _friction(touch) for touch in bodies.touches]) is None
+    return (
+        f"no pressures of contact {contacts}, with the friction that they have, are in balance with the loads on {names} by then: it "
+        f"slides, tips over, or both at once, and is nowhere at rest. Take {'more friction, ' if held else ''}less load beside what "
+        "presses, or hold or move it by a support"
     )
 
 
