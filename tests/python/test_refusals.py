@@ -15,7 +15,7 @@ import pytest
 import splinepy
 from matplotlib.figure import Figure
 from matplotlib.text import Text
-from told import corners, tipping
+from told import corners, tipping, too_tight
 from told.too_steep import LOADS, of_block, said
 from told.wrong.contacts import LAGRANGE, PAIR, PRESS
 from told.wrong.halves import PLANE
@@ -278,6 +278,7 @@ def on_the_way(patch: pytest.MonkeyPatch) -> Told:
     yield "path", without_digits(_stopped(PAIR, *few))
     few = ["solver.max_iterations=1", "solver.max_cuts=0"]
     yield "Newton", without_digits(_stopped(PRESS, *few))
+    yield "Newton, too tight", without_digits(too_tight.ending(too_tight.TIGHT["both"])).partition("iterations")[2]
     patch.setattr(system.constants, "REFUSED_ABOVE", -1.0)
     patch.setattr(system.constants, "REFINED_ABOVE", -1.0)
     yield "digits", without_digits(_stopped(PRESS, "solver.max_cuts=0"))

@@ -15,6 +15,7 @@ import numpy as np
 from isomortar.errors import ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
+from isomortar.model.entities import SolverSettings
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.record import IterationRecord, State
 from isomortar.solve.scales import Scales
@@ -42,6 +43,11 @@ class Iterate:
     def left(self) -> str:
         """What is left to solve, in words."""
         return f"a relative residual of {self.residual:.2e}"
+
+    @property
+    def left_by_setting(self) -> dict[str, float]:
+        """What is left to solve, by the setting that says how much may be."""
+        return {"newton_tolerance": self.residual}
 
     @property
     def states(self) -> bytes:
@@ -133,8 +139,16 @@ class Newton(ABC, Generic[Iterated, Corrected]):
                 tangents, moves, led = tangents + 1, False, (iterate, following)
             keep = self._keeps and self._serve(iterate, following)
             iterate = following
-        toggling = self._trail.toggling(self._equilibrium.pairs)
-        raise ConvergenceError(f"Newton's method stopped at {iterate.left} after {iteration} iterations{toggling}")
+        why = self._too_tight(iterate) or self._trail.toggling(self._equilibrium.pairs)
+        raise ConvergenceError(f"Newton's method stopped at {iterate.left} after {iteration} iterations{why}")
+
+    def _too_tight(self, iterate: Iterated) -> str:
+        """Which tolerances ask for more digits than round-off leaves, as a part of a sentence; empty: what is left is more than that."""
+        default, left = SolverSettings(), iterate.left_by_setting
+        if not all(value <= getattr(default, name) for name, value in left.items()):
+            return ""
+        missed = [f"solver.{name} = {getattr(default, name):g}" for name, value in left.items() if value > getattr(self._settings, name)]
+        return f", which is next to round-off: take {' and '.join(missed)}, the default"
 
     def _have_factors(self, iterate: Iterated) -> None:
         """Factors for who asks whether it is stable, where no solve has made any since supports were released (theory 5.26)."""
@@ -157,8 +171,8 @@ class Newton(ABC, Generic[Iterated, Corrected]):
         """The same positions with that closed, without friction, which is nearest there (theory 6.8)."""
 
     def _converged(self, iterate: Iterated) -> bool:
-        """Whether nothing is left to solve (theory 5.6)."""
-        return iterate.residual <= self._settings.newton_tolerance
+        """Whether forces are in balance and the contact conditions are met (theory 5.6, 6.6)."""
+        return all(value <= getattr(self._settings, name) for name, value in iterate.left_by_setting.items())
 
     def _reopened(self, iterate: Iterated) -> Iterated:
         """A converged iterate with the conditions that it calls for in addition; itself, where there are none."""
