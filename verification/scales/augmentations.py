@@ -29,10 +29,13 @@ def run(problem: Problem) -> tuple[list[StepResult], bool]:
     return found, True
 
 
-def against_monolithic(problem: Problem) -> dict[str, float]:
-    """Largest distance of the results of augmentations from those of the monolithic method, at the load steps that are reached."""
+def against_monolithic(problem: Problem, tolerance: float = 1e-9) -> dict[str, float]:
+    """Largest distance of the results of augmentations from those of the monolithic method, at the load steps that are reached.
+
+    Newton's method has the tolerance with augmentations.
+    """
     problem = replace(problem, settings=replace(problem.settings, newton_tolerance=1e-9, complementarity_tolerance=1e-8))
-    found, complete = run(replace(problem, settings=replace(problem.settings, method="uzawa", max_cuts=0)))
+    found, complete = run(replace(problem, settings=replace(problem.settings, method="uzawa", max_cuts=0, newton_tolerance=tolerance)))
     right = list(Simulation(problem).run())[: len(found)]
     apart = {"forces": 0.0, "moments": 0.0}
     for a, b in zip(found, right, strict=True):
@@ -75,3 +78,16 @@ def frictions(friction: float) -> dict[str, float]:
     """From none to more than any traction asks for."""
     problem = at_few_points(bowl("plane"))
     return against_monolithic(replace(problem, contacts=tuple(replace(c, friction=friction) for c in problem.contacts)))
+
+
+@case(
+    claim="Augmentations come to the same forces whatever digits are asked of Newton's method: round-off that penalties multiply is left.",
+    tier="gate",
+    grid={"master": ("block", "plane"), "tolerance": (1e-12, 1e-16)},
+    bounds={**BOUNDS, "got there": REACHED},
+)
+def digits(master: str, tolerance: float) -> dict[str, float]:
+    """With penalties ten times the default."""
+    problem = at_few_points(bowl(master))
+    settings = replace(problem.settings, penalty_normal=1e3, penalty_tangential=1e2)
+    return against_monolithic(replace(problem, settings=settings), tolerance)

@@ -108,6 +108,8 @@ MAX_CLOSINGS = 5
 MAX_REVERSALS = 2
 #: Forces of a body are round-off below so many times what the last bits of its positions make of them (0.2 to 1.2 times were seen).
 ROUND_OFF = 8.0
+#: Share of a body's forces up to which round-off that penalties multiply is left in them: of larger penalties forces would be wrong.
+MOST_UNKNOWN = 1e-7
 
 # ---- Contact conditions (theory 5.8, 6.1, 6.4, 7.4, 7.5)
 

@@ -139,8 +139,17 @@ class Newton(ABC, Generic[Iterated, Corrected]):
                 tangents, moves, led = tangents + 1, False, (iterate, following)
             keep = self._keeps and self._serve(iterate, following)
             iterate = following
+        return self._given_up(iterate, tuple(log))
+
+    def _given_up(self, iterate: Iterated, log: tuple[IterationRecord, ...]) -> Converged[Iterated]:
+        """What a loop comes to whose tangents are used up.
+
+        Raises
+        ------
+        ConvergenceError
+        """
         why = self._too_tight(iterate) or self._trail.toggling(self._equilibrium.pairs)
-        raise ConvergenceError(f"Newton's method stopped at {iterate.left} after {iteration} iterations{why}")
+        raise ConvergenceError(f"Newton's method stopped at {iterate.left} after {log[-1].iteration} iterations{why}")
 
     def _too_tight(self, iterate: Iterated) -> str:
         """Which tolerances ask for more digits than round-off leaves, as a part of a sentence; empty: what is left is more than that."""
@@ -231,14 +240,16 @@ class Newton(ABC, Generic[Iterated, Corrected]):
             return None
         return following if self._serve(iterate, following) else None
 
-    def _residual(self, balance: Balance) -> float:
+    def _residual(self, balance: Balance, multiplied: FloatArray | float = 0.0) -> float:
         """Residual at the free unknowns of a body relative to its internal forces, of the body where that is largest (theory 5.6).
 
         Forces count for no less than what makes round-off pass `newton_tolerance`: while a body moves rigidly, they are nothing else.
+        Of what is `multiplied` by penalties no more than a share of forces is left (theory 7.7).
         """
-        floor = self._scales.round_off / self._settings.newton_tolerance
         measures = self._equilibrium.measures
-        forces = np.maximum(measures.sizes(balance.internal, balance.total, balance.unbalanced), floor)
+        sizes = measures.sizes(balance.internal, balance.total, balance.unbalanced)
+        unknown = np.maximum(self._scales.round_off, np.minimum(multiplied, constants.MOST_UNKNOWN * sizes))
+        forces = np.maximum(sizes, unknown / self._settings.newton_tolerance)
         residual = measures.free_norms(balance.unbalanced)
         return float(np.max(np.divide(residual, forces, out=np.zeros_like(residual), where=residual != 0.0)))  # a body with nothing free: 0
 

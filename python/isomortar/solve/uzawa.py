@@ -17,8 +17,8 @@ from isomortar.solve.distances import apart, largest, off_conditions, ratio, rou
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.method import Increment, Method, augmentation_record
 from isomortar.solve.metric import median
-from isomortar.solve.newton import Iterate, Newton
-from isomortar.solve.record import State
+from isomortar.solve.newton import Converged, Iterate, Newton
+from isomortar.solve.record import IterationRecord, State
 from isomortar.solve.scales import Scales
 from isomortar.solve.secants import Secants
 
@@ -67,6 +67,23 @@ class _PositionNewton(Newton[Iterate, FloatArray]):
     def _evaluate(self, positions: FloatArray) -> Iterate:
         balance = self._equilibrium.balance(positions, self._start, self._laws)
         return Iterate(balance, self._residual(balance))
+
+    def _given_up(self, iterate: Iterate, log: tuple[IterationRecord, ...]) -> Converged[Iterate]:
+        """An iterate that is out of balance by round-off, which penalties multiply, is what it comes to (theory 7.7)."""
+        if self._residual(iterate.balance, self._multiplied(iterate.balance)) <= self._settings.newton_tolerance:
+            return Converged(iterate, log, float("nan"))
+        return super()._given_up(iterate, log)
+
+    def _multiplied(self, balance: Balance) -> FloatArray:
+        """Norm of what the last bits of positions make of the gaps and slips that penalties multiply, shape (pieces,) (theory 7.7)."""
+        norms = np.zeros_like(self._scales.round_off)
+        for pair, law, kinematics, response in zip(self._equilibrium.pairs, self._laws, balance.kinematics, balance.responses, strict=True):
+            if not pair.rests(kinematics, law.pressure, law.traction):
+                normal, tangential = round_off(pair, balance.positions, law, response)
+                weight = kinematics.control.weight[response.state > 0]
+                mean = float(np.linalg.norm(weight)) / max(len(weight), 1) ** 0.5
+                norms[pair.pair.pieces] += constants.ROUND_OFF * max(normal, tangential) * mean
+        return norms
 
     def _moved(self, iterate: Iterate, correction: FloatArray, share: float) -> Iterate:
         return self._evaluate(self._equilibrium.moved(iterate.balance.positions, share * correction))
