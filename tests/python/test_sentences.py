@@ -20,6 +20,7 @@ from told.beyond_edges import STRIP as BEYOND_EDGES
 from told.beyond_edges import punch
 from told.given_up import all_told, without_digits
 from told.long_masters import CAP
+from told.mirrored import of_half
 from told.narrow import BALL, BALLS, STRIPS, depth, strip
 from told.passing import SCENE as BENT
 from told.unstable import LYING
@@ -195,6 +196,9 @@ def along_the_way(_: pytest.MonkeyPatch) -> Told:
     observer = Warned()
     list(Simulation(Scene.from_toml(LYING.replace("FRICTION", "0")).problem(), observer).run())
     yield "goes off", next(at.sub(r"\1 #, along (#)", said) for said in observer.said if "not stable" in said)
+    observer = Warned()
+    list(Simulation(Scene.from_toml(of_half("free", 1.08, "x = 0")).problem(), observer).run())
+    yield "mirrored", next(said for said in observer.said if "the whole is not stable" in said)
     for name, (text, changes) in {
         "narrow": strip(*STRIPS["N2 beside it"]),
         "one row": (BALLS["one row"][0], (depth(0.05),)),

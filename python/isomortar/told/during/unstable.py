@@ -39,13 +39,13 @@ class Unstable:
 
     def after_stage(self, balance: Balance, step: int) -> Iterator[str]:
         """Warnings that the end of a stage gives rise to, by the factors of its last tangent."""
-        motions = () if self._told else self._against_force(balance.positions)
+        motions = () if self._told else self.against_force(balance.positions)
         motion = next((motion for motion in motions if not balance.slipping or self._gives_way(motion, balance.positions)), None)
         if motion is not None:
             self._told = True
             yield self._sentence(motion, balance.positions, step)
 
-    def _against_force(self, positions: FloatArray) -> Iterator[FloatArray]:
+    def against_force(self, positions: FloatArray) -> Iterator[FloatArray]:
         """Motions of all control points that go against the forces which make them, shape (control points, 3) (theory 5.26).
 
         Forces act on one body at a time: a slender or soft one moves so much more that others would be lost beside it.

@@ -12,6 +12,7 @@ from isomortar.told.during.astray import Astray
 from isomortar.told.during.behind import Behind
 from isomortar.told.during.inside_out import InsideOut
 from isomortar.told.during.lost import LostDigits
+from isomortar.told.during.mirrored import Mirrored
 from isomortar.told.during.narrow import Narrow
 from isomortar.told.during.passing import Passing
 from isomortar.told.during.pulling import Pulling
@@ -40,6 +41,7 @@ class Watches:
         self._lost, self._pulling, self._sharing = LostDigits(equilibrium), Pulling(equilibrium), Sharing(equilibrium)
         self._small_strains, self._astray, self._unseen = SmallStrains(equilibrium), Astray(equilibrium), Unseen(equilibrium)
         self._snapping, self._inside_out, self._unstable = Snapping(equilibrium), InsideOut(equilibrium), Unstable(equilibrium)
+        self._mirrored = Mirrored(equilibrium)
         self._narrow, self._advice = Narrow(equilibrium, states), StepAdvice(problem, step, states)
         self._of_stages = [watch for watch in (Passing(problem), Behind(problem)) if watch.needed]
 
@@ -57,7 +59,7 @@ class Watches:
 
     def by_factors(self, balance: Balance, step: int) -> list[str]:
         """Warnings at the end of a stage that solves by the factors of its last tangent give rise to: they count in that load step."""
-        return list(self._unstable.after_stage(balance, step))
+        return [*self._unstable.after_stage(balance, step), *self._mirrored.after_stage(balance, step)]
 
     def after_step(self, balance: Balance, result: StepResult, ends: bool) -> Iterator[str]:
         """Warnings that a load step gives rise to, which may be the last of its stage."""
