@@ -292,3 +292,18 @@ def let_go(method: str) -> dict[str, float]:
         said += [found[1] for sentence in heard.said if (found := TOLD.search(sentence))]
     solves = sum(len(record.iterations) - 1 for record in last.augmentations)
     return {"below": float(len(below)), "above": float(above == ["3"]), "solves": float(solves)}
+
+
+@case(
+    claim="A mast is told to buckle in however few load steps its load comes: factors of where one began would serve, as nothing bends.",
+    tier="gate",
+    grid={"steps": (1, 2, 3)},
+    bounds={
+        "below": Bound(0.0, 0.0, "definition: sentences at 0.92 of Euler's load"),
+        "above": Bound(2.0, 2.0, "definition: sentences at 1.08 and at five times it"),
+    },
+)
+def at_once(steps: int) -> dict[str, float]:
+    """What is said at three loads."""
+    below, above, far = (len(told(column("free", share, "").replace("steps = 2", f"steps = {steps}"))) for share in (0.92, 1.08, 5.0))
+    return {"below": float(below), "above": float(above + far)}

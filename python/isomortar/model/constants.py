@@ -108,6 +108,8 @@ MAX_CLOSINGS = 5
 MAX_REVERSALS = 2
 #: Forces of a body are round-off below so many times what the last bits of its positions make of them (0.2 to 1.2 times were seen).
 ROUND_OFF = 8.0
+#: Share of the way of an increment behind which factors are made anew at the end of a stage, where they tell whether it is stable.
+STALE = 0.5
 #: Share of a body's forces up to which round-off that penalties multiply is left in them: of larger penalties forces would be wrong.
 MOST_UNKNOWN = 1e-7
 

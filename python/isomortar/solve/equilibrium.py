@@ -351,6 +351,11 @@ class Equilibrium:
         return self._system.solve_again(right)
 
     @property
+    def ends_stage(self) -> bool:
+        """Whether the increment that was begun last ends where a stage does."""
+        return bool(np.any(self.time == np.cumsum([stage.steps for stage in self.problem.stages])))
+
+    @property
     def was_solved(self) -> bool:
         """Whether there has been a system to solve since these supports hold."""
         return self._system is not None

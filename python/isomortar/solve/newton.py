@@ -88,7 +88,7 @@ class Newton(ABC, Generic[Iterated, Corrected]):
         self._equilibrium, self._start, self._scales = equilibrium, start, scales
         self._settings = equilibrium.problem.settings
         self._keeps = "keeping" in self._settings.measures
-        self._factorised = False
+        self._factorised, self._made_at = False, start.positions
         self._loads_closed: list[bool] = []  # which pairs loads closed first
 
     def solve(
@@ -160,10 +160,15 @@ class Newton(ABC, Generic[Iterated, Corrected]):
         return f", which is next to round-off: take {' and '.join(missed)}, the default"
 
     def _have_factors(self, iterate: Iterated) -> None:
-        """Factors for who asks whether it is stable, where no solve has made any since supports were released (theory 5.26)."""
-        if not self._equilibrium.was_solved:
+        """Factors for who asks whether it is stable, where those there are, if any, are of where an increment began (theory 5.26)."""
+        way = iterate.balance.positions - self._start.positions
+        stale = self._equilibrium.ends_stage and np.linalg.norm(
+            iterate.balance.positions - self._made_at
+        ) > constants.STALE * np.linalg.norm(way)
+        if stale or not self._equilibrium.was_solved:
             with suppress(FoldedElementError, LostProjectionError, SingularSystemError):
                 self._correct(iterate, None, False)
+                self._made_at = iterate.balance.positions
 
     def _nearest(self, positions: FloatArray, penalties: Sequence[float | Scales]) -> list[FloatArray | None]:
         """Pressures that close what loads close first, from some positions on; None of pairs that they do not close (theory 6.8)."""
@@ -225,6 +230,7 @@ class Newton(ABC, Generic[Iterated, Corrected]):
         try:
             iterate, correction, predicted = self._correct(iterate, prescribed, keep_bodies)
             self._factorised = True
+            self._made_at = self._made_at if keep_bodies else iterate.balance.positions
             following, shortened = self._update(iterate, correction, iteration)
         except (FoldedElementError, LostProjectionError, SingularSystemError):
             if not keep_bodies:
