@@ -143,8 +143,9 @@ def along_the_way(_: pytest.MonkeyPatch) -> Told:
         ).run()
     )
     (yield "sticks to both", *(re.sub(r"\d+ slave", "# slave", said) for said in heard.said))  # how many is left open, too
-    yield "pulls", pulling._sentence(problem().contacts[0], 3)
-    yield "pulls, plane", pulling._sentence(problem().contacts[1], 3)
+    yield "pulls", pulling._sentence(problem().contacts[0], 3, rolled=False)
+    yield "pulls, plane", pulling._sentence(problem().contacts[1], 3, rolled=False)
+    yield "pulls, rolled", pulling._sentence(problem().contacts[0], 3, rolled=True)
     text = PRESS.replace('face = "block.w1"', 'face = "block.w1"\nmoment = 0\naxis = [0, 1, 0]').replace(", rotate = 0", "")
     tilting = Simulation(Scene.from_toml(text).problem()).equilibrium
     snapping, here = Snapping(tilting), tilting.numbering.reference

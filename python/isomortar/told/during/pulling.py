@@ -31,25 +31,32 @@ class Pulling:
         for number, contact in enumerate(self._equilibrium.problem.contacts):
             if contact.name not in self._told and pulls(self._equilibrium, balance, number):
                 self._told.add(contact.name)
-                yield _sentence(contact, step)
+                on_slave, outward = _normal_forces(self._equilibrium, balance, number)
+                yield _sentence(contact, step, bool(on_slave.sum(axis=0) @ outward.sum(axis=0) < 0.0))
 
 
 def pulls(equilibrium: Equilibrium, balance: Balance, number: int) -> bool:
-    """Whether normal forces of a contact act out of its slave's body.
+    """Whether normal forces of a contact act out of its slave's body."""
+    on_slave, outward = _normal_forces(equilibrium, balance, number)
+    out = np.einsum("ij,ij->i", on_slave, outward)
+    return bool(np.maximum(out, 0.0).sum() > PULLING * np.linalg.norm(on_slave, axis=1).sum())
+
+
+def _normal_forces(equilibrium: Equilibrium, balance: Balance, number: int) -> tuple[FloatArray, FloatArray]:
+    """Normal forces of a contact on its slave's quadrature points and unit normals out of its body there, each shape (points, 3).
 
     They are looked at point by point, the pressure there as if it pressed: what functions of both signs make of it at control points,
     and a field of theirs below zero, tell nothing of where the slave's face looks.
     """
     pair, response = equilibrium.pairs[number].pair, balance.responses[number]
+    outward = _outward(pair, balance.positions)
     if not np.any(response.state):
-        return False
+        return np.zeros_like(outward), outward
     slave, everywhere = point_by_point(pair, balance.positions)
     loads = pair.slave.area * np.abs(pair.field(response.pressure))
     forces = np.zeros_like(everywhere)  # without friction, whose part along the slave's own normal has any sign
     _bindings.contact_forces(slave, pair.master, everywhere, balance.kinematics[number].projections, _pressing(loads), forces)
-    on_slave = -forces[slave.point]
-    out = np.einsum("ij,ij->i", on_slave, _outward(pair, balance.positions))
-    return bool(np.maximum(out, 0.0).sum() > PULLING * np.linalg.norm(on_slave, axis=1).sum())
+    return -forces[slave.point], outward
 
 
 def _pressing(loads: FloatArray) -> Response:
@@ -68,10 +75,15 @@ def _outward(pair: Pair, positions: FloatArray) -> FloatArray:
     return np.divide(across, length, out=np.zeros_like(across), where=length > 0.0)
 
 
-def _sentence(contact: Contact, step: int) -> str:
+def _sentence(contact: Contact, step: int, rolled: bool) -> str:
+    """On a slave that came from behind, or whose face still looks to its master as a whole, and has `rolled` over its edge."""
+    pulls = f"contact {contact.name!r}, load step {step}: it pulls where it should push: the slave face {contact.slave.words}"
+    if rolled:
+        return (
+            f"{pulls} has rolled over an edge of its own, and looks away from its master there: what meets that is the face beside it. "
+            "Give that face a contact, too, take less friction, or end the motion earlier"
+        )
     cure = "turn its normal round, or" if isinstance(contact.master, RigidPlane) else f"name another face in contacts.{contact.name}, or"
     return (
-        f"contact {contact.name!r}, load step {step}: it pulls where it should push: the slave face {contact.slave.words} "
-        f"looks away from its master, as if it had come through it from behind. Look at the motions, {cure} "
-        "start on the other side"
+        f"{pulls} looks away from its master, as if it had come through it from behind. Look at the motions, {cure} start on the other side"
     )
