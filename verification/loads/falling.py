@@ -56,8 +56,8 @@ stages = [{ name = "fall", steps = 1 }]
 """
 
 
-def _computed(text: str, method: str) -> list[StepResult]:
-    return list(Simulation(Scene.from_toml(text, overrides=[f'solver.method="{method}"']).problem()).run())
+def _computed(text: str, method: str, *more: str) -> list[StepResult]:
+    return list(Simulation(Scene.from_toml(text, overrides=[f'solver.method="{method}"', *more]).problem()).run())
 
 
 @case(
@@ -74,7 +74,7 @@ def first_in_the_way(pressed: str, beside: str, method: str) -> dict[str, float]
     """Largest difference of positions, relative to the pad, and cuts of load increments."""
     alone = _PAD + _PRESSED[pressed]
     both = alone.replace("[contacts.die]", f"[contacts]\n{_BESIDE[beside]}[contacts.die]")
-    found = [_computed(text, method) for text in (alone, both)]
+    found = [_computed(text, method, "solver.newton_tolerance=1e-13") for text in (alone, both)]
     apart = [np.abs(one.state.positions - other.state.positions).max() for one, other in zip(*found, strict=True)]
     bears = [step.contacts[-1].active for steps in found for step in steps]
     return {"apart": float(np.max(apart)), "bears": float(np.min(bears)), "cuts": float(sum(step.cuts for step in found[1]))}

@@ -53,14 +53,7 @@ class Plain:
         positions, rate = self.numbering.reference.copy(), None
         for step in range(1, self.problem.total_steps + 1):
             start = positions
-            if rate is None:
-                positions = self._pushed(start, step)
-                keep = False
-            else:
-                positions = np.where(self.supports.held, self.supports.place(step), start + rate)
-                self._factorise(positions)
-                keep = True
-            positions = self._balanced(positions, keep)
+            positions = self._balanced(self._pushed(start, step) if rate is None else self._ahead(start + rate, step))
             rate = positions - start
         for force in np.eye(len(self.free))[:FORCES]:  # whether the end of the stage is stable
             self.system.solve_again(force)
@@ -73,15 +66,21 @@ class Plain:
         right = self.solid.forces(start) + block_product(self.solid.pattern, tangent, given)
         return start + self._correction(right) + given
 
-    def _balanced(self, positions: FloatArray, keep: bool) -> FloatArray:
+    def _ahead(self, positions: FloatArray, step: int) -> FloatArray:
+        """Positions with the supports where they are then."""
+        return np.where(self.supports.held, self.supports.place(step), positions)
+
+    def _balanced(self, positions: FloatArray) -> FloatArray:
         """Positions at which forces are in balance."""
-        forces, left = self._residual(positions)
+        (forces, left), keep = self._residual(positions), False
         while left > self.problem.settings.newton_tolerance:
             if not keep:
                 self._factorise(positions)
             correction, before = self._correction(forces), left
-            self.secants.reach(positions, correction)
-            positions = positions + (self.secants.improved(correction) if keep else correction)
+            if keep:
+                self.secants.reach(positions, correction)
+                correction = self.secants.improved(correction)
+            positions = positions + correction
             forces, left = self._residual(positions)
             keep = left <= constants.KEPT_SHARE * before
         return positions

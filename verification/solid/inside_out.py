@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from unittest.mock import patch
+
 import numpy as np
 from rational_functions import shares
 
@@ -13,6 +15,7 @@ from isomortar.march.simulation import Simulation
 from isomortar.model import constants
 from isomortar.scene import Scene
 from isomortar.solve.record import Observer
+from isomortar.solve.secants import Secants
 from isomortar.told.during.inside_out import Places
 
 #: By name family, orders, elements and the largest weight of patches; no two directions alike.
@@ -162,8 +165,10 @@ def run(text: str, *overrides: str) -> tuple[FloatArray, float, Heard]:
     },
 )
 def falls() -> dict[str, float]:
-    """By large steps and by small ones."""
-    (force, jacobian, heard), (expected, _, small) = run(SCENE), run(SCENE, *SMALL)
+    """By large steps, with corrections that learn nothing and lead into it, and by small ones."""
+    expected, _, small = run(SCENE, *SMALL)
+    with patch.object(constants, "KEPT_SHARE", 0.2), patch.object(Secants, "improved", lambda _, correction: correction):
+        force, jacobian, heard = run(SCENE)
     off = np.linalg.norm(force - expected) / np.linalg.norm(expected)
     return {"J": jacobian, "force": float(off), "cuts": heard.cuts, "heard": heard.warnings + small.warnings + small.cuts}
 
