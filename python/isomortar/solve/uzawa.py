@@ -71,6 +71,7 @@ class _PositionNewton(Newton[Iterate, FloatArray]):
     def _given_up(self, iterate: Iterate, log: tuple[IterationRecord, ...]) -> Converged[Iterate]:
         """An iterate that is out of balance by round-off, which penalties multiply, is what it comes to (theory 7.7)."""
         if self._residual(iterate.balance, self._multiplied(iterate.balance)) <= self._settings.newton_tolerance:
+            self._have_factors(iterate)
             return Converged(iterate, log, float("nan"))
         return super()._given_up(iterate, log)
 

@@ -177,10 +177,15 @@ def _gives_way(equilibrium: Equilibrium, bodies: _Loaded) -> str:
     pieces = [equilibrium.numbering.pieces[number] for number in sorted(bodies.pieces)]
     names = " and ".join(named(piece, piece[0].name) for piece in pieces)
     contacts = " and ".join(repr(touch.pair.pair.contact.name) for touch in bodies.touches)
+    open_ = [
+        pair for pair in equilibrium.pairs if bodies.pieces & set(pair.pair.pieces) and not any(t.pair is pair for t in bodies.touches)
+    ]
+    met = " or ".join(repr(pair.pair.contact.name) for pair in open_)
+    end = f" until contact {met} closes, where it may rest: bring it there by a support first" if met else ", and is nowhere at rest"
     held = overturning(bodies.touches, bodies.works, bodies.sizes, [MORE * _friction(touch) for touch in bodies.touches]) is None
     return (
         f"no pressures of contact {contacts}, with the friction that they have, are in balance with the loads on {names} by then: it "
-        f"slides, tips over, or both at once, and is nowhere at rest. Take {'more friction, ' if held else ''}less load beside what "
+        f"slides, tips over, or both at once{end}. Take {'more friction, ' if held else ''}less load beside what "
         "presses, or hold or move it by a support"
     )
 

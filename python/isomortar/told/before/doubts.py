@@ -104,8 +104,8 @@ def _locking(body: Body) -> Iterator[str]:
         needed = next(other for other in range(order + 1, MAX_ORDER["L"] + 1) if _too_stiff(body, other) <= LOCKING)
         yield (
             f"body {body.name!r}: with Poisson's ratio {body.material.poisson:.15g} its elements of order {order} lock, and forces come "
-            f"out {size} too large, more where it bends. Take order {needed} in all directions, shorter elements, or a Poisson's ratio "
-            "that is lower"
+            f"out {size} too large where its faces are held, more where it bends. Take order {needed} in all directions, shorter "
+            "elements, or a Poisson's ratio that is lower"
         )
 
 

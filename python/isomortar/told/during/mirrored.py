@@ -9,10 +9,15 @@ from dataclasses import replace
 import numpy as np
 
 from isomortar.errors import InputError, KernelError
+from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Face, Motion, Problem, Support, SymmetryPlane
 from isomortar.solve.equilibrium import Balance, Equilibrium
-from isomortar.solve.timing import Ledger
 from isomortar.told.during.unstable import Unstable
+
+#: A body that is less than so many times as long as it is wide across a plane gives way otherwise before it buckles across that.
+SLENDER = 1.5
+#: Share of the shortening (pi w / L)^2 / 48 at which a body buckles that is held at one end, w wide and L long, below which none would.
+SHORTENED = 0.25
 
 
 class Mirrored:
@@ -24,18 +29,32 @@ class Mirrored:
 
     def after_stage(self, balance: Balance, step: int) -> Iterator[str]:
         """Warnings that the end of a stage gives rise to."""
-        for plane in list(self._left):
+        for plane in [plane for plane in self._left if self._may_buckle(plane, balance.positions)]:
             with suppress(InputError, KernelError):
                 body = self._buckles(plane, balance, step)
                 if body:
                     self._left.remove(plane)
                     yield self._sentence(plane, body, step)
 
+    def _may_buckle(self, plane: SymmetryPlane, positions: FloatArray) -> bool:
+        """Whether bodies are slender enough, and shortened, to buckle across a plane: to ask takes as much as an iteration."""
+        numbering = self._equilibrium.numbering
+        along = [k for k in range(3) if k != plane.axis]
+        for piece in numbering.pieces:
+            points = np.concatenate([numbering.points[body.name] for body in piece])
+            wide = 2.0 * np.abs(numbering.reference[points, plane.axis] - plane.place).max()
+            long, now = (np.ptp(of[points][:, along], axis=0) for of in (numbering.reference, positions))
+            shortest = SHORTENED * (np.pi * wide / long) ** 2 / 48.0
+            if np.any((long > SLENDER * wide) & (1.0 - now / long > shortest)):
+                return True
+        return False
+
     def _buckles(self, plane: SymmetryPlane, balance: Balance, step: int) -> str:
         """A body that goes against the force which moves it across the plane; empty: there is none."""
         pairs = zip(self._equilibrium.problem.contacts, balance.responses, strict=True)
         touched = [side for contact, response in pairs if np.any(response.state) for side in (contact.slave, contact.master)]
-        other = Equilibrium(_across(self._equilibrium.problem, plane, [side for side in touched if isinstance(side, Face)]), Ledger())
+        faces = [side for side in touched if isinstance(side, Face)]
+        other = Equilibrium(_across(self._equilibrium.problem, plane, faces), self._equilibrium.ledger)
         other.standing(step)
         other.time = self._equilibrium.time
         sources, values = other.body_tangents(balance.positions, keep_bodies=False)
