@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -12,12 +13,12 @@ from isomortar._condensed import CondensedFactors, SymmetricPattern
 from isomortar.errors import FoldedElementError, SingularSystemError
 from isomortar.geometry.patch import FloatArray
 from isomortar.march.simulation import Simulation
-from isomortar.model import constants
 from isomortar.model.entities import Problem
 from isomortar.scene import Scene
+from isomortar.solve import newton as newton_module
 from isomortar.solve.condensed import Bodies
 from isomortar.solve.equilibrium import Balance, Equilibrium
-from isomortar.solve.newton import KEPT_BODIES, Newton
+from isomortar.solve.newton import KEPT_BODIES, Newton, _share
 from isomortar.solve.record import IterationRecord, StepResult
 from isomortar.solve.system import entries
 from isomortar.solve.timing import Ledger
@@ -54,7 +55,7 @@ class Watched:
     """How often bodies were kept: where they missed a share at most of what was out of balance, and the whole factors were not refused."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.missed, self.wanting, self.kept, self.refused = np.inf, False, 0, 0
+        self.missed, self.share, self.wanting, self.kept, self.refused = np.inf, 0.0, False, 0, 0
         solve, tangent, kept, measured = Newton.solve, Newton._by_tangent, Newton._by_kept_factors, Equilibrium.left_by_bodies
 
         def solving(*arguments: Any) -> Any:
@@ -62,7 +63,7 @@ class Watched:
             return solve(*arguments)
 
         def by_tangent(newton: Any, iterate: Any, prescribed: Any, iteration: int, keep_bodies: bool) -> Any:
-            assert keep_bodies == (self.missed <= constants.KEPT_SHARE and not self.wanting)
+            assert keep_bodies == (self.missed <= self.share and not self.wanting)
             self.missed, self.wanting, self.kept = np.inf, False, self.kept + keep_bodies
             return tangent(newton, iterate, prescribed, iteration, keep_bodies)
 
@@ -76,10 +77,21 @@ class Watched:
             self.missed = measured(equilibrium, before, after)
             return self.missed
 
+        def share(*iterates: Any) -> float:
+            self.share = _share(*iterates)
+            return self.share
+
+        monkeypatch.setattr(newton_module, "_share", share)
         monkeypatch.setattr(Newton, "solve", solving)
         monkeypatch.setattr(Newton, "_by_tangent", by_tangent)
         monkeypatch.setattr(Newton, "_by_kept_factors", by_kept)
         monkeypatch.setattr(Equilibrium, "left_by_bodies", left)
+
+
+@pytest.mark.parametrize(("left", "after", "share"), [(0.1, b"a", 0.7), (0.11, b"a", 0.2), (0.01, b"b", 0.2)])
+def test_more_may_be_left_near_a_solution_where_states_stay(left: float, after: bytes, share: float) -> None:
+    before, following = (SimpleNamespace(merit=left, states=states) for states in (b"a", after))
+    assert _share(before, following) == share  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("method", METHODS)
