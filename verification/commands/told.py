@@ -271,7 +271,7 @@ def exit_of(best: tuple[bool, ...]) -> int:
     answers = {0.5**k: SimpleNamespace(best=found) for k, found in enumerate(best, 1)}
     search = SimpleNamespace(screen=lambda: None, find_truth=lambda _: None, answer=answers.get)
     stands: Any = mock.Mock(return_value=search)
-    names: dict[str, Any] = {"write": lambda *_: "page.html", "sentence": lambda *_: "an answer"}
+    names: dict[str, Any] = {"write": lambda *_: "page.html", "spoken": lambda *_: "an answer"}
     with mock.patch.multiple(page, **names), mock.patch.object(runner, "local_processes", mock.MagicMock()), redirect_stdout(StringIO()):
         try:
             trade._conduct(stands, Scene.from_toml(SCENE), (), (), [f"{target}" for target in answers], 1.0, 1, Path())

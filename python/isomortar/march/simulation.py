@@ -167,11 +167,9 @@ class Simulation:
         self._increment = 0.5 * increment / longest
         if self._increment < 0.5**self.problem.settings.max_cuts or time - 0.5 * increment == time:
             stage, likely = self.problem.stages[self.problem.stage_of(step)].name, causes(self.equilibrium, state, error)
-            short = "and solver.max_cuts = 0 allows no shorter increment"
-            if self.problem.settings.max_cuts:
-                short = f"even with an increment of 1/{round(1 / increment)} step"
+            alone = "" if self.problem.settings.max_cuts else ", the only one that solver.max_cuts = 0 allows"
             raise ConvergenceError(
-                f"load step {step} (stage {stage!r}) does not converge at load time {time:.6g}, {short}: "
-                f"{error}{''.join(f'. {cause[0].upper()}{cause[1:]}' for cause in likely)}"
+                f"load step {step} (stage {stage!r}) does not converge at load time {time:.6g}, even with an increment of "
+                f"1/{round(1 / increment)} step{alone}: {error}{''.join(f'. {cause[0].upper()}{cause[1:]}' for cause in likely)}"
             ) from error
         self._observer.cut(step, time, 0.5 * increment, str(error))

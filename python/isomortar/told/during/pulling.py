@@ -17,6 +17,9 @@ from isomortar.solve.feet import point_by_point
 
 #: Share of a contact's normal forces that may pull: beside an edge the normals of both sides can be a right angle apart.
 PULLING = 0.1
+#: Share of all normal forces, and of all normals, by which they go against each other as a whole where a face has rolled over its edge: of
+#: one that goes all round a ring nothing is left of their sums.
+ROLLED = 0.1
 
 
 class Pulling:
@@ -32,7 +35,8 @@ class Pulling:
             if contact.name not in self._told and pulls(self._equilibrium, balance, number):
                 self._told.add(contact.name)
                 on_slave, outward = _normal_forces(self._equilibrium, balance, number)
-                yield _sentence(contact, step, bool(on_slave.sum(axis=0) @ outward.sum(axis=0) < 0.0))
+                whole = np.linalg.norm(on_slave, axis=1).sum() * len(outward)
+                yield _sentence(contact, step, bool(on_slave.sum(axis=0) @ outward.sum(axis=0) < -ROLLED * whole))
 
 
 def pulls(equilibrium: Equilibrium, balance: Balance, number: int) -> bool:
