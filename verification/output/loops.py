@@ -52,7 +52,7 @@ def problem_of(**settings: object) -> Problem:
 def most_tangents() -> dict[str, float]:
     """Whether the first load step is refused with as many tangents as it takes, and with one less; iterations without one."""
     measures = tuple(name for name in SolverSettings().measures if name != "extrapolation")
-    with patch.object(constants, "KEPT_SHARE", 0.9):  # for as long as they help at all, so that some do before the last tangent
+    with patch.multiple(constants, KEPT_SHARE=0.9, KEPT_FAR=0.9):  # as long as they help at all, so that some do before the last tangent
         (record,) = next(Simulation(problem_of(measures=measures)).run()).augmentations
         own = np.array([KEPT_FACTORS not in iteration.notes for iteration in record.iterations[1:]])
         tangents, refused = int(own.sum()), []
