@@ -1,4 +1,4 @@
-"""Compile the package's Python for a working copy, whose loader keeps nothing of what it compiles: a third of a start was that.
+"""Compile the package's Python for a working copy, so that no start has to: where Python is told to keep nothing, each would.
 
 Called by the build, `python tools/compile_bytecode.py PACKAGE STAMP DEPENDENCIES`, when a file or folder of the package has changed.
 """

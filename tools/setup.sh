@@ -82,6 +82,10 @@ make_environment() {
   python -m pip install --quiet --group build --group dev
   rm -rf build/cp* # a build that is there would keep the options it was made with
   python -m pip install --quiet --no-build-isolation --editable . "${options[@]}"
+  local packages
+  packages=$(python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')
+  cp tools/working_copy.py "$packages/isomortar_working_copy.py"
+  echo 'import isomortar_working_copy' > "$packages/isomortar-editable.pth" # in the place of meson-python's, which takes longer
   { echo "#!$PWD/.venv/bin/python" && cat tools/launch.py; } > .venv/bin/isomortar # in the place of pip's, which shows tracebacks
 }
 

@@ -12,7 +12,7 @@ SOURCES = Path(isomortar.__file__).parent
 
 
 def test_a_start_compiles_nothing():
-    if not hasattr(isomortar.__spec__.loader, "set_data") or "editable" not in type(isomortar.__spec__.loader).__module__:
+    if not SOURCES.is_relative_to(Path(__file__).parents[2]):
         pytest.skip("an installed package is compiled by its installer")
     said = subprocess.run(
         [sys.executable, "-v", "-c", "import isomortar.cli.commands, isomortar.march.simulation"],

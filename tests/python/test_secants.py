@@ -71,14 +71,13 @@ def test_nothing_is_learnt_of_nothing() -> None:
 @pytest.mark.parametrize("active", [True, False])
 def test_a_correction_in_lengths_is_the_same_again(active: bool) -> None:
     scale, random = np.array([2.0, 30.0, 0.04]), np.random.default_rng(5)
-    correction = Correction(random.random((4, 3)), (random.random(5),), (random.random((5, 2)),))
+    correction = Correction(random.random((4, 3)), (random.random((5, 3)),))
     borders: Any = [SimpleNamespace(column_scale=scale) if active else None]
     lengths = in_lengths(correction.positions, correction.multipliers, borders)
-    np.testing.assert_allclose(lengths[12:15] * (scale if active else 1.0), [correction.pressures[0][0], *correction.tractions[0][0]])
+    np.testing.assert_allclose(lengths[12:15] * (scale if active else 1.0), correction.multipliers[0][0])
     again = from_lengths(lengths, correction, borders)
     np.testing.assert_array_equal(again.positions, correction.positions)
-    np.testing.assert_allclose(again.pressures[0], correction.pressures[0], rtol=1e-15)
-    np.testing.assert_allclose(again.tractions[0], correction.tractions[0], rtol=1e-15)
+    np.testing.assert_allclose(again.multipliers[0], correction.multipliers[0], rtol=1e-15)
 
 
 def pressed() -> Problem:

@@ -18,7 +18,7 @@ from isomortar._bindings import Law, Response
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model import constants
 from isomortar.model.supports import BoolArray
-from isomortar.solve.contact import Blocks, Multipliers, PairMechanics, pressure_share
+from isomortar.solve.contact import Blocks, PairMechanics, pressure_share
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.metric import median, tangent_lengths
 from isomortar.solve.singular import PairConditions
@@ -27,16 +27,10 @@ from isomortar.solve.system import Source, add_product, block_product
 
 @dataclass(frozen=True)
 class Correction:
-    """Newton's correction of positions, control pressures and control tractions (one array a pair)."""
+    """Newton's correction of positions, and of control pressures and tractions, shape (constraints, 3) for each pair."""
 
     positions: FloatArray
-    pressures: tuple[FloatArray, ...]
-    tractions: tuple[FloatArray, ...]
-
-    @property
-    def multipliers(self) -> list[Multipliers]:
-        """Corrections of control pressures and tractions, by pair."""
-        return list(zip(self.pressures, self.tractions, strict=True))
+    multipliers: tuple[FloatArray, ...]
 
 
 @dataclass(frozen=True)
@@ -139,18 +133,18 @@ def solve_with_kept_factors(
     return _correction(equilibrium, equilibrium.solve_again(right), balance, targets, borders)
 
 
-def in_lengths(positions: FloatArray, multipliers: Sequence[Multipliers], borders: Sequence[Border | None]) -> FloatArray:
-    """Positions and multipliers as one vector, multipliers over the scales of their columns (theory 6.4)."""
+def in_lengths(positions: FloatArray, multipliers: Sequence[FloatArray], borders: Sequence[Border | None]) -> FloatArray:
+    """Positions, and multipliers of shape (constraints, 3) by pair over the scales of their columns, as one vector (theory 6.4)."""
     parts = zip(multipliers, _column_scales(borders), strict=True)
-    return np.concatenate([positions.ravel(), *((np.column_stack(pair) / scale).ravel() for pair, scale in parts)])
+    return np.concatenate([positions.ravel(), *((of_pair / scale).ravel() for of_pair, scale in parts)])
 
 
 def from_lengths(vector: FloatArray, like: Correction, borders: Sequence[Border | None]) -> Correction:
     """The correction that `in_lengths` makes a vector of, with as many control points and constraints as another one."""
-    sizes = [like.positions.size, *(3 * len(pressures) for pressures in like.pressures)]
+    sizes = [like.positions.size, *(of_pair.size for of_pair in like.multipliers)]
     positions, *multipliers = np.split(vector, np.cumsum(sizes[:-1]))
-    changes = [pair.reshape(-1, 3) * scale for pair, scale in zip(multipliers, _column_scales(borders), strict=True)]
-    return Correction(positions.reshape(like.positions.shape), tuple(c[:, 0] for c in changes), tuple(c[:, 1:] for c in changes))
+    changes = (of_pair.reshape(-1, 3) * scale for of_pair, scale in zip(multipliers, _column_scales(borders), strict=True))
+    return Correction(positions.reshape(like.positions.shape), tuple(changes))
 
 
 def _column_scales(borders: Sequence[Border | None]) -> list[FloatArray]:
@@ -163,8 +157,8 @@ def _correction(
 ) -> Correction:
     """Newton's correction from the solution of the linear system."""
     positions = -equilibrium.supports.spread(solution, balance.positions)
-    changes = [_multiplier_change(border, target, -solution) for border, target in zip(borders, targets, strict=True)]
-    return Correction(positions, tuple(c[:, 0] for c in changes), tuple(c[:, 1:] for c in changes))
+    changes = (_multiplier_change(border, target, -solution) for border, target in zip(borders, targets, strict=True))
+    return Correction(positions, tuple(changes))
 
 
 def _border(equilibrium: Equilibrium, k: int, balance: Balance, law: Law, target: Response, first: int) -> Border | None:

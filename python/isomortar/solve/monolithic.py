@@ -211,7 +211,7 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
     def _correct_again(self, iterate: _BorderedIterate) -> Correction:
         """Correction by the factors of the last tangent, by what the steps since then tell of others (theory 7.6)."""
         correction = solve_with_kept_factors(self._equilibrium, iterate.balance, iterate.targets, self._borders)
-        here = in_lengths(iterate.balance.positions, iterate.multipliers, self._borders)
+        here = in_lengths(iterate.balance.positions, [np.column_stack(m) for m in iterate.multipliers], self._borders)
         lengths = in_lengths(correction.positions, correction.multipliers, self._borders)
         self._secants.reach(here, lengths)
         return from_lengths(self._secants.improved(lengths), correction, self._borders)
@@ -221,7 +221,7 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
 
     def _moved(self, iterate: _BorderedIterate, correction: Correction, share: float) -> _BorderedIterate:
         changes = zip(iterate.multipliers, correction.multipliers, strict=True)
-        multipliers = [(pressure + share * dp, traction + share * dt) for (pressure, traction), (dp, dt) in changes]
+        multipliers = [(pressure + share * change[:, 0], traction + share * change[:, 1:]) for (pressure, traction), change in changes]
         return self._evaluate(self._equilibrium.moved(iterate.balance.positions, share * correction.positions), multipliers)
 
     def _reversals(self, k: int, iterate: _BorderedIterate, correction: Correction) -> np.ndarray:
@@ -230,7 +230,7 @@ class _BorderedNewton(Newton[_BorderedIterate, Correction]):
         if border is None or not self._equilibrium.pairs[k].friction.acts:
             return np.zeros(len(target.state), dtype=bool)
         elastic = self._equilibrium.pairs[k].elastic
-        change = border.trial_change(correction.positions) + (0.0 if elastic else correction.tractions[k])
+        change = border.trial_change(correction.positions) + (0.0 if elastic else correction.multipliers[k][:, 1:])
         raised = contravariant(iterate.balance.kinematics[k].control, iterate.laws[k].traction)
         slipping = target.state > 0 if elastic else target.state == PointState.SLIP
         return slipping & (np.einsum("ia,ia->i", raised, change) < 0.0)

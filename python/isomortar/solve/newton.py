@@ -213,14 +213,14 @@ class Newton(ABC, Generic[Iterated, Corrected]):
 
     def _serve(self, iterate: Iterated, following: Iterated) -> bool:
         """Whether factors that led from one iterate to the next are good enough for another solve (theory 6.6)."""
-        return following.merit <= _share(iterate, following) * iterate.merit
+        return following.merit <= _may_leave(iterate, following) * iterate.merit
 
     def _bodies_serve(self, led: tuple[Iterated, Iterated] | None) -> bool:
         """Whether the bodies' part of factors that led from one iterate to another is good enough for another tangent (theory 5.24)."""
         if led is None or not self._keeps:
             return False
         before, after = led
-        return self._equilibrium.left_by_bodies(before.balance, after.balance) <= _share(before, after)
+        return self._equilibrium.left_by_bodies(before.balance, after.balance) <= _may_leave(before, after)
 
     def _by_tangent(
         self, iterate: Iterated, prescribed: FloatArray | None, iteration: int, keep_bodies: bool
@@ -265,7 +265,7 @@ class Newton(ABC, Generic[Iterated, Corrected]):
         return float(np.max(self._scales.round_off[loaded] / forces[loaded], initial=0.0))
 
 
-def _share(before: Iterate, after: Iterate) -> float:
+def _may_leave(before: Iterate, after: Iterate) -> float:
     """What factors may leave that led from one iterate to another, and be kept, as a share of what there was (theory 5.24, 6.6)."""
     near = before.merit <= constants.NEAR_SOLUTION and before.states == after.states
     return constants.KEPT_SHARE if near else constants.KEPT_FAR
