@@ -18,7 +18,7 @@ from isomortar.scene import Scene
 from isomortar.solve import newton as newton_module
 from isomortar.solve.condensed import Bodies
 from isomortar.solve.equilibrium import Balance, Equilibrium
-from isomortar.solve.newton import KEPT_BODIES, Newton, _share
+from isomortar.solve.newton import KEPT_BODIES, Newton, _may_leave
 from isomortar.solve.record import IterationRecord, StepResult
 from isomortar.solve.system import entries
 from isomortar.solve.timing import Ledger
@@ -78,10 +78,10 @@ class Watched:
             return self.missed
 
         def share(*iterates: Any) -> float:
-            self.share = _share(*iterates)
+            self.share = _may_leave(*iterates)
             return self.share
 
-        monkeypatch.setattr(newton_module, "_share", share)
+        monkeypatch.setattr(newton_module, "_may_leave", share)
         monkeypatch.setattr(Newton, "solve", solving)
         monkeypatch.setattr(Newton, "_by_tangent", by_tangent)
         monkeypatch.setattr(Newton, "_by_kept_factors", by_kept)
@@ -91,7 +91,7 @@ class Watched:
 @pytest.mark.parametrize(("left", "after", "share"), [(0.1, b"a", 0.7), (0.11, b"a", 0.2), (0.01, b"b", 0.2)])
 def test_more_may_be_left_near_a_solution_where_states_stay(left: float, after: bytes, share: float) -> None:
     before, following = (SimpleNamespace(merit=left, states=states) for states in (b"a", after))
-    assert _share(before, following) == share  # type: ignore[arg-type]
+    assert _may_leave(before, following) == share  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("method", METHODS)
