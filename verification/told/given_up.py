@@ -41,6 +41,12 @@ solver.max_cuts = 0
 """
 
 
+def lifted(height: float) -> Simulation:
+    """The same block, at a height above its base, before anything is computed."""
+    text = COHESIVE.replace("[0, 0, 0], upper = [0.5, 0.6, 0.4]", f"[0, 0, {height}], upper = [0.5, 0.6, {height + 0.4}]")
+    return Simulation(Scene.from_toml(text).problem())
+
+
 def without_digits(sentence: str) -> str:
     """Numbers with an exponent, which are round-off, in short."""
     return re.sub(r"\d(\.\d+)?e[+-]\d+", "#", sentence)
@@ -59,6 +65,7 @@ def of_causes() -> Iterator[tuple[str, str]]:
     yield from ((name, "\n".join(said(scene(**changed)))) for name, changed in changes.items())
     yield "thin, bent", "\n".join(said(scene(TOP=1.0004), SingularSystemError("")))
     yield "shared edge", "\n".join(said(Simulation(Scene.from_toml(THREE).problem())))
+    yield "on the way", "\n".join(said(lifted(0.1)))
     flat: Simulation = scene()
     positions = flat.state.positions.copy()
     positions[np.unique(flat.equilibrium.numbering.points["lower"]), 2] *= 0.05
@@ -122,6 +129,21 @@ def given_up() -> dict[str, float]:
     told = all_told()
     others = [name for name in told.keys() | expected.keys() if told.get(name) != expected.get(name)]
     return {"others": float(len(others)), "told": float(len(told))}
+
+
+@case(
+    claim="Of a body that its loads move to a contact it is said, where that is given up, that a motion should bring it there: while nothing "
+    "bears it and no support holds it, and not where the tangent is singular, which tells what can move freely.",
+    tier="gate",
+    bounds={"wrong": Bound(0.0, 0.0, "definition: what is said of bodies that are borne or held, or not said of one on its way")},
+)
+def on_the_way() -> dict[str, float]:
+    """Of four."""
+    waits, touches, words = lifted(0.1), lifted(0.0), "touches nothing where that begins"
+    held = Simulation(Scene.from_toml(BLOCK + "supports.top.face = 'block.w1'").problem())
+    next(touches.run())
+    wrong = [words not in "".join(said(waits)), words in "".join(said(touches)), words in "".join(said(held))]
+    return {"wrong": float(sum(wrong) + (words in "".join(said(waits, SingularSystemError("")))))}
 
 
 @case(

@@ -48,6 +48,7 @@ HISTORIES: tuple[tuple[tuple[Given, ...], str], ...] = (
     (((9, 1.0, 1.0, 0, 1.0, 0.019), (9, 1.0, 1.0, 0, 1.0, -0.05)), ""),
     (((9, 1.0, 1.0, 0, 1.0, 0.01), (9, 1.0, 1.0, 0, 1.0, 0.031)), "spurious"),
     (((9, 1.0, 1.0, 0, 1.0, 0.01), (9, 1.0, 1.0, 0, 1.0, -0.051)), "spurious"),
+    (((9, 1.0, 1.0, 0, 1e-31, 3e-7),) * 2, ""),  # all sticks
 )
 
 
@@ -58,7 +59,8 @@ def made(result: ContactResult, state: ContactState, given: Given) -> tuple[Cont
     pressure[1] = largest
     points = len(state.projected) if excluded < 0 else excluded
     range_ = np.array([-0.25 * field, field])
-    told = replace(result, active=active, pressure_field=range_, excluded=points, friction_work=friction, spurious_work=spurious)
+    slip = active if friction > 1e-20 else 0  # below that it is round-off
+    told = replace(result, active=active, slip=slip, pressure_field=range_, excluded=points, friction_work=friction, spurious_work=spurious)
     return told, replace(state, pressure=pressure)
 
 

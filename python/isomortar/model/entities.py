@@ -200,6 +200,11 @@ class Contact:
     smoothing: float = 0.0
 
     @property
+    def bodies(self) -> set[str]:
+        """Names of the bodies of both sides."""
+        return {face.body for side in (self.slave, self.master) if isinstance(side, Face) for face in side.faces}
+
+    @property
     def averaged(self) -> bool:
         """Whether slave points find theirs along the averaged normal of a face."""
         return self.projection == "averaged" and isinstance(self.master, Face)

@@ -10,7 +10,7 @@ from isomortar._bindings import AveragedFaceArrays, FaceArrays, MasterArrays, Pa
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model import constants
 from isomortar.model.enforcement import slave_side
-from isomortar.model.entities import Contact, Face, Problem, RigidPlane
+from isomortar.model.entities import Contact, Problem, RigidPlane
 from isomortar.model.mirrors import Edges, mirrors_at
 from isomortar.model.numbering import Numbering
 from isomortar.model.pattern import elements_about, incidence, pattern_of, surface_element_points
@@ -86,8 +86,7 @@ class Pair:
             self.master = _face_arrays(contact, sheet, numbering, mirrors_at(problem, numbering, self.master_edges))
         self.neighbour_matrix = sparse.csr_array(self.elements_of_point @ self.elements_of_point.T)
         self.neighbours: Pattern = pattern_of(self.neighbour_matrix)
-        names = {face.body for side in (contact.slave, contact.master) if isinstance(side, Face) for face in side.faces}
-        names &= {body.name for body in problem.deformable}
+        names = contact.bodies & {body.name for body in problem.deformable}
         meeting = [k for k, piece in enumerate(numbering.pieces) if any(body.name in names for body in piece)]
         self.pieces: IntArray = np.array(meeting, dtype=np.int32)
         stiffest = np.array([max(body.modulus for body in numbering.pieces[k]) for k in meeting])

@@ -10,7 +10,7 @@ import numpy as np
 from isomortar._bindings import Control
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
-from isomortar.model.entities import Face, Problem
+from isomortar.model.entities import Problem
 from isomortar.model.loads import Loads
 from isomortar.model.numbering import Numbering
 from isomortar.model.supports import BoolArray, Supports
@@ -87,15 +87,13 @@ class Touching:
 
 def _approach(pair: PairMechanics, positions: FloatArray, start: ContactState, ways: Sequence[tuple[set[str], FloatArray]]) -> _Approach:
     """Of a pair; one that bears is where it stands (theory 6.8)."""
-    sides = (side for side in (pair.pair.contact.slave, pair.pair.contact.master) if isinstance(side, Face))
-    names = {face.body for side in sides for face in side.faces}
     control, least = pair.kinematics(positions, start).control, next_to_nothing(pair)
     heights = mean_heights(control)
     bears = start.pressure != 0.0
     near = np.isfinite(heights) & (bears if bears.any() else heights >= heights.max() - least)
     distances = np.full(len(ways), np.inf)
     for k, (bodies, way) in enumerate(ways):
-        if names & bodies:
+        if pair.pair.contact.bodies & bodies:
             rates = (mean_heights(pair.kinematics(positions + least * way, start).control)[near] - heights[near]) / least
             closes = rates > constants.IN_THE_WAY
             distances[k] = np.min(-heights[near][closes] / rates[closes], initial=np.inf)

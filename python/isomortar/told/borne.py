@@ -52,7 +52,7 @@ def round_off(problem: Problem, contact: Contact) -> float:
 
 def _bodies(problem: Problem, contact: Contact) -> set[str]:
     """Names of the bodies of both sides, and of all that is glued to them: balance is measured by these (theory 5.6)."""
-    names = {face.body for side in _sides(contact) for face in side.faces if not problem.body(face.body).rigid}
+    names = {name for name in contact.bodies if not problem.body(name).rigid}
     return {body.name for piece in pieces(problem) if any(body.name in names for body in piece) for body in piece}
 
 

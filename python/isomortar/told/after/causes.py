@@ -17,6 +17,7 @@ from isomortar.solve.contact import PairMechanics
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.feet import closest_depths
 from isomortar.solve.record import State
+from isomortar.told.after.on_the_way import on_the_way
 from isomortar.told.after.overcome import overcome
 from isomortar.told.after.shared_edges import shared_edges
 from isomortar.told.after.sliding import sliding
@@ -60,8 +61,9 @@ def causes(equilibrium: Equilibrium, state: State, error: Exception) -> Iterator
         found = [(pieces, sentence) for pieces, sentence in judge(equilibrium, state) if told.isdisjoint(pieces)]
         yield from (sentence for _, sentence in found)
         told.update(*(pieces for pieces, _ in found))
-    if not told and not isinstance(error, SingularSystemError):  # that tells by itself what repeats
+    if not told and not isinstance(error, SingularSystemError):  # that tells by itself what repeats, and what nothing holds
         yield from shared_edges(equilibrium, state)
+        yield from (sentence for _, sentence in on_the_way(equilibrium, state))
     yield from _flat(problem.deformable, equilibrium.solid.smallest_jacobians(positions))
     for body in problem.deformable:
         yield from _lengths(body, LENGTHS_BENT if isinstance(error, SingularSystemError) else LENGTHS)

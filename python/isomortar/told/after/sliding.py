@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from isomortar.geometry.patch import FloatArray
-from isomortar.model.entities import Contact, Face
+from isomortar.model.entities import Contact
 from isomortar.model.glue import named
 from isomortar.solve.contact import PairMechanics
 from isomortar.solve.equilibrium import Equilibrium
@@ -40,7 +40,7 @@ def sliding(equilibrium: Equilibrium, state: State) -> Iterator[tuple[set[int], 
         pairs = [
             (pair, begun)
             for pair, begun in zip(equilibrium.pairs, state.contacts, strict=True)
-            if _bodies(pair) & names and begun.pressure.max(initial=0.0) > round_off(equilibrium.problem, pair.pair.contact)
+            if pair.pair.contact.bodies & names and begun.pressure.max(initial=0.0) > round_off(equilibrium.problem, pair.pair.contact)
         ]
         if not motions or not pairs:
             continue
@@ -59,11 +59,6 @@ def sliding(equilibrium: Equilibrium, state: State) -> Iterator[tuple[set[int], 
                     f"smaller loads or {more_friction(limits)}, or hold or move it by a support"
                 ),
             )
-
-
-def _bodies(pair: PairMechanics) -> set[str]:
-    contact = pair.pair.contact
-    return {face.body for side in (contact.slave, contact.master) if isinstance(side, Face) for face in side.faces}
 
 
 def _borne(pair: PairMechanics, positions: FloatArray, state: ContactState) -> float:

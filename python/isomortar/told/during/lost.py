@@ -7,7 +7,6 @@ from collections.abc import Iterator
 import numpy as np
 
 from isomortar.geometry.patch import FloatArray
-from isomortar.model.entities import Face
 from isomortar.model.glue import named
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.record import StepResult
@@ -61,8 +60,7 @@ class LostDigits:
         vectors = [v for r in reactions for v in (r.force, r.moment / size)]
         vectors += [found.force for load, found in zip(problem.loads, result.loads, strict=True) if load.body in bodies]
         for contact, found in zip(problem.contacts, result.contacts, strict=True):
-            sides = {face.body for side in (contact.slave, contact.master) if isinstance(side, Face) for face in side.faces}
-            vectors += [found.force_slave] if bodies & sides else []
+            vectors += [found.force_slave] if bodies & contact.bodies else []
         return float(np.max([np.linalg.norm(vector) for vector in vectors], initial=0.0))
 
 

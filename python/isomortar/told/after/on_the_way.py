@@ -1,0 +1,49 @@
+"""Bodies on their way to a contact by loads alone: nothing bears them until they touch, and no increment makes that way shorter."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from isomortar.geometry.patch import FloatArray
+from isomortar.model.glue import named
+from isomortar.solve.contact import PairMechanics
+from isomortar.solve.equilibrium import Equilibrium
+from isomortar.solve.free_motions import free_motions
+from isomortar.solve.record import ContactState, State
+from isomortar.solve.touching import mean_heights
+
+#: Share of a slave face's size within which its constraints stand at their master: what is as near has no way to go.
+NEAR = 0.01
+
+
+def on_the_way(equilibrium: Equilibrium, state: State) -> Iterator[tuple[set[int], str]]:
+    """Pieces and sentences, without a capital, on bodies that supports leave to their loads and that are apart from all others.
+
+    Parameters
+    ----------
+    equilibrium : Equilibrium
+    state : State
+        Where the last load increment ended that converged.
+    """
+    contacts = zip(equilibrium.pairs, state.contacts, strict=True)
+    near = {name for pair, begun in contacts if _is_near(pair, state.positions, begun) for name in pair.pair.contact.bodies}
+    free = {motion.piece for motion in free_motions(equilibrium.problem, equilibrium.numbering, equilibrium.supports, state.positions)}
+    for number in sorted(free):
+        piece = equilibrium.numbering.pieces[number]
+        if near.isdisjoint(body.name for body in piece):
+            yield (
+                {number},
+                (
+                    f"{named(piece, piece[0].name)} touches nothing where that begins, and its loads move it until something bears it: "
+                    "smaller increments make that way no shorter. Bring it into contact by the motion of a support first, in a stage of "
+                    "its own, or begin nearer"
+                ),
+            )
+
+
+def _is_near(pair: PairMechanics, positions: FloatArray, begun: ContactState) -> bool:
+    """Whether a pair bears, or stands so near that there is next to no way to go."""
+    heights = mean_heights(pair.kinematics(positions, begun).control)
+    return bool(np.any(begun.pressure != 0.0) or np.any(heights > -NEAR * np.sqrt(pair.pair.area)))
