@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from isomortar.geometry.patch import FloatArray, Patch, opposite
+from isomortar.geometry.patch import Direction, FloatArray, Patch, opposite
 from isomortar.geometry.splines import Spline
 
 #: Cells in a direction, at least: round a ring they then are off it by a five-hundredth of its radius.
@@ -74,8 +74,46 @@ def _grid(patch: Patch, face: str) -> FloatArray:
     first, second = patch.face_directions(face)
     numbers = patch.face_points(face)
     points, weights = patch.control_points[numbers], patch.weights[numbers]
-    if "L" in (first.family, second.family):  # Lagrange nodes lie on the face, and so nearly do control points beside them
-        return points.reshape(first.count, second.count, 3, order="F")
-    u, v = (direction.subdivided(-(-CELLS // direction.elements)) for direction in (first, second))  # elements, and these in parts
-    queries = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
-    return Spline([first, second], points, weights).evaluate(queries).reshape(len(u), len(v), 3)
+    if first.family == second.family == "N":
+        u, v = _places(first), _places(second)
+        queries = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
+        return Spline([first, second], points, weights).evaluate(queries).reshape(len(u), len(v), 3)
+    rows, of_rows = (of.reshape(first.count, second.count, -1, order="F") for of in (points, weights))
+    if second.family == "L":
+        return _on_lines(first, second, rows, of_rows)
+    return np.swapaxes(_on_lines(second, first, np.swapaxes(rows, 0, 1), np.swapaxes(of_rows, 0, 1)), 0, 1)
+
+
+def _on_lines(along: Direction, across: Direction, rows: FloatArray, weights: FloatArray) -> FloatArray:
+    """Points on lines along a direction, through nodes of one across of Lagrange elements, and between these lines: the same shape.
+
+    A line has weights of its own: only their ratios along NURBS mean anything.
+    """
+    if along.family == "N":
+        places = _places(along)[:, None]
+        lines = np.stack([Spline([along], rows[:, j], weights[:, j]).evaluate(places) for j in range(across.count)], axis=1)
+    else:
+        lines = np.tensordot(_between_nodes(along), rows, 1)
+    return np.einsum("vj,ujc->uvc", _between_nodes(across), lines)
+
+
+def _places(direction: Direction) -> FloatArray:
+    """Parameters along a direction: its elements, and these in parts."""
+    return direction.subdivided(_parts(direction))
+
+
+def _parts(direction: Direction) -> int:
+    return -(-CELLS // direction.elements)
+
+
+def _between_nodes(direction: Direction) -> FloatArray:
+    """Lagrange functions of a direction at `_places`, shape (places, nodes)."""
+    p, parts = direction.order, _parts(direction)
+    nodes, places = np.arange(p + 1) / p, np.arange(parts)[:, None] / parts
+    others = [np.delete(nodes, k) for k in range(p + 1)]
+    values = np.column_stack([np.prod((places - other) / (node - other), axis=1) for node, other in zip(nodes, others, strict=True)])
+    found = np.zeros((direction.elements * parts + 1, direction.count))
+    for element in range(direction.elements):
+        found[element * parts : (element + 1) * parts, element * p : (element + 1) * p + 1] = values
+    found[-1, -1] = 1.0
+    return found
