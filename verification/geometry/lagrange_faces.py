@@ -21,7 +21,7 @@ BODIES = {
 
 
 @case(
-    claim="What is judged of faces before a run does not depend on the family of a mesh that is the same body: cells lie between nodes, too.",
+    claim="What is judged of faces before a run does not depend on the family of a mesh of the same body: cells lie between nodes, too.",
     tier="gate",
     grid={"body": tuple(BODIES), "order": (2, 3)},
     bounds={
