@@ -132,8 +132,8 @@ def given_up() -> dict[str, float]:
 
 
 @case(
-    claim="Of a body that its loads move to a contact it is said, where that is given up, that a motion should bring it there: while nothing "
-    "bears it and no support holds it, and not where the tangent is singular, which tells what can move freely.",
+    claim="Of a body that its loads move to a contact it is said, where that is given up, that a motion should bring it there: while "
+    "nothing bears it and no support holds it, and not where the tangent is singular, which tells what can move freely.",
     tier="gate",
     bounds={"wrong": Bound(0.0, 0.0, "definition: what is said of bodies that are borne or held, or not said of one on its way")},
 )

@@ -67,8 +67,8 @@ contacts.c = { slave = "a.w0", master = "dome.v1", friction = 0.3, projection = 
 supports = { base.face = "dome.w1", top.face = "a.w1" }
 stages = [{ name = "press", steps = 4, motions.top.translate = [0, 0, -0.001] }]
 """
-#: The middle of the short element may be as far away as the long one is large, root of 0.18, and no farther.
-FAR = {0.05: True, 0.3: True, 0.36: True, 0.39: False, 0.6: False}
+#: The middle of a cell, of 24 that the short element has, may be as far away as one of the long element is large, 0.0125, and no farther.
+FAR = {0.001: True, 0.009: True, 0.0112: True, 0.0114: False, 0.6: False}
 
 
 def warnings(text: str, **values: str) -> list[str]:

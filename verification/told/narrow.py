@@ -389,3 +389,39 @@ def told_otherwise(enforcement: str) -> dict[str, float]:
             off.append(abs(force / true[way] - 1.0))
     about, worst = np.array(told or [(np.nan, np.nan)]).T
     return {"said": float(len(off)), "worst": float(np.max(off / worst)), "mean": float(np.mean(about) / np.mean(off))}
+
+
+#: A layer on what holds it, below a cylinder of radius one: a tenth of that thick, or a twentieth, and how deep that is pressed in.
+LAYER = STRIP.replace("[-1, 0, -1], upper = [1, 0.2, 0]", "[-1, 0, THICK], upper = [1, 0.2, 0]").replace("AT", "0")
+LAYERS = {"a twentieth": (0.05, 0.02, 8), "a tenth": (0.1, 0.04, 6), "an odd number": (0.1, 0.015, 10), "a fifth": (0.2, 0.08, 3)}
+
+
+@case(
+    claim="Contact of a cylinder with a thin layer that elements are too long for is told by about as much as the force is off: a layer "
+    "gives way by less than a deep body, and depth between its control points costs more. Of elements a quarter as long nothing is said.",
+    tier="gate",
+    grid={"layer": tuple(LAYERS)},
+    bounds={
+        "said": Bound(1.0, 1.0, "definition: sentences of the coarse layer"),
+        "off": Bound(at_least=0.3, reason="definition: share of the force that is missing: or there is nothing to tell of"),
+        "told over off": Bound(at_least=0.7, at_most=1.5, reason="definition: an estimate, of which the first digit counts"),
+        "others": Bound(0.0, 0.0, "definition: sentences of the fine layer"),
+        "left": Bound(at_most=0.05, reason="definition: what the force of the fine layer is off by"),
+    },
+)
+def layers(layer: str) -> dict[str, float]:
+    """What is said of a coarse layer and of a fine one, and how far they are off one of 64 elements."""
+    thick, way, elements = LAYERS[layer]
+
+    def of(count: int) -> tuple[list[re.Match[str]], float]:
+        return run(LAYER.replace("THICK", str(-thick)), (f"bodies.a.mesh.elements=[{count}, 1, 2]", depth(way)))
+
+    (said, force), (others, right), (_, true) = of(elements), of(4 * elements), of(64)
+    off = 1.0 - force / true
+    return {
+        "said": float(len(said)),
+        "off": off,
+        "told over off": 0.01 * float(said[0]["share"].removesuffix(" %")) / off if said else 0.0,
+        "others": float(len(others)),
+        "left": abs(right / true - 1.0),
+    }

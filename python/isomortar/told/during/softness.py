@@ -1,11 +1,11 @@
-"""How bodies give way on both sides of a contact: (1 - nu^2) / E, at its points."""
+"""How bodies give way on both sides of a contact, at its points: as deep ones do, (1 - nu^2) / E, and as layers on what holds them."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from isomortar._bindings import Projections, surface_functions
-from isomortar.geometry.patch import FloatArray
+from isomortar.geometry.patch import FloatArray, opposite
 from isomortar.model.entities import Body, Face, Problem
 from isomortar.model.numbering import Numbering
 from isomortar.model.pairs import Pair
@@ -20,15 +20,35 @@ def softness(problem: Problem, numbering: Numbering, pair: Pair, projections: Pr
     soft = np.zeros(numbering.count)
     for body in problem.bodies:
         soft[numbering.points[body.name]] = _soft(body)
+    return _at_points(problem, numbering, pair, projections, soft)
+
+
+def thinness(problem: Problem, numbering: Numbering, pair: Pair, projections: Projections, stage: int) -> tuple[FloatArray, FloatArray]:
+    """One over the thickness of both where a support holds the opposite face as a whole in a stage, else zero; shapes as of `softness`."""
+    thin = np.zeros(numbering.count)
+    held = {(s.place.body, s.place.face) for s in problem.supports if isinstance(s.place, Face) and s.holds(stage) and len(s.carried) == 3}
+    for side in (pair.contact.slave, pair.contact.master):
+        for face in side.faces if isinstance(side, Face) else ():
+            if (face.body, opposite(face.face)) in held:
+                points, patch = numbering.points[face.body], problem.body(face.body).patch
+                here, behind = (points[patch.face_points(name)] for name in (face.face, opposite(face.face)))
+                thin[here] = 1.0 / np.linalg.norm(numbering.reference[here] - numbering.reference[behind], axis=1)
+    return _at_points(problem, numbering, pair, projections, thin)
+
+
+def _at_points(
+    problem: Problem, numbering: Numbering, pair: Pair, projections: Projections, values: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Values of control points at the slave's quadrature points and at their feet, shapes (points,); zero where there is none."""
     shape = pair.slave.shape
     nodes = np.repeat(shape.nodes, pair.slave.per_element, axis=0)
-    of_slave = np.einsum("qa,qa->q", shape.values, soft[pair.slave.point[nodes]])
+    of_slave = np.einsum("qa,qa->q", shape.values, values[pair.slave.point[nodes]])
     of_master = np.zeros(len(of_slave))
     if isinstance(pair.contact.master, Face):
         sheet = Sheet.of(problem, pair.contact.master)
         feet = np.flatnonzero(projections.found > 0)
         nodes, functions = surface_functions(*sheet.arrays(numbering), projections.xi[feet])
-        of_master[feet] = np.einsum("qa,qa->q", functions[:, 0], soft[pair.master_face[nodes]])
+        of_master[feet] = np.einsum("qa,qa->q", functions[:, 0], values[pair.master_face[nodes]])
     return of_slave, of_master
 
 
