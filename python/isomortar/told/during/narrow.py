@@ -41,7 +41,7 @@ COSTS = 0.1
 FREE, ADDED = 0.5, 2.0
 #: How far a pressure presses in a layer on what holds it, over its thickness, as a share of pressure times softness: fitted to 94 forces of
 #: balls and cylinders on layers a twentieth to one radius thick, which are off by up to 99 % and then told.
-LAYER = 0.7
+LAYER = 0.85
 #: Shares of the force that narrow contact costs: on one row of averages, and by other constraints, of which balls on blocks tell no better.
 FEW, OTHERWISE = "a fifth", "50 %, at the worst by 200 %"
 #: Share of the largest force of a contact below which it opens, or hardly begins: its last row is no fault of the mesh.

@@ -11,6 +11,9 @@ from isomortar.model.numbering import Numbering
 from isomortar.model.pairs import Pair
 from isomortar.model.sheet import Sheet
 
+#: Softness of an incompressible layer over (1 - nu^2) / E: it goes sideways beside the contact. Fitted at Poisson's ratio 0.49.
+SIDEWAYS = 0.35
+
 
 def softness(problem: Problem, numbering: Numbering, pair: Pair, projections: Projections) -> tuple[FloatArray, FloatArray]:
     """That of slave and master at the slave's quadrature points, shapes (points,), where several are joined of the body that is there.
@@ -24,15 +27,19 @@ def softness(problem: Problem, numbering: Numbering, pair: Pair, projections: Pr
 
 
 def thinness(problem: Problem, numbering: Numbering, pair: Pair, projections: Projections, stage: int) -> tuple[FloatArray, FloatArray]:
-    """One over the thickness of both where a support holds the opposite face as a whole in a stage, else zero; shapes as of `softness`."""
+    """One over the thickness of both where a support holds the opposite face as a whole in a stage, else zero; shapes as of `softness`.
+
+    Of a layer that gives way as if nothing went sideways: thinner, the higher Poisson's ratio is (theory 9.10).
+    """
     thin = np.zeros(numbering.count)
     held = {(s.place.body, s.place.face) for s in problem.supports if isinstance(s.place, Face) and s.holds(stage) and len(s.carried) == 3}
     for side in (pair.contact.slave, pair.contact.master):
         for face in side.faces if isinstance(side, Face) else ():
             if (face.body, opposite(face.face)) in held:
-                points, patch = numbering.points[face.body], problem.body(face.body).patch
-                here, behind = (points[patch.face_points(name)] for name in (face.face, opposite(face.face)))
-                thin[here] = 1.0 / np.linalg.norm(numbering.reference[here] - numbering.reference[behind], axis=1)
+                points, body = numbering.points[face.body], problem.body(face.body)
+                here, behind = (points[body.patch.face_points(name)] for name in (face.face, opposite(face.face)))
+                thickness = np.linalg.norm(numbering.reference[here] - numbering.reference[behind], axis=1)
+                thin[here] = 1.0 / (_confined(body) * thickness)
     return _at_points(problem, numbering, pair, projections, thin)
 
 
@@ -54,3 +61,9 @@ def _at_points(
 
 def _soft(body: Body) -> float:
     return 0.0 if body.rigid else (1.0 - body.material.poisson**2) / body.material.young
+
+
+def _confined(body: Body) -> float:
+    """How soft a layer is that cannot go sideways, over (1 - nu^2) / E; no less than what goes sideways within it leaves."""
+    poisson = 0.0 if body.rigid else body.material.poisson
+    return max(SIDEWAYS, (1.0 - 2.0 * poisson) / (1.0 - poisson) ** 2)
