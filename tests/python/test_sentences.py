@@ -176,6 +176,9 @@ def along_the_way(_: pytest.MonkeyPatch) -> Told:
     list(Simulation(Scene.from_toml(RUNS["small strains, turned"][0]).problem(), observer).run())
     yield "small strains", observer.said[0]
     observer = Warned()
+    list(Simulation(Scene.from_toml(RUNS["shrunk"][0]).problem(), observer).run())
+    yield "shrunk", observer.said[0]
+    observer = Warned()
     list(Simulation(Scene.from_toml(BENT.replace("LEVEL", "0")).problem(), observer).run())
     yield "in each other", observer.said[-1]
     observer = Warned()

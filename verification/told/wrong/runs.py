@@ -8,6 +8,17 @@ from told.wrong.contacts import PAIR, PRESS, RINGS, TYRE
 PRESSED = PRESS.replace("[2, 2, 1]", "[4, 4, 1]")
 #: A law of small strains.
 LINEAR = PRESS.replace("[bodies.block]", '[materials.steel]\nlaw = "linear-elastic"\n[bodies.block]')
+#: A column that is free to widen: by this law it gives way at 0.38 of its height, and is as narrow as high from there on.
+SHRINKING = """
+format = 1
+materials.foam = { young = 1.0, poisson = 0.3, law = "neo-hookean-j" }
+bodies.b = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }, mesh.elements = [2, 2, 1] }
+contacts.c = { slave = "b.w0", plane = {}, friction = 0 }
+supports.top = { face = "b.w1", components = ["z"] }
+supports.x = { face = "b.u0", components = ["x"] }
+supports.y = { face = "b.v0", components = ["y"] }
+stages = [{ name = "press", steps = 7, motions.top.translate = [0, 0, -0.7] }]
+"""
 
 
 def staged(text: str, *stages: tuple[int, str, str]) -> str:
@@ -110,6 +121,9 @@ RUNS = {
     "small strains": (LINEAR.replace("[2, 2, 1]", "[4, 4, 1]"), []),
     "small strains that are large": (LINEAR.replace("-0.1]", "-0.3]"), ["load step 1: its law, linear-elastic"]),
     "small strains, turned": (staged(LINEAR, (3, "[0, 0, 0.1]", "-9")), ["a strain of 0.0057 here", "never closed"]),
+    "shrunk": (SHRINKING, ["load step 7: it is pressed to 0.034 of its volume, and below 0.4 its law"]),
+    "shrunk by the paper's law": (SHRINKING.replace("-j", ""), ["the equilibrium is not stable"]),
+    "not shrunk": (SHRINKING.replace("-0.7]", "-0.45]"), []),
     "quadratic Lagrange elements pressed within": (DIE, []),
     "pressed in between constraints": (BALL, ["never closed: it was open at the end of every load step, although slave points were up to"]),
     "pressed in where constraints see it": (BALL.replace("[4, 1, 4]", "[24, 1, 24]"), []),

@@ -17,6 +17,7 @@ from isomortar.told.during.narrow import Narrow
 from isomortar.told.during.passing import Passing
 from isomortar.told.during.pulling import Pulling
 from isomortar.told.during.sharing import Sharing
+from isomortar.told.during.shrunk import Shrunk
 from isomortar.told.during.small_strains import SmallStrains
 from isomortar.told.during.snapping import Snapping
 from isomortar.told.during.unseen import Unseen
@@ -41,7 +42,7 @@ class Watches:
         self._lost, self._pulling, self._sharing = LostDigits(equilibrium), Pulling(equilibrium), Sharing(equilibrium)
         self._small_strains, self._astray, self._unseen = SmallStrains(equilibrium), Astray(equilibrium), Unseen(equilibrium)
         self._snapping, self._inside_out, self._unstable = Snapping(equilibrium), InsideOut(equilibrium), Unstable(equilibrium)
-        self._mirrored = Mirrored(equilibrium)
+        self._mirrored, self._shrunk = Mirrored(equilibrium), Shrunk(equilibrium)
         self._narrow, self._advice = Narrow(equilibrium, states), StepAdvice(problem, step, states)
         self._of_stages = [watch for watch in (Passing(problem), Behind(problem)) if watch.needed]
 
@@ -68,6 +69,7 @@ class Watches:
         yield from self._pulling.after_step(balance, step)
         yield from self._sharing.after_step(result)
         yield from self._small_strains.after_step(balance, step)
+        yield from self._shrunk.after_step(balance, step)
         yield from self._snapping.after_step(step)
         yield from self._inside_out.after_step(step)
         yield from self._astray.after_step(balance, step)
