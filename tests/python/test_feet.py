@@ -97,7 +97,7 @@ def test_a_pole_is_one_control_point() -> None:
 
 def test_friction_beside_a_pole_is_refused_by_name() -> None:
     loaded(cone(0.0))
-    with pytest.raises(LostProjectionError, match=r"beside a pole of the master.*Set friction = 0"):
+    with pytest.raises(LostProjectionError, match=r"ends at a pole.*Take more elements of the master towards it.*set friction = 0"):
         loaded(cone(0.3))
 
 

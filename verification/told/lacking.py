@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from isomortar.errors import ConvergenceError
 from isomortar.harness import Bound, case
 from isomortar.march.outlook import outlook
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
 
 #: A block above a plane, of which supports move the slave face along x.
@@ -67,8 +69,19 @@ contacts.c = { slave = "a.w0", master = "dome.v1", friction = 0.3, projection = 
 supports = { base.face = "dome.w1", top.face = "a.w1" }
 stages = [{ name = "press", steps = 4, motions.top.translate = [0, 0, -0.001] }]
 """
-#: The middle of a cell, of 24 that the short element has, may be as far away as one of the long element is large, 0.0125, and no farther.
-FAR = {0.001: True, 0.009: True, 0.0112: True, 0.0114: False, 0.6: False}
+#: The middle of a cell, of 24 that the short element has, may be as far from elements that end at the pole, below it, as one of the long
+#: element is large, 0.0125, and no farther: they fall away by half the square of this.
+FAR = {0.05: True, 0.1: True, 0.2: False, 0.39: False, 0.9: False}
+#: A block on a rigid ball, the poles of which are 0.3 beside it; of two elements from one to the other both end at a pole.
+ON_A_BALL = """
+format = 1
+bodies.a.geometry = { kind = "box", lower = [-0.4, -0.3, 0.6], upper = [0.4, 0.3, 1] }
+bodies.a.mesh.elements = [6, 4, 2]
+bodies.ball = { geometry = { kind = "sphere", outer = 0.6, axis = "y" }, mesh.elements = [4, 1, ELEMENTS], rigid = true }
+contacts.c = { slave = "a.w0", master = "ball.v1", friction = 0.3 }
+supports.top.face = "a.w1"
+stages = [{ name = "press", steps = 2, motions.top.translate = [0, 0, -0.06] }]
+"""
 
 
 def warnings(text: str, **values: str) -> list[str]:
@@ -110,6 +123,27 @@ def lacking() -> dict[str, float]:
         said = warnings(BESIDE_A_POLE, FROM=str(far), TO=str(far + 1.0))
         poles += any("has a pole, an edge that is one point" in warning for warning in said) != told
     return {"supports": float(supports), "meeting": float(meeting), "points": float(points), "poles": float(poles)}
+
+
+@case(
+    claim="A slave that comes to elements which end at a pole of its master, with friction, is told of that before its run, which ends "
+    "there; with more elements, as it is told to take, nothing is said, and the run comes to its end.",
+    tier="gate",
+    grid={"elements": (2, 4)},
+    bounds=lambda elements: {
+        "told": Bound(1.0, 1.0, "definition: whether") if elements == 2 else Bound(0.0, 0.0, "definition: whether"),
+        "ended": Bound(1.0, 1.0, "definition: whether") if elements == 2 else Bound(0.0, 0.0, "definition: whether"),
+    },
+)
+def poles_of_a_ball(elements: int) -> dict[str, float]:
+    """Whether it is told, and whether its run is given up for that."""
+    text, ended = ON_A_BALL.replace("ELEMENTS", str(elements)), False
+    told = [warning for warning in warnings(text) if "Take more elements there along w (bodies.ball.mesh.elements)" in warning]
+    try:
+        list(Simulation(Scene.from_toml(text).problem()).run())
+    except ConvergenceError as error:
+        ended = "in an element of the master that ends at a pole" in str(error)
+    return {"told": float(len(told)), "ended": float(ended)}
 
 
 #: A punch that goes past the pad between it and a base; two blocks on a floor, of which one is pushed into the other.

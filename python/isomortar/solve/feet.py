@@ -32,8 +32,8 @@ _DOUBTS = {
     ),
     _NO_SLIP: "its nearest point is on a C0 line of the master, and slips have no measure there: the element beside it has its centre of "
     "curvature nearer. Set friction = 0, without cohesion, or take a master that is less hollow beside its lines",
-    _SLIPS_AT_POLE: "its nearest point is beside a pole of the master, an edge that is one point, where slips have no coordinates. "
-    "Set friction = 0, without cohesion, or take a mesh without a pole there",
+    _SLIPS_AT_POLE: "its nearest point is in an element of the master that ends at a pole, an edge that is one point, where slips have no "
+    "coordinates. Take more elements of the master towards it, or a mesh without a pole there, or set friction = 0, without cohesion",
 }
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from isomortar.geometry.faces import cells
+from isomortar.geometry.patch import FloatArray
 from isomortar.model.contact_checks import poles
 from isomortar.model.entities import Contact, Face, Problem
 from isomortar.model.sheet import Sheet
@@ -25,14 +26,26 @@ def doubts_at_poles(problem: Problem, contact: Contact, travel: float) -> Iterat
 
 
 def _met_by_friction(name: str, slave: Sheet, master: Sheet, words: str, travel: float) -> Iterator[str]:
+    from scipy.spatial import cKDTree
+
     face = cells(slave.patch, slave.face)
     near = travel + float(np.sqrt(face.areas.max()))
-    for _, pole in poles(master):
-        if np.linalg.norm(face.centres - pole, axis=1).min() <= near:
+    for across, pole in poles(master):
+        if cKDTree(_ending_at(master, across, pole)).query(face.centres)[0].min() <= near:
             place = ", ".join(f"{x:.4g}" for x in pole + 0.0)
             yield (
-                f"contact {name!r}: the master {words} has a pole, an edge that is one point, at ({place}), where "
-                "its slave may come to: slips have no coordinates there, and a load step that asks for them ends the run. Have the pole "
-                "elsewhere (another axis of a sphere), or set friction = 0, without cohesion"
+                f"contact {name!r}: the master {words} has a pole, an edge that is one point, at ({place}), and its slave may come to "
+                "elements that end there: slips have no coordinates in them, and a load step that asks for them ends the run. Take more "
+                f"elements there along {master.letters[across]} (bodies.{master.bodies[0].name}.mesh.elements), have the pole elsewhere "
+                "(another axis of a sphere), or set friction = 0, without cohesion"
             )
             return
+
+
+def _ending_at(sheet: Sheet, across: int, pole: FloatArray) -> FloatArray:
+    """Centres of the cells of the elements that end at a pole, where a coordinate of the sheet does, shape (n, 3)."""
+    face = cells(sheet.patch, sheet.face)
+    centres = np.moveaxis(face.centres.reshape(*face.shape, 3), across, 0)
+    each = face.shape[across] // sheet.directions[across].elements
+    ends = centres[:each].reshape(-1, 3), centres[-each:].reshape(-1, 3)
+    return min(ends, key=lambda end: float(np.linalg.norm(end - pole, axis=1).min()))
