@@ -42,6 +42,26 @@ supports.back = { face = "ring.w1", components = ["y"] }
 loads.own = { body = "ring", weight = [0, 0, -0.05] }
 stages = [{ name = "lay", steps = 1 }]
 """
+#: A roller on a floor, which it touches as well as the plate on it, and a block in a gap, between what is pressed together.
+_ROLLER = """
+format = 1
+bodies.loose = { geometry = { kind = "ring", inner = 0.2, outer = 0.5, width = 0.6, centre = [0, 0, 0.5] }, mesh.elements = [32, 1, 1] }
+bodies.plate = { geometry = { kind = "box", lower = [-0.5, -0.4, 1], upper = [0.5, 0.4, 1.3] }, mesh.elements = [6, 2, 1] }
+contacts.floor = { slave = "loose.v1", plane = {}, friction = 0.4 }
+contacts.top = { slave = "loose.v1", master = "plate.w0", friction = 0.4 }
+supports = { top.face = "plate.w1", side = { face = "loose.w0", components = ["y"] } }
+stages = [{ name = "press", steps = 3, motions.top.translate = [0, 0, -0.03] }]
+"""
+_IN_A_GAP = """
+format = 1
+bodies.loose = { geometry = { kind = "box", lower = [0, 0, 0.003], upper = [1, 1, 0.998] }, mesh.elements = [2, 2, 2] }
+bodies.plate = { geometry = { kind = "box", lower = [-0.2, -0.2, 1], upper = [1.2, 1.2, 1.3] }, mesh.elements = [3, 2, 1] }
+contacts.floor = { slave = "loose.w0", plane = {}, friction = 0.4 }
+contacts.top = { slave = "loose.w1", master = "plate.w0", friction = 0.4 }
+supports.top.face = "plate.w1"
+stages = [{ name = "press", steps = 3, motions.top.translate = [0, 0, -0.03] }]
+"""
+_BETWEEN = {"roller": _ROLLER, "in a gap": _IN_A_GAP}
 #: A block on an incline, which has nothing but friction to hold it: weight that pushes it along by 0.36 of what it presses with.
 WEIGHT = np.array([0.108, 0.0, -0.3])
 _INCLINE = """
@@ -124,6 +144,21 @@ def incline(method: str) -> dict[str, float]:
     """Relative difference of contact and weight; cuts of the load increment."""
     (step,) = _computed(_INCLINE.format(WEIGHT.tolist()), method)
     return {"balance": float(np.abs(step.contacts[0].force_slave + WEIGHT).max() / 0.3), "cuts": float(step.cuts)}
+
+
+@case(
+    claim="A body that nothing holds but what presses it together needs no load for that: it bears what it does with a weight of next to "
+    "nothing.",
+    tier="gate",
+    grid={"body": tuple(_BETWEEN), "method": ("monolithic", "uzawa")},
+    bounds={"forces": Bound(at_most=1e-6, reason="theory: in proportion to the weight, 1e-8 of them")} | _CUTS,
+)
+def without_load(body: str, method: str) -> dict[str, float]:
+    """Largest difference of the forces of contacts over the largest of them; cuts of load increments."""
+    text = _BETWEEN[body]
+    alone, laid = _computed(text, method), _computed(f'{text}loads.own = {{ body = "loose", weight = [0, 0, -1e-9] }}\n', method)
+    one, other = (np.array([[contact.force_slave[2] for contact in step.contacts] for step in steps]) for steps in (alone, laid))
+    return {"forces": float(np.abs(one - other).max() / np.abs(other).max()), "cuts": float(sum(step.cuts for step in alone))}
 
 
 @case(

@@ -79,7 +79,8 @@ SAID = (
     (third(1.2), _DEEP, "is in no contact"),
     (BALL.replace("AXIS", "z"), ('contacts.c.slave="above.v1"',), ""),
     (BALL.replace("AXIS", "z"), (_MASTER,), "has a pole"),
-    (BALL.replace("AXIS", "y"), (_MASTER, "stages.one.motions.hub.rotate=3"), ""),
+    (BALL.replace("AXIS", "y"), (_MASTER, "stages.one.motions.hub.rotate=3"), "has a pole"),
+    (BALL.replace("AXIS", "y"), (_MASTER, "stages.one.motions.hub.rotate=3", "bodies.above.mesh.elements=[4,2,4]"), ""),
 )
 
 

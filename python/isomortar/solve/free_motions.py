@@ -40,9 +40,7 @@ class FreeMotion:
 
 
 def free_motions(problem: Problem, numbering: Numbering, supports: Supports, positions: FloatArray) -> list[FreeMotion]:
-    """Those of all pieces at some positions of all control points, as the supports of a stage leave them; none where no loads act."""
-    if not (problem.loads or supports.plates):
-        return []
+    """Those of all pieces at some positions of all control points, as the supports of a stage leave them."""
     found = []
     for k, piece in enumerate(numbering.pieces):
         own = np.concatenate([numbering.points[body.name] for body in piece])
@@ -51,6 +49,11 @@ def free_motions(problem: Problem, numbering: Numbering, supports: Supports, pos
             displacement[own] = moved(piece, amounts, positions[own])
             found.append(FreeMotion(k, amounts, displacement))
     return found
+
+
+def loaded_motions(problem: Problem, numbering: Numbering, supports: Supports, positions: FloatArray) -> list[FreeMotion]:
+    """The same; none where no loads act."""
+    return free_motions(problem, numbering, supports, positions) if problem.loads or supports.plates else []
 
 
 @dataclass(frozen=True)

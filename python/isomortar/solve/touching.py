@@ -1,4 +1,7 @@
-"""What loads bring together: without contact there is no tangent to begin with, so what they close first begins as closed (theory 6.8)."""
+"""What loose bodies come to first, by loads or between others: without contact there is no tangent to begin with, so it begins as closed.
+
+See theory 6.8.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +33,7 @@ class _Approach:
 
 
 class Touching:
-    """Ways that bodies go by loads alone, as the supports of a stage leave them.
+    """Ways that bodies go by themselves, as the supports of a stage leave them.
 
     Parameters
     ----------
@@ -43,9 +46,15 @@ class Touching:
     def __init__(self, problem: Problem, numbering: Numbering, supports: Supports, loads: Loads) -> None:
         self._problem, self._numbering, self._supports, self._loads = problem, numbering, supports, loads
 
-    def _ways(self, positions: FloatArray, time: float) -> list[tuple[set[str], FloatArray]]:
-        """Bodies, and a way that each goes to a load time: as loads move it, or any way if none does (theory 6.8)."""
+    def _ways(self, positions: FloatArray, time: float, borne: set[str]) -> list[tuple[set[str], FloatArray]]:
+        """Bodies, and a way that each goes to a load time: as loads move it, or any way if none does (theory 6.8).
+
+        Where no loads act, those alone that no contact bears: supports press the others on what they are on.
+        """
         motions = free_motions(self._problem, self._numbering, self._supports, positions)
+        if not (self._problem.loads or self._supports.plates):
+            held = {number for number, piece in enumerate(self._numbering.pieces) if borne & {body.name for body in piece}}
+            motions = [motion for motion in motions if motion.piece not in held]
         if not motions:
             return []
         left = self._supports.unbalanced(-sum(self._loads.forces(positions, time), np.zeros_like(positions)), positions, time)
@@ -68,7 +77,8 @@ class Touching:
         With scales in its place a penalty is that of `PairMechanics.parameters`.
         """
         all_bear = all(np.any(contact.pressure != 0.0) for contact in start.contacts)
-        ways = [] if all_bear else self._ways(start.positions, time)
+        borne = {name for pair, contact in zip(pairs, start.contacts, strict=True) if np.any(contact.pressure) for name in pair.pair.contact.bodies}
+        ways = [] if all_bear else self._ways(start.positions, time, borne)
         if not ways:
             return [None] * len(pairs)
         approaches = [_approach(pair, start.positions, contact, ways) for pair, contact in zip(pairs, start.contacts, strict=True)]

@@ -122,7 +122,6 @@ RUNS = {
     "small strains that are large": (LINEAR.replace("-0.1]", "-0.3]"), ["load step 1: its law, linear-elastic"]),
     "small strains, turned": (staged(LINEAR, (3, "[0, 0, 0.1]", "-9")), ["a strain of 0.0057 here", "never closed"]),
     "shrunk": (SHRINKING, ["load step 7: it is pressed to 0.034 of its volume, and below 0.4 its law"]),
-    "shrunk by the paper's law": (SHRINKING.replace("-j", ""), ["the equilibrium is not stable"]),
     "not shrunk": (SHRINKING.replace("-0.7]", "-0.45]"), []),
     "quadratic Lagrange elements pressed within": (DIE, []),
     "pressed in between constraints": (BALL, ["never closed: it was open at the end of every load step, although slave points were up to"]),

@@ -11,7 +11,7 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
 from isomortar.model.rank import extent
 from isomortar.solve.equilibrium import Equilibrium
-from isomortar.solve.free_motions import FreeMotion, free_motions
+from isomortar.solve.free_motions import FreeMotion, loaded_motions
 from isomortar.solve.record import State
 from isomortar.told.after.limit_load import Touch, touches_of
 
@@ -21,7 +21,7 @@ def borne_loads(equilibrium: Equilibrium, state: State) -> tuple[list[FreeMotion
 
     Nothing does that is told where loads do no work, or where a foot is lost.
     """
-    motions = free_motions(equilibrium.problem, equilibrium.numbering, equilibrium.supports, state.positions)
+    motions = loaded_motions(equilibrium.problem, equilibrium.numbering, equilibrium.supports, state.positions)
     works = load_works(equilibrium, state.positions, motions)
     try:
         touches = touches_of(equilibrium.pairs, state, [motion.displacement for motion in motions]) if np.any(works) else []

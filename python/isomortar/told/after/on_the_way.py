@@ -10,7 +10,7 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.model.glue import named
 from isomortar.solve.contact import PairMechanics
 from isomortar.solve.equilibrium import Equilibrium
-from isomortar.solve.free_motions import free_motions
+from isomortar.solve.free_motions import loaded_motions
 from isomortar.solve.record import ContactState, State
 from isomortar.solve.touching import mean_heights
 
@@ -29,7 +29,7 @@ def on_the_way(equilibrium: Equilibrium, state: State) -> Iterator[tuple[set[int
     """
     contacts = zip(equilibrium.pairs, state.contacts, strict=True)
     near = {name for pair, begun in contacts if _is_near(pair, state.positions, begun) for name in pair.pair.contact.bodies}
-    free = {motion.piece for motion in free_motions(equilibrium.problem, equilibrium.numbering, equilibrium.supports, state.positions)}
+    free = {motion.piece for motion in loaded_motions(equilibrium.problem, equilibrium.numbering, equilibrium.supports, state.positions)}
     for number in sorted(free):
         piece = equilibrium.numbering.pieces[number]
         if near.isdisjoint(body.name for body in piece):

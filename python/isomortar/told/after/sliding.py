@@ -12,7 +12,7 @@ from isomortar.model.entities import Contact
 from isomortar.model.glue import named
 from isomortar.solve.contact import PairMechanics
 from isomortar.solve.equilibrium import Equilibrium
-from isomortar.solve.free_motions import free_motions
+from isomortar.solve.free_motions import loaded_motions
 from isomortar.solve.metric import traction_norms
 from isomortar.solve.record import ContactState, State
 from isomortar.told.after.more_friction import more_friction
@@ -33,7 +33,7 @@ def sliding(equilibrium: Equilibrium, state: State) -> Iterator[tuple[set[int], 
     state : State
         Where the last load increment ended that converged.
     """
-    found = free_motions(equilibrium.problem, equilibrium.numbering, equilibrium.supports, state.positions)
+    found = loaded_motions(equilibrium.problem, equilibrium.numbering, equilibrium.supports, state.positions)
     for number, piece in enumerate(equilibrium.numbering.pieces):
         motions = [motion.displacement for motion in found if motion.piece == number]
         names = {body.name for body in piece}
