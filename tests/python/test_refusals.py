@@ -193,6 +193,8 @@ def of_files(patch: pytest.MonkeyPatch) -> Told:
     yield "no TOML, quote", refusal(lambda: Scene.load("quote.toml")).partition(")")[2]
     Path("braces.toml").write_text("a = { b = 1,\nc = 2 }")
     yield "no TOML, braces", refusal(lambda: Scene.load("braces.toml")).partition(")")[2]
+    Path("point.toml").write_text("a = { b = 5., c = 2 }\n")
+    yield "no TOML, point", refusal(lambda: Scene.load("point.toml")).partition(")")[2]
     yield "value", _but_the_end(refusal(lambda: apply_overrides({"solver": {}}, ["solver.max_cuts=[1"])))
     writer = ResultsWriter("run.h5", problem(), "", "0", states="last")
     yield "plotted: no step", refusal(lambda: plot("run.h5", "figures"))

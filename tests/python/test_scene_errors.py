@@ -115,8 +115,14 @@ def test_sources_that_are_no_scene() -> None:
 
 #: Texts that are no TOML, the line that is told, and the last words of what is said.
 NO_TOML = {
-    "value": ("format = = 1", "format = = 1", "numbers have a point"),
-    "end": ("format = 1\nname\n\n", "name", "'name'"),
+    "value": ("format = = 1", "format = = 1", "a key has = behind it"),
+    "comma": ("format = 1\nfriction = 0,4\nname = 'a'\n", "friction = 0,4", "a key has = behind it"),
+    "unit": ("a = 1 mm\nb = 2\n", "a = 1 mm", "a key has = behind it"),
+    "colon": ("a = 1\nb: 2\nc = 3\n", "b: 2", "a key has = behind it"),
+    "comma in braces": ("a = 1\nb = { c = 1, d = 0,4 }\ne = 3\n", "b = { c = 1, d = 0,4 }", "a key has = behind it"),
+    "point without digits": ("a = { b = 5., c = 1 }\nd = 1\n", "a = { b = 5., c = 1 }", "in braces one line"),
+    "comma at the end": ("a = { b = 1, }\nc = 1\n", "a = { b = 1, }", "no comma at its end"),
+    "end": ("format = 1\nname\n\n", "name", "a key has = behind it"),
     "open": ("format = 1\nbodies = [1\n", "bodies = [1", "'bodies = [1'"),
     "twice": ("a = 1\na = 2\nb = 1\n", "a = 2", "stands once"),
     "twice at the end": ("a = 1\na = 2", "a = 2", "stands once"),
@@ -125,7 +131,7 @@ NO_TOML = {
     "quotes": ('format = 1\ntitle = """a\n[bodies]\n', 'title = """a', "unless they are three"),
     "other quotes": ("format = 1\ntitle = '''a\n[bodies]\n", "title = '''a", "unless they are three"),
     "quote at the end": ('format = 1\nname = "a', 'name = "a', "unless they are three"),
-    "braces": ("format = 1\na = { b = 1,\nc = 2 }\n", "a = { b = 1,", "on one line"),
+    "braces": ("format = 1\na = { b = 1,\nc = 2 }\n", "a = { b = 1,", "no comma at its end"),
     "no key": ("a. = 1\n", "a. = 1", "'a. = 1'"),
     "table twice": ("[a]\n[a]\nb = 1\n", "[a]", "stands once"),
 }

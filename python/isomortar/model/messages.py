@@ -81,10 +81,20 @@ _KINDS = {
 _WITHOUT_QUOTES = re.compile(r"true|false|[+-]?\d+(\.\d+)?([eE][+-]?\d+)?")
 
 
+#: Keys of lists that hold tables, and of tables that hold others by name, as a scene file writes these.
+_WRITTEN = {("stages",): "[[stages]]", ("record", "curves"): "[[record.curves]]"} | {
+    (name,): f"[{name}.NAME]" for name in ("materials", "bodies", "contacts", "supports", "loads")
+}
+
+
 def _given(value: Any) -> str:
     """A value as a scene file has it, not too much of it."""
     if isinstance(value, bool):
         return str(value).lower()
+    if isinstance(value, dict):
+        return "a table"
+    if isinstance(value, list) and value and all(isinstance(entry, dict) for entry in value):
+        return "a list of tables"
     return value.isoformat() if isinstance(value, date | time) else reprlib.repr(value)
 
 
@@ -93,7 +103,9 @@ def _sentence(fault: ErrorDetails) -> str:
     match fault["type"]:
         case kind if kind in _KINDS:
             quoted = isinstance(fault["input"], str) and _WITHOUT_QUOTES.fullmatch(fault["input"])
-            return f"is {given}; allowed: {_KINDS[kind]}" + (", without quotes" if quoted else "")
+            written = _WRITTEN.get(tuple(map(str, fault["loc"]))) if given in ("a table", "a list of tables") else None
+            hint = ", without quotes" if quoted else f": each of its tables begins with {written}" if written else ""
+            return f"is {given}; allowed: {_KINDS[kind]}{hint}"
         case "missing" | "union_tag_not_found":
             return "is missing, but must be given"
         case "union_tag_invalid":

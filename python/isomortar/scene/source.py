@@ -25,9 +25,10 @@ _PATH = re.compile(r"[\w-]+(\.[\w-]+)*")
 
 #: What a message of TOML's reader may want, by words of it.
 _HINTS = {
-    "Invalid value|newline": ". Texts stand in quotes, numbers have a point",
+    "Unclosed inline table": ". Texts stand in quotes, numbers have digits on both sides of a point, and a table in braces one line",
+    "Invalid value|newline|value pair": ". Texts stand in quotes, numbers have digits on both sides of a point, and a key has = behind it",
     "character '.n'|Expected \"'|Unterminated": ". A text ends at quotes as those that begin it: on the same line, unless they are three",
-    "key part.*says.*{": ". A table in braces stands on one line",
+    "key part.*says.*{": ". A table in braces stands on one line, and has no comma at its end",
     "overwrite|twice": ". Each key of a table, and each [table], stands once",
 }
 
@@ -70,7 +71,7 @@ def parse(text: str, name: str) -> dict[str, Any]:
 
 def _line(text: str, message: str) -> str:
     """The line that a message is about, as far as it is short, and what it may want."""
-    lines, found = text.rstrip().split("\n"), re.search(r"line (\d+)|end of document", message)
+    lines, found = text.rstrip().split("\n"), re.search(r"\(at (?:line (\d+)|end of)", message)
     number = _unclosed(text, message) if found and not found[1] else int(found[1]) - 1 if found else 0
     said = f", where it says {lines[number].strip()[:60]!r}" if found else ""
     return said + next((words for what, words in _HINTS.items() if re.search(what, message + said)), "")

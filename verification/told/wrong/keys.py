@@ -53,6 +53,13 @@ CASES = {
     "unknown key": ("steps = 3", "step = 3", "stages.press.step", "unknown key; allowed here: steps, name, motions"),
     "unknown table": ("[solver]", "[solvers]", "solvers", "unknown key; allowed here: solver, "),
     "key of the file in a table": ("max_cuts = 4", "max_cuts = 4\nsymmetry.x = 0", "solver.symmetry", "put it above the first [table]"),
+    "one stage": (
+        '[[stages]]\nname = "press"\nsteps = 3\nmotions.top.translate = [0, 0, -0.2]\n[[stages]]',
+        "[stages]",
+        "stages",
+        "begins with [[stages]]",
+    ),
+    "list of supports": ('[supports.top]\nface = "upper.w1"\n[supports.base]', "[[supports]]", "supports", "begins with [supports.NAME]"),
     "unknown key of a primitive": ("rise = 0.2", "raise = 0.2", "bodies.upper.geometry.raise", "rise, kind, centre, half_width"),
     "unknown primitive": ('kind = "bowl"', 'kind = "ball"', "bodies.upper.geometry.kind", "is 'ball'; allowed: 'box', 'bowl', 'cap'"),
     "half a turn too far": (
