@@ -99,6 +99,19 @@ def test_ctrl_c_is_heard_where_python_drops_it(lost: str) -> None:
     assert process.returncode == 130
 
 
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_run_that_is_asked_to_end_says_how_far_it_came(tmp_path: Path, number: signal.Signals) -> None:
+    with subprocess.Popen([sys.executable, "-c", RUNS, "run", "iron"], cwd=tmp_path, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stderr is not None
+        while "step  2/50" not in process.stderr.readline():
+            pass
+        process.send_signal(number)
+        _, said = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert said.splitlines()[-1].endswith("of 50 load steps done; they are in results/iron.h5; to go on, repeat the command with --resume")
+    assert [path.name for path in (tmp_path / "results").iterdir()] == ["iron.h5"]
+
+
 @pytest.fixture
 def interruptible() -> Iterator[None]:
     """Who runs tests in the background of a shell has Ctrl-C ignored."""

@@ -6,7 +6,7 @@ import re
 import signal
 import sys
 import traceback
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from threading import current_thread, main_thread
@@ -18,6 +18,12 @@ from isomortar.errors import InputError, IsomortarError
 FAILED, BAD_INPUT, OWN_FAULT, INTERRUPTED = 1, 2, 3, 130
 
 _INTERRUPTED = INTERRUPTED, "interrupted"
+
+#: What interrupts, and who hears it where nobody else does: Ctrl-C, and what batch systems and containers ask by before they kill.
+_INTERRUPTS: dict[signal.Signals, Callable[[int, FrameType | None], object] | signal.Handlers] = {
+    signal.SIGINT: signal.default_int_handler,
+    signal.SIGTERM: signal.SIG_DFL,
+}
 
 #: Letters that are left of a longer word.
 LONGEST_WORD = 600
@@ -52,14 +58,16 @@ def _heard() -> Iterator[list[int]]:
         interrupts.append(number)
         signal.default_int_handler(number, frame)
 
-    ours = signal.getsignal(signal.SIGINT) is signal.default_int_handler and current_thread() is main_thread()
-    if ours:
-        signal.signal(signal.SIGINT, note)
+    ours = [number for number, hears in _INTERRUPTS.items() if signal.getsignal(number) is hears]
+    if current_thread() is not main_thread():
+        ours = []
+    for number in ours:
+        signal.signal(number, note)
     try:
         yield interrupts
     finally:
-        if ours:
-            signal.signal(signal.SIGINT, signal.default_int_handler)
+        for number in ours:
+            signal.signal(number, _INTERRUPTS[number])
 
 
 def _ending(error: Exception, *, interrupted: bool) -> tuple[int, str]:
