@@ -16,7 +16,7 @@ from told.wrong.contacts import PRESS
 from told.wrong.plates import ROLLS
 from told.wrong.singular import BLOCK, CORNER, error, explained
 
-from isomortar.errors import SingularSystemError
+from isomortar.errors import ConvergenceError, SingularSystemError
 from isomortar.harness import Bound, case
 from isomortar.march.simulation import Simulation
 from isomortar.model.constants import LARGEST_TURN
@@ -59,10 +59,12 @@ def of_causes() -> Iterator[tuple[str, str]]:
         "incompressible": {"POISSON": 0.499999},
         "stiffness": {"HARD": 1e12},
         "penalty": {"METHOD": "uzawa", "PENALTY": 1e4},
+        "small penalty": {"METHOD": "uzawa", "PENALTY": 1e-3},
         "points": {"SLAVE": 1, "MASTER": 8},
         "short slip": {"SLIP": 1e-4},
     }
     yield from ((name, "\n".join(said(scene(**changed)))) for name, changed in changes.items())
+    yield "few iterations", "\n".join(said(scene(PENALTY="100\nmax_iterations = 2"), ConvergenceError("Newton's method stopped at 1")))
     yield "thin, bent", "\n".join(said(scene(TOP=1.0004), SingularSystemError("")))
     yield "shared edge", "\n".join(said(Simulation(Scene.from_toml(THREE).problem())))
     yield "on the way", "\n".join(said(lifted(0.1)))

@@ -11,7 +11,7 @@ from isomortar.errors import PathError, SingularSystemError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
 from isomortar.model.contrasts import element_lengths
-from isomortar.model.entities import Body, Contact, Problem
+from isomortar.model.entities import Body, Contact, Problem, SolverSettings
 from isomortar.model.sheet import Sheet
 from isomortar.solve.contact import PairMechanics
 from isomortar.solve.equilibrium import Equilibrium
@@ -34,6 +34,10 @@ LENGTHS_BENT = 1e3
 INCOMPRESSIBLE = 1e4
 #: Penalties of augmentations above this one make contact so stiff that Newton's method goes to and fro.
 PENALTY = 1e3
+#: Below this one augmentations are too many: of 100 a press took all at 1e-3, and came to its end at 0.1.
+SMALL_PENALTY = 0.1
+#: By the setting that ends them, how an error says that iterations did.
+ENDED = {"max_iterations": "Newton's method stopped", "max_augmentations": "augmentations left"}
 #: Elastic slips below this share of the slave make friction so stiff that Newton's method goes to and fro: a press failed at 2e-4.
 SHORT_SLIP = 1e-3
 
@@ -70,6 +74,7 @@ def causes(equilibrium: Equilibrium, state: State, error: Exception) -> Iterator
         yield from _incompressible(body)
     yield from _moduli(problem)
     yield from _penalties(problem)
+    yield from _few(problem.settings, str(error))
     for contact in problem.contacts:
         yield from few_points(problem, contact)
         yield from _short_slip(problem, contact)
@@ -136,6 +141,14 @@ def _moduli(problem: Problem) -> Iterator[str]:
             )
 
 
+def _few(settings: SolverSettings, error: str) -> Iterator[str]:
+    """Iterations that ended a load step, and are fewer than usual."""
+    for name, words in ENDED.items():
+        given, usual = getattr(settings, name), getattr(SolverSettings(), name)
+        if words in error and given < usual:
+            yield f"load steps may need more than solver.{name} = {given}: take {usual}, the default"
+
+
 def _penalties(problem: Problem) -> Iterator[str]:
     settings = problem.settings
     largest = max(settings.penalty_normal, settings.penalty_tangential)
@@ -143,6 +156,11 @@ def _penalties(problem: Problem) -> Iterator[str]:
         yield (
             f"a penalty of {largest:g}, times the stiffness of the pair, makes contact so stiff that Newton's method goes to and fro: take "
             "solver.penalty_normal and penalty_tangential of 10 to 1000"
+        )
+    if settings.method == "uzawa" and settings.penalty_normal < SMALL_PENALTY:
+        yield (
+            f"a penalty of {settings.penalty_normal:g}, times the stiffness of the pair, closes next to nothing of a gap with each "
+            "augmentation: take solver.penalty_normal of 10 to 1000"
         )
 
 
