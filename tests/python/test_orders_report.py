@@ -157,7 +157,7 @@ def test_errors_verdicts_and_floor(plan):
     truth = 1 + h**3
     fine = found.points[plan.meshes("N1")[-1]]
     assert fine.errors["force"] == pytest.approx((400 / 144 - h**3) / truth, rel=1e-12)
-    assert found.uncertainty["force"] == pytest.approx(h**3, rel=2e-2)
+    assert found.uncertainty["force"] == pytest.approx(7 * h**3 / truth, rel=1e-12)  # what the last refinement changed
     assert found.verdicts["N1"]["force"].judgement == "confirmed"
     assert fine.floor == ()
     assert "force" in found.points[plan.meshes("N3")[-1]].floor
@@ -237,6 +237,14 @@ def test_without_its_coarser_meshes_the_reference_is_worth_nothing(plan):
     assert found.uncertainty["force"] == math.inf
     assert found.verdicts["N1"]["force"].judgement == "at the floor"
     assert all("force" in p.floor for p in found.points.values() if p.errors)
+
+
+def test_changes_of_round_off_tell_that_the_reference_is_exact(plan):
+    """That they do not fall leaves nothing unknown."""
+    runs = synthetic(plan, {})
+    for chosen, force in zip(plan.reference, (1.0, 1.0 + 1e-12, 1.0 - 1e-12), strict=True):
+        runs[chosen] = replace(runs[chosen], numbers=runs[chosen].numbers | {"force": [[[0.0, 0.0, force]] * 3]})
+    assert analyse(plan, runs).uncertainty["force"] == pytest.approx(3e-12, rel=1e-3)
 
 
 def test_without_a_reference_nothing_is_compared(plan):

@@ -17,7 +17,7 @@ from isomortar.harness.measurement import Measurement
 from isomortar.harness.orders import Convergence, OrderEstimate, estimate_order
 
 CURVES, FIELDS = ("force", "moment"), ("pressure", "displacement")
-#: Moments below this share of force times size of the swept body are round-off.
+#: Moments below this share of force times size of the swept body are round-off; so are changes of all else from mesh to mesh.
 NOTHING = 1e-6
 
 
@@ -25,8 +25,8 @@ NOTHING = 1e-6
 class Point:
     """A run: its numbers (none where it failed, for the reason given), errors and roughness by measure.
 
-    Errors are relative to the reference; `roughness` is the second-difference energy over that of the reference. `floor` names the
-    measures whose error is not above the reference's uncertainty.
+    Errors are relative to the reference; `roughness` is the second-difference energy over that of the reference, where that has any.
+    `floor` names the measures whose error is not above the reference's uncertainty.
     """
 
     discretisation: Discretisation
@@ -90,6 +90,11 @@ class Analysis:
         """The measures that are curves."""
         return tuple(m for m in self.measures if m in CURVES)
 
+    @property
+    def rough(self) -> tuple[str, ...]:
+        """The curves whose roughness is told: stages of two load steps have none."""
+        return tuple(m for m in self.curves if m in self.reference.roughness)
+
     def sequence(self, kind: str) -> list[Point]:
         """The runs of a kind that came to their end, coarsest first."""
         points = [self.points[mesh] for mesh in self.plan.meshes(kind)]
@@ -133,7 +138,7 @@ class _Comparison:
     def distance(self, measure: str, numbers: Mapping[str, Any], other: Mapping[str, Any]) -> float:
         """Error of a run against another one."""
         if measure in CURVES:
-            return curve_error(numbers["time"], curve(numbers, measure), other["time"], curve(other, measure))
+            return curve_error(*_from_rest(numbers, measure), *_from_rest(other, measure))
         return relative_error(numbers[measure], other[measure], self._weights[measure])
 
     def compared(self, run: Point, uncertainty: Mapping[str, float]) -> Point:
@@ -141,13 +146,20 @@ class _Comparison:
         if run.failure or not self._reference:
             return run
         errors = {m: self.distance(m, run.numbers, self._reference) for m in self.measures}
-        ratios = {m: self._roughness(run.numbers, m) / self._roughness(self._reference, m) for m in self.measures if m in CURVES}
+        rough = {m: self._roughness(self._reference, m) for m in self.measures if m in CURVES}
+        ratios = {m: self._roughness(run.numbers, m) / of_reference for m, of_reference in rough.items() if math.isfinite(of_reference)}
         floor = tuple(m for m in self.measures if not errors[m] > uncertainty[m])
         return Point(run.discretisation, run.numbers, "", errors, ratios, floor)
 
     @staticmethod
     def _roughness(numbers: Mapping[str, Any], measure: str) -> float:
         return roughness(numbers["time"], curve(numbers, measure), numbers["stage"]) or math.nan
+
+
+def _from_rest(numbers: Mapping[str, Any], measure: str) -> tuple[FloatArray, FloatArray]:
+    """Load times and values of a curve, from rest on: one load step is a curve, too."""
+    values = curve(numbers, measure)
+    return np.append(0.0, numbers["time"]), np.vstack([np.zeros_like(values[:1]), values])
 
 
 def _point(chosen: Discretisation, measurement: Measurement) -> Point:
@@ -165,12 +177,15 @@ def _means_something(reference: Mapping[str, Any], measure: str, size: float) ->
 
 
 def _uncertainty(plan: Plan, runs: Mapping[Discretisation, Point], comparison: _Comparison, measure: str) -> float:
-    """Of the reference, by two refinements of it."""
+    """Of the reference, by two refinements of it: at least what the last one changed, as meshes agree by chance."""
     coarse, medium, fine = (runs[chosen] for chosen in plan.reference)
     if coarse.failure or medium.failure or fine.failure:
         return math.inf
     first, second = (comparison.distance(measure, a.numbers, b.numbers) for a, b in ((coarse, medium), (medium, fine)))
-    return reference_uncertainty(first, second, expected_order(measure, parse_kind(plan.sweep.reference)[1], plan.slave_refined))
+    if first < NOTHING and second < NOTHING:
+        return first + second
+    series = reference_uncertainty(first, second, expected_order(measure, parse_kind(plan.sweep.reference)[1], plan.slave_refined))
+    return float(np.fmax(second, series))
 
 
 def _verdict(analysis: Analysis, kind: str, measure: str) -> OrderEstimate:
@@ -207,7 +222,7 @@ def _step(analysis: Analysis, way: str, start: Point, end: Point) -> Step:
         end.unknowns / start.unknowns,
         end.numbers["cpu_seconds"] / start.numbers["cpu_seconds"],
         end.numbers["tangents"] / start.numbers["tangents"],
-        {m: end.roughness[m] / start.roughness[m] for m in analysis.curves},
+        {m: end.roughness[m] / start.roughness[m] for m in analysis.rough},
         {m: start.errors[m] / left[m] if left[m] else math.inf for m in resolved},
         tuple(m for m in resolved if m in end.floor),
     )

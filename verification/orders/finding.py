@@ -75,14 +75,16 @@ def recommended(analysis: Analysis, found: list[Finding]) -> list[str]:
 
 
 def summary(analysis: Analysis) -> list[str]:
-    """What to say at the end: of the first measure, whether raising the order pays for it, and the overrides that are recommended."""
+    """What to say at the end: of the first measure, whether raising the order pays for it, what errors are of, and what is recommended."""
     found = findings(analysis)
     if not found:
         return [f"No run is known to be within {percent(TARGETS[-1])} of anything: nothing is recommended."]
     chosen = recommended(analysis, found)
     asked = ", ".join(f"{finding.measure} within {percent(finding.target)}" for finding in found)
     advice = f"Recommended for {asked}: {as_options(chosen)}" if chosen else f"No run has all of: {asked}."
-    return [sentence for sentence in (found[0].sentence, found[0].elevation, advice) if sentence]
+    swept = f"{analysis.plan.sweep.body} along {' and '.join(analysis.plan.sweep.directions)}"
+    alone = f"Errors are those of the mesh of {swept} alone; isomortar trade tells those of the whole scene."
+    return [sentence for sentence in (found[0].sentence, found[0].elevation, alone, advice) if sentence]
 
 
 def _cheapest(analysis: Analysis, kind: str, targets: list[tuple[str, float]]) -> Point | None:

@@ -53,7 +53,7 @@ def page(analysis: Analysis, started: datetime) -> str:
         finding=summary(analysis) if done else [],
         groups=_groups(analysis),
         costs=[(m, figures.error_against_cost(analysis, m)) for m in analysis.measures] if done else [],
-        roughness=[(m, figures.roughness_against_cost(analysis, m)) for m in analysis.curves] if done else [],
+        roughness=[(m, figures.roughness_against_cost(analysis, m)) for m in analysis.rough] if done else [],
         curves=list(figures.curves_overlaid(analysis)) if done else [],
         pressures=figures.pressures(analysis) if done and "pressure" in analysis.measures else "",
         seconds=sum(p.numbers["cpu_seconds"] for p in analysis.points.values() if not p.failure),

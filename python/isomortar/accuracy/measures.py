@@ -129,5 +129,5 @@ def expected_order(measure: str, order: int, slave_refined: bool) -> float:
 
 def _squares(values: FloatArray) -> FloatArray:
     """Squares, summed over components, shape (n,)."""
-    squares: FloatArray = (values.reshape(len(values), -1) ** 2).sum(axis=1)
+    squares: FloatArray = (values**2).sum(axis=tuple(range(1, values.ndim)))
     return squares
