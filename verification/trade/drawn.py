@@ -163,4 +163,4 @@ def of_nothing() -> dict[str, float]:
             lambda *of: figures.curves(of[0], of[0].yardsticks[0], of[1]),
         ):
             draw(search, [answer])
-    return {"warnings": float(len(heard)), "told": float("what is wanted is nothing in this scene" in answer.why)}
+    return {"warnings": float(len(heard)), "told": float("is nothing in this scene" in answer.why)}

@@ -73,7 +73,7 @@ class Sharp(Laboratory):
         return float(self._error(*counts) / self._worth ** choice[-1])
 
     def _measured(self, choices: Sequence[Choice], *_: Any, **__: Any) -> dict[Choice, Tried]:
-        return {choice: Tried(choice, "", {"one": 1.0 + self.off(choice), "cpu_seconds": 1.0}, "", 1.0, 0.0) for choice in choices}
+        return {choice: Tried(choice, "", {"one": 1.0 + self.off(choice), "choice": choice, "cpu_seconds": 1.0}, "", 1.0, 0.0) for choice in choices}
 
 
 def told_over_real(elements: Sequence[Sequence[int]], error: Callable[..., float], worth: float = 1.0) -> float:
@@ -145,6 +145,43 @@ def what_is_missing() -> dict[str, float]:
         search.find_truth([1e-4])
         wrong.append(missing not in search.answer(1e-4).why)
     return dict(zip(("budget", "meshes"), map(float, wrong), strict=True))
+
+
+def noise(choice: Choice) -> float:
+    """A number that every run has another one of."""
+    return float(np.sin(1e3 * np.array(choice) @ np.arange(1.0, 1.0 + len(choice))))
+
+
+#: What a number is besides what is told well of the other one: off by too much, and round-off.
+POOR: dict[str, Callable[[Sharp, Choice], float]] = {
+    "off": lambda known, choice: 1.0 + 100.0 * known.off(choice),
+    "nothing": lambda _, choice: 1e-16 * noise(choice),
+}
+
+
+@case(
+    claim="Of several things that are wanted, a target that is refused names the one that is not told.",
+    tier="gate",
+    grid={"poor": tuple(POOR), "which": ("first", "second")},
+    bounds={
+        "told": Bound(1.0, 1.0, "definition: it is named"),
+        "wrongly told": Bound(0.0, 0.0, "definition: the other one is"),
+    },
+)
+def which_is_missing(poor: str, which: str) -> dict[str, float]:
+    """Whether each is in the sentence."""
+    known = Sharp([LONG], lambda n, _: 1e-3 / n)
+    names = ["force.well.z", "force.poor.x"][:: 1 if which == "second" else -1]
+
+    def want(name: str) -> Want:
+        wanting = POOR[poor] if name == "force.poor.x" else lambda known, choice: 1.0 + known.off(choice)
+        return Want(name, lambda run, _: np.array([wanting(known, tuple(run["choice"]))]), lambda _: np.ones(1))
+
+    search = Search(known, known.dials, [want(name) for name in names], math.inf)
+    search.screen()
+    search.find_truth([0.001])
+    why = search.answer(0.001).why
+    return {"told": float("force.poor.x" in why), "wrongly told": float("force.well.z" in why)}
 
 
 @case(

@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from isomortar.errors import IsomortarError
-from isomortar.harness.report import duration
+from isomortar.harness.report import duration, percent
 from isomortar.trade.knobs import Dial
 from isomortar.trade.laboratory import Choice, Laboratory, Tried
 from isomortar.trade.model import Model, Yardstick
@@ -282,12 +282,13 @@ class Search:
 
     def _needed(self, target: float) -> str:
         """Why a target is refused, and what it would take."""
+        worst = max(self.yardsticks, key=lambda yardstick: yardstick.uncertainty).want.text
         if not self.uncertainty < NOTHING:
-            return "what is wanted is nothing in this scene, or no more than over-refined runs differ by"
+            return f"{worst} is nothing in this scene, or over-refined runs differ by half of it and more"
         finer = (RESOLVED * self.uncertainty / target) ** (1.0 / RATE)
         assert self.truth
         told = (
-            f"over-refined runs differ by {self.uncertainty:.2g} in what is wanted, and {target:g} is less than {RESOLVED:g} times "
+            f"over-refined runs differ by {percent(self.uncertainty)} in {worst}, and {percent(target)} is less than {RESOLVED:g} times "
             f"that: nobody could tell whether it is reached. Meshes about {finer:.1f} times finer would tell"
         )
         if self._finest:
