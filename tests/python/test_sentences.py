@@ -18,6 +18,7 @@ from told.behind import DOWN
 from told.behind import SCENE as FLOOR
 from told.beyond_edges import STRIP as BEYOND_EDGES
 from told.beyond_edges import punch
+from told.dents import scene as at_points
 from told.given_up import all_told, without_digits
 from told.long_masters import CAP
 from told.mirrored import of_half
@@ -103,6 +104,10 @@ def along_the_way(_: pytest.MonkeyPatch) -> Told:
     """Warnings before, at and after load steps."""
     yield "stiff and fine slave", _before_the_first_step(scene(HARD=150, SLAVE=4))
     yield "few points", _before_the_first_step(scene(SLAVE=1, MASTER=8), 1)
+    yield (
+        "few constraints",
+        next(said for said in Simulation(at_points("column", "greville", (2, 2), 9).problem()).doubts() if "points" in said),
+    )
     result = step_result(2)
     nothing = [replace(state, pressure=np.zeros(16), projected=np.ones(96, dtype=np.int32)) for state in result.state.contacts]
     calm = [replace(state, pressure=np.full(16, 0.5)) for state in nothing]

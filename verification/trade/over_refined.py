@@ -73,7 +73,10 @@ class Sharp(Laboratory):
         return float(self._error(*counts) / self._worth ** choice[-1])
 
     def _measured(self, choices: Sequence[Choice], *_: Any, **__: Any) -> dict[Choice, Tried]:
-        return {choice: Tried(choice, "", {"one": 1.0 + self.off(choice), "choice": choice, "cpu_seconds": 1.0}, "", 1.0, 0.0) for choice in choices}
+        return {
+            choice: Tried(choice, "", {"one": 1.0 + self.off(choice), "choice": choice, "cpu_seconds": 1.0}, "", 1.0, 0.0)
+            for choice in choices
+        }
 
 
 def told_over_real(elements: Sequence[Sequence[int]], error: Callable[..., float], worth: float = 1.0) -> float:

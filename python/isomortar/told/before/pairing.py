@@ -9,6 +9,7 @@ import numpy as np
 from isomortar.model.entities import Contact, Face, Problem, RigidPlane
 from isomortar.model.sheet import Sheet
 from isomortar.solve.contact import PairMechanics
+from isomortar.told.before.dents import AT_POINTS, of_dents
 
 #: A slave this many times stiffer than its master, and finer, has nearly redundant constraints (theory 6).
 STIFFER = 10.0
@@ -35,6 +36,7 @@ def of_pairing(problem: Problem, pairs: Sequence[PairMechanics]) -> Iterator[str
             )
     for contact in problem.contacts:
         yield from few_points(problem, contact)
+        yield from of_dents(problem, contact)
         yield from by_default(contact)
 
 
@@ -50,7 +52,7 @@ def by_default(contact: Contact) -> Iterator[str]:
 
 def few_points(problem: Problem, contact: Contact) -> Iterator[str]:
     """Slaves whose quadrature points are farther apart than their master's elements are long: some of these bear nothing (theory 9.5)."""
-    if isinstance(contact.master, RigidPlane):
+    if isinstance(contact.master, RigidPlane) or contact.enforcement in AT_POINTS:
         return
     slave, master = Sheet.of(problem, contact.slave), Sheet.of(problem, contact.master)
     apart = slave.element_size / (2**contact.subcells * np.sqrt(np.prod(contact.quadrature)))
