@@ -109,6 +109,43 @@ def forecasts(seed: int) -> dict[str, float]:
 
 
 @case(
+    claim="A forecast that counts on no luck is that of one of the runs with most of its settings: what refines moves the error of that as "
+    "it did alone, and what coarsens, or refines nothing, adds the size of what it changed alone.",
+    tier="gate",
+    grid={"seed": (1, 2, 3)},
+    bounds={
+        "error": Bound(at_most=1e-12, reason="round-off: from the sum by the runs in closed form, as a share of the truth"),
+        "refined": Bound(at_least=1.0, reason="definition: or nothing has moved"),
+        "chosen": Bound(at_least=1.0, reason="definition: or nothing that refines nothing was turned to what comes later"),
+    },
+)
+def without_luck(seed: int) -> dict[str, float]:
+    """Largest difference, and how many settings moved errors or added to them."""
+    known = Known(seed)
+    known.effects = [effect * [1.0, (-1.0) ** n] for n, effect in enumerate(known.effects)]  # a size of a sum is no sum of sizes
+    singles = [(*known.own[:n], s, *known.own[n + 1 :]) for n, dial in enumerate(dials()) for s in range(len(dial.settings))]
+    known.run(singles)
+    truth, rival = (known.formula(over_refined(last)) for last in (1, 2))
+    model = Model(dials(), known.own, known.outcomes, [Yardstick(WANT, truth, rival)])
+    there, worst, counts = np.array(truth.numbers["two"]), 0.0, np.zeros(2)
+    for run in known.all():
+        turned = [[n for n, (a, b) in enumerate(zip(single, run.choice, strict=True)) if a != b] for single in singles]
+        least, found = min(map(len, turned)), []
+        for single, numbers in zip(singles, turned, strict=True):
+            if len(numbers) > least:
+                continue
+            error, lost = np.array(known.formula(single).numbers["two"]) - there, 0.0
+            for n in numbers:
+                change = known.effects[n][run.choice[n]] - known.effects[n][single[n]]
+                refines = dials()[n].refines and run.choice[n] > single[n]
+                counts += [refines, not dials()[n].refines and run.choice[n] > single[n]]
+                error, lost = (error + change, lost) if refines else (error, lost + size(change))
+            found.append((size(error) + lost) / size(there))
+        worst = np.maximum(worst, np.abs(np.array(found) - model.forecast(run.choice).error).min())
+    return {"error": float(worst), "refined": float(counts[0]), "chosen": float(counts[1])}
+
+
+@case(
     claim="What a search recommends has the accuracy that is asked for and is no more than a tenth dearer than the cheapest of all "
     "combinations that have it with a tenth to spare, of each order the cheapest that was run; "
     "targets that over-refined runs do not tell are refused, and no others.",
