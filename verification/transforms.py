@@ -81,11 +81,12 @@ def scaled(problem: Problem, length: float, stress: float) -> Problem:
     )
 
 
-def with_knots(problem: Problem, factor: float, shift: float) -> Problem:
-    """All knots times `factor` plus `shift`."""
+def with_knots(problem: Problem, factor: float | tuple[float, float, float], shift: float) -> Problem:
+    """All knots times `factor`, of all directions or of each, plus `shift`."""
+    factors = np.broadcast_to(factor, 3)
 
     def changed(patch: Patch) -> Patch:
-        u, v, w = (replace(direction, knots=factor * direction.knots + shift) for direction in patch.directions)
+        u, v, w = (replace(d, knots=by * d.knots + shift) for d, by in zip(patch.directions, factors, strict=True))
         return replace(patch, directions=(u, v, w))
 
     return with_patches(problem, changed)

@@ -244,6 +244,19 @@ def knots_of_kinks() -> dict[str, float]:
     return change("kinked", lambda problem: with_knots(problem, 1.0, -0.7))
 
 
+@case(
+    claim="Knots of one direction that are far longer than those of another change no result, along closest points or averaged normals.",
+    tier="gate",
+    grid={"master": ("block", "kinked"), "longer": ("u", "v")},
+    bounds=BOUNDS,
+)
+def uneven_knots(master: str, longer: str) -> dict[str, float]:
+    """Knots of u and of v times powers of two, which cost no digits."""
+    long, short = 2.0**22, 2.0**-22
+    factors = (long, short, 1.0) if longer == "u" else (short, long, 1.0)
+    return change(master, lambda problem: with_knots(problem, factors, 0.0))
+
+
 @case(claim="A factor of all weights changes no result.", tier="gate", grid={"factor": (1e-3, 7.0)}, bounds=BOUNDS)
 def weight_scaling(factor: float) -> dict[str, float]:
     """All weights times a factor."""

@@ -16,10 +16,11 @@ from isomortar.solve.record import ContactState
 from isomortar.solve.timing import Ledger
 
 #: Inner knots of both directions: elements of very different lengths, with abscissae near their bounds; the first of them a kink
-#: where the mean of three knots is not the knot, by round-off, but beyond it or before.
+#: where the mean of three knots is not the knot, by round-off, but beyond it or before. Of many, ways cross more than there are in one.
 INNER = {
     "graded": ([0.02, 0.1, 0.5], [0.6, 0.9, 0.97]),
     "kinks": ([0.1, 0.3, 0.6], [0.7, 0.85]),
+    "many": ([0.05, 0.15, 0.35, 0.5, 0.6, 0.7, 0.9], [0.1, 0.2, 0.4, 0.55, 0.65, 0.8, 0.95]),
 }
 #: What is beside a line: so far from it, as a share of the face.
 BESIDE = 1e-13
