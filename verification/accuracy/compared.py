@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 
 import numpy as np
@@ -10,10 +11,12 @@ from scipy.interpolate import BSpline
 from isomortar.accuracy.discretisations import discretisation, overrides, refined, sweep_of
 from isomortar.accuracy.measures import curve_error, expected_order, reference_uncertainty, relative_error, roughness
 from isomortar.accuracy.sampling import Grid, body_grid, face_grid, slave_grid, values_at
+from isomortar.errors import InputError
 from isomortar.geometry.primitives import box, ring, wedge
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
 from isomortar.scene import Scene
+from isomortar.scene.geometry_file import patch_table
 
 #: A body that is longest along its last direction.
 LENGTHS = (1.0, 2.0, 5.0)
@@ -152,6 +155,28 @@ def _unlike(scene: Scene, kind: str, factor: float) -> int:
     share = factor / (order if family == "L" else 1)
     wanted = [(family, order, round(12 * share)), (family, order, round(6 * share))]
     return sum(one != other for one, other in zip(found[:2], wanted, strict=True)) + (found[2][2] != 2)
+
+
+@case(
+    claim="A body in a kind whose order its own geometry does not have is refused, and never meshed in another family without a word; of "
+    "order 1 elements are Lagrange's.",
+    tier="gate",
+    grid={"order": (2, 3, 4)},
+    bounds={"wrong": Bound(0.0, 0.0, "definition: kinds that are taken and should not be, or refused, or of another family or order")},
+)
+def below_the_geometry(order: int) -> dict[str, float]:
+    """How many of N1 to N4, of a block whose geometry is of an order."""
+    table = patch_table(mesh(box((0, 0, 0), (1, 1, 1)), ("N", "N", "N"), (order, order, 1), (2, 1, 1)))
+    lines = [f"bodies.block.patch.{key} = {json.dumps(value)}" for key, value in table.items()]
+    others = [line for line in SCENE.splitlines() if not line.startswith("bodies.block")]
+    scene, wrong = Scene.from_toml("\n".join([*others[:2], *lines, *others[2:]])), 0
+    for kind in range(1, 5):
+        try:
+            found = _made(scene, f"N{kind}", 1.0).problem().body("block").patch.directions[:2]
+            wrong += {(d.family, d.order) for d in found} != {("L" if kind == 1 else "N", kind)} or 1 < kind < order
+        except InputError:
+            wrong += not 1 < kind < order
+    return {"wrong": float(wrong)}
 
 
 #: Best orders by measure and whether the slave is refined, of orders 1 to 5: those of smooth solutions as far as free boundaries of contact
