@@ -72,7 +72,7 @@ def files(names: dict[str, int], formats: Sequence[str]) -> list[str]:
     bounds={
         "files": Bound(0.0, 0.0, "definition: calls that write other files than are asked for, or say so"),
         "steps": Bound(0.0, 0.0, "definition: calls that draw other load steps"),
-        "films": Bound(0.0, 0.0, "definition: films of other load steps, of another contact, or of another rate"),
+        "films": Bound(0.0, 0.0, "definition: films of other load steps, of another contact, its scale or another rate"),
     },
 )
 def chosen() -> dict[str, float]:
@@ -101,23 +101,24 @@ def chosen() -> dict[str, float]:
 
 def _wrong_film(run: Path, every: int, steps: tuple[int, ...]) -> bool:
     """Whether a film of the second contact, eight pictures a second, is another one."""
-    seen: list[tuple[int, int]] = []
-    scales: list[list[int]] = []
+    seen: list[tuple[int, int, object]] = []
+    scales: list[tuple[int, list[int]]] = []
 
-    def draw(_problem: object, step: Any, number: int, _scale: object) -> Figure:
-        seen.append((step.step, number))
+    def draw(_problem: object, step: Any, number: int, common: object) -> Figure:
+        seen.append((step.step, number, common))
         figure = Figure(figsize=(0.2, 0.2))
         figure.add_subplot().plot([0, len(seen)])  # pictures that are the same are one
         figure.set_facecolor((0.1 * len(seen), 0.5, 0.5))
         return figure
 
-    def scale(_problem: object, of: Any, _number: int) -> None:
-        scales.append([step.step for step in of])
+    def scale(_problem: object, of: Any, number: int) -> str:
+        scales.append((number, [step.step for step in of]))
+        return "of all"
 
     path = run.with_name(f"{every}.gif")
     with patch.multiple(films, draw_bodies=draw, common_scale=scale):
         film(run, path, contact=CONTACTS[1], every=every)
     with Image.open(path) as moving:
         frames, pause = getattr(moving, "n_frames", 1), moving.info.get("duration", 120 if len(steps) == 1 else 0)
-    right = seen == [(step, 1) for step in steps] and scales == [list(steps)]
+    right = seen == [(step, 1, "of all") for step in steps] and scales == [(1, list(steps))]
     return not (right and frames == len(steps) and abs(pause - 125) <= 5)
