@@ -164,6 +164,18 @@ CASES = {
     ),
     "knots not open": ("[0, 0, 0.5, 1, 1]", "[0, 0, 0.5, 0.9, 1]", "bodies.lower.patch.knots", "must be open"),
     "knots repeated": ("[0, 0, 0.5, 1, 1]", "[0, 0, 0.5, 0.5, 1, 1]", "bodies.lower.patch.knots", "repeated more than order = 1 times"),
+    "boundaries together": (
+        "[0, 0, 0.5, 1, 1], [0, 0, 1, 1], [0, 0, 1, 1]]",
+        '[0, 1, 1], [0, 1], [0, 1]]\nfamily = "L"',
+        "bodies.lower.patch.knots",
+        "must increase strictly",
+    ),
+    "boundaries back": (
+        "[0, 0, 0.5, 1, 1], [0, 0, 1, 1], [0, 0, 1, 1]]",
+        '[0, 1, 0.5], [0, 1], [0, 1]]\nfamily = "L"',
+        "bodies.lower.patch.knots",
+        "must increase strictly",
+    ),
     "knot lists": ("[0, 0, 1, 1], [0, 0, 1, 1]]", "[0, 0, 1, 1]]", "bodies.lower.patch.knots", "has 2 entries; allowed: at least 3"),
     "NaN in knots": ("[0, 0, 0.5, 1, 1]", "[0, 0, nan, 1, 1]", "bodies.lower.patch.knots.0.2", "is nan; allowed: a finite number"),
     "points": (", [1, 1, 0]]", "]", "bodies.lower.patch.control_points", "knots and orders ask for 3 x 2 x 2 = 12 points"),
