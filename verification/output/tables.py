@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -14,9 +15,11 @@ import numpy as np
 from output.records import SCENE, load_steps, recorded
 
 from isomortar.harness import Bound, case
+from isomortar.model.entities import Problem
 from isomortar.results.reader import Results
 from isomortar.results.table import data_frame, data_set
 from isomortar.scene import Scene
+from isomortar.solve.record import StepResult
 
 
 @contextmanager
@@ -33,6 +36,17 @@ def given(**packages: Any) -> Iterator[None]:
                 sys.modules[name] = module
 
 
+def tabulated(problem: Problem, steps: list[StepResult]) -> Any:
+    """Columns and index of the table of a run; its arrays, their places and attributes."""
+    pandas = SimpleNamespace(DataFrame=lambda columns, index: (columns, index), Index=lambda values, name: (values, name))
+    xarray = SimpleNamespace(Dataset=lambda arrays, coords, attrs: (arrays, coords, attrs))
+    with tempfile.TemporaryDirectory() as folder, given(pandas=pandas, xarray=xarray):
+        path = Path(folder) / "run.h5"
+        recorded(path, problem, steps, "last")
+        with Results(path) as results:
+            return data_frame(results), data_set(results)
+
+
 @case(
     claim="A table has the numbers of the load steps, by their numbers: columns by name, and arrays over supports, contacts and loads.",
     tier="gate",
@@ -41,20 +55,18 @@ def given(**packages: Any) -> Iterator[None]:
         "frame": Bound(at_most=0.0, reason="definition: the numbers of the load steps"),
         "arrays": Bound(at_most=0.0, reason="definition: the numbers of the load steps"),
         "names": Bound(0.0, 0.0, "definition: names along supports, contacts and loads that are others than in the scene"),
+        "places": Bound(
+            0.0, 0.0, "definition: dimensions of arrays without places, or places along what no array has; without contacts too"
+        ),
     },
 )
 def tables() -> dict[str, float]:
-    """Largest differences from the load steps, of forces of supports, loads and contacts; and wrong names."""
+    """Largest differences from the load steps, of forces of supports, loads and contacts; and wrong names and dimensions."""
     problem = Scene.from_toml(SCENE).problem()
     steps = load_steps(problem)
-    pandas = SimpleNamespace(DataFrame=lambda columns, index: (columns, index), Index=lambda values, name: (values, name))
-    xarray = SimpleNamespace(Dataset=lambda arrays, coords, attrs: (arrays, coords, attrs))
-    with tempfile.TemporaryDirectory() as folder, given(pandas=pandas, xarray=xarray):
-        path = Path(folder) / "run.h5"
-        recorded(path, problem, steps, "last")
-        with Results(path) as results:
-            told: Any = data_frame(results), data_set(results)
-    (frame, (index, _)), (arrays, places, _) = told
+    (frame, (index, _)), (arrays, places, _) = told = tabulated(problem, steps)
+    bare = [replace(step, contacts=(), state=replace(step.state, contacts=(), rates=None)) for step in steps]
+    alone = tabulated(replace(problem, contacts=()), bare)
     numbers = np.array([step.step for step in steps])
     sides: dict[str, tuple[Any, Any, str]] = {
         "force": ([[r.force for r in step.reactions] for step in steps], problem.supports, "{}"),
@@ -74,4 +86,11 @@ def tables() -> dict[str, float]:
         "frame": of_frame,
         "arrays": of_arrays,
         "names": float(sum(wrong)),
+        "places": float(sum(unplaced(arrays, places) for _, (arrays, places, _) in (told, alone))),
     }
+
+
+def unplaced(arrays: Mapping[str, Any], places: Mapping[str, Any]) -> int:
+    """Dimensions of arrays that have no places, and places along what is no dimension of one."""
+    dimensions = {name for array in arrays.values() for name in array[0]} | {"time", "stage"}
+    return len(dimensions ^ places.keys())
