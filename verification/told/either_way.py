@@ -122,6 +122,28 @@ def doubted() -> dict[str, float]:
     return {"wrong": float(sum(wrong(*scene) for scene in SAID))}
 
 
+#: What is changed of the upper block's elements, and words of what is said where it deforms.
+OF_ELEMENTS = (
+    (("bodies.above.geometry.upper=[0.25,0.25,1e6]", "bodies.above.mesh={order=7,elements=1}"), "round-off of its positions"),
+    (("bodies.above.mesh.elements=[45,2,2]",), "take fewer along u"),
+)
+
+
+@case(
+    claim="What elements do as they deform is said of bodies that deform, and not of rigid ones.",
+    tier="gate",
+    bounds={"wrong": Bound(0.0, 0.0, "definition: sentences on rigid bodies, or none on others")},
+)
+def of_rigid_bodies() -> dict[str, float]:
+    """How many."""
+    wrong = 0
+    for changes, words in OF_ELEMENTS:
+        for rigid in (False, True):
+            scene = Scene.from_toml(SCENE, overrides=(*changes, f"bodies.above.rigid={str(rigid).lower()}"))
+            wrong += any(words in warning for warning in outlook(scene.problem()).warnings) == rigid
+    return {"wrong": float(wrong)}
+
+
 #: The blocks with a material for each.
 OF_TWO = SCENE.replace("format = 1", "format = 1\nmaterials = { soft = { young = 1 }, hard = { young = 1 } }")
 OF_TWO = OF_TWO.replace("bodies.above.mesh", 'bodies.above.material = "soft"\nbodies.below.material = "hard"\nbodies.above.mesh')

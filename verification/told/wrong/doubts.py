@@ -282,6 +282,12 @@ DOUBTFUL = {
         "lower.w1, the master of 'pair', is at or behind the plane of 'floor'",
     ),
     "held twice": (PAIR, "[supports.base]", '[supports.bottom]\nface = "lower.w0"\n[supports.base]', "told half of the force there"),
+    "held twice in part": (
+        PAIR,
+        "[supports.base]",
+        '[supports.bottom]\nface = "lower.w0"\ncomponents = ["x", "y"]\n[supports.base]\ncomponents = ["y", "z"]',
+        "told half of the force there",
+    ),
     "one of two halves": (
         PAIR.replace("-0.4, -0.4, 0.0]", "0, -0.4, 0]").replace("[-1, -1, -1]", "[0, -1, -1]"),
         "[supports.base]",
