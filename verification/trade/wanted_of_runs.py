@@ -185,6 +185,30 @@ def of_short_runs(steps: int) -> dict[str, float]:
     return {"wrong": float(len(none ^ (rough if steps < 3 else set())))}
 
 
+#: Load steps of a stage that show a curve.
+FEWEST = 5
+
+
+@case(
+    claim="Curves are shown by runs that have in each stage as many load steps as the scene, or five; their ends and peaks by any.",
+    tier="gate",
+    bounds={
+        "wrong": Bound(0.0, 0.0, "definition: numbers of load steps that are taken and should not be, or left out and should be taken")
+    },
+)
+def shown_by() -> dict[str, float]:
+    """How many, of scenes with one to eight load steps in their first stage, and of runs with as many."""
+    wrong, counts = 0, range(1, 9)
+    for own in counts:
+        for few in counts:
+            problem, run = problem_of(own), problem_of(few)
+            enough = few >= own or few >= FEWEST
+            wrong += wanted("force.top", problem).shown(run) != enough or wanted("moment.top@press", problem).shown(run) != enough
+            wrong += not wanted("force.top@drag", problem).shown(run)
+            wrong += not all(wanted(f"force.top:{part}", problem).shown(run) for part in ("end", "peak"))
+    return {"wrong": float(wrong)}
+
+
 @case(
     claim="What is offered is what users look at: force and moment of supports that move, how far a force moves one, area and fields of "
     "contacts of one face; roughness where all stages have load steps enough.",
