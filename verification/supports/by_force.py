@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 from small_scenes import TIGHT
@@ -188,3 +189,47 @@ def halved() -> dict[str, float]:
         "force": float(np.linalg.norm(whole.force - half.force) / np.linalg.norm(whole.force)),
         "way": float(np.linalg.norm(whole.displacement - half.displacement) / np.linalg.norm(whole.displacement)),
     }
+
+
+#: A bar of soft skew elements, all of whose directions pull on each other.
+SKEW = """
+format = 1
+bodies.bar.patch = { order = 1, knots = [[0, 0, 1, 1], [0, 0, 1, 1], [0, 0, 1, 1]], control_points = [
+    [0, 0, 0], [2, 0.5, 0.3], [0.2, 1, 0.1], [2.2, 1.4, 0.2], [0, 0.2, 1], [2, 0.6, 1.2], [0.3, 1.1, 1.1], [2.1, 1.6, 1.3]] }
+supports.base.face = "bar.u0"
+supports.top = { face = "bar.u1", force = { GIVEN } }
+stages = [{ name = "pull", steps = 1, motions.top.translate = [MOTION] }]
+"""
+
+
+@case(
+    claim="A support exerts the force that is given along an axis, of no size as well, and moves there; it is held where none is given.",
+    tier="gate",
+    bounds={
+        "force": Bound(at_most=1e-9, reason="round-off: forces are in balance to Newton's 1e-10"),
+        "way": Bound(at_most=0.0, reason="definition: an axis without a force is held where its motion is"),
+        "held": Bound(0.0, 0.0, "definition: axes with a force along which nothing has moved, as the bar is pulled some way"),
+        "said": Bound(0.0, 0.0, "definition: supports that are said to prescribe the motion along other axes"),
+    },
+)
+def along_each_axis() -> dict[str, float]:
+    """Over all choices of no force, one of no size and one of some size along the axes."""
+    force = way = held = said = 0.0
+    for sizes in product((None, 0.0, 0.05), repeat=3):
+        if len(set(sizes)) == 1 and not any(sizes):
+            continue
+        given = ", ".join(f"{axis} = {size}" for axis, size in zip("xyz", sizes, strict=True) if size is not None)
+        motion = [0.01 if size is None else 0.0 for size in sizes]
+        text = SKEW.replace("GIVEN", given).replace("MOTION", ", ".join(map(str, motion)))
+        problem = Scene.from_toml(text, overrides=["solver.newton_tolerance=1e-10"]).problem()
+        said += problem.supports[1].components != tuple(axis for axis, size in enumerate(sizes) if size is None)
+        last = list(Simulation(problem).run())[-1]
+        top = last.reactions[1]
+        largest = float(np.abs(top.force).max()) or 1.0
+        for axis, size in enumerate(sizes):
+            if size is None:
+                way = float(np.maximum(way, abs(top.displacement[axis] - motion[axis])))
+            else:
+                force = float(np.maximum(force, abs(top.force[axis] - size) / largest))
+                held += float(top.displacement[axis] == 0.0)
+    return {"force": force, "way": way, "held": held, "said": said}
