@@ -56,6 +56,18 @@ TABLE: tuple[tuple[Claim, Any, Expected | None, str], ...] = (
     (Order(2.0, "theory: linear functions"), rate(2.0), None, "passed"),
     *((Order(2.0, "theory: linear functions"), value, None, "failed") for value in (rate(1.0), rate(2.5), rate(3.0), 2.0, [2.0])),
 )  # fmt: skip
+#: Limits in words: what is at least, at most, exactly, between two numbers, an order, or a reference.
+LIMITS: tuple[tuple[Claim, str], ...] = (
+    (LARGE, "≥ 2"),
+    (SMALL, "≤ 1"),
+    (SIGNED, "-1 to 1"),
+    (Bound(3.0, 3.0, "definition: a count"), "= 3"),
+    (Bound(0.75, 0.25, "definition: a share"), "0.25 to 0.75"),
+    (Order(2.0, "theory: linear functions"), "order 2"),
+    (KEPT, "as kept"),
+    (WIDER, "as kept ± 0.1"),
+    (SHOWN, "shown"),
+)
 #: Endings of a measurement, and the state of all its numbers; and what is raised for them.
 ENDINGS = {
     "not converged": "failed", "refused": "failed", "trouble": "failed", "crashed": "crashed", "timed out": "timed out",
@@ -105,7 +117,8 @@ def measured(value: Any) -> Measurement:
 
 
 @case(
-    claim="Numbers pass that are within their bounds, entry by entry, finite and there; no others do, whatever they are.",
+    claim="Numbers pass that are within their bounds, entry by entry, finite and there; no others do, whatever they are; "
+    "limits are told in words.",
     tier="gate",
     grid={"way": WAYS},
     bounds=BOUNDS,
@@ -120,6 +133,9 @@ def numbers(way: str) -> dict[str, float]:
     wrong += [f"tolerance {tolerance}" for tolerance in no_tolerance if agree(ten, ten, tolerance).agrees]
     bad: tuple[Any, ...] = (NAN, INF, -INF, None, "1")
     wrong += [f"both {value}" for value in bad if agree(value, value, 1.0).agrees]
+    for claim, words in LIMITS:
+        (check,) = judge(cell_of(value=claim), Measurement("measured", {}), lambda *_: TEN)
+        wrong += [f"{claim} in words: {check.limit}"] * (check.limit != words)
     return told(wrong, way)
 
 
