@@ -179,6 +179,34 @@ def below_the_geometry(order: int) -> dict[str, float]:
     return {"wrong": float(wrong)}
 
 
+#: A body below the block, which is in contact with it, and one beside both.
+_OTHERS = """
+bodies.base.geometry = { kind = "box", lower = [0, 0, -1], upper = [1, 1, 0] }
+bodies.idle.geometry = { kind = "box", lower = [3, 0, 0], upper = [4, 1, 1] }
+contacts.between = { slave = "block.w0", master = "base.w1" }
+supports.idle.face = "idle.w0"
+supports.base.face = "base.w0"
+stages"""
+
+
+@case(
+    claim="What is swept is a body in contact, on either side; of another one, and of one that is not there, the names of these are told.",
+    tier="gate",
+    bounds={"wrong": Bound(0.0, 0.0, "definition: bodies that are refused and should not be, or of which something else is told")},
+)
+def swept() -> dict[str, float]:
+    """How many, of a block on a plane and of the same with others."""
+    wrong = 0
+    for text, touching in ((SCENE, ["block"]), (SCENE.replace("stages", _OTHERS.lstrip()), ["base", "block"])):
+        scene = Scene.from_toml(text)
+        for body in ("block", "base", "idle", "nobody"):
+            try:
+                wrong += sweep_of(scene, body).body != body or body not in touching
+            except InputError as error:
+                wrong += body in touching or f"bodies in contact here: {', '.join(touching)}" not in str(error)
+    return {"wrong": float(wrong)}
+
+
 #: Best orders by measure and whether the slave is refined, of orders 1 to 5: those of smooth solutions as far as free boundaries of contact
 #: (slave) or the load's piecewise polynomials (master) let them.
 BEST = {
