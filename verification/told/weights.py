@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 
 import numpy as np
@@ -80,3 +81,26 @@ def points_of_a_contact(master: str, contrast: float) -> dict[str, float]:
         "told": float(found[1]) / 100.0 / off(problem),
         "cured": off(column(contrast, master, f", quadrature = {found[2]}")),
     }
+
+
+#: Points along a direction that are told at most.
+MOST = 64
+
+
+@case(
+    claim="Where points follow weights along one direction and not along the other, points without end are not told: to bring the "
+    "weights nearer to each other is.",
+    tier="gate",
+    grid={"quadrature": ("3, 40", "40, 3", "4, 6")},
+    bounds={
+        "silent": Bound(0.0, 0.0, "definition: too few points along a direction are told of"),
+        "too many": Bound(0.0, 0.0, "definition: directions along which more points are told"),
+        "cures": Bound(0.0, 0.0, "definition: cures by points where there are too many, or none where there are few"),
+    },
+)
+def few_enough(quadrature: str) -> dict[str, float]:
+    """Sentences that are missing, directions with too many points, and wrong cures."""
+    said = [text for text in Simulation(column(20.0, "plane", f", quadrature = [{quadrature}]")).doubts() if "differ too much" in text]
+    told = [json.loads(found[1]) for text in said if (found := re.search(r"quadrature = (\[.*?\])", text))]
+    wrong = bool(told) == ("40" in quadrature)
+    return {"silent": float(not said), "too many": float(sum(n > MOST for rule in told for n in rule)), "cures": float(wrong)}
