@@ -41,6 +41,8 @@ ONE_BY_ONE: tuple[tuple[tuple[str, ...], int, str], ...] = (
     (("run", "bar.toml", "--output", "bar.h5", "--resume", "--steps", "1"), 0, "2 of 3 load steps are there, going on"),
     (("info", "bar.h5"), 0, "3 of 3 load steps"),
     (("run", "bar.toml", "--output", "link.h5", "--overwrite"), 1, "symbolic link"),
+    *((("run", "bar.toml", "--output", "new.h5", "--log", log), 2, "scene file of this run") for log in ("bar.toml", "link.toml")),
+    (("run", "bar.toml", "--output", "new.h5", "--log", "new.h5"), 2, "results file of this run"),
     (("info", "bar.toml"), 1, "no results file"),
     (("export", "none.h5"), 1, "does not exist"),
     (("view", "none.h5"), 1, "does not exist"),
@@ -91,6 +93,7 @@ def exit_codes() -> dict[str, float]:
         (folder / "bar.toml").write_text(SCENE)
         (folder / "apart.toml").write_text(APART)
         (folder / "link.h5").symlink_to("bar.h5")
+        (folder / "link.toml").symlink_to("bar.toml")
         for asked, code, part in ONE_BY_ONE:
             found, said = program(*asked, folder=folder)
             codes += found != code
