@@ -76,9 +76,8 @@ class Touching:
 
         With scales in its place a penalty is that of `PairMechanics.parameters`.
         """
-        all_bear = all(np.any(contact.pressure != 0.0) for contact in start.contacts)
-        borne = {name for pair, contact in zip(pairs, start.contacts, strict=True) if np.any(contact.pressure) for name in pair.pair.contact.bodies}
-        ways = [] if all_bear else self._ways(start.positions, time, borne)
+        bear = [pair.pair.contact.bodies for pair, contact in zip(pairs, start.contacts, strict=True) if np.any(contact.pressure != 0.0)]
+        ways = [] if len(bear) == len(pairs) else self._ways(start.positions, time, set[str]().union(*bear))
         if not ways:
             return [None] * len(pairs)
         approaches = [_approach(pair, start.positions, contact, ways) for pair, contact in zip(pairs, start.contacts, strict=True)]

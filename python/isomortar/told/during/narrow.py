@@ -39,8 +39,8 @@ ENOUGH, ALL = 2.5, 0.8
 COSTS = 0.1
 #: Depth over what forces press in up to which it costs nothing, and what is added below the line: fitted to the same scenes.
 FREE, ADDED = 0.5, 2.0
-#: How far a pressure presses in a layer on what holds it, over its thickness, as a share of pressure times softness: fitted to 94 forces of
-#: balls and cylinders on layers a twentieth to one radius thick, which are off by up to 99 % and then told.
+#: How far a pressure presses in a layer on what holds it, over its thickness, as a share of pressure times softness where it cannot go
+#: sideways: fitted to 224 forces of balls and cylinders on layers a twentieth to one radius thick (theory 9.10).
 LAYER = 0.85
 #: Shares of the force that narrow contact costs: on one row of averages, and by other constraints, of which balls on blocks tell no better.
 FEW, OTHERWISE = "a fifth", "50 %, at the worst by 200 %"
