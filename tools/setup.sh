@@ -87,6 +87,7 @@ make_environment() {
   cp tools/working_copy.py "$packages/isomortar_working_copy.py"
   echo 'import isomortar_working_copy' > "$packages/isomortar-editable.pth" # in the place of meson-python's, which takes longer
   { echo "#!$PWD/.venv/bin/python" && cat tools/launch.py; } > .venv/bin/isomortar # in the place of pip's, which shows tracebacks
+  .venv/bin/isomortar --version >/dev/null # what was built is known from here on, to accounts that may not write here, too
 }
 
 install_system_packages

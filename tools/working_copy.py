@@ -6,8 +6,10 @@ here, asks ninja each time and takes a good part of the standard library to do s
 
 import os
 import sys
+from collections.abc import Iterator
 from importlib.machinery import ModuleSpec, PathFinder
 from pathlib import Path
+from zlib import crc32
 
 ROOT = Path(sys.prefix).parent
 BUILD = ROOT / "build" / f"cp{sys.version_info.major}{sys.version_info.minor}"
@@ -16,14 +18,24 @@ FOLDERS, FILES = ("fortran", "python", "tools"), ("meson.build", "meson.options"
 
 
 def sources() -> str:
-    """What tells one state of the sources from another: the sum of the times at which each has changed last."""
-    return str(sum(map(times, (ROOT / folder for folder in FOLDERS))) + sum((ROOT / file).stat().st_mtime_ns for file in FILES))
+    """What tells one state of the sources from another: by their names, sizes and times. Empty: a file has gone while it was looked at."""
+    try:
+        found = [state for folder in FOLDERS for state in states(ROOT / folder)]
+    except FileNotFoundError:
+        return ""
+    found += [(file, (ROOT / file).stat().st_size, (ROOT / file).stat().st_mtime_ns) for file in FILES]
+    return str(crc32(repr(sorted(found)).encode()))
 
 
-def times(folder: str | Path) -> int:
-    """Sum of the times at which the files in a folder have changed last, in nanoseconds."""
+def states(folder: str | Path) -> Iterator[tuple[str, int, int]]:
+    """Name, size and time of each file in a folder; of a link its own, as those that editors leave lead nowhere."""
     with os.scandir(folder) as entries:
-        return sum(times(e.path) if e.is_dir() else e.stat().st_mtime_ns for e in entries if e.name != "__pycache__")
+        for entry in entries:
+            if not entry.is_dir(follow_symlinks=False):
+                found = entry.stat(follow_symlinks=False)
+                yield entry.path, found.st_size, found.st_mtime_ns
+            elif entry.name != "__pycache__":
+                yield from states(entry.path)
 
 
 class WorkingCopy:
@@ -34,7 +46,7 @@ class WorkingCopy:
         if name != "isomortar" or str(BUILD) in os.environ.get("MESONPY_EDITABLE_SKIP", "").split(os.pathsep):
             return None
         now, built = sources(), BUILD / "sources"
-        if not built.is_file() or now != built.read_text(encoding="ascii"):
+        if not now or not built.is_file() or now != built.read_text(encoding="ascii"):
             build()
             built.write_text(now, encoding="ascii")
         spec = PathFinder.find_spec(name, [str(ROOT / "python")])

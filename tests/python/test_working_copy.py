@@ -25,12 +25,22 @@ def copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     package.mkdir(parents=True)
     build.mkdir()
     (package / "__init__.py").touch()
+    for name, when in (("one.py", 1), ("other.py", 2)):
+        (package / name).touch()
+        os.utime(package / name, ns=(when, when))
     (tmp_path / "meson.build").touch()
     for name, value in {"ROOT": tmp_path, "BUILD": build, "FOLDERS": ("python",), "FILES": ("meson.build",)}.items():
         monkeypatch.setattr(tool, name, value)
     monkeypatch.setattr(tool, "built", [], raising=False)
     monkeypatch.setattr(tool, "build", lambda: tool.built.append(1))
     return tool
+
+
+def exchange(root: Path) -> None:
+    """Let two files take each other's place, and keep their times."""
+    one, other, aside = (root / "python" / "isomortar" / name for name in ("one.py", "other.py", "aside.py"))
+    for old, new in ((one, aside), (other, one), (aside, other)):
+        old.rename(new)
 
 
 def found(copy: ModuleType) -> list[str] | None:
@@ -52,10 +62,21 @@ def test_python_is_where_it_lies_and_the_kernel_where_it_is_built(copy: ModuleTy
         (lambda root: os.utime(root / "python" / "isomortar" / "__init__.py", ns=(0, 1)), 1),
         (lambda root: (root / "python" / "isomortar" / "new.py").touch(), 1),
         (lambda root: os.utime(root / "meson.build"), 1),
+        (exchange, 1),
+        (lambda root: (root / "python" / "isomortar" / ".#errors.py").symlink_to("user@host"), 1),
         (lambda root: (root / "build" / "sources").unlink(), 1),
         (lambda root: (root / "python" / "isomortar" / "__pycache__").mkdir(), 0),
     ],
-    ids=["nothing", "an older file", "a new file", "the build's own", "the build is gone", "compiled by Python"],
+    ids=[
+        "nothing",
+        "an older file",
+        "a new file",
+        "the build's own",
+        "two exchanged",
+        "an editor's mark",
+        "the build is gone",
+        "compiled by Python",
+    ],
 )
 def test_it_is_built_again_where_a_source_has_changed(
     copy: ModuleType, tmp_path: Path, change: Callable[[Path], object], builds: int
@@ -65,6 +86,20 @@ def test_it_is_built_again_where_a_source_has_changed(
     found(copy)
     found(copy)
     assert len(copy.built) == 1 + builds
+
+
+def test_files_that_go_while_they_are_looked_at_have_changed(copy: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+    def gone(_: Path) -> list[tuple[str, int, int]]:
+        raise FileNotFoundError
+
+    found(copy)
+    with monkeypatch.context() as busy:
+        busy.setattr(copy, "states", gone)
+        assert found(copy)
+        assert found(copy)
+    found(copy)
+    found(copy)
+    assert len(copy.built) == 4
 
 
 def test_what_cannot_be_built_is_tried_again(copy: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:

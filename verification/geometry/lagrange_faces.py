@@ -15,8 +15,8 @@ from isomortar.harness import Bound, case
 _FAMILIES: tuple[Family, Family] = ("N", "L")
 #: Bodies with the directions that elements of Lagrange's follow exactly, and elements that are not all of one length.
 BODIES = {
-    "bowl": (bowl((0.1, -0.2), 0.4, 0.0, 0.1, 0.5), (True, True, True), (3, 2, 1)),
-    "ring": (ring((0.0, 0.1, 0.0), 0.5, 1.0, 0.7, (20.0, 200.0), "y"), (False, True, True), (4, 3, 2)),
+    "bowl": (bowl((0.1, -0.2), 0.4, 0.0, 0.1, 0.5), (True, True, True), (4, 2, 1)),
+    "ring": (ring((0.0, 0.1, 0.0), 0.5, 1.0, 0.7, (20.0, 200.0), "y"), (False, True, True), (4, 2, 1)),
 }
 
 

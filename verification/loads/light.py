@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from isomortar.errors import ConvergenceError
 from isomortar.harness import Bound, case
 from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
@@ -159,6 +160,50 @@ def without_load(body: str, method: str) -> dict[str, float]:
     alone, laid = _computed(text, method), _computed(f'{text}loads.own = {{ body = "loose", weight = [0, 0, -1e-9] }}\n', method)
     one, other = (np.array([[contact.force_slave[2] for contact in step.contacts] for step in steps]) for steps in (alone, laid))
     return {"forces": float(np.abs(one - other).max() / np.abs(other).max()), "cuts": float(sum(step.cuts for step in alone))}
+
+
+#: A block that its base leaves free along x, and a wall beside it; a tool may hold it by friction.
+_BESIDE = """
+format = 1
+bodies.loose = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }, mesh.elements = 2 }
+bodies.wall = { geometry = { kind = "box", lower = [FAR, -0.2, -0.2], upper = [9, 1.2, 1.2] }, mesh.elements = [1, 2, 2] }
+contacts.side = { slave = "loose.u1", master = "wall.u0" }
+supports.floor = { face = "loose.w0", components = ["y", "z"] }
+supports.wall = { face = "wall.u1" }
+"""
+_TOOL = """
+bodies.tool = { geometry = { kind = "box", lower = [-0.2, -0.2, 0.995], upper = [1.4, 1.2, 1.3] }, mesh.elements = [2, 2, 1] }
+contacts.top = { slave = "loose.w1", master = "tool.w0", friction = 0.3 }
+supports.tool = { face = "tool.w1" }
+stages = [{ name = "press", steps = 2, motions.tool.translate = [0, 0, -0.05] }]
+"""
+_AWAY = "stages = [{ name = 'away', steps = 1, motions.wall.translate = [0.05, 0, 0] }]"
+
+
+@case(
+    claim="Without loads nothing draws a body to what it may go away from: a wall that is never reached changes no iteration, and a body "
+    "that could go from it is told to be free.",
+    tier="gate",
+    grid={"method": ("monolithic", "uzawa")},
+    bounds={
+        "solves": Bound(0.0, 0.0, "definition: solves more or less than with the wall far away"),
+        "silent": Bound(0.0, 0.0, "definition: walls beside which a body that is free runs to its end"),
+    },
+)
+def nothing_draws(method: str) -> dict[str, float]:
+    """Of walls at two distances each."""
+    solves = [
+        sum(step.counters["solves"] for step in _computed(_BESIDE.replace("FAR", far) + _TOOL, method)) for far in ("1.1", "1.5", "6")
+    ]
+    silent = 0
+    for far in ("1.05", "1.5"):
+        try:
+            _computed(_BESIDE.replace("FAR", far) + _AWAY, method)
+        except ConvergenceError as error:
+            silent += "can move along (1, 0, 0) freely" not in str(error)
+        else:
+            silent += 1
+    return {"solves": float(np.ptp(solves)), "silent": float(silent)}
 
 
 @case(

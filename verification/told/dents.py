@@ -64,7 +64,7 @@ def force(made: Scene) -> float:
 def told(made: Scene) -> float:
     """By how much it is said to be too small; zero: nothing is said."""
     simulation = Simulation(made.problem())
-    said = re.findall(r"comes through between them: forces may be up to some (\S+) % too small", "\n".join(simulation.doubts()))
+    said = re.findall(r"comes through between them: forces may be some (\S+) % too small", "\n".join(simulation.doubts()))
     return float(said[0]) / 100.0 if said else 0.0
 
 

@@ -93,27 +93,22 @@ def _on_lines(along: Direction, across: Direction, rows: FloatArray, weights: Fl
         places = _places(along)[:, None]
         lines = np.stack([Spline([along], rows[:, j], weights[:, j]).evaluate(places) for j in range(across.count)], axis=1)
     else:
-        lines = np.tensordot(_between_nodes(along), rows, 1)
-    return np.einsum("vj,ujc->uvc", _between_nodes(across), lines)
+        lines = _between_nodes(along, rows)
+    return np.swapaxes(_between_nodes(across, np.swapaxes(lines, 0, 1)), 0, 1)
 
 
 def _places(direction: Direction) -> FloatArray:
-    """Parameters along a direction: its elements, and these in parts."""
-    return direction.subdivided(_parts(direction))
+    """Parameters along a direction of NURBS: its elements, and these in parts."""
+    return direction.subdivided(-(-CELLS // direction.elements))
 
 
-def _parts(direction: Direction) -> int:
-    return -(-CELLS // direction.elements)
-
-
-def _between_nodes(direction: Direction) -> FloatArray:
-    """Lagrange functions of a direction at `_places`, shape (places, nodes)."""
-    p, parts = direction.order, _parts(direction)
+def _between_nodes(direction: Direction, rows: FloatArray) -> FloatArray:
+    """Rows of points at the nodes of a direction, and at parts of the ways between them; shape (places, ...)."""
+    p = direction.order
+    parts = p * -(-CELLS // (p * direction.elements))
     nodes, places = np.arange(p + 1) / p, np.arange(parts)[:, None] / parts
     others = [np.delete(nodes, k) for k in range(p + 1)]
     values = np.column_stack([np.prod((places - other) / (node - other), axis=1) for node, other in zip(nodes, others, strict=True)])
-    found = np.zeros((direction.elements * parts + 1, direction.count))
-    for element in range(direction.elements):
-        found[element * parts : (element + 1) * parts, element * p : (element + 1) * p + 1] = values
-    found[-1, -1] = 1.0
-    return found
+    of_elements = rows[p * np.arange(direction.elements)[:, None] + np.arange(p + 1)]
+    inside = np.einsum("kp,ep...->ek...", values, of_elements)
+    return np.concatenate([inside.reshape(-1, *rows.shape[1:]), rows[-1:]])

@@ -5,6 +5,9 @@ None of them is part of a problem. Thresholds at which something is refused, war
 
 # ---- The problem: positions and directions (theory 3 to 5)
 
+#: Share of a slave face's size that bodies may have to go, to and fro, and be taken to be pressed between what stands on both sides:
+#: without loads nothing else moves them (theory 6.8).
+BETWEEN = 0.1
 #: Least part along the normal of a rigid motion that a contact stands in the way of: loads close no contact that the body slides past.
 IN_THE_WAY = 0.05
 #: Share of a body's size within which control points are one: ends of rings and rows of poles are computed, and meet to round-off.

@@ -72,7 +72,9 @@ class Touching:
     def closed(
         self, pairs: Sequence[PairMechanics], start: State, time: float, penalties: Sequence[float | Scales]
     ) -> list[FloatArray | None]:
-        """Pressures whose trials are above zero where loads close pairs first (theory 6.8); None of other pairs, and of those that bear.
+        """Pressures whose trials are above zero where pairs close first (theory 6.8); None of other pairs, and of those that bear.
+
+        Loads close them, or what stands on both sides of a body.
 
         With scales in its place a penalty is that of `PairMechanics.parameters`.
         """
@@ -81,7 +83,9 @@ class Touching:
         if not ways:
             return [None] * len(pairs)
         approaches = [_approach(pair, start.positions, contact, ways) for pair, contact in zip(pairs, start.contacts, strict=True)]
-        first = np.min([approach.distances for approach in approaches], axis=0)
+        first, size = np.min([approach.distances for approach in approaches], axis=0), np.sqrt(max(pair.pair.area for pair in pairs))
+        if not (self._problem.loads or self._supports.plates):
+            first = np.where(_to_and_fro(ways, first) <= constants.BETWEEN * size, first, -np.inf)
         found: list[FloatArray | None] = []
         for pair, contact, approach, penalty in zip(pairs, start.contacts, approaches, penalties, strict=True):
             among = np.isfinite(approach.distances) & (approach.distances <= first + next_to_nothing(pair))
@@ -92,6 +96,12 @@ class Touching:
             least = next_to_nothing(pair)
             found.append(np.where(approach.near, size * np.maximum(least, least - mean_heights(approach.control)), 0.0))
         return found
+
+
+def _to_and_fro(ways: Sequence[tuple[set[str], FloatArray]], first: FloatArray) -> FloatArray:
+    """How far bodies can go along each way and back, until something stands in both: nothing presses them on what they may go away from."""
+    back = [next(k for k, (bodies, way) in enumerate(ways) if bodies == of and np.array_equal(way, -there)) for of, there in ways]
+    return first + first[back]
 
 
 def _approach(pair: PairMechanics, positions: FloatArray, start: ContactState, ways: Sequence[tuple[set[str], FloatArray]]) -> _Approach:

@@ -145,6 +145,7 @@ DOUBTFUL = {
     "ring that is not closed": (SLIT, "", "", "faces u0 and u1 lie on each other, but are not joined"),
     "both ways": (*UNUSUAL["both ways"], "are the same one, both ways"),
     "pole under friction": (DOME, "", "", "the master lower.v1 has a pole, an edge that is one point, at (0, 0, 0)"),
+    "pole beside friction": (DOME, "lower = [-0.4,", "lower = [0.2,", "Take more elements there along w"),
     "pole without area": (
         HOLLOW,
         "[2, 2, 1] }\n\n[bodies.lower]",

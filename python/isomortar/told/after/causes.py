@@ -68,13 +68,13 @@ def causes(equilibrium: Equilibrium, state: State, error: Exception) -> Iterator
     if not told and not isinstance(error, SingularSystemError):  # that tells by itself what repeats, and what nothing holds
         yield from shared_edges(equilibrium, state)
         yield from (sentence for _, sentence in on_the_way(equilibrium, state))
+        yield from _few(problem.settings, str(error))
     yield from _flat(problem.deformable, equilibrium.solid.smallest_jacobians(positions))
     for body in problem.deformable:
         yield from _lengths(body, LENGTHS_BENT if isinstance(error, SingularSystemError) else LENGTHS)
         yield from _incompressible(body)
     yield from _moduli(problem)
     yield from _penalties(problem)
-    yield from _few(problem.settings, str(error))
     for contact in problem.contacts:
         yield from few_points(problem, contact)
         yield from _short_slip(problem, contact)

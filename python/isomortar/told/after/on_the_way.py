@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from isomortar.errors import LostProjectionError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.glue import named
 from isomortar.solve.contact import PairMechanics
@@ -13,6 +14,7 @@ from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.free_motions import loaded_motions
 from isomortar.solve.record import ContactState, State
 from isomortar.solve.touching import mean_heights
+from isomortar.told.after.load_work import load_works
 
 #: Share of a slave face's size within which its constraints stand at their master: what is as near has no way to go.
 NEAR = 0.01
@@ -27,10 +29,12 @@ def on_the_way(equilibrium: Equilibrium, state: State) -> Iterator[tuple[set[int
     state : State
         Where the last load increment ended that converged.
     """
-    contacts = zip(equilibrium.pairs, state.contacts, strict=True)
+    motions = loaded_motions(equilibrium.problem, equilibrium.numbering, equilibrium.supports, state.positions)
+    works = load_works(equilibrium, state.positions, motions)
+    driven = {motion.piece for motion, work in zip(motions, works, strict=True) if work != 0.0}
+    contacts = zip(equilibrium.pairs, state.contacts, strict=True) if driven else ()
     near = {name for pair, begun in contacts if _is_near(pair, state.positions, begun) for name in pair.pair.contact.bodies}
-    free = {motion.piece for motion in loaded_motions(equilibrium.problem, equilibrium.numbering, equilibrium.supports, state.positions)}
-    for number in sorted(free):
+    for number in sorted(driven):
         piece = equilibrium.numbering.pieces[number]
         if near.isdisjoint(body.name for body in piece):
             yield (
@@ -44,6 +48,9 @@ def on_the_way(equilibrium: Equilibrium, state: State) -> Iterator[tuple[set[int
 
 
 def _is_near(pair: PairMechanics, positions: FloatArray, begun: ContactState) -> bool:
-    """Whether a pair bears, or stands so near that there is next to no way to go."""
-    heights = mean_heights(pair.kinematics(positions, begun).control)
+    """Whether a pair bears, or stands so near that there is next to no way to go; one that has passed through its master does not wait."""
+    try:
+        heights = mean_heights(pair.kinematics(positions, begun).control)
+    except LostProjectionError:
+        return True
     return bool(np.any(begun.pressure != 0.0) or np.any(heights > -NEAR * np.sqrt(pair.pair.area)))

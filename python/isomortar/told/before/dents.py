@@ -32,7 +32,7 @@ def of_dents(problem: Problem, contact: Contact) -> Iterator[str]:
         size, which = float(f"{100.0 * share:.1g}"), ("slave", "master")[int(np.argmax(through))]
         yield (
             f"contact {contact.name!r}: its constraints, at {counts[0]} x {counts[1]} points of the slave, are too far apart for its "
-            f"{which}, which comes through between them: forces may be up to some {size:g} % too small. Take "
+            f"{which}, which comes through between them: forces may be some {size:g} % too small, or a few times that. Take "
             f'contacts.{contact.name}.enforcement = "mortar", or refine the slave'
         )
 

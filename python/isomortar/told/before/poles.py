@@ -11,6 +11,7 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.model.contact_checks import poles
 from isomortar.model.entities import Contact, Face, Problem
 from isomortar.model.sheet import Sheet
+from isomortar.model.stance import nearest
 
 
 def doubts_at_poles(problem: Problem, contact: Contact, travel: float) -> Iterator[str]:
@@ -26,20 +27,24 @@ def doubts_at_poles(problem: Problem, contact: Contact, travel: float) -> Iterat
 
 
 def _met_by_friction(name: str, slave: Sheet, master: Sheet, words: str, travel: float) -> Iterator[str]:
-    from scipy.spatial import cKDTree
-
     face = cells(slave.patch, slave.face)
     near = travel + float(np.sqrt(face.areas.max()))
     for across, pole in poles(master):
-        if cKDTree(_ending_at(master, across, pole)).query(face.centres)[0].min() <= near:
+        ends = _ending_at(master, across, pole)
+        if np.linalg.norm(face.centres - ends[nearest(face.centres, ends)], axis=1).min() <= near:
             place = ", ".join(f"{x:.4g}" for x in pole + 0.0)
             yield (
                 f"contact {name!r}: the master {words} has a pole, an edge that is one point, at ({place}), and its slave may come to "
-                "elements that end there: slips have no coordinates in them, and a load step that asks for them ends the run. Take more "
-                f"elements there along {master.letters[across]} (bodies.{master.bodies[0].name}.mesh.elements), have the pole elsewhere "
+                "elements that end there: slips have no coordinates in them, and a load step that asks for them ends the run. "
+                f"{_shorter(master, across) if np.linalg.norm(face.centres - pole, axis=1).min() > near else 'Have'} the pole elsewhere "
                 "(another axis of a sphere), or set friction = 0, without cohesion"
             )
             return
+
+
+def _shorter(master: Sheet, across: int) -> str:
+    """A cure of what does not come to a pole itself."""
+    return f"Take more elements there along {master.letters[across]} (bodies.{master.bodies[0].name}.mesh.elements), have"
 
 
 def _ending_at(sheet: Sheet, across: int, pole: FloatArray) -> FloatArray:

@@ -32,10 +32,9 @@ def thinness(problem: Problem, numbering: Numbering, pair: Pair, projections: Pr
     Of a layer that gives way as if nothing went sideways: thinner, the higher Poisson's ratio is (theory 9.10).
     """
     thin = np.zeros(numbering.count)
-    held = {(s.place.body, s.place.face) for s in problem.supports if isinstance(s.place, Face) and s.holds(stage) and len(s.carried) == 3}
     for side in (pair.contact.slave, pair.contact.master):
         for face in side.faces if isinstance(side, Face) else ():
-            if (face.body, opposite(face.face)) in held:
+            if problem.holds(Face(face.body, opposite(face.face)), stage):
                 points, body = numbering.points[face.body], problem.body(face.body)
                 here, behind = (points[body.patch.face_points(name)] for name in (face.face, opposite(face.face)))
                 thickness = np.linalg.norm(numbering.reference[here] - numbering.reference[behind], axis=1)
