@@ -391,9 +391,34 @@ def told_otherwise(enforcement: str) -> dict[str, float]:
     return {"said": float(len(off)), "worst": float(np.max(off / worst)), "mean": float(np.mean(about) / np.mean(off))}
 
 
-#: A layer on what holds it, below a cylinder of radius one: a tenth of that thick, or a twentieth, and how deep that is pressed in.
+#: A layer below a cylinder of radius one, on a support, on two together, and glued to a body that is stiffer.
 LAYER = STRIP.replace("[-1, 0, -1], upper = [1, 0.2, 0]", "[-1, 0, THICK], upper = [1, 0.2, 0]").replace("AT", "0")
-LAYERS = {"a twentieth": (0.05, 0.02, 8), "a tenth": (0.1, 0.04, 6), "an odd number": (0.1, 0.015, 10), "a fifth": (0.2, 0.08, 3)}
+_ON_BASE = 'supports.base.face = "a.w0"'
+_ON_TWO = LAYER.replace(
+    _ON_BASE, 'supports.base = { face = "a.w0", components = ["z"] }\nsupports.also = { face = "a.w0", components = ["x", "y"] }'
+)
+_GLUED = (
+    LAYER.replace(
+        "format = 1",
+        """format = 1
+glue = [["a.w0", "hard.w1"]]
+materials.hard = { young = 1e4, poisson = 0.3 }
+bodies.hard = { material = "hard", geometry = { kind = "box", lower = [-1, 0, -1], upper = [1, 0.2, THICK] }, mesh.order = 2 }
+supports.behind = { face = "hard.v0", components = ["y"] }
+supports.before = { face = "hard.v1", components = ["y"] }""",
+    )
+    .replace(_ON_BASE, 'supports.base.face = "hard.w0"')
+    .replace("bodies.a = {", 'bodies.a = { material = "m",')
+)
+#: How thick each is, how deep that is pressed in, and how many elements are too few.
+LAYERS: dict[str, tuple[str, float, float, int]] = {
+    "a twentieth": (LAYER, 0.05, 0.02, 8),
+    "a tenth": (LAYER, 0.1, 0.04, 6),
+    "an odd number": (LAYER, 0.1, 0.015, 10),
+    "a fifth": (LAYER, 0.2, 0.08, 3),
+    "on two supports": (_ON_TWO, 0.05, 0.02, 8),
+    "glued": (_GLUED, 0.05, 0.02, 8),
+}
 
 
 @case(
@@ -411,10 +436,11 @@ LAYERS = {"a twentieth": (0.05, 0.02, 8), "a tenth": (0.1, 0.04, 6), "an odd num
 )
 def layers(layer: str) -> dict[str, float]:
     """What is said of a coarse layer and of a fine one, and how far they are off one of 64 elements."""
-    thick, way, elements = LAYERS[layer]
+    text, thick, way, elements = LAYERS[layer]
 
     def of(count: int) -> tuple[list[re.Match[str]], float]:
-        return run(LAYER.replace("THICK", str(-thick)), (f"bodies.a.mesh.elements=[{count}, 1, 2]", depth(way)))
+        meshes = [f"bodies.{body}.mesh.elements=[{count}, 1, 2]" for body in ("a", "hard") if f"bodies.{body} " in text]
+        return run(text.replace("THICK", str(-thick)), (*meshes, depth(way)))
 
     (said, force), (others, right), (_, true) = of(elements), of(4 * elements), of(64)
     off = 1.0 - force / true

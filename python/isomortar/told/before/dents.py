@@ -13,6 +13,8 @@ from isomortar.model.sheet import Sheet
 
 #: What a body gives way between as many points as a face is wide, fitted to columns pressed by constraints at points (theory 9.17).
 GIVES = 6.0
+#: A body whose face is so many times as wide as the slave gives way no deeper than that is wide.
+WIDER = 1.2
 #: Share of the force from which on it is told.
 TOLD = 0.01
 #: Ways of enforcing contact that have constraints at fewer points than quadrature has.
@@ -45,7 +47,9 @@ def dents(sides: tuple[Sheet, ...], counts: list[int]) -> FloatArray:
     bulges = (functions - intervals > 1.0) | (intervals == 1.0)  # one function more goes to and fro
     shorter = [np.where(bulges, 1.0 - intervals / functions, 0.0)]
     shorter += [np.maximum(0.0, 1.0 - sheet.element_size * intervals / wide) for sheet in master]
-    deep = np.array([element_lengths(sheet.patch)[2].sum() for sheet in sides])
+    lengths = np.array([[along.sum() for along in element_lengths(sheet.patch)] for sheet in sides])
+    size, sizes, deep = np.sqrt(wide.prod()), np.sqrt(lengths[:, :2].prod(axis=1)), lengths[:, 2]
+    deep = np.where(sizes > WIDER * size, np.minimum(deep, size), deep)
     soft = np.array([0.0 if sheet.rigid else 1.0 / min(body.modulus for body in sheet.bodies) for sheet in sides]) * deep
     through: FloatArray = GIVES * soft / soft.sum() * wide.prod() / deep**2 * np.mean(shorter / intervals**3, axis=1)
     return through

@@ -13,6 +13,8 @@ from isomortar.model.sheet import Sheet
 
 #: Softness of an incompressible layer over (1 - nu^2) / E: it goes sideways beside the contact. Fitted at Poisson's ratio 0.49.
 SIDEWAYS = 0.35
+#: A body that is glued to one so many times as stiff is a layer on it.
+STIFFER = 10.0
 
 
 def softness(problem: Problem, numbering: Numbering, pair: Pair, projections: Projections) -> tuple[FloatArray, FloatArray]:
@@ -27,15 +29,15 @@ def softness(problem: Problem, numbering: Numbering, pair: Pair, projections: Pr
 
 
 def thinness(problem: Problem, numbering: Numbering, pair: Pair, projections: Projections, stage: int) -> tuple[FloatArray, FloatArray]:
-    """One over the thickness of both where a support holds the opposite face as a whole in a stage, else zero; shapes as of `softness`.
+    """One over the thickness of both where something holds the opposite face as a whole in a stage, else zero; shapes as of `softness`.
 
     Of a layer that gives way as if nothing went sideways: thinner, the higher Poisson's ratio is (theory 9.10).
     """
     thin = np.zeros(numbering.count)
     for side in (pair.contact.slave, pair.contact.master):
         for face in side.faces if isinstance(side, Face) else ():
-            if problem.holds(Face(face.body, opposite(face.face)), stage):
-                points, body = numbering.points[face.body], problem.body(face.body)
+            points, body = numbering.points[face.body], problem.body(face.body)
+            if _is_held(problem, body, Face(face.body, opposite(face.face)), stage):
                 here, behind = (points[body.patch.face_points(name)] for name in (face.face, opposite(face.face)))
                 thickness = np.linalg.norm(numbering.reference[here] - numbering.reference[behind], axis=1)
                 thin[here] = 1.0 / (_confined(body) * thickness)
@@ -60,6 +62,12 @@ def _at_points(
 
 def _soft(body: Body) -> float:
     return 0.0 if body.rigid else (1.0 - body.material.poisson**2) / body.material.young
+
+
+def _is_held(problem: Problem, body: Body, face: Face, stage: int) -> bool:
+    """Whether supports hold a face of a body as a whole in a stage, or a body does that is glued to it and much stiffer."""
+    glued = [problem.body(other.body) for pair in problem.glue for one, other in (pair, pair[::-1]) if one == face]
+    return problem.holds(face, stage) or any(other.rigid or other.modulus > STIFFER * body.modulus for other in glued)
 
 
 def _confined(body: Body) -> float:
