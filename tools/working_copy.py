@@ -1,7 +1,7 @@
 """How a working copy finds the package: its Python where it lies, its kernel where it is built; first built, where a source has changed.
 
 Set-up puts this beside the environment's packages, and every start of its Python imports it. meson-python's own loader, which builds
-here, asks ninja each time and takes a good part of the standard library to do so: 30 ms of a start.
+here, asks ninja each time and takes a good part of the standard library to do so: 17 ms of a start.
 """
 
 import os

@@ -6,7 +6,7 @@ Control points, elements and unknowns count from 0.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from typing import ClassVar, Literal, Self, get_args
 
@@ -14,6 +14,7 @@ import numpy as np
 
 from isomortar import _arguments as check
 from isomortar._arguments import FloatArray, IntArray
+from isomortar._frozen import frozen
 from isomortar.errors import InputError
 
 #: Material laws in the order of their numbers in the kernel (isomortar_solid_material_table), from 1.
@@ -23,7 +24,7 @@ LAWS = {name: number for number, name in enumerate(get_args(MaterialLaw), start=
 FRICTION_LAWS = {"none": 0, "coulomb": 1, "capped": 2}
 
 
-@dataclass(frozen=True, eq=False)
+@frozen(eq=False)
 class PatchArrays:
     """A volume patch, flat.
 
@@ -67,7 +68,7 @@ class PatchArrays:
         return int(self.orders[first]) + 1, int(self.orders[second]) + 1, self.elements[first], self.elements[second]
 
 
-@dataclass(frozen=True, eq=False)
+@frozen(eq=False)
 class BodyArrays:
     """A body: its patch, Gauss points of an element by direction, and the reference positions of all control points, shape (n, 3).
 
@@ -87,7 +88,7 @@ class BodyArrays:
         check.below("patch.point", self.patch.highest, len(self.reference), "control point")
 
 
-@dataclass(frozen=True, eq=False)
+@frozen(eq=False)
 class MaterialArrays:
     """A material: number of its law (isomortar_solid_material_table) and what that takes, the moduli A1 and A2."""
 
@@ -100,7 +101,7 @@ class MaterialArrays:
             check.real("parameters", float(modulus), lambda value: value > 0, "numbers above 0")
 
 
-@dataclass(frozen=True, eq=False)
+@frozen(eq=False)
 class FrictionArrays:
     """A law of friction: its number (isomortar_contact_friction_table) and what that takes: nothing, mu, or mu, c and tau_max."""
 
@@ -122,7 +123,7 @@ class FrictionArrays:
 NO_FRICTION = FrictionArrays(FRICTION_LAWS["none"], np.zeros(0))
 
 
-@dataclass(frozen=True, eq=False)
+@frozen(eq=False)
 class PlaneArrays:
     """A rigid plane as a master: a point of it, its normal and a direction in it, each of shape (3,)."""
 
@@ -138,7 +139,7 @@ class PlaneArrays:
             check.finite(name, check.array(name, getattr(self, name), np.float64, 3))
 
 
-@dataclass(frozen=True, eq=False)
+@frozen(eq=False)
 class FaceArrays:
     """A face of a deformable body as a master: its patch, the axis across the face (1 to 3) and its end there (0, 1).
 
@@ -169,7 +170,7 @@ class FaceArrays:
         return self.patch.face(self.axis)[2:]
 
 
-@dataclass(frozen=True, eq=False)
+@frozen(eq=False)
 class AveragedFaceArrays(FaceArrays):
     """A face as a master on which feet are found along the averaged normal."""
 
@@ -177,7 +178,7 @@ class AveragedFaceArrays(FaceArrays):
 MasterArrays = PlaneArrays | FaceArrays
 
 
-@dataclass(frozen=True, eq=False)
+@frozen(eq=False)
 class FunctionArrays:
     """Functions on a slave face: those of each element, shape (elements, local), their values, (points, local), and how many they are."""
 
@@ -191,7 +192,7 @@ class FunctionArrays:
         check.within("nodes", self.nodes, 0, check.whole("count", self.count, 0, check.MAX_POINT) - 1)
 
 
-@dataclass(frozen=True, eq=False)
+@frozen(eq=False)
 class SlaveArrays:
     """A slave side.
 
@@ -257,7 +258,7 @@ class SlaveArrays:
         return len(self.area) // self.elements
 
 
-@dataclass(frozen=True, eq=False)
+@frozen(eq=False)
 class Pattern:
     """Compressed rows of 3x3 blocks."""
 
@@ -273,7 +274,7 @@ class Pattern:
         return check.highest(self.column)
 
 
-@dataclass(frozen=True)
+@frozen
 class Projections:
     """Slave quadrature points on the master: coordinates, element, whether found, slip increment and whether it counts.
 
@@ -315,7 +316,7 @@ class Projections:
         return int(found.min(initial=0)), first, second
 
 
-@dataclass(frozen=True)
+@frozen
 class Control:
     """Control quantities of every test function: <R>, <R R>, <R g>, <R slip>, <R R a_ab>; a_ab at the points."""
 
@@ -327,7 +328,7 @@ class Control:
     point_metric: FloatArray
 
 
-@dataclass(frozen=True)
+@frozen
 class Law:
     """Augmented penalty law: penalties (normal, tangential), law of friction, current multipliers, the paper's slip sum or the local one.
 
@@ -370,7 +371,7 @@ class Law:
         return self.penalties if self.stretch is None else np.array([self.penalties[0], 1.0 / self.elastic_slip])
 
 
-@dataclass(frozen=True)
+@frozen
 class Response:
     """Control pressures and tractions, states (0 open, 1 stick, 2 slip), and their slopes."""
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import threading
 import weakref
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,11 +13,12 @@ from scipy import sparse
 from isomortar import _arguments as check
 from isomortar._codes import Status
 from isomortar._compiled import kernel as _kernel
+from isomortar._frozen import frozen
 from isomortar._sparse import ORDERINGS, FloatArray, LongArray, Ordering, check_finite, check_pattern
 from isomortar.errors import InputError, KernelError, SingularSystemError
 
 
-@dataclass(frozen=True, eq=False)
+@frozen(eq=False)
 class SymmetricPattern:
     """Where a symmetric matrix has entries: checked here, once, for all that is made of it.
 

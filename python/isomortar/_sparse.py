@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import threading
 import weakref
-from dataclasses import dataclass
 from typing import Literal, Self, get_args
 
 import numpy as np
@@ -13,6 +12,7 @@ from numpy.typing import NDArray
 from isomortar import _arguments as check
 from isomortar._codes import Status
 from isomortar._compiled import kernel as _kernel
+from isomortar._frozen import frozen
 from isomortar.errors import InputError, KernelError, SingularSystemError
 
 FloatArray = NDArray[np.float64]
@@ -32,7 +32,7 @@ Ordering = Literal["metis", "amd"]
 ORDERINGS: tuple[Ordering, ...] = get_args(Ordering)
 
 
-@dataclass(frozen=True)
+@frozen
 class FactorStatistics:
     """What the last factorisation cost.
 

@@ -6,8 +6,6 @@ a step so small that the difference's own error is far below double precision.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from isomortar import _extended
@@ -28,6 +26,7 @@ from isomortar._bindings import (
     SlaveArrays,
 )
 from isomortar._descriptors import Descriptors
+from isomortar._frozen import frozen
 from isomortar.errors import KernelError
 
 #: Step of the differences, times the direction: errors of its square and of quadruple round-off over it, both about 1e-22.
@@ -35,7 +34,7 @@ STEP = 1e-11
 _DESCRIPTORS = Descriptors(_extended)
 
 
-@dataclass(frozen=True)
+@frozen
 class ContactChange:
     """Directional derivatives of a contact pair.
 
@@ -54,7 +53,7 @@ class ContactChange:
     forces: FloatArray
 
 
-@dataclass(frozen=True)
+@frozen
 class Hulls:
     """Where the elements of a face can be at most (isomortar_contact_hulls).
 

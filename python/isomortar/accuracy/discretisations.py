@@ -8,9 +8,9 @@ linear, with elements fewer by p: as many control points along a swept direction
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from pathlib import Path
 
+from isomortar._frozen import frozen
 from isomortar.errors import InputError
 from isomortar.geometry.patch import MAX_ORDER, Family, Patch
 from isomortar.model.entities import Face
@@ -20,7 +20,7 @@ from isomortar.scene.scene import Scene
 Elements = tuple[int, int, int]
 
 
-@dataclass(frozen=True)
+@frozen
 class Sweep:
     """What is varied of a scene: a body and its swept directions (``"uv"``), the contact pair that shows it, the kind of the reference."""
 
@@ -42,7 +42,7 @@ _BUNDLED = {
 }
 
 
-@dataclass(frozen=True)
+@frozen
 class Discretisation:
     """A kind, ``N1`` to ``N10`` or ``L1`` to ``L4``, and the body's elements by direction."""
 

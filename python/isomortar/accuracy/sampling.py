@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from isomortar._frozen import frozen
 from isomortar.accuracy.discretisations import coarse_geometry
 from isomortar.geometry.halves import upper_half
 from isomortar.geometry.patch import Direction, FloatArray, Patch
@@ -18,7 +17,7 @@ from isomortar.scene.scene import Scene
 FACE_CELLS = 4096
 
 
-@dataclass(frozen=True)
+@frozen
 class Grid:
     """Cell centres by direction (parameters, first direction fastest), and the cells' areas or volumes, shape (cells,)."""
 

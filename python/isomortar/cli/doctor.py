@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 import typer
 
 import isomortar
+from isomortar._frozen import frozen
 from isomortar.cli.endings import FAILED
 
 if TYPE_CHECKING:
@@ -27,7 +26,7 @@ STEP = 4
 BALANCE = 1e-7
 
 
-@dataclass(frozen=True)
+@frozen
 class Examined:
     """Something that was looked at: whether it is right, and words for it."""
 
@@ -68,6 +67,8 @@ def installed(identity: dict[str, object]) -> Iterator[str]:
 
 def examined(scene: Scene) -> Iterator[Examined]:
     """What is looked at: that forces read back from a results file balance, and that the tangent is the derivative."""
+    from tempfile import TemporaryDirectory
+
     import numpy as np
 
     from isomortar.driver import run

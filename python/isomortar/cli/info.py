@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 import isomortar
+from isomortar._frozen import frozen
 from isomortar.cli.options import ResultsArgument
 from isomortar.cli.words import many
 
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from isomortar.solve.record import StepResult
 
 
-@dataclass(frozen=True)
+@frozen
 class ContactEnd:
     """A contact at the last recorded load step: constraints by state, smallest and largest pressure, deepest gap of a constraint."""
 
@@ -30,7 +31,7 @@ class ContactEnd:
     penetration: float
 
 
-@dataclass(frozen=True)
+@frozen
 class SupportEnd:
     """A support at the last recorded load step: force on its body, moment about its moving centre, how far that has gone.
 
@@ -44,7 +45,7 @@ class SupportEnd:
     rotation: float
 
 
-@dataclass(frozen=True)
+@frozen
 class LoadEnd:
     """A load at the last recorded load step: force on its body, moment about the origin."""
 
@@ -53,7 +54,7 @@ class LoadEnd:
     moment: tuple[float, ...]
 
 
-@dataclass(frozen=True)
+@frozen
 class Information:
     """What a results file holds; lists of contacts, supports and loads are empty as long as it has no load step.
 

@@ -10,7 +10,6 @@ from contextlib import contextmanager
 from datetime import datetime
 from enum import IntEnum
 from functools import partial
-from html import escape
 from importlib.metadata import version
 from pathlib import Path
 from time import monotonic
@@ -238,6 +237,8 @@ class NotebookProgress(LiveProgress):
         self._place.update(self)
 
     def _repr_html_(self) -> str:
+        from html import escape  # within: on a terminal none of it is needed
+
         name, now = (escape(text) for text in (self._problem.name, "; ".join(self._now)))
         bar = f'<progress value="{self._done}" max="{self._total}"></progress>'
         return f"<p>{name} {bar} {self._done}/{self._total}, {self._clock()}<br>{now}</p>"

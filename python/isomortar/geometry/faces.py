@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import Direction, FloatArray, Patch, opposite
 from isomortar.geometry.splines import Spline
 
@@ -16,7 +15,7 @@ CELLS = 48
 POINT = 1e-9
 
 
-@dataclass(frozen=True)
+@frozen
 class Cells:
     """Cells of a face.
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
 
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import Direction, FloatArray, IntArray, Patch
 
 #: Steps to the places beside a net, with the edges that meet there: in the net here, and in the one there.
@@ -19,7 +19,7 @@ BESIDE = (
 )
 
 
-@dataclass(frozen=True)
+@frozen
 class Net:
     """Control points of a face in rows: along the first surface coordinate in a row, along the second from row to row.
 
@@ -72,7 +72,7 @@ class Net:
         return self.points[[0, 0, -1, -1], [0, -1, 0, -1]]
 
 
-@dataclass(frozen=True)
+@frozen
 class Misfit:
     """What keeps two nets from being one, by how much it does, and how much else was found to be the same before."""
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from functools import cached_property, reduce
 from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from isomortar._frozen import frozen
 from isomortar.errors import InputError
 
 Family = Literal["N", "L"]
@@ -42,7 +42,7 @@ def opposite(face: str) -> str:
     return face[0] + "10"[int(face[1])]
 
 
-@dataclass(frozen=True)
+@frozen
 class Direction:
     """One parametric direction of a patch.
 
@@ -143,7 +143,7 @@ class Direction:
         return np.append(inside, self.boundaries[-1])
 
 
-@dataclass(frozen=True)
+@frozen
 class Patch:
     """A volume patch.
 

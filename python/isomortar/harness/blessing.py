@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import getpass
 from collections.abc import Sequence
-from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Literal
 
 import numpy as np
 
+from isomortar._frozen import frozen
 from isomortar.errors import InputError
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import svg
@@ -27,7 +27,7 @@ from isomortar.results.files import write_whole
 MEASURED = "uncertainty"
 
 
-@dataclass(frozen=True)
+@frozen
 class Change:
     """What blessing one number changes: new values, the old ones (None: there were none) and their uncertainty.
 

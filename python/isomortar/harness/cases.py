@@ -21,7 +21,6 @@ from __future__ import annotations
 import inspect
 import itertools
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal, NoReturn, get_args
@@ -29,6 +28,7 @@ from typing import Any, Literal, NoReturn, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
+from isomortar._frozen import frozen
 from isomortar.errors import InputError, IsomortarError
 
 Tier = Literal["gate", "nightly", "weekly"]
@@ -52,7 +52,7 @@ def skip(reason: str) -> NoReturn:
     raise SkippedError(reason)
 
 
-@dataclass(frozen=True)
+@frozen
 class Curve:
     """A sequence to be shown, of which no order is claimed: error against quadrature points, pressure against radius.
 
@@ -67,7 +67,7 @@ class Curve:
     log_y: bool = True
 
 
-@dataclass(frozen=True)
+@frozen
 class Words:
     """What was said, beside the numbers: to be shown, and nothing can be claimed of it."""
 
@@ -80,7 +80,7 @@ def _check_reason(reason: str) -> None:
         raise InputError(f"is {reason!r}; it must begin with what the bound rests on, one of {', '.join(GROUNDS)}, and a colon", "reason")
 
 
-@dataclass(frozen=True)
+@frozen
 class Bound:
     """Limits of a number, or of every entry of an array.
 
@@ -110,7 +110,7 @@ class Bound:
         return np.inf if self.at_most is None else self.at_most
 
 
-@dataclass(frozen=True)
+@frozen
 class Order:
     """The order of accuracy of a `Convergence`, from theory (never from a run): its verdict must be ``confirmed``."""
 
@@ -123,7 +123,7 @@ class Order:
             raise InputError(f"is {self.expected}; an order must be positive", "expected")
 
 
-@dataclass(frozen=True)
+@frozen
 class Matches:
     """Agreement with the dataset of the same name in a reference.
 
@@ -141,7 +141,7 @@ class Matches:
             raise InputError(f"is {self.allowance}; allowed: zero or more", "allowance")
 
 
-@dataclass(frozen=True)
+@frozen
 class Shown:
     """No claim: the value is shown for what it tells, and need only be there and finite."""
 
@@ -151,7 +151,7 @@ class Shown:
 Claim = Bound | Order | Matches | Shown
 
 
-@dataclass(frozen=True)
+@frozen
 class Case:
     """A measuring function with its claim; `case` makes one.
 
@@ -214,7 +214,7 @@ class Case:
         return [Cell(self, dict(zip(names, values, strict=True))) for values in itertools.product(*self.grid.values())]
 
 
-@dataclass(frozen=True)
+@frozen
 class Cell:
     """One case at one combination of settings."""
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness.cases import Bound, Cell, Claim, Curve, Matches, Order, Shown, Words
 from isomortar.harness.measurement import Measurement, Stored, real_numbers, restored
@@ -19,7 +19,7 @@ CheckState = Literal["passed", "missing reference", "not measured", "skipped", "
 CHECK_STATES: tuple[CheckState, ...] = ("passed", "missing reference", "not measured", "skipped", "failed", "crashed", "timed out")
 
 
-@dataclass(frozen=True)
+@frozen
 class Agreement:
     """Largest error of a comparison, as a share of its tolerance, and whether it is within."""
 
@@ -28,7 +28,7 @@ class Agreement:
     share: float = np.nan
 
 
-@dataclass(frozen=True)
+@frozen
 class Check:
     """A claim on one number: its state, the value to show (worst entry), the limit in words, what was found and why it is the limit.
 
@@ -45,7 +45,7 @@ class Check:
     reference: str = ""
 
 
-@dataclass(frozen=True)
+@frozen
 class Expected:
     """A dataset of a reference: values, uncertainty (one number or the values' shape), and the reference's class."""
 

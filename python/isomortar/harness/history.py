@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from statistics import median
 from typing import Any
 
+from isomortar._frozen import frozen
 from isomortar.harness.journal import Journal
 from isomortar.harness.runner import Result
 from isomortar.harness.store import program_hash
@@ -18,7 +18,7 @@ from isomortar.harness.store import program_hash
 _BEFORE = 8
 
 
-@dataclass(frozen=True)
+@frozen
 class Entry:
     """One earlier run: when, of which program, and by cell name its state, seconds and checked values."""
 

@@ -8,12 +8,13 @@ import resource
 import time
 import traceback
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, field
 from pathlib import Path
 from typing import Any, Literal, TypeVar
 
 import numpy as np
 
+from isomortar._frozen import frozen
 from isomortar._process import give_back_memory
 from isomortar.errors import ConvergenceError, InputError
 from isomortar.geometry.patch import FloatArray
@@ -28,7 +29,7 @@ Stored = float | list[Any] | dict[str, Any] | None
 _Kind = TypeVar("_Kind", Convergence, Curve, Words)
 
 
-@dataclass(frozen=True)
+@frozen
 class Measurement:
     """How a cell ended, its numbers (by name), what was said (skip reason or traceback), and what it cost.
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import stdtrit
 
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import FloatArray
 
 OrderJudgement = Literal["confirmed", "pre-asymptotic", "at the floor", "diverging", "invalid"]
@@ -25,7 +25,7 @@ RESOLUTION = 0.05
 WIDEST = 0.5
 
 
-@dataclass(frozen=True)
+@frozen
 class Convergence:
     """Errors on a sequence of meshes, coarsest first; what a case returns when its claim is an order.
 
@@ -46,7 +46,7 @@ class Convergence:
     others: dict[str, ArrayLike]
 
 
-@dataclass(frozen=True)
+@frozen
 class OrderEstimate:
     """Order of accuracy: estimate, 95 % interval, order between neighbouring meshes, verdict and its reason."""
 

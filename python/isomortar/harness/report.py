@@ -6,7 +6,7 @@ import json
 import math
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from datetime import datetime
 from itertools import groupby
 from pathlib import Path
@@ -16,6 +16,7 @@ from xml.etree import ElementTree
 import jinja2
 import numpy as np
 
+from isomortar._frozen import frozen
 from isomortar.harness import history, svg
 from isomortar.harness.cases import Bound, Curve, Order
 from isomortar.harness.compare import CHECK_STATES, Check, worst
@@ -31,7 +32,7 @@ WIDE = 4
 _WORTH = {"self": ": shows change, never correctness"}
 
 
-@dataclass(frozen=True)
+@frozen
 class Context:
     """What was run: tier, what alone of it ("family solid"; empty: all), seconds of the whole, time of its start, and the runs before.
 

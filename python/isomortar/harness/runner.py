@@ -6,10 +6,10 @@ import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, as_completed
 from contextlib import contextmanager
-from dataclasses import dataclass
 from difflib import get_close_matches
 from typing import Any
 
+from isomortar._frozen import frozen
 from isomortar.errors import InputError
 from isomortar.harness.cases import TIERS, Case, Cell, Tier
 from isomortar.harness.compare import Check, CheckState, Lookup, judge, worst
@@ -24,7 +24,7 @@ Submit = Callable[[dict[str, Any]], "Future[Measurement]"]
 NEAREST = 6
 
 
-@dataclass(frozen=True)
+@frozen
 class Result:
     """A cell, its measurement, the checks of its numbers; `fresh`: measured in this run."""
 
@@ -69,7 +69,7 @@ def not_measured(cells: Sequence[Cell], lookup: Lookup) -> list[Result]:
     return [Result(cell, nothing, tuple(judge(cell, nothing, lookup)), False) for cell in cells]
 
 
-@dataclass(frozen=True)
+@frozen
 class Measuring:
     """A cell that is being measured, or was already (then it is not `fresh`)."""
 

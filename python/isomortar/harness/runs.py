@@ -6,7 +6,7 @@ import json
 from abc import ABC, abstractmethod
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from datetime import datetime
 from itertools import groupby
 from pathlib import Path
@@ -15,6 +15,7 @@ from typing import Any, Generic, TypeVar
 
 import numpy as np
 
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness.cases import Words
 from isomortar.harness.measurement import restored
@@ -26,7 +27,7 @@ from isomortar.harness.study import Conclusion
 from isomortar.results.files import write_whole
 
 
-@dataclass(frozen=True)
+@frozen
 class Computed(ABC):
     """What became of a run that measures how many load steps are ``missing``, and ``words`` where one did not converge."""
 
@@ -73,7 +74,7 @@ class Computed(ABC):
 _Run = TypeVar("_Run", bound=Computed)
 
 
-@dataclass(frozen=True)
+@frozen
 class ByMethod(Generic[_Run]):
     """The runs by one method, beside those by the others, for the functions that measure.
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, Generic, Literal, Protocol, TypeVar
 
+from isomortar._frozen import frozen
 from isomortar.errors import IsomortarError
 
 StatementState = Literal["holds", "partly measured", "does not hold", "not measured"]
@@ -35,7 +35,7 @@ class Evidence(Protocol):
 _Evidence = TypeVar("_Evidence", bound=Evidence)
 
 
-@dataclass(frozen=True)
+@frozen
 class Verdict:
     """What a statement says of the runs by one method; `why` it was not measured, or not as a whole."""
 
@@ -45,7 +45,7 @@ class Verdict:
     why: str = ""
 
 
-@dataclass(frozen=True)
+@frozen
 class Statement(Generic[_Evidence]):
     """A finding that somebody states.
 
@@ -102,7 +102,7 @@ class Statement(Generic[_Evidence]):
         return Verdict(evidence.method, state, values, without)
 
 
-@dataclass(frozen=True)
+@frozen
 class Judgement:
     """A statement with its verdicts."""
 

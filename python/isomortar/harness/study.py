@@ -7,11 +7,12 @@ draws stands beside it.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from datetime import datetime
 from pathlib import Path
 from types import ModuleType
 
+from isomortar._frozen import frozen
 from isomortar.errors import InputError
 from isomortar.harness.cases import Case, Cell, Settings
 from isomortar.harness.collection import module_at
@@ -21,7 +22,7 @@ from isomortar.results.files import write_whole
 from isomortar.scene.scene import Scene
 
 
-@dataclass(frozen=True)
+@frozen
 class Conclusion:
     """What a study came to: its page, how many runs failed, whether it is complete, and what it says in a line (empty: nothing)."""
 
@@ -31,7 +32,7 @@ class Conclusion:
     summary: str = ""
 
 
-@dataclass(frozen=True)
+@frozen
 class Run:
     """A scene under a name of its own, and what measures it.
 
@@ -62,7 +63,7 @@ class Run:
         return Cell(replace(self.case, files=(*self.case.files, path.absolute())), {"scene": str(path), **self.settings})
 
 
-@dataclass(frozen=True)
+@frozen
 class Study:
     """Runs that are compared with each other.
 

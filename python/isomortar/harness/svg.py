@@ -10,12 +10,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from html import escape
 from itertools import pairwise
 
 import numpy as np
 
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import FloatArray
 
 #: Colours that also colour-blind eyes tell apart (Okabe and Ito), first to last; then dashes set lines apart.
@@ -26,7 +26,7 @@ _WIDTH, _HEIGHT = 420, 260
 _LEFT, _RIGHT, _TOP, _BOTTOM = 62, 96, 14, 42
 
 
-@dataclass(frozen=True)
+@frozen
 class Line:
     """Points of a line, its label at its end, and whether it is a guide (grey, no marks)."""
 
@@ -36,7 +36,7 @@ class Line:
     guide: bool = False
 
 
-@dataclass(frozen=True)
+@frozen
 class _Axis:
     """Maps values to pixels."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from rich.table import Table
@@ -12,6 +12,7 @@ from scipy import sparse
 from isomortar import _twin
 from isomortar._bindings import Pattern
 from isomortar._codes import PointState
+from isomortar._frozen import frozen
 from isomortar.errors import KernelError
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.harness.visits import PairVisit, Visit, visited_states
@@ -49,7 +50,7 @@ PARTS = {
 LOADS = {"loads": "forces of pressures on faces"}
 
 
-@dataclass(frozen=True)
+@frozen
 class PartError:
     """Largest relative error of one part over `samples` products, what it is the derivative of, and its bound."""
 
@@ -65,7 +66,7 @@ class PartError:
         return self.error <= self.bound
 
 
-@dataclass(frozen=True)
+@frozen
 class TangentReport:
     """Errors of the tangent by part at `states` visited states of a load step.
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import groupby
 
 import numpy as np
 
 from isomortar._bindings import Law, Response
+from isomortar._frozen import frozen
 from isomortar.errors import InputError
 from isomortar.geometry.patch import FloatArray
 from isomortar.march.simulation import Simulation
@@ -16,7 +17,7 @@ from isomortar.solve.contact import Kinematics, PairMechanics
 from isomortar.solve.record import ContactState
 
 
-@dataclass(frozen=True)
+@frozen
 class PairVisit:
     """One contact pair in a visited state: where its slips count from, and the law with the multipliers of that moment."""
 
@@ -24,7 +25,7 @@ class PairVisit:
     law: Law
 
 
-@dataclass(frozen=True)
+@frozen
 class Visit:
     """A visited state: its positions about the equilibrium's origin, shape (control points, 3), its contact pairs, and its load time."""
 

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import IntArray
 from isomortar.march.simulation import Simulation
 from isomortar.model.contrasts import element_lengths
@@ -16,7 +15,7 @@ from isomortar.model.rank import rigid_rank
 from isomortar.model.stance import stance
 
 
-@dataclass(frozen=True)
+@frozen
 class BodyOutlook:
     """A body: moduli, none of a rigid one, size along x, y, z, elements along u, v, w with their orders and how long they are, and weights.
 
@@ -38,7 +37,7 @@ class BodyOutlook:
     left_free: int
 
 
-@dataclass(frozen=True)
+@frozen
 class ContactOutlook:
     """A contact: its sides, how it is found, enforced and integrated.
 
@@ -55,7 +54,7 @@ class ContactOutlook:
     apart: float
 
 
-@dataclass(frozen=True)
+@frozen
 class SupportOutlook:
     """A support: its face, the components that it prescribes, and how far and by what angle it goes in all stages together.
 
@@ -72,7 +71,7 @@ class SupportOutlook:
     stages: tuple[str, ...]
 
 
-@dataclass(frozen=True)
+@frozen
 class LoadOutlook:
     """A load: what kind, its face or body, and its value."""
 
@@ -82,7 +81,7 @@ class LoadOutlook:
     value: tuple[float, ...]
 
 
-@dataclass(frozen=True)
+@frozen
 class Outlook:
     """What is known of a scene before its first load step; `memory` in bytes, within a factor of two."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from typing import Annotated, Literal, get_args
 
@@ -11,6 +11,7 @@ import numpy as np
 from pydantic import Field
 
 from isomortar._arrays import FRICTION_LAWS, LAWS, NO_FRICTION, FrictionArrays, MaterialArrays, MaterialLaw
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import FACES, Closed, FloatArray, Patch
 from isomortar.model import constants
 from isomortar.model.values import TABLE, Count, Point, Positive, Real
@@ -22,7 +23,7 @@ Projection = Literal["closest", "averaged"]
 Enforcement = Literal["mortar", "dual", "kts", "knots", "greville", "demko"]
 
 
-@dataclass(frozen=True)
+@frozen
 class Material:
     """A solid; the defaults are the paper's."""
 
@@ -56,7 +57,7 @@ class Material:
         return self.bulk + 4.0 / 3.0 * self.shear
 
 
-@dataclass(frozen=True)
+@frozen
 class Raised:
     """A face along which functions are of the patch's orders in its own row of control points alone, and of other `orders` below."""
 
@@ -64,7 +65,7 @@ class Raised:
     orders: tuple[int, int, int]
 
 
-@dataclass(frozen=True)
+@frozen
 class Body:
     """A body: one volume patch with its material.
 
@@ -113,7 +114,7 @@ class Body:
 PLACES = ("face", "edge", "corner")
 
 
-@dataclass(frozen=True)
+@frozen
 class Face:
     """A face of a body: a contact patch, or the place of a support."""
 
@@ -136,7 +137,7 @@ class Face:
         return ", ".join(".".join((face.body, *face.meeting)) for face in self.faces)
 
 
-@dataclass(frozen=True)
+@frozen
 class Faces(Face):
     """A side of a contact of several faces that join to one, the first and those `beside`; no place of a support."""
 
@@ -148,7 +149,7 @@ class Faces(Face):
         return (Face(self.body, self.face), *self.beside)
 
 
-@dataclass(frozen=True)
+@frozen
 class Edge(Face):
     """Where a face meets one or two `others` of its body, in an edge or a corner: the place of a support."""
 
@@ -160,7 +161,7 @@ class Edge(Face):
         return (self.face, *self.others)
 
 
-@dataclass(frozen=True)
+@frozen
 class RigidPlane:
     """A rigid master plane through `point`; coordinates are lengths along `tangent` and `normal` x `tangent`."""
 
@@ -169,7 +170,7 @@ class RigidPlane:
     tangent: tuple[float, float, float]
 
 
-@dataclass(frozen=True)
+@frozen
 class Contact:
     """A contact pair. `quadrature` are Gauss points per slave contact element and surface direction.
 
@@ -225,7 +226,7 @@ class Contact:
         return FrictionArrays(FRICTION_LAWS["capped"], np.array([self.friction, self.cohesion, largest]))
 
 
-@dataclass(frozen=True)
+@frozen
 class Motion:
     """What a support does during a stage; grows linearly over its load steps."""
 
@@ -242,7 +243,7 @@ class Motion:
         return any(self.translate) or self.rotate != 0.0
 
 
-@dataclass(frozen=True)
+@frozen
 class Support:
     """Prescribed control points of a face, an edge or a corner: x = c + u(t) + R(axis, angle(t)) (X - c) in the given components.
 
@@ -293,7 +294,7 @@ class Support:
         return any(motion.rotate for motion in self.motions)
 
 
-@dataclass(frozen=True)
+@frozen
 class SymmetryPlane:
     """A plane of symmetry across a coordinate `axis` (0, 1, 2), where that coordinate is `place`."""
 
@@ -310,7 +311,7 @@ class SymmetryPlane:
         return f"the plane {'xyz'[self.axis]} = {self.place:g}"
 
 
-@dataclass(frozen=True)
+@frozen
 class Stage:
     """A part of the load history: `steps` equal load steps, each of them recorded."""
 
@@ -322,7 +323,7 @@ class Stage:
 LoadKind = Literal["pressure", "traction", "weight"]
 
 
-@dataclass(frozen=True)
+@frozen
 class Load:
     """A load on a body: `pressure` on its current face (one value), `traction` on its reference face, or `weight` on its reference volume.
 
@@ -356,7 +357,7 @@ Tolerance = Annotated[Positive, Field(le=1e-3)]
 Penalty = Annotated[Real, Field(ge=1e-12, le=1e12)]
 
 
-@dataclass(frozen=True)
+@frozen
 class SolverSettings:
     """How contact is enforced and when a load step has converged."""
 
@@ -398,7 +399,7 @@ class SolverSettings:
     """By mumps: what blocks of low rank may leave out of the bodies' factors, over their diagonal; solutions are refined. 0: nothing."""
 
 
-@dataclass(frozen=True, eq=False)
+@frozen(eq=False)
 class Problem:
     """A whole computation, ready for `isomortar.solve`: plain data, no unknowns, no state.
 

@@ -10,13 +10,14 @@ the traction across the edge of the master's face is zero. Beside a rigid body w
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 
 from isomortar._arrays import Control, Pattern
 from isomortar._codes import FirstRow
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model import constants
 from isomortar.model.entities import RigidPlane, unit
@@ -24,7 +25,7 @@ from isomortar.model.pairs import Pair
 from isomortar.model.supports import BoolArray, Supports
 
 
-@dataclass(frozen=True)
+@frozen
 class Held:
     """What supports hold of the constraints of a pair in one load increment.
 

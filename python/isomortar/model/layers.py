@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import Direction, FloatArray, IntArray
 
 #: Weights of conic sections, arcs of up to 120 degrees, are within this ratio of each other; default points are made for them.
@@ -19,7 +19,7 @@ IN_A_LAYER, IN_ONE_OF_MANY = 5, 2
 MOST_IN_LAYERS = 4_000_000
 
 
-@dataclass(frozen=True)
+@frozen
 class LinePoints:
     """Quadrature points of a direction, in the order of its elements, and their weights."""
 

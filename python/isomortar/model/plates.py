@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 from scipy import sparse
 
 from isomortar._bindings import Pattern
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import FloatArray, IntArray
 
 
@@ -24,7 +25,7 @@ def turn(axis: FloatArray, before: FloatArray, after: FloatArray) -> float:
     return float(np.arctan2(np.sum(np.cross(one, other) @ axis), np.sum(one * other) - np.sum((one @ axis) * (other @ axis))))
 
 
-@dataclass(frozen=True, eq=False)
+@frozen(eq=False)
 class Plate:
     """Control points that go as one, with the unknowns that they have in common (theory 5.17, 5.20).
 
@@ -74,7 +75,7 @@ class Plate:
         return goes * first, goes / self.length * np.cross(self.axis, first)
 
 
-@dataclass(frozen=True, eq=False)
+@frozen(eq=False)
 class Seen:
     """A matrix of blocks as plates see it that turn: their control points stand in it once more, for the angle that they share.
 

@@ -7,12 +7,13 @@ is over the row of control points in between that is farthest away.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 
 from isomortar._bindings import PatchArrays
+from isomortar._frozen import frozen
 from isomortar.errors import InputError
 from isomortar.geometry.faces import cells
 from isomortar.geometry.net import BESIDE, Net
@@ -24,7 +25,7 @@ from isomortar.model.numbering import Numbering, patch_arrays
 from isomortar.model.remembered import remembered
 
 
-@dataclass(frozen=True)
+@frozen
 class Sheet:
     """A side of a contact.
 
@@ -112,7 +113,7 @@ def _of(problem: Problem, place: Face) -> Sheet:
     return _joined(problem, place) if len(place.faces) > 1 else Sheet.of_face(problem.body(place.body), place.face)
 
 
-@dataclass(frozen=True, eq=False)
+@frozen(eq=False)
 class _Tile:
     """A face of a side, turned so that it fits to the others; `factor`: of its weights."""
 

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from isomortar._frozen import frozen
 from isomortar.geometry.faces import Cells, cells
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model.entities import Contact, Face, Problem, RigidPlane, unit
@@ -20,7 +19,7 @@ SOME = 400
 AT_ONCE = 250_000
 
 
-@dataclass(frozen=True)
+@frozen
 class Stance:
     """A contact pair in the reference configuration, by cells of its faces.
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Protocol
 
+from isomortar._frozen import frozen
 from isomortar.errors import IsomortarError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Problem
@@ -22,7 +22,7 @@ class NotInstalledError(IsomortarError):
     """A program is not on this machine; the text says how to install it."""
 
 
-@dataclass(frozen=True)
+@frozen
 class LoadStep:
     """What a program found at the end of a load step.
 
@@ -44,7 +44,7 @@ class LoadStep:
     works: tuple[float, float] = (math.nan, math.nan)
 
 
-@dataclass(frozen=True)
+@frozen
 class Outcome:
     """What became of a problem.
 

@@ -13,11 +13,11 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import Literal
 
+from isomortar._frozen import frozen
 from isomortar.errors import IsomortarError
 
 #: Why something ended. The first two are results: it was measured, or it does not converge, which it will not the next time either.
@@ -33,7 +33,7 @@ GRACE = 5.0
 _LOOK = 0.2
 
 
-@dataclass(frozen=True)
+@frozen
 class Limits:
     """What a process may take: seconds of the processor, bytes of address space; None: no limit."""
 
@@ -41,7 +41,7 @@ class Limits:
     memory: int | None = None
 
 
-@dataclass(frozen=True)
+@frozen
 class End:
     """Why a process ended, in one word and in others, and its exit status: below zero by that signal, None by its limit of time."""
 
@@ -213,7 +213,7 @@ def end_now(processes: Iterable[int]) -> None:
             os.kill(pid, signal.SIGKILL)
 
 
-@dataclass(frozen=True)
+@frozen
 class Finished:
     """A process that was run to its end: why it ended, its standard output and error, CPU seconds with those of its own children."""
 

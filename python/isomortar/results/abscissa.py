@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 
 import numpy as np
 
+from isomortar._frozen import frozen
 from isomortar.errors import InputError
 from isomortar.geometry.patch import FloatArray
 from isomortar.results.reader import Results
@@ -14,7 +14,7 @@ from isomortar.results.reader import Results
 _WAY = re.compile(r"(?P<quantity>displacement|rotation)( (?P<component>[xyz]))? of (?P<support>[\w-]+)")
 
 
-@dataclass(frozen=True)
+@frozen
 class Abscissa:
     """Values at rest and at every recorded load step, shape (steps + 1,), and what stands below their axis."""
 

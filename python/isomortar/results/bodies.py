@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize, to_rgb
 from matplotlib.figure import Figure
 
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import Direction, FloatArray
 from isomortar.model.entities import Body, Face, Problem, RigidPlane, unit
 from isomortar.results import style
@@ -28,7 +29,7 @@ _FINENESS_OF_CONTACT = (144, 8)
 VIEW = Camera(azimuth=-62.0, elevation=24.0)
 
 
-@dataclass(frozen=True)
+@frozen
 class Pressed:
     """A sampled contact face: largest pressure, whether it pulls anywhere, mean outward normal where it presses."""
 
@@ -37,7 +38,7 @@ class Pressed:
     normal: FloatArray
 
 
-@dataclass(frozen=True)
+@frozen
 class Scale:
     """What the pictures of several load steps have in common.
 

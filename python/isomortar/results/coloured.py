@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -11,6 +10,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import Direction, FloatArray
 from isomortar.model.entities import Body, Problem
 from isomortar.results import style
@@ -46,7 +46,7 @@ def displacement(body: Body, points: FloatArray, parameters: Sequence[FloatArray
     return np.linalg.norm(moved, axis=1)
 
 
-@dataclass(frozen=True)
+@frozen
 class BodyField:
     """A field of bodies: how a colour bar names it, what it measures, its values, and whether colours begin at zero."""
 

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from matplotlib.colors import Colormap
 
+from isomortar._frozen import frozen
 from isomortar.errors import ResultsError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Problem
@@ -24,7 +23,7 @@ CONTACT_FIELDS = {
 }
 
 
-@dataclass(frozen=True)
+@frozen
 class FaceField:
     """A field of a slave face: its name among `CONTACT_FIELDS`, and values by control point, of shape (n, 1), or vectors, (n, 3)."""
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import Direction, FloatArray, IntArray
 from isomortar.model.enforcement import METHODS, SlaveFace
 from isomortar.model.entities import Contact, Problem
@@ -18,7 +18,7 @@ from isomortar.results.footing import Footing
 from isomortar.solve.record import ContactResult, ContactState, StepResult
 
 
-@dataclass(frozen=True)
+@frozen
 class ContactSurface:
     """A slave face with its contact quantities, everything by control point of the face (shape (n,), points (n, 3)).
 

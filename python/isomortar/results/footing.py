@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -10,6 +9,7 @@ import numpy as np
 from scipy import sparse
 
 from isomortar._bindings import SlaveArrays
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model.supports import BoolArray
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from scipy.spatial import cKDTree
 
 
-@dataclass(frozen=True, eq=False)
+@frozen(eq=False)
 class Footing:
     """Quadrature points of a slave face, and which of them have a foot on the master.
 

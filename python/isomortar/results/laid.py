@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import FloatArray
 from isomortar.results.fields import ContactSurface
 
@@ -19,7 +19,7 @@ _CHORDS = 64
 Placing = Callable[[Sequence[FloatArray]], tuple[FloatArray, FloatArray]]
 
 
-@dataclass(frozen=True)
+@frozen
 class Laid:
     """Where the points of a face are on a flat picture of its rest; the longer side of the face runs to the right.
 

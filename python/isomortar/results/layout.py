@@ -22,19 +22,20 @@ The program knows no units; `unit` names the dimension in terms of the scene's o
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from isomortar._frozen import frozen
+
 FORMAT = "isomortar results"
 #: Of the files that are written. Format 3 had contact forces with the other sign, and is the earliest that is read.
 FORMAT_VERSION, EARLIEST_VERSION = 4, 3
 
 
-@dataclass(frozen=True)
+@frozen
 class Quantity:
     """Type, unit and meaning of a dataset, shape of a row where the data do not tell it, what stands for a value nobody gave.
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from types import TracebackType
@@ -14,6 +13,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from isomortar._frozen import frozen
 from isomortar.errors import ResultsError
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model.entities import Contact, Problem
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 Value = TypeVar("Value")
 
 
-@dataclass(frozen=True)
+@frozen
 class ContactHistory:
     """The values of a contact pair's constraints over the kept states.
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -11,6 +10,7 @@ from matplotlib.collections import PathCollection, PolyCollection
 from matplotlib.path import Path
 from numpy.typing import NDArray
 
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import FloatArray
 
 #: Left free round what is drawn, as a share of its size.
@@ -20,7 +20,7 @@ _EDGE = np.array([0.16, 0.18, 0.22])
 _DISCS, _CORNERS = 6, 28
 
 
-@dataclass(frozen=True)
+@frozen
 class Camera:
     """Direction of view: `azimuth` and `elevation` of the eye in degrees, about the vertical z."""
 

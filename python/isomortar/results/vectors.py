@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from isomortar import _bindings
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model.enforcement import METHODS, SlaveFace
 from isomortar.model.entities import Contact, Problem, RigidPlane, unit
@@ -16,7 +15,7 @@ from isomortar.model.sheet import Sheet
 from isomortar.solve.record import ContactState, StepResult
 
 
-@dataclass(frozen=True)
+@frozen
 class FootPlaces:
     """Where the slave quadrature points of a contact stand on its master: coordinates, shape (q, 2), and 1 where there is a foot, (q,)."""
 
@@ -24,7 +23,7 @@ class FootPlaces:
     found: IntArray
 
 
-@dataclass(frozen=True)
+@frozen
 class ContactVectors:
     """By control point of a slave face, each of shape (n, 3), zero where it is open.
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import base64
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 from numpy.typing import NDArray
 
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import Direction, FloatArray
 from isomortar.results.bezier import bezier_matrix, rational
 
@@ -18,7 +19,7 @@ _QUADRILATERAL, _HEXAHEDRON = 77, 79
 _TYPES = {"float64": "Float64", "int64": "Int64", "uint8": "UInt8"}
 
 
-@dataclass(frozen=True)
+@frozen
 class BezierGrid:
     """Bezier cells of one patch: points with rational weights and fields; cells with their points in VTK's order.
 

@@ -7,18 +7,18 @@ the master since the start of the load increment, which would be an error, is to
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
 
 from isomortar._bindings import FaceArrays, PlaneArrays
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model import constants
 from isomortar.model.pairs import Pair
 
 
-@dataclass(frozen=True)
+@frozen
 class Box:
     """Lower and upper corner, shape (3,)."""
 

@@ -10,11 +10,11 @@ tractions by the lengths of the master's tangent vectors: all entries then have 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from isomortar._bindings import Law, Response
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model import constants
 from isomortar.model.supports import BoolArray
@@ -25,7 +25,7 @@ from isomortar.solve.singular import PairConditions
 from isomortar.solve.system import Source, add_product, block_product
 
 
-@dataclass(frozen=True)
+@frozen
 class Correction:
     """Newton's correction of positions, and of control pressures and tractions, shape (constraints, 3) for each pair."""
 
@@ -33,7 +33,7 @@ class Correction:
     multipliers: tuple[FloatArray, ...]
 
 
-@dataclass(frozen=True)
+@frozen
 class Border:
     """What one pair adds to the system: its blocks, the equations of its multipliers, and their scales."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property, partial
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy as np
 from isomortar import _bindings
 from isomortar._bindings import Control, Law, Pattern, Projections, Response
 from isomortar._codes import ROW_KINDS, PointState
+from isomortar._frozen import frozen
 from isomortar.errors import LostProjectionError
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model import constants
@@ -28,7 +29,7 @@ from isomortar.solve.scales import Scales
 from isomortar.solve.timing import Ledger
 
 
-@dataclass(frozen=True)
+@frozen
 class Kinematics:
     """A pair at given positions: projections and control quantities."""
 
@@ -59,7 +60,7 @@ class PutOff(Kinematics):
         return self._computed.control
 
 
-@dataclass(frozen=True)
+@frozen
 class Blocks:
     """What a second pass gives: rows, derivatives of multipliers and trial tractions, geometric tangent, and their patterns."""
 

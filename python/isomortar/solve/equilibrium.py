@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
 
 from isomortar._bindings import Law, Response
 from isomortar._codes import PointState
+from isomortar._frozen import frozen
 from isomortar._sparse import Ordering
 from isomortar.errors import SingularSystemError
 from isomortar.geometry.patch import FloatArray
@@ -30,7 +30,7 @@ from isomortar.solve.timing import Ledger
 from isomortar.solve.touching import Touching
 
 
-@dataclass(frozen=True)
+@frozen
 class Balance:
     """Forces at given positions, shape (control points, 3), with the contact kinematics and responses behind them.
 

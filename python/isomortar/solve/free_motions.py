@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Problem
 from isomortar.model.glue import named
@@ -20,7 +20,7 @@ TURNS = 0.01
 GOES = 0.1
 
 
-@dataclass(frozen=True)
+@frozen
 class FreeMotion:
     """A rigid motion that supports leave a piece.
 
@@ -56,7 +56,7 @@ def loaded_motions(problem: Problem, numbering: Numbering, supports: Supports, p
     return free_motions(problem, numbering, supports, positions) if problem.loads or supports.plates else []
 
 
-@dataclass(frozen=True)
+@frozen
 class Going:
     """Bodies that go on some way together, by the one that goes farthest: shift, turn about its middle, shapes (3,), and size."""
 

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from isomortar._bindings import Law
+from isomortar._frozen import frozen
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.newton import KEPT_FACTORS
 from isomortar.solve.record import AugmentationRecord, IterationRecord, Observer, State
 
 
-@dataclass(frozen=True)
+@frozen
 class Increment:
     """Balance at the end of the increment, the log of its augmentations (monolithic: one), Newton's observed orders."""
 

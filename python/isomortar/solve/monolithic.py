@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property, partial
 
 import numpy as np
 
 from isomortar._bindings import NO_FRICTION, Law, Response
 from isomortar._codes import PointState
+from isomortar._frozen import frozen
 from isomortar.errors import ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
@@ -60,7 +61,7 @@ class Monolithic(Method):
             return None
 
 
-@dataclass(frozen=True)
+@frozen
 class _BorderedIterate(Iterate):
     """Positions and multipliers with all that follows from them.
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from itertools import count
 from typing import Generic, TypeVar
 
 import numpy as np
 
+from isomortar._frozen import frozen
 from isomortar.errors import ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
@@ -27,7 +28,7 @@ KEPT_FACTORS, KEPT_BODIES = "kept factors", "kept bodies"
 CLOSED_ANEW = "closed anew"
 
 
-@dataclass(frozen=True)
+@frozen
 class Iterate:
     """Forces at the positions of one iteration, and their relative residual."""
 
@@ -59,7 +60,7 @@ Iterated = TypeVar("Iterated", bound=Iterate)
 Corrected = TypeVar("Corrected")
 
 
-@dataclass(frozen=True)
+@frozen
 class Converged(Generic[Iterated]):
     """What a Newton loop came to: its last iterate, its iterations, its observed order of convergence."""
 

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from scipy import sparse
 
 from isomortar._bindings import Pattern, Projections
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import IntArray
 from isomortar.model.pairs import Pair
 from isomortar.model.pattern import pattern_of, rows_of
 
 
-@dataclass(frozen=True)
+@frozen
 class ContactPatterns:
     """Patterns of constraint rows, of the multipliers' derivatives, and of the contact tangent."""
 

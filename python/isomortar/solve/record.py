@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
+from isomortar._frozen import frozen
 from isomortar._sparse import Ordering
 from isomortar.geometry.patch import FloatArray, IntArray
 
 
-@dataclass(frozen=True)
+@frozen
 class ContactState:
     """State of one contact pair, enough to restart.
 
@@ -33,7 +34,7 @@ class ContactState:
     projected: IntArray
 
 
-@dataclass(frozen=True)
+@frozen
 class ContactRates:
     """How fast a load increment changed the pressures, shape (n,), and tractions, shape (n, 2), of a contact pair, per load step."""
 
@@ -41,7 +42,7 @@ class ContactRates:
     traction: FloatArray
 
 
-@dataclass(frozen=True)
+@frozen
 class Rates:
     """How fast a load increment changed things, per load step (theory 6.7).
 
@@ -58,7 +59,7 @@ class Rates:
     contacts: tuple[ContactRates, ...]
 
 
-@dataclass(frozen=True)
+@frozen
 class State:
     """Positions of all control points, shape (n, 3), and the state of each contact pair; rates where all may go on like that."""
 
@@ -67,7 +68,7 @@ class State:
     rates: Rates | None = None
 
 
-@dataclass(frozen=True)
+@frozen
 class IterationRecord:
     """One Newton iteration: number, what was left before the solve (`Iterate.merit`), counts of constraints by state, what acted."""
 
@@ -79,7 +80,7 @@ class IterationRecord:
     notes: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True)
+@frozen
 class AugmentationRecord:
     """One augmentation (Uzawa) with its Newton iterations and the change of multipliers that it made."""
 
@@ -91,7 +92,7 @@ class AugmentationRecord:
     iterations: tuple[IterationRecord, ...]
 
 
-@dataclass(frozen=True)
+@frozen
 class Reaction:
     """Force that a support exerts on its body, moment about the moving centre, that centre, and how far it has gone; each shape (3,).
 
@@ -105,7 +106,7 @@ class Reaction:
     rotation: float = np.nan
 
 
-@dataclass(frozen=True)
+@frozen
 class LoadResult:
     """Force of a load on its body, and its moment about the origin; each shape (3,)."""
 
@@ -113,7 +114,7 @@ class LoadResult:
     moment: FloatArray
 
 
-@dataclass(frozen=True)
+@frozen
 class ContactResult:
     """Measured quantities of one contact pair at the end of a load step.
 
@@ -154,7 +155,7 @@ def history_bytes(state: State, contacts: Sequence[ContactResult], frictional: S
     return sum(array.nbytes for array in arrays)
 
 
-@dataclass(frozen=True)
+@frozen
 class StepResult:
     """One recorded load step.
 

@@ -5,11 +5,10 @@ Bodies that are glued are one here: next to no force acts on one that nothing el
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from isomortar import _bindings
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
 from isomortar.model.numbering import Numbering
@@ -17,7 +16,7 @@ from isomortar.model.solid import Solid
 from isomortar.model.supports import Supports
 
 
-@dataclass(frozen=True)
+@frozen
 class Scales:
     """Stiffness and round-off of every piece at the start of a load increment.
 

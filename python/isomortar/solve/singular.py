@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from isomortar._frozen import frozen
 from isomortar.errors import SingularSystemError
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model.glue import named
@@ -21,7 +21,7 @@ _RIGID = 1e-3
 _PART = 0.1
 
 
-@dataclass(frozen=True)
+@frozen
 class PairConditions:
     """A pair with the equations of its multipliers, shape (3 * constraints,), -1: none; and its kinematics."""
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
 
 from isomortar import _bindings
 from isomortar._bindings import Pattern
+from isomortar._frozen import frozen
 from isomortar._sparse import Ordering, SparseLU
 from isomortar.errors import KernelError, SingularSystemError
 from isomortar.geometry.patch import FloatArray, IntArray
@@ -23,7 +23,7 @@ def orderings(size: int) -> tuple[Ordering, ...]:
     return (*(("amd",) if size <= constants.UNDOUBTED[1] else ()), *(("metis",) if size >= constants.UNDOUBTED[0] else ()))
 
 
-@dataclass(frozen=True, eq=False)
+@frozen(eq=False)
 class Source:
     """A matrix of 3x3 blocks and where its rows and columns stand in the system (-1: dropped)."""
 

@@ -6,11 +6,11 @@ See theory 6.8.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from isomortar._bindings import Control
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
 from isomortar.model.entities import Problem
@@ -23,7 +23,7 @@ from isomortar.solve.record import ContactState, State
 from isomortar.solve.scales import Scales
 
 
-@dataclass(frozen=True)
+@frozen
 class _Approach:
     """A pair by each of some ways: its control quantities, its nearest constraints, and how far bodies go until these close."""
 

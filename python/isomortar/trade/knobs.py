@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Literal
 
 from isomortar._distributed import is_built
+from isomortar._frozen import frozen
 from isomortar.accuracy.discretisations import coarse_geometry, lowest_order
 from isomortar.errors import InputError
 from isomortar.geometry.patch import MAX_ORDER, Direction
@@ -38,7 +39,7 @@ HIGHEST = 5
 Changes = Callable[[Scene], Sequence[str]]
 
 
-@dataclass(frozen=True)
+@frozen
 class Setting:
     """One value of a dial, and the overrides that give it to a scene; none for the scene's own."""
 
@@ -46,7 +47,7 @@ class Setting:
     overrides: Changes | None = None
 
 
-@dataclass(frozen=True)
+@frozen
 class Dial:
     """A knob at one place of a scene.
 
@@ -74,7 +75,7 @@ class Dial:
     part: Literal["", "order", "elements"] = ""
 
 
-@dataclass(frozen=True)
+@frozen
 class Knob:
     """What can be varied of scenes: its name, what it can spoil, and its dials in a scene."""
 

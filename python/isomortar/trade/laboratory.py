@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from isomortar._frozen import frozen
 from isomortar.errors import InputError
 from isomortar.harness.cases import Cell, Words
 from isomortar.harness.measurement import Measurement, restored
@@ -25,7 +25,7 @@ UNTOLD = ("area", "gap", "warnings")
 Choice = tuple[int, ...]
 
 
-@dataclass(frozen=True)
+@frozen
 class Tried:
     """What became of a choice: its numbers, or why there are none; CPU seconds that it took, and memory in bytes."""
 

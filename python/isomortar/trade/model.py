@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import FloatArray
 from isomortar.trade.knobs import Dial
 from isomortar.trade.laboratory import Choice, Tried
@@ -17,7 +17,7 @@ from isomortar.trade.want import Want
 NOISE = 0.05
 
 
-@dataclass(frozen=True)
+@frozen
 class Forecast:
     """Error and CPU seconds that a choice is expected to have."""
 

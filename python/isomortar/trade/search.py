@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 
 import numpy as np
 
+from isomortar._frozen import frozen
 from isomortar.errors import IsomortarError
 from isomortar.harness.report import duration, percent
 from isomortar.trade.knobs import Dial
@@ -34,7 +35,7 @@ TRUTH = 0.5
 RATE, COST = 1.5, 5.0
 
 
-@dataclass(frozen=True)
+@frozen
 class Recommendation:
     """What came of a target.
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from isomortar._frozen import frozen
 from isomortar.accuracy.measures import roughness
 from isomortar.errors import InputError
 from isomortar.geometry.patch import FloatArray
@@ -29,7 +30,7 @@ _COMPONENTS, _PARTS = ("x", "y", "z", "norm"), ("curve", "end", "peak", "roughne
 _BENDS = 3
 
 
-@dataclass(frozen=True)
+@frozen
 class Want:
     """Something that is wanted of a scene.
 

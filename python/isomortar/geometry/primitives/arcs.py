@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from isomortar._frozen import frozen
 from isomortar.errors import InputError
 from isomortar.geometry.patch import Direction, FloatArray
 
@@ -13,7 +12,7 @@ from isomortar.geometry.patch import Direction, FloatArray
 QUARTER, HALF, WHOLE = 90.0, 180.0, 360.0
 
 
-@dataclass(frozen=True)
+@frozen
 class Arc:
     """An arc of the unit circle.
 

@@ -20,11 +20,12 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from statistics import median
 from time import process_time
 
+from isomortar._frozen import frozen
 from isomortar.errors import InputError
 
 #: One measurement: a value for every column; or what is known of them, and in ``note`` why the others could not be measured.
@@ -38,7 +39,7 @@ ASIDE = "-"
 SHORT, REPEATS = 10.0, 3
 
 
-@dataclass(frozen=True)
+@frozen
 class Plot:
     """A plot of one column over another on logarithmic axes, a line with its slope for every value of the column `by`."""
 
@@ -47,7 +48,7 @@ class Plot:
     by: str = ""
 
 
-@dataclass(frozen=True)
+@frozen
 class Benchmark:
     """A measuring function with what it asks; `benchmark` makes one, and says what the parameters are."""
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from datetime import datetime
 from itertools import takewhile
 from pathlib import Path
 
+from isomortar._frozen import frozen
 from isomortar.harness.bench.declaration import NOTE, Row
 from isomortar.harness.bench.processes import Answer
 from isomortar.harness.journal import Journal
@@ -18,7 +19,7 @@ from isomortar.harness.store import program_hash
 _SHOWN = 60
 
 
-@dataclass(frozen=True)
+@frozen
 class Trend:
     """What a benchmark said in its last runs, oldest first: by row and column."""
 

@@ -9,12 +9,13 @@ import json
 import os
 import platform
 import re
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
 from scipy.linalg import blas
 
+from isomortar._frozen import frozen
 from isomortar.harness.bench.declaration import cpu_seconds
 
 #: Rows of the matrices that are multiplied: three of them fill 24 MB.
@@ -25,7 +26,7 @@ ENTRIES = 1 << 24
 _RUNS = 7
 
 
-@dataclass(frozen=True)
+@frozen
 class Machine:
     """Model of the processor, number of cores, memory in bytes."""
 
@@ -34,7 +35,7 @@ class Machine:
     memory: float
 
 
-@dataclass(frozen=True)
+@frozen
 class MachineLimits:
     """What one core did at most, in CPU time: GF/s of dgemm, GB/s of y + a x; and how many processes wanted to run meanwhile."""
 

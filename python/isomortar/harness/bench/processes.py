@@ -12,18 +12,19 @@ import sys
 import time
 import traceback
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
 
+from isomortar._frozen import frozen
 from isomortar._process import own_process
 from isomortar.harness.bench.declaration import Benchmark, Row
 from isomortar.harness.measurement import peak_memory
 from isomortar.program.process import GRACE, ONE_THREAD, Process
 
 
-@dataclass(frozen=True)
+@frozen
 class Cost:
     """What a whole benchmark took: CPU seconds, the most memory in bytes; and why it ended early, if it did."""
 
@@ -32,7 +33,7 @@ class Cost:
     message: str = ""
 
 
-@dataclass(frozen=True)
+@frozen
 class Answer:
     """A benchmark with its rows. Those that came before a failure stand."""
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from datetime import datetime
 from pathlib import Path
 from typing import Any
 
+from isomortar._frozen import frozen
 from isomortar.harness.bench import history
 from isomortar.harness.bench.machine import Machine, MachineLimits
 from isomortar.harness.bench.processes import Answer
@@ -16,7 +17,7 @@ from isomortar.harness.store import identity
 HISTORY = "history.jsonl"
 
 
-@dataclass(frozen=True)
+@frozen
 class Record:
     """What was run so far: its start, whether only tried, the machine with its limits before and after, the benchmarks that ended."""
 

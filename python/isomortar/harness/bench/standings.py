@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Literal, get_args
 
+from isomortar._frozen import frozen
 from isomortar.harness.bench.declaration import ASIDE, Row
 from isomortar.harness.bench.history import label
 from isomortar.harness.bench.processes import Answer
@@ -16,7 +17,7 @@ LimitState = Literal["met", "missed", "not compared", "not measured"]
 LIMIT_STATES: tuple[LimitState, ...] = get_args(LimitState)
 
 
-@dataclass(frozen=True)
+@frozen
 class Standing:
     """A limit of a column, how it stands, and the row that came furthest (NaN: none)."""
 

@@ -6,10 +6,10 @@ import math
 import shutil
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 
+from isomortar._frozen import frozen
 from isomortar.errors import InputError
 from isomortar.harness.cases import TIMEOUTS, Cell
 from isomortar.harness.compare import Lookup, judge
@@ -30,7 +30,7 @@ Tell = Callable[[str, int, int], None]
 _REJECTED, _SOUND, _TWICE = "rejected by the compiler", "same as the sound program", "same as another fault"
 
 
-@dataclass(frozen=True)
+@frozen
 class Attacked:
     """A fault and the gate's finding on it; `whole`: a cell was red, or every cell met it."""
 
@@ -39,7 +39,7 @@ class Attacked:
     whole: bool
 
 
-@dataclass(frozen=True)
+@frozen
 class Tally:
     """All of a campaign.
 

@@ -5,16 +5,16 @@ from __future__ import annotations
 import hashlib
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
+from isomortar._frozen import frozen
 from isomortar.errors import InputError
 from isomortar.harness.mutants.layers import LAYERS
 
 _SUFFIXES = tuple(layer.suffix for layer in LAYERS.values())
 
 
-@dataclass(frozen=True)
+@frozen
 class Fault:
     """`old` at character `position` of `file` becomes `new`; `name` and `why` are those of a fault planted by hand."""
 

@@ -6,9 +6,9 @@ import re
 import threading
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence, Set
-from dataclasses import dataclass
 from pathlib import Path
 
+from isomortar._frozen import frozen
 from isomortar.errors import IsomortarError
 from isomortar.harness.cases import Cell
 from isomortar.harness.compare import Lookup, judge
@@ -26,7 +26,7 @@ _ALIKE = 0.5
 _NAMED = 3.0
 
 
-@dataclass(frozen=True)
+@frozen
 class Finding:
     """What the gate found in a program.
 

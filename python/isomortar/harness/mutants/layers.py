@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path, PurePath
 
+from isomortar._frozen import frozen
 from isomortar.errors import InputError
 
 
-@dataclass(frozen=True)
+@frozen
 class Layer:
     """Sources that faults are put into.
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 import tomllib
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from scipy.stats import binomtest
 
+from isomortar._frozen import frozen
 from isomortar.errors import InputError
 from isomortar.harness.mutants.campaign import Attacked, Tally
 
@@ -18,7 +18,7 @@ from isomortar.harness.mutants.campaign import Attacked, Tally
 CLASSES = ("equivalent", "performance only", "precision only", "not caught")
 
 
-@dataclass(frozen=True)
+@frozen
 class Classification:
     """What somebody found out about a survivor, and why it is so."""
 
@@ -26,7 +26,7 @@ class Classification:
     reason: str
 
 
-@dataclass(frozen=True)
+@frozen
 class Share:
     """`part` of `whole`, with Wilson's 95 % interval of the share that a random sample stands for."""
 

@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from scipy import sparse
 
 from isomortar._bindings import FunctionArrays, SlaveArrays
+from isomortar._frozen import frozen
 from isomortar.errors import InputError
 from isomortar.geometry.patch import Direction, FloatArray, IntArray
 from isomortar.model import constants
 from isomortar.model.enforcement.face import SlaveFace
 
 
-@dataclass(frozen=True, eq=False)
+@frozen(eq=False)
 class SlaveSide(ABC):
     """The slave side of a contact.
 
@@ -43,7 +43,7 @@ class SlaveSide(ABC):
         """The constraint that is nearest to where each control point belongs, by the face's coordinates, shape (n,)."""
 
 
-@dataclass(frozen=True, eq=False)
+@frozen(eq=False)
 class PointSide(SlaveSide):
     """A slave side with constraints at points.
 

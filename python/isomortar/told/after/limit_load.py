@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from isomortar._bindings import Control
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model.supports import BoolArray
 from isomortar.solve.contact import PairMechanics
@@ -24,7 +25,7 @@ FACE = 0.5
 ITERATIONS = 50
 
 
-@dataclass(frozen=True)
+@frozen
 class Touch:
     """Constraints of a pair that touch, by their numbers, and what motions do to them.
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from itertools import compress
 
 import numpy as np
 
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
 from isomortar.solve.equilibrium import Equilibrium
@@ -23,7 +23,7 @@ ALL = 0.9
 ROLLS = 1e6
 
 
-@dataclass(frozen=True)
+@frozen
 class _Slide:
     """The way on which friction resists bodies that touch least, what it can bear at each constraint, and by contact of the work on it."""
 

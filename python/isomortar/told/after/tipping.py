@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from itertools import compress
 
 import numpy as np
 from scipy import sparse
 
+from isomortar._frozen import frozen
 from isomortar.errors import LostProjectionError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.glue import named
@@ -67,7 +67,7 @@ def giving_way(equilibrium: Equilibrium, state: State) -> Iterator[tuple[set[int
             yield bodies.pieces, _gives_way(equilibrium, bodies)
 
 
-@dataclass(frozen=True)
+@frozen
 class _Loaded:
     """Bodies that touch each other, by the numbers of their pieces, with what they touch; motions, works on these, and their sizes."""
 

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from isomortar._frozen import frozen
 from isomortar.geometry.faces import cells
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.constants import NO_PART, SAME_POINT
@@ -17,7 +16,7 @@ from isomortar.model.supports import BoolArray
 SOME = 1500
 
 
-@dataclass(frozen=True)
+@frozen
 class _Heights:
     """Of some cells of a body's outside: how high they are above another body, whether beside its nearest cell, and facing it."""
 

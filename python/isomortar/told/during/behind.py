@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
+from isomortar._frozen import frozen
 from isomortar.geometry.faces import cells
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
@@ -48,7 +48,7 @@ class Behind:
                     )
 
 
-@dataclass(frozen=True)
+@frozen
 class _Plane:
     """A rigid plane by a contact that has it, all faces in contact with such a plane, and bodies that begin in front of it."""
 

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import Direction, FloatArray
 from isomortar.model.enforcement.face import SlaveFace, grid
 from isomortar.model.entities import Contact, Problem
@@ -29,7 +28,7 @@ LOADED = 0.3
 PART = 0.5
 
 
-@dataclass(frozen=True)
+@frozen
 class BeyondEdges:
     """What of a contact is over its master.
 

@@ -6,11 +6,11 @@ Equilibrium is asked of Gauss points alone. Between them a body may be turned in
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
 
+from isomortar._frozen import frozen
 from isomortar.errors import ConvergenceError
 from isomortar.geometry.patch import Direction, FloatArray, Patch
 from isomortar.model import constants
@@ -18,7 +18,7 @@ from isomortar.model.lines import along, functions_along, quotient
 from isomortar.solve.equilibrium import Equilibrium
 
 
-@dataclass(frozen=True)
+@frozen
 class Least:
     """The smallest J of a body, and the element that it is in, by direction."""
 

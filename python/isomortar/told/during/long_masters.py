@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from isomortar._bindings import surface_functions
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model.entities import Contact, Face, Problem
 from isomortar.model.pairs import Pair
@@ -33,7 +32,7 @@ STILL = 1.3
 PART = 0.5
 
 
-@dataclass(frozen=True)
+@frozen
 class LongMaster:
     """How a contact lies on elements of its master.
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from isomortar._bindings import Projections
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Contact, Problem
 from isomortar.model.pairs import Pair
@@ -48,7 +48,7 @@ FEW, OTHERWISE = "a fifth", "50 %, at the worst by 200 %"
 LIGHT = 0.1
 
 
-@dataclass(frozen=True)
+@frozen
 class Bearing:
     """What bears a contact.
 
