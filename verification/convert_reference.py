@@ -19,11 +19,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import tomlkit
 
 from isomortar.errors import InputError
 from isomortar.geometry.patch import Direction, Patch
 from isomortar.scene.geometry_file import write_geometry
+from isomortar.scene.toml_text import dump
 
 #: Solver keys of the explicit scene and ours; `penalty_base` is a pair and handled apart.
 SOLVER_KEYS = {
@@ -75,7 +75,7 @@ def convert(source: Path, folder: Path, slip_sum: str = "local", augmentation_no
     scene["stages"] = list(_stages(dict(zip(supports, (bc.get("phases") or [] for bc in data["bcs"]), strict=True))))
     scene["solver"] = {"slip_sum": slip_sum, "augmentation_norm": augmentation_norm, **_solver(data.get("solver") or {})}
     path = folder / f"{source.stem}.toml"
-    path.write_text(tomlkit.dumps(scene), encoding="utf-8")
+    path.write_text(dump(scene), encoding="utf-8")
     return path
 
 

@@ -11,7 +11,8 @@ from extremes.trials import Trial, run
 from scipy.optimize import brentq
 
 from isomortar.geometry.patch import FloatArray
-from isomortar.scene.source import dump, parse
+from isomortar.scene.source import parse
+from isomortar.scene.toml_text import dump
 
 Data = dict[str, Any]
 

@@ -59,7 +59,7 @@ def _load() -> None:
     """Load what the program loads when it needs it: here once, and not in every child."""
     for name in ("cli.commands", "cli.progress", "driver", "results.pictures", "results.paraview"):
         importlib.import_module(f"isomortar.{name}")
-    for name in ("rich.console", "scipy.interpolate", "scipy.sparse.linalg", "scipy.spatial", "splinepy", "tomlkit"):
+    for name in ("rich.console", "scipy.interpolate", "scipy.sparse.linalg", "scipy.spatial", "splinepy"):
         importlib.import_module(name)
 
 

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import tomlkit
 from orders.analysis import analyse
 from orders.finding import findings, recommended, summary
 from orders.plan import Plan
@@ -22,6 +21,7 @@ from isomortar.geometry.refinement import mesh
 from isomortar.harness.measurement import Measurement
 from isomortar.scene import Scene, bundled_scenes
 from isomortar.scene.geometry_file import patch_table
+from isomortar.scene.toml_text import dump
 
 CASES = Path(__file__).parents[2] / "verification"
 TINY = """
@@ -80,7 +80,7 @@ def test_a_geometry_of_higher_order_leaves_lower_ones_out():
     del data["bodies"]["block"]["geometry"]
     data["bodies"]["block"]["patch"] = patch_table(cubic)
     data["bodies"]["block"]["mesh"] = {"order": [3, 3, 1], "elements": [4, 4, 1]}
-    plan = Plan.of(Scene.from_toml(tomlkit.dumps(data)))
+    plan = Plan.of(Scene.from_toml(dump(data)))
     assert plan.kinds == ("N1", "N3", "N4", "N5", "L1", "L2", "L3", "L4")
     assert plan.sweep.reference == "N3"
     with pytest.raises(InputError, match="is 2 in direction u"):

@@ -103,7 +103,7 @@ def test_a_run_builds_its_problem_once(tmp_path: Path, monkeypatch: pytest.Monke
 
 
 def test_scenes_are_listed_without_what_writes(tmp_path: Path) -> None:
-    assert not {"h5py", "tomlkit", "isomortar.march.simulation"} & loaded(tmp_path, "scenes")
+    assert not {"h5py", "isomortar.march.simulation"} & loaded(tmp_path, "scenes")
 
 
 def test_splines_are_loaded_once_where_files_are_read_as_well(tmp_path: Path) -> None:

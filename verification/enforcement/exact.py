@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +17,7 @@ from enforcement.two_rules import mixed_rule
 from patch_tests.contact import ORDERS
 
 from isomortar import model
+from isomortar._frozen import frozen
 from isomortar.harness.cases import Cell
 from isomortar.harness.runner import Result
 from isomortar.harness.runs import Computed
@@ -30,7 +30,7 @@ CURVED = {"closest": "curved", "averaged": "curved, averaged"}
 TESTS = (*MESHES, "averaged", *CURVED.values())
 
 
-@dataclass(frozen=True)
+@frozen
 class Refused:
     """What is no option, and the cells whose numbers say why: by form, those of one order."""
 
@@ -86,7 +86,7 @@ def cells() -> Iterator[Cell]:
     yield from constraints.cells
 
 
-@dataclass(frozen=True)
+@frozen
 class Exact(Computed):
     """A cell of `isomortar verify`."""
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -11,12 +10,13 @@ import numpy as np
 from enforcement.known import KIND, STRIPS
 from enforcement.plan import MORTAR, REFERENCE, Planned
 
+from isomortar._frozen import frozen
 from isomortar.accuracy.measures import roughness
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness.runs import ByMethod, Computed
 
 
-@dataclass(frozen=True)
+@frozen
 class Found(Computed):
     """A run, and its distance from others."""
 
@@ -58,7 +58,7 @@ class Found(Computed):
         return float(np.linalg.norm(self.curve - reference.curve) / np.linalg.norm(reference.curve))
 
 
-@dataclass(frozen=True)
+@frozen
 class Known(Computed):
     """A run whose tractions are known."""
 
@@ -78,7 +78,7 @@ class Known(Computed):
         return str(self.result.cell.settings["way"])
 
 
-@dataclass(frozen=True)
+@frozen
 class Evidence(ByMethod[Found]):
     """The runs by one way of enforcement, beside those by the others, those of known tractions, and what is exact by method and order."""
 

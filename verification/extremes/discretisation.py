@@ -11,7 +11,7 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, Shown, case
 from isomortar.model.entities import Material
 from isomortar.scene import Scene
-from isomortar.scene.source import dump
+from isomortar.scene.toml_text import dump
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.timing import Ledger
 

@@ -17,7 +17,7 @@ from isomortar.harness import Bound, case
 from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
 from isomortar.scene import Scene
-from isomortar.scene.source import dump
+from isomortar.scene.toml_text import dump
 
 #: Modes of x86's <fenv.h>.
 MODES = {"nearest": 0x000, "downward": 0x400, "upward": 0x800, "toward zero": 0xC00}

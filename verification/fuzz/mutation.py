@@ -11,7 +11,7 @@ from typing import Any
 
 from fuzz.base_scenes import TEXTS
 
-from isomortar.scene.source import dump
+from isomortar.scene.toml_text import dump
 
 #: Where a value stands: the table or list that holds it, and its key or number there.
 Place = tuple[Any, Any]

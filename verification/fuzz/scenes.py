@@ -19,7 +19,7 @@ from isomortar.harness import Bound, case
 from isomortar.model.entities import Contact, Face, Problem, RigidPlane
 from isomortar.model.glue import pieces
 from isomortar.results import layout
-from isomortar.scene.source import dump
+from isomortar.scene.toml_text import dump
 
 #: Share by which forces, and contact conditions, may be off beyond the scene's own tolerances; and what that is of a tolerance.
 ROUND_OFF, OF_TOLERANCE = 1e-9, 1e2

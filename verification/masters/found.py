@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 
@@ -13,13 +12,14 @@ from paper import measures
 from paper.outcome import Outcome, outcome
 from paper.statements import quotient
 
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness.runs import ByMethod, Computed
 from isomortar.harness.statement import Values
 from isomortar.program.getfem import GetFEM
 
 
-@dataclass(frozen=True)
+@frozen
 class _OfPlan(Computed):
     """A run that is planned, by whatever program."""
 
@@ -31,7 +31,7 @@ class _OfPlan(Computed):
         return self.planned.name
 
 
-@dataclass(frozen=True)
+@frozen
 class Found(_OfPlan):
     """A run by isomortar."""
 
@@ -109,7 +109,7 @@ class Found(_OfPlan):
         return abs(own / theirs - 1.0)
 
 
-@dataclass(frozen=True)
+@frozen
 class Beside(_OfPlan):
     """The block by another program."""
 
@@ -126,7 +126,7 @@ class Beside(_OfPlan):
         return slide(self.planned, self.curves("force", len(supports), 3)[:, moving], self.curves("works", 2))
 
 
-@dataclass(frozen=True)
+@frozen
 class Evidence(ByMethod[Found]):
     """The runs by one way, beside those by the others, and the block by GetFEM."""
 

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import pairwise
 
 from paper.outcome import Outcome, Outcomes
 from paper.sections import METHODS, Method, Section
 
+from isomortar._frozen import frozen
 from isomortar.harness import statement
 from isomortar.harness.statement import Judgement, NotMeasuredError
 
 
-@dataclass(frozen=True)
+@frozen
 class Evidence:
     """The runs of all sections by one method, for the functions that measure; `left_out`: those that they had to do without."""
 
@@ -75,7 +76,7 @@ class Evidence:
         return [found for name in section.names(entry) if (found := self.outcomes.named(section, name, self.method))]
 
 
-@dataclass(frozen=True)
+@frozen
 class Statement(statement.Statement[Evidence]):
     """A finding of the paper, judged on runs by both methods where it does not say on which."""
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate
 
@@ -11,6 +10,7 @@ import numpy as np
 from programs.plan import MESHES, Mesh, Planned, programs_of
 from programs.run import PROGRAMS
 
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness.runs import ByMethod, Computed
 from isomortar.model.entities import Problem
@@ -21,7 +21,7 @@ OWN = next(iter(PROGRAMS))
 STAGES = {"pressed": 2, "dragged": 0}
 
 
-@dataclass(frozen=True)
+@frozen
 class Found(Computed):
     """A run, and how it ended."""
 

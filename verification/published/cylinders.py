@@ -18,7 +18,7 @@ from isomortar.model.numbering import Numbering
 from isomortar.results.bezier import functions_at, rational
 from isomortar.results.stress import cauchy_stress, deformation_gradient
 from isomortar.scene import Scene
-from isomortar.scene.source import dump
+from isomortar.scene.toml_text import dump
 from isomortar.solve.record import StepResult
 
 #: Radii: of the bore, the joint, the outer surface. Young's moduli of both, and Poisson's ratio.

@@ -15,7 +15,7 @@ from isomortar.harness import Bound, Shown, case
 from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
 from isomortar.scene import Scene
-from isomortar.scene.source import dump
+from isomortar.scene.toml_text import dump
 from isomortar.solve.record import StepResult
 
 #: Quarters, mm and N; round the axis one element is exact. At the axis there is a hole of a thousandth of the radius, held as an axis is:

@@ -21,7 +21,7 @@ from isomortar.results.bezier import sampling_matrix
 from isomortar.results.fields import contact_surfaces
 from isomortar.scene import Scene
 from isomortar.scene.geometry_file import patch_table
-from isomortar.scene.source import dump
+from isomortar.scene.toml_text import dump
 
 #: Both: radius and height of the punch, and of the cylinder below.
 PUNCH, CYLINDER = (50.0, 100.0), (100.0, 200.0)

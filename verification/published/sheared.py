@@ -17,7 +17,7 @@ from isomortar.results.bezier import rational, sampling_matrix
 from isomortar.results.fields import ContactSurface, contact_surfaces
 from isomortar.scene import Scene
 from isomortar.scene.geometry_file import patch_table
-from isomortar.scene.source import dump
+from isomortar.scene.toml_text import dump
 
 #: Shares of the shear that friction bears, and that at which tractions are drawn.
 SHARES, DRAWN = (0.25, 0.5, 0.75, 0.9), 0.5

@@ -22,7 +22,7 @@ from isomortar.program.declaration import LoadStep
 from isomortar.results.fields import contact_surfaces
 from isomortar.scene import Scene
 from isomortar.scene.geometry_file import patch_table
-from isomortar.scene.source import dump
+from isomortar.scene.toml_text import dump
 
 POISSON = 0.3
 #: Hertz's modulus and radius of both spheres, and the force that makes the approach of literature.

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import hashlib
 import io
+import tomllib
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -20,11 +21,11 @@ from typing import Literal, get_args
 
 import h5py
 import numpy as np
-import tomlkit
 
 from isomortar.errors import InputError
 from isomortar.harness.cases import Case, Cell
 from isomortar.harness.compare import Expected, Lookup
+from isomortar.scene.toml_text import dump
 
 Kind = Literal["exact", "over-refined", "other code", "self"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
@@ -44,7 +45,7 @@ class Reference:
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         try:
-            self.record = tomlkit.parse((folder / "record.toml").read_text()).unwrap()
+            self.record = tomllib.loads((folder / "record.toml").read_text())
             content = (folder / "data.h5").read_bytes()
         except OSError as error:
             raise InputError(f"can not be read: {error}", str(folder)) from None
@@ -110,5 +111,5 @@ def write_reference(folder: Path, datasets: Mapping[str, tuple[np.ndarray, float
             file.create_dataset(name, data=values, track_times=False).attrs["uncertainty"] = uncertainty
     (folder / "data.h5").write_bytes(memory.getvalue())
     complete = {**record, "sha256": hashlib.sha256(memory.getvalue()).hexdigest()}
-    (folder / "record.toml").write_text(tomlkit.dumps(complete))
+    (folder / "record.toml").write_text(dump(complete))
     Reference(folder)

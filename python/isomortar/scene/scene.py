@@ -15,7 +15,8 @@ from isomortar.model.messages import input_error
 from isomortar.scene.build import build, coarse_patch
 from isomortar.scene.geometry_file import patch_table
 from isomortar.scene.schema import CurveTable, RecordTable, SceneTable, StageTable
-from isomortar.scene.source import SceneChanges, apply_overrides, dump, parse, read_source
+from isomortar.scene.source import SceneChanges, apply_overrides, parse, read_source
+from isomortar.scene.toml_text import dump
 
 
 class Scene:

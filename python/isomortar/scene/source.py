@@ -96,22 +96,6 @@ def _read(text: str) -> dict[str, Any]:
         raise tomllib.TOMLDecodeError("a number of more digits, or a date of others, than there are") from error
 
 
-def dump(data: dict[str, Any]) -> str:
-    """A dictionary as TOML text."""
-    import tomlkit
-
-    return tomlkit.dumps(data)
-
-
-def in_a_line(table: Mapping[str, Any]) -> str:
-    """A table as TOML text in one line, as the value of an override."""
-    import tomlkit
-
-    inline = tomlkit.inline_table()
-    inline.update(dict(table))
-    return inline.as_string()
-
-
 def apply_overrides(data: dict[str, Any], overrides: SceneChanges) -> None:
     """Change single values in place.
 

@@ -10,7 +10,8 @@ import numpy as np
 
 from isomortar.model.entities import RigidPlane
 from isomortar.scene.scene import Scene
-from isomortar.scene.source import in_a_line, parse
+from isomortar.scene.source import parse
+from isomortar.scene.toml_text import in_a_line
 from isomortar.trade.knobs import KNOBS, Changes, Dial, Knob, Setting, contact_places, dials_of, directions, given, stated
 from isomortar.trade.search import Recommendation, Search
 from isomortar.trade.want import Want
