@@ -440,9 +440,9 @@ class Problem:
         """Whether a load step is the last one of its stage: the next one does not go on as it did."""
         return step in np.cumsum([stage.steps for stage in self.stages])
 
-    def holds(self, face: Face, stage: int | None = None) -> bool:
-        """Whether supports together hold, or carry, all components of a face in a stage; None: in any of them."""
-        there = [support for support in self.supports if support.place == face and (stage is None or support.holds(stage))]
+    def holds(self, face: Face, stage: int) -> bool:
+        """Whether supports together hold, or carry, all components of a face in a stage."""
+        there = [support for support in self.supports if support.place == face and support.holds(stage)]
         return {0, 1, 2} == {component for support in there for component in support.carried}
 
     @property

@@ -45,14 +45,15 @@ class Touching:
 
     def __init__(self, problem: Problem, numbering: Numbering, supports: Supports, loads: Loads) -> None:
         self._problem, self._numbering, self._supports, self._loads = problem, numbering, supports, loads
+        self._pulled = bool(problem.loads or supports.plates)
 
     def _ways(self, positions: FloatArray, time: float, borne: set[str]) -> list[tuple[set[str], FloatArray]]:
-        """Bodies, and a way that each goes to a load time: as loads move it, or any way if none does (theory 6.8).
+        """Bodies, and a way that each goes to a load time: as loads move it, or any way to and fro if none does (theory 6.8).
 
         Where no loads act, those alone that no contact bears: supports press the others on what they are on.
         """
         motions = free_motions(self._problem, self._numbering, self._supports, positions)
-        if not (self._problem.loads or self._supports.plates):
+        if not self._pulled:
             held = {number for number, piece in enumerate(self._numbering.pieces) if borne & {body.name for body in piece}}
             motions = [motion for motion in motions if motion.piece not in held]
         if not motions:
@@ -65,7 +66,7 @@ class Touching:
             works = -np.einsum("mij,ij->m", own, left)
             way = np.tensordot(works, own, 1)
             driven = not turning and np.abs(works).max(initial=0.0) > constants.NO_PART * np.abs(left).sum()
-            ways = way[None] / np.abs(way).max() if driven else np.concatenate([own, -own])
+            ways = way[None] / np.abs(way).max() if driven else np.stack([own, -own], axis=1).reshape(-1, *positions.shape)
             found += [({body.name for body in piece}, one) for one in ways]
         return found
 
@@ -84,8 +85,9 @@ class Touching:
             return [None] * len(pairs)
         approaches = [_approach(pair, start.positions, contact, ways) for pair, contact in zip(pairs, start.contacts, strict=True)]
         first, size = np.min([approach.distances for approach in approaches], axis=0), np.sqrt(max(pair.pair.area for pair in pairs))
-        if not (self._problem.loads or self._supports.plates):
-            first = np.where(_to_and_fro(ways, first) <= constants.BETWEEN * size, first, -np.inf)
+        if not self._pulled:  # nothing presses a body on what it may go away from: something has to stand on both of its sides
+            room = first.reshape(-1, 2).sum(axis=1).repeat(2)
+            first = np.where(room <= constants.BETWEEN * size, first, -np.inf)
         found: list[FloatArray | None] = []
         for pair, contact, approach, penalty in zip(pairs, start.contacts, approaches, penalties, strict=True):
             among = np.isfinite(approach.distances) & (approach.distances <= first + next_to_nothing(pair))
@@ -96,12 +98,6 @@ class Touching:
             least = next_to_nothing(pair)
             found.append(np.where(approach.near, size * np.maximum(least, least - mean_heights(approach.control)), 0.0))
         return found
-
-
-def _to_and_fro(ways: Sequence[tuple[set[str], FloatArray]], first: FloatArray) -> FloatArray:
-    """How far bodies can go along each way and back, until something stands in both: nothing presses them on what they may go away from."""
-    back = [next(k for k, (bodies, way) in enumerate(ways) if bodies == of and np.array_equal(way, -there)) for of, there in ways]
-    return first + first[back]
 
 
 def _approach(pair: PairMechanics, positions: FloatArray, start: ContactState, ways: Sequence[tuple[set[str], FloatArray]]) -> _Approach:

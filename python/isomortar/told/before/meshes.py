@@ -115,7 +115,7 @@ def _hardly_bends(problem: Problem, body: Body) -> Iterator[str]:
     lengths = element_lengths(body.patch)
     across = int(np.argmin([along.sum() for along in lengths]))
     letter, thickness = "uvw"[across], float(lengths[across].sum())
-    held = any(problem.holds(Face(body.name, f"{letter}{end}")) for end in (0, 1))
+    held = any(problem.holds(Face(body.name, f"{letter}{end}"), k) for end in (0, 1) for k in range(len(problem.stages)))
     glued = any(face.body == body.name for joint in problem.glue for face in joint)
     straight = [
         1.0 + (float(lengths[k].max()) / thickness) ** 2 / (2.0 * (1.0 + body.material.poisson)) if direction.order == 1 else 1.0
