@@ -19,7 +19,6 @@ from isomortar.solve.monolithic import Monolithic
 from isomortar.solve.record import Observer, State, StepResult
 from isomortar.solve.timing import Ledger
 from isomortar.solve.uzawa import Uzawa
-from isomortar.told.after.causes import causes
 from isomortar.told.before.doubts import doubts
 from isomortar.told.before.pairing import of_pairing
 from isomortar.told.during.watches import Watches
@@ -166,6 +165,8 @@ class Simulation:
         """Halve the load increment, or give up with a sentence that says where and why; `state` is where the increment began."""
         self._increment = 0.5 * increment / longest
         if self._increment < 0.5**self.problem.settings.max_cuts or time - 0.5 * increment == time:
+            from isomortar.told.after.causes import causes  # within: a run that comes to its end gives none up
+
             stage, likely = self.problem.stages[self.problem.stage_of(step)].name, causes(self.equilibrium, state, error)
             alone = "" if self.problem.settings.max_cuts else ", the only one that solver.max_cuts = 0 allows"
             raise ConvergenceError(

@@ -21,7 +21,8 @@ OF_THE_FILE = ("materials", "bodies", "glue", "contacts", "symmetry", "supports"
 class Table(BaseModel):
     """Base of all tables of a scene file: unknown keys are errors that list the known ones, the nearest first."""
 
-    model_config = ConfigDict(**TABLE, frozen=True)
+    # What validates a table is made when it is first asked: of those within another that is never, as the outer one's does it all.
+    model_config = ConfigDict(**TABLE, frozen=True, defer_build=True)
 
     @model_validator(mode="before")
     @classmethod
