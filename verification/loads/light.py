@@ -63,6 +63,20 @@ supports.top.face = "plate.w1"
 stages = [{ name = "press", steps = 3, motions.top.translate = [0, 0, -0.03] }]
 """
 _BETWEEN = {"roller": _ROLLER, "in a gap": _IN_A_GAP}
+#: Two bodies, and a roller between them, which touches both.
+_PLATES = """
+format = 1
+bodies.plate = { geometry = { kind = "box", lower = [-2, 0, 1], upper = [2, 0.3, 1.4] }, mesh.elements = [16, 1, 2] }
+bodies.floor = { geometry = { kind = "box", lower = [-2, 0, -0.4], upper = [2, 0.3, 0] }, mesh.elements = [16, 1, 2] }
+supports = { top.face = "plate.w1", base.face = "floor.w0" }
+stages = [{ name = "press", steps = 2, motions.top.translate = [0, 0, -0.025] }]
+"""
+_BETWEEN_PLATES = """
+bodies.NAME = { geometry = { kind = "ring", inner = 0.2, outer = 0.5, width = 0.3, centre = [AT, 0, 0.5] }, mesh.elements = [16, 2, 1] }
+contacts.floor-NAME = { slave = "NAME.v1", master = "floor.w1", friction = 0.3 }
+contacts.top-NAME = { slave = "NAME.v1", master = "plate.w0", friction = 0.3 }
+"""
+_PLACES = {1: (0.0,), 2: (-1.2, 1.2), 3: (-1.2, 0.0, 1.2)}
 #: A block on an incline, which has nothing but friction to hold it: weight that pushes it along by 0.36 of what it presses with.
 WEIGHT = np.array([0.108, 0.0, -0.3])
 _INCLINE = """
@@ -160,6 +174,33 @@ def without_load(body: str, method: str) -> dict[str, float]:
     alone, laid = _computed(text, method), _computed(f'{text}loads.own = {{ body = "loose", weight = [0, 0, -1e-9] }}\n', method)
     one, other = (np.array([[contact.force_slave[2] for contact in step.contacts] for step in steps]) for steps in (alone, laid))
     return {"forces": float(np.abs(one - other).max() / np.abs(other).max()), "cuts": float(sum(step.cuts for step in alone))}
+
+
+@case(
+    claim="Rollers side by side between two bodies, which they touch and which alone hold them, begin in contact and stay between.",
+    tier="gate",
+    grid={"rollers": tuple(_PLACES), "method": ("monolithic", "uzawa")},
+    bounds={
+        "between": Bound(at_most=1e-6, reason="definition: each bears below what it bears above, to the tolerance of balance"),
+        "sides": Bound(at_most=1e-6, reason="definition: the scene is its own mirror image, to the tolerance of balance"),
+        "neighbours": Bound(at_most=0.05, reason="discretisation: thick plates carry little of what one roller does to the others"),
+    }
+    | _CUTS,
+)
+def side_by_side(rollers: int, method: str) -> dict[str, float]:
+    """Differences of forces above and below, of both sides, and to a single roller, over the mean; cuts of load increments."""
+    steps, single = (
+        _computed(_PLATES + "".join(_BETWEEN_PLATES.replace("NAME", f"r{k}").replace("AT", str(x)) for k, x in enumerate(places)), method)
+        for places in (_PLACES[rollers], _PLACES[1])
+    )
+    forces, alone = (np.array([contact.force_slave[2] for contact in found[-1].contacts]).reshape(-1, 2) for found in (steps, single))
+    left = {
+        "between": forces.sum(axis=1),
+        "sides": forces - forces[::-1],
+        "neighbours": forces - alone,
+    }
+    mean = float(np.abs(forces).mean())
+    return {name: float(np.abs(values).max() / mean) for name, values in left.items()} | {"cuts": float(sum(step.cuts for step in steps))}
 
 
 #: A block that its base leaves free along x, and a wall beside it; a tool may hold it by friction.

@@ -110,6 +110,13 @@ MERIT_GROWTH = 2.0
 SLIP_MARGIN = 1e-6
 #: How often in a Newton loop what loads close first is closed anew where all has opened again: each time it is nearer.
 MAX_CLOSINGS = 5
+#: By how much of the largest entry on the diagonal of their tangent loose bodies are held where they are until contact holds them: with a
+#: tenth a roller between plates did not come to rest, with nothing three of them were thrown out.
+STEADY = 1e-3
+#: Merit of an iterate up to which contact holds such bodies by itself: closer to the solution nothing throws them out.
+HELD = 0.1
+#: How many tangents of a Newton loop hold such bodies at most: what has found no hold by then has none.
+MAX_STEADIED = 10
 #: How often the first solve is repeated with reversed slips held: each repetition may find more of them; the loop settles the rest.
 MAX_REVERSALS = 2
 #: Forces of a body are round-off below so many times what the last bits of its positions make of them (0.2 to 1.2 times were seen).

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 
 import numpy as np
 from scipy import sparse
@@ -13,6 +14,7 @@ from isomortar._frozen import frozen
 from isomortar._sparse import Ordering
 from isomortar.errors import SingularSystemError
 from isomortar.geometry.patch import FloatArray
+from isomortar.model import constants
 from isomortar.model.entities import Problem
 from isomortar.model.loads import Loads
 from isomortar.model.numbering import Numbering
@@ -22,6 +24,7 @@ from isomortar.model.solid import Solid
 from isomortar.model.supports import Supports
 from isomortar.solve.condensed import Bodies, CondensedSystem, engine_of, touched
 from isomortar.solve.contact import Kinematics, PairMechanics
+from isomortar.solve.free_motions import free_motions
 from isomortar.solve.record import State
 from isomortar.solve.scales import PieceMeasures, Scales
 from isomortar.solve.singular import PairConditions, explain
@@ -89,6 +92,7 @@ class Equilibrium:
         self.time = 0.0
         self._known: tuple[FloatArray, State, FloatArray, tuple[Kinematics, ...]] | None = None
         self._stiffness = np.zeros((0, 3, 3))
+        self._steady = False
         self._engine = engine_of(problem.settings)
         self.orderings: dict[int, Ordering] = {}
         self._stand(0)
@@ -223,11 +227,33 @@ class Equilibrium:
             with self.ledger.phase("solid"):
                 self._stiffness = self.solid.forces_and_tangent(positions)[1]
             self.ledger.counts["solid tangents"] += 1
+            if self._steady:
+                self._stiffness = self._steadied(self._stiffness, positions)
         with self.ledger.phase("solid"):
             of_loads = list(self.loads.tangents(positions, self.time))
         equation = self.supports.equation
         sources = [self.solid_source, *(Source(pattern, equation, equation) for pattern, _ in of_loads)]
         return sources, [self._stiffness, *(-values for _, values in of_loads)]
+
+    @contextmanager
+    def steadied(self, steady: bool) -> Iterator[None]:
+        """Make tangents in which bodies that supports leave a rigid motion are held a little, if they are to be."""
+        self._steady = steady
+        try:
+            yield
+        finally:
+            self._steady = False
+
+    def _steadied(self, stiffness: FloatArray, positions: FloatArray) -> FloatArray:
+        """The bodies' tangent in which they are held (theory 6.9)."""
+        loose = {motion.piece for motion in free_motions(self.problem, self.numbering, self.supports, positions)}
+        points = [self.numbering.points[body.name] for number in loose for body in self.numbering.pieces[number]]
+        if not points:
+            return stiffness
+        diagonal = self.solid.diagonal[np.unique(np.concatenate(points))]
+        stiffness = stiffness.copy()
+        stiffness[diagonal] += np.eye(3) * (constants.STEADY * np.max(stiffness[diagonal]))
+        return stiffness
 
     def left_by_bodies(self, before: Balance, after: Balance) -> float:
         """What the bodies' tangent of the last solve missed of their forces on the way from one iterate to the next (theory 5.24).

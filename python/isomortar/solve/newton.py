@@ -26,6 +26,8 @@ from isomortar.solve.trail import Trail, states
 KEPT_FACTORS, KEPT_BODIES = "kept factors", "kept bodies"
 #: Note of one whose tangent had that closed anew which loads close first.
 CLOSED_ANEW = "closed anew"
+#: Note of one whose tangent held loose bodies a little where they are.
+STEADIED = "steadied"
 
 
 @frozen
@@ -114,14 +116,14 @@ class Newton(ABC, Generic[Iterated, Corrected]):
         """
         moves = prescribed is not None and bool(np.any(prescribed))
         keep = self._keeps and self._factorised and not moves
-        log, tangents, closings = list[IterationRecord](), 0, 0
+        log, tangents, closings, steadied = list[IterationRecord](), 0, 0, 0
         led: tuple[Iterated, Iterated] | None = None  # from where to where by the last tangent
         self._trail = Trail()
         for iteration in count():
             self._trail.add(iterate.balance)
             log.append(_record(iteration, iterate, notes))
             observe(log[-1])
-            if self._converged(iterate) and not moves:
+            if self._converged(iterate) and not moves and STEADIED not in notes:
                 reopened = self._reopened(iterate)
                 if reopened is iterate:
                     self._have_factors(iterate)
@@ -135,10 +137,13 @@ class Newton(ABC, Generic[Iterated, Corrected]):
                 opened = tangents > 0 and closings < constants.MAX_CLOSINGS and self._opened(iterate)
                 if opened:
                     iterate, keep_bodies, closings = self._closed_anew(iterate), False, closings + 1
-                iterate, following, notes = self._by_tangent(iterate, None if tangents else prescribed, iteration, keep_bodies)
-                notes = ((CLOSED_ANEW,) if opened else ()) + notes
-                tangents, moves, led = tangents + 1, False, (iterate, following)
-            keep = self._keeps and self._serve(iterate, following)
+                steady = steadied < constants.MAX_STEADIED and self._finds_hold(iterate)
+                with self._equilibrium.steadied(steady):
+                    iterate, following, notes = self._by_tangent(iterate, None if tangents else prescribed, iteration, keep_bodies)
+                notes = ((CLOSED_ANEW,) if opened else ()) + ((STEADIED,) if steady else ()) + notes
+                tangents, steadied, moves = tangents + 1, steadied + steady, False
+                led = None if steady else (iterate, following)
+            keep = self._keeps and STEADIED not in notes and self._serve(iterate, following)
             iterate = following
         return self._given_up(iterate, tuple(log))
 
@@ -180,6 +185,10 @@ class Newton(ABC, Generic[Iterated, Corrected]):
     def _opened(self, iterate: Iterated) -> bool:
         """Whether loads closed something and all is open again, so that there is no tangent."""
         return any(self._loads_closed) and not iterate.balance.active
+
+    def _finds_hold(self, iterate: Iterated) -> bool:
+        """Whether bodies that nothing held before are on their way to what will hold them (theory 6.9)."""
+        return any(self._loads_closed) and iterate.merit > constants.HELD
 
     @abstractmethod
     def _closed_anew(self, iterate: Iterated) -> Iterated:
