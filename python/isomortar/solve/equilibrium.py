@@ -20,11 +20,11 @@ from isomortar.model.loads import Loads
 from isomortar.model.numbering import Numbering
 from isomortar.model.origin import about, by_near_points, origin_of
 from isomortar.model.pairs import Pair
+from isomortar.model.rank import motions_left
 from isomortar.model.solid import Solid
 from isomortar.model.supports import Supports
 from isomortar.solve.condensed import Bodies, CondensedSystem, engine_of, touched
 from isomortar.solve.contact import Kinematics, PairMechanics
-from isomortar.solve.free_motions import free_motions
 from isomortar.solve.record import State
 from isomortar.solve.scales import PieceMeasures, Scales
 from isomortar.solve.singular import PairConditions, explain
@@ -107,6 +107,8 @@ class Equilibrium:
         self._system_patterns: list[object] = []
         self._solid_entries: sparse.csr_array | None = None
         self._touching = Touching(self.problem, self.numbering, self.supports, self.loads)
+        #: Pieces that supports leave a rigid motion.
+        self.loose = [piece for piece in self.numbering.pieces if len(motions_left(self.problem, piece, stage))]
 
     def standing(self, step: int) -> Supports:
         """The supports of the stage of a load step."""
@@ -228,7 +230,7 @@ class Equilibrium:
                 self._stiffness = self.solid.forces_and_tangent(positions)[1]
             self.ledger.counts["solid tangents"] += 1
             if self._steady:
-                self._stiffness = self._steadied(self._stiffness, positions)
+                self._stiffness = self._steadied(self._stiffness)
         with self.ledger.phase("solid"):
             of_loads = list(self.loads.tangents(positions, self.time))
         equation = self.supports.equation
@@ -244,15 +246,13 @@ class Equilibrium:
         finally:
             self._steady = False
 
-    def _steadied(self, stiffness: FloatArray, positions: FloatArray) -> FloatArray:
+    def _steadied(self, stiffness: FloatArray) -> FloatArray:
         """The bodies' tangent in which they are held (theory 6.9)."""
-        loose = {motion.piece for motion in free_motions(self.problem, self.numbering, self.supports, positions)}
-        points = [self.numbering.points[body.name] for number in loose for body in self.numbering.pieces[number]]
-        if not points:
-            return stiffness
-        diagonal = self.solid.diagonal[np.unique(np.concatenate(points))]
         stiffness = stiffness.copy()
-        stiffness[diagonal] += np.eye(3) * (constants.STEADY * np.max(stiffness[diagonal]))
+        for piece in self.loose:
+            diagonal = self.solid.diagonal[np.unique(np.concatenate([self.numbering.points[body.name] for body in piece]))]
+            largest = np.max(stiffness[diagonal]) or np.max(stiffness)  # a rigid body has no stiffness of its own
+            stiffness[diagonal] += np.eye(3) * (constants.STEADY * largest)
         return stiffness
 
     def left_by_bodies(self, before: Balance, after: Balance) -> float:

@@ -118,6 +118,7 @@ class Newton(ABC, Generic[Iterated, Corrected]):
         keep = self._keeps and self._factorised and not moves
         log, tangents, closings, steadied = list[IterationRecord](), 0, 0, 0
         led: tuple[Iterated, Iterated] | None = None  # from where to where by the last tangent
+        begins_loose = bool(self._equilibrium.loose) and (any(self._loads_closed) or not iterate.balance.active)
         self._trail = Trail()
         for iteration in count():
             self._trail.add(iterate.balance)
@@ -137,7 +138,7 @@ class Newton(ABC, Generic[Iterated, Corrected]):
                 opened = tangents > 0 and closings < constants.MAX_CLOSINGS and self._opened(iterate)
                 if opened:
                     iterate, keep_bodies, closings = self._closed_anew(iterate), False, closings + 1
-                steady = steadied < constants.MAX_STEADIED and self._finds_hold(iterate)
+                steady = begins_loose and steadied < constants.MAX_STEADIED and (moves or iterate.merit > constants.HELD)
                 with self._equilibrium.steadied(steady):
                     iterate, following, notes = self._by_tangent(iterate, None if tangents else prescribed, iteration, keep_bodies)
                 notes = ((CLOSED_ANEW,) if opened else ()) + ((STEADIED,) if steady else ()) + notes
@@ -185,10 +186,6 @@ class Newton(ABC, Generic[Iterated, Corrected]):
     def _opened(self, iterate: Iterated) -> bool:
         """Whether loads closed something and all is open again, so that there is no tangent."""
         return any(self._loads_closed) and not iterate.balance.active
-
-    def _finds_hold(self, iterate: Iterated) -> bool:
-        """Whether bodies that nothing held before are on their way to what will hold them (theory 6.9)."""
-        return any(self._loads_closed) and iterate.merit > constants.HELD
 
     @abstractmethod
     def _closed_anew(self, iterate: Iterated) -> Iterated:
