@@ -96,12 +96,11 @@ def _missing_symmetry(problem: Problem) -> Iterator[str]:
 
 def _cuts(problem: Problem, axis: int, end: int) -> list[Face]:
     """Of every deformable body a face in the one plane across an axis where bodies and contacts end, that goes on smoothly; else none."""
-    bodies = problem.deformable
-    if not bodies:
-        return []
     ends = [float((np.max if end else np.min)(body.patch.control_points[:, axis])) for body in problem.bodies]
     near = SAME_POINT * max(body.size for body in problem.bodies)
-    faces = [[Face(body.name, face) for face in body.outer if _is_cut(body.patch, face, axis, ends[0], near)] for body in bodies]
+    faces = [
+        [Face(body.name, face) for face in body.outer if _is_cut(body.patch, face, axis, ends[0], near)] for body in problem.deformable
+    ]
     sides = [face for c in problem.contacts for side in (c.slave.faces, getattr(c.master, "faces", ())) for face in side]
     ends += [float((np.max if end else np.min)(_points(problem, side)[:, axis])) for side in sides]
     return [face for found in faces for face in found] if np.ptp(ends) <= near and all(faces) else []
@@ -127,8 +126,7 @@ def _held(problem: Problem, face: Face, axis: int) -> bool:
 
 
 def _taken(problem: Problem, face: Face) -> bool:
-    """Whether a face is loaded, glued, or in contact."""
+    """Whether a face is loaded or in contact; glued to what is beyond it, it would be no end of all bodies."""
     loaded = any(load.face is not None and load.place == face for load in problem.loads)
-    glued = any(face in joint for joint in problem.glue)
     touched = any(face in side for c in problem.contacts for side in (c.slave.faces, getattr(c.master, "faces", ())))
-    return loaded or glued or touched
+    return loaded or touched
