@@ -85,9 +85,10 @@ def causes(equilibrium: Equilibrium, state: State, error: Exception) -> Iterator
 
 def _path(error: float, cuts: int) -> str:
     """What lets an increment that converged be as long as it is, or makes it shorter."""
-    unit = 10.0 ** np.floor(np.log10(error)) if np.isfinite(error) else np.inf
-    enough = np.ceil(error / unit) * unit if unit < np.inf else np.inf
-    ways = [f"take solver.path_tolerance = {enough:g} or more"] if enough <= 1.0 else []
+    ways = []
+    if error <= 1.0:  # which no error that is infinite or not a number is
+        unit = 10.0 ** np.floor(np.log10(error))
+        ways.append(f"take solver.path_tolerance = {np.ceil(error / unit) * unit:g} or more")
     ways += [f"let increments be halved more often than solver.max_cuts = {cuts}"] if cuts < constants.MOST_CUTS else []
     return f"balance and contact were met, and the shortest increment is too long for that: {', '.join([*ways, 'or take more load steps'])}"
 
