@@ -1,0 +1,83 @@
+"""What is refused, on either side of each limit, and beside what is taken for one thing that is other."""
+
+from __future__ import annotations
+
+from told.either_way import RESTING, SCENE
+from told.word_by_word import refused
+
+from isomortar.harness import Bound, case
+
+#: The blocks, and a third body at a place that is far from the origin.
+FAR = """
+[bodies.far]
+geometry = {{ kind = "box", lower = [{place!r}, 0, 0], upper = [{end!r}, 1, 1] }}
+[supports.far]
+face = "far.w0"
+"""
+#: The blocks, of which one is held at the side in all stages.
+THROUGHOUT = RESTING.replace(', stages = ["one"]', "")
+
+_CONTACT = "contacts.c={slave='above.w0',master='below.w1',"
+_PAPER = "solver.slip_sum='paper'"
+_RAISED = "bodies.above.mesh={order=2,elements=2,contact_order=3}"
+_TWO = "supports.top.components=['x','z']"
+
+
+def far(place: float) -> str:
+    """The scene with a third body at a place."""
+    return SCENE + FAR.format(place=place, end=place + 1.0)
+
+
+def loaded(face: str, load: str) -> str:
+    """A load on a face."""
+    return f"loads={{wind={{face='{face}',{load}}}}}"
+
+
+#: A scene, what is changed in it, and words of why it is refused; none: it is taken.
+CASES: tuple[tuple[str, tuple[str, ...], str], ...] = (
+    (SCENE, ("solver={method='uzawa',path_tolerance=0.01}",), ""),
+    (SCENE, ("solver={method='uzawa',path_tolerance=0.0099}",), "below solver.augmentation_tolerance = 0.01"),
+    (SCENE, ("solver={method='monolithic',path_tolerance=0.0099}",), ""),
+    (far(8e12), (), ""),
+    (far(9e12), (), "stands 9e+12 from the origin and is 1 long"),
+    (SCENE, ("supports.top.centre=[0,4e12,0]",), ""),
+    (SCENE, ("supports.top.centre=[0,5e12,0]",), "is 5e+12 from the origin"),
+    (SCENE, ("stages.one.motions.top.translate=[0,4e12,0]",), ""),
+    (SCENE, ("stages.one.motions.top.translate=[0,5e12,0]",), "has gone 5e+12 by the end of the stage"),
+    (SCENE, ("stages.one.motions.top.rotate=36000",), ""),
+    (SCENE, ("stages.one.motions.top.rotate=36100",), "100 times in 10 load steps"),
+    (SCENE, (_CONTACT + "friction=0,projection='averaged'}", _PAPER), ""),
+    (SCENE, (_CONTACT + "friction=0.3,projection='averaged'}", _PAPER), 'is "averaged", and solver.slip_sum is "paper"'),
+    (SCENE, (_CONTACT + "friction=0,enforcement='dual'}", _PAPER), ""),
+    (SCENE, (_CONTACT + "friction=0.3,enforcement='dual'}", _PAPER), 'is "dual", and solver.slip_sum is "paper"'),
+    (SCENE, (_CONTACT + "friction=0,smoothing=0.067}",), ""),
+    (SCENE, (_CONTACT + "friction=0,smoothing=0.068}",), "would be pressed away from afar"),
+    (SCENE, ("bodies.above.geometry.lower=[-0.25,-0.25,-0.44]",), ""),
+    (SCENE, ("bodies.above.geometry.lower=[-0.25,-0.25,-0.46]",), "they have passed through each other"),
+    (SCENE, (_RAISED, loaded("above.w0", "pressure=0.1")), ""),
+    (SCENE, (_RAISED, loaded("above.u0", "traction=[0.1,0,0]")), ""),
+    (SCENE, (_RAISED, loaded("above.u0", "pressure=0.1")), "functions of 'above' are of another order at w0"),
+    (SCENE, (_TWO, loaded("above.w1", "pressure=0.1")), ""),
+    (SCENE, (loaded("above.w1", "pressure=0.1"),), "prescribes all components or their forces"),
+    (SCENE, (_TWO, loaded("above.w1", "traction=[0,0.1,0]")), ""),
+    (SCENE, (_TWO, loaded("above.w1", "traction=[0.1,0,0]")), "acts along x on above.w1"),
+    (RESTING, (loaded("below.u0", "pressure=0.1"),), ""),
+    (THROUGHOUT, (loaded("below.u0", "pressure=0.1"),), "prescribes all components or their forces"),
+)
+
+
+def wrong(text: str, changes: tuple[str, ...], words: str) -> bool:
+    """Whether a scene is refused that is to be taken, or taken, or refused for something else."""
+    said = refused(text, *changes)
+    return bool(said) != bool(words) or words not in said
+
+
+@case(
+    claim="Scenes are refused from a limit on, and for all that they are refused for: places, ways and turns, tolerances, slip sums, "
+    "smoothing, overlaps, and loads where supports are.",
+    tier="gate",
+    bounds={"wrong": Bound(0.0, 0.0, "definition: scenes that are taken and are to be refused, or the other way round")},
+)
+def refusals() -> dict[str, float]:
+    """How many."""
+    return {"wrong": float(sum(wrong(*scene) for scene in CASES))}
