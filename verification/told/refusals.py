@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from told.either_way import RESTING, SCENE
 from told.word_by_word import refused
+from told.wrong.doubts import DOME, HOLLOW
 
 from isomortar.harness import Bound, case
 
@@ -16,6 +17,18 @@ face = "far.w0"
 """
 #: The blocks, of which one is held at the side in all stages.
 THROUGHOUT = RESTING.replace(', stages = ["one"]', "")
+
+#: The blocks, and a cube whose first direction goes from one x to another.
+CUBE = """
+[bodies.cube.patch]
+order = [1, 1, 1]
+knots = [[0, 0, 1, 1], [0, 0, 1, 1], [0, 0, 1, 1]]
+control_points = [[{0}, 5, 5], [{1}, 5, 5], [{0}, 6, 5], [{1}, 6, 5], [{0}, 5, 6], [{1}, 5, 6], [{0}, 6, 6], [{1}, 6, 6]]
+[supports.cube]
+face = "cube.w0"
+"""
+#: A bowl with its pole on a block.
+BOWL = HOLLOW.replace("[2, 2, 1] }\n\n[bodies.lower]", "[4, 1, 2] }\n[bodies.lower]")
 
 _CONTACT = "contacts.c={slave='above.w0',master='below.w1',"
 _PAPER = "solver.slip_sum='paper'"
@@ -61,6 +74,28 @@ CASES: tuple[tuple[str, tuple[str, ...], str], ...] = (
     (SCENE, (loaded("above.w1", "pressure=0.1"),), "prescribes all components or their forces"),
     (SCENE, (_TWO, loaded("above.w1", "traction=[0,0.1,0]")), ""),
     (SCENE, (_TWO, loaded("above.w1", "traction=[0.1,0,0]")), "acts along x on above.w1"),
+    (BOWL.replace("slave =", 'enforcement = "kts"\nslave ='), ("solver.method='uzawa'",), ""),
+    *((BOWL.replace("slave =", f'enforcement = "{name}"\nslave ='), (), "has a pole") for name in ("knots", "greville", "demko")),
+    (DOME.replace("slave =", 'projection = "averaged"\nslave ='), (), "where elements have no normal"),
+    (SCENE, (_CONTACT + "enforcement='kts'}", "solver.method='uzawa'"), ""),
+    (SCENE, (_CONTACT + "enforcement='kts',quadrature=[1,1]}",), ""),
+    (SCENE, (_CONTACT + "enforcement='kts'}",), "with 288 conditions for the 24 control points"),
+    (SCENE, (_CONTACT + "enforcement='demko'}",), ""),
+    (SCENE, (_CONTACT + "enforcement='greville'}", "bodies.above.mesh.family='L'"), ""),
+    (SCENE, (_CONTACT + "enforcement='demko'}", "bodies.above.mesh.family='L'"), "which have no such abscissae"),
+    (SCENE + CUBE.format(5, 6), (), ""),
+    (SCENE + CUBE.format(6, 5), (), "is left-handed"),
+    (SCENE, (_RAISED.replace("}", ",family='L'}"),), "of NURBS: 3 to 10"),
+    (SCENE, (_RAISED.replace("order=3", "order=2"),), "is 2 along w0; allowed there: 3 to 10"),
+    (SCENE, ("stages.0.steps=2", "stages.one.steps=3", "supports.top.face=above.w1"), ""),
+    (SCENE, ("stages.1.steps=2",), "no such entry; allowed: 0 to 0, one"),
+    (SCENE, ("stages.two.steps=2",), "no such entry; allowed: 0 to 0, one"),
+    (SCENE, ("contacts.d.friction=0.1",), "an override changes what the scene has; contacts there: c"),
+    (SCENE, ("contacts.c.slave.x=2",), "is the single value 'above.w0'"),
+    (SCENE, ("contacts.c.friction",), "is not of the form KEY=VALUE"),
+    (SCENE, ("contacts c.friction=0.1",), "is not of the form KEY=VALUE"),
+    (SCENE, ("contacts.c.friction=0,1",), "is not a TOML value"),
+    (SCENE, ("contacts.c.friction=[0,\n1]",), "more than one line"),
     (RESTING, (loaded("below.u0", "pressure=0.1"),), ""),
     (THROUGHOUT, (loaded("below.u0", "pressure=0.1"),), "prescribes all components or their forces"),
 )
@@ -74,7 +109,7 @@ def wrong(text: str, changes: tuple[str, ...], words: str) -> bool:
 
 @case(
     claim="Scenes are refused from a limit on, and for all that they are refused for: places, ways and turns, tolerances, slip sums, "
-    "smoothing, overlaps, and loads where supports are.",
+    "smoothing, overlaps, loads where supports are, points of contacts, poles, left-handed bodies, and overrides.",
     tier="gate",
     bounds={"wrong": Bound(0.0, 0.0, "definition: scenes that are taken and are to be refused, or the other way round")},
 )
