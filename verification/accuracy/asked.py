@@ -62,7 +62,7 @@ KINDS = {"N1": ("N", 1), "N10": ("N", 10), "L1": ("L", 1), "L4": ("L", 4)}
     tier="gate",
     bounds={"wrong": Bound(0.0, 0.0, "definition: scenes of which something else is varied")},
 )
-def swept() -> dict[str, float]:
+def varied() -> dict[str, float]:
     """How many."""
     wrong = sum(sweep_of(scene, body) != sweep for scene, body, sweep in SWEEPS)
     return {"wrong": float(wrong + ("bodies in contact here: above, below" not in refused(sweep_of, BLOCKS, "nobody")))}
