@@ -47,7 +47,17 @@ HALVES = HALVES.replace(
     '[supports.lift]\nface = "aside.w1"\n[contacts.pair]',
 )
 ONE_HELD = HALVES.replace("[supports.base]", '[supports.cut]\nface = "lower.u0"\ncomponents = ["x"]\n[supports.base]')
+#: The tyre on a block in the place of the plane.
+_BLOCK = """
+[bodies.road]
+geometry = { kind = "box", lower = [-2, -0.5, -1], upper = [3, 1, 0] }
+mesh = { elements = [10, 4, 2] }
+[supports.bed]
+face = "road.w0"
+"""
+ROAD = TYRE.replace("plane = { normal = [0, 0, 1] }", 'master = "road.w1"').replace("[[stages]]", f"{_BLOCK}[[stages]]")
 
+_SLIDES = "stages.roll.motions.rim.rotate=3"
 _SIDE = 'contacts.c.slave="above.u1"'
 _RIGID = ("bodies.above.rigid=true", "bodies.below.mesh.elements=[8,8,1]")
 _GRADED = "bodies.above.mesh={order=2,elements=[1,1,2],grading=[1,1,0.2]}"
@@ -123,6 +133,9 @@ CASES: tuple[tuple[str, tuple[str, ...], str], ...] = (
     (TYRE, ("supports.rim.centre=[0,0,10]", "stages.roll.motions.rim={rotate=30}"), "round on a large circle"),
     (TYRE, ("supports.rim.centre=[0,0,1.5]", "stages.roll.motions.rim={rotate=30}"), "0.5 beside the body's middle, [0, 0, 1]"),
     (TYRE, ("stages.roll.motions.rim={translate=[0.1,0,-0.02],rotate=30}",), "it slides by"),
+    (ROAD, (_SLIDES,), "it slides by"),
+    (ROAD, (_SLIDES, "stages.roll.motions.bed.translate=[0.01,0,0]"), ""),
+    (ROAD, (_SLIDES, "supports.bed.components=['x','y']", "supports.bed.moment=0"), ""),
     (TYRE, ("stages.roll.motions.rim={translate=[0.05,0,-0.03],rotate=30}",), ""),
 )
 
