@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from told.circling import round_in_a_circle
 from told.shared import THREE
 from told.word_by_word import SENTENCES
 from told.wrong.causes import said, scene
@@ -119,6 +120,7 @@ def of_iterations() -> Iterator[tuple[str, str]]:
     yield "knot lines", toggling(states[:1] * 2, places, away, summed=True, cohesive=none)
     yield "poles", toggling(states[:1] * 2, places, near, summed=True, cohesive=none)
     yield "nothing changes", toggling(states[:1] * 2, places[:1] * 2, near, summed=True, cohesive=none)
+    yield "circle", re.sub(r"points [\d, ]+\.\.\.", "points #", without_digits(round_in_a_circle(4)).replace("slip of #", "slip of 1e-09"))
     few = ("solver.method=uzawa", "solver.max_augmentations=2", "solver.max_cuts=0")
     yield "augmentations", without_digits(error(PRESS, *few))
 

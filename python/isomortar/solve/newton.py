@@ -121,7 +121,7 @@ class Newton(ABC, Generic[Iterated, Corrected]):
         begins_loose = bool(self._equilibrium.loose) and (any(self._loads_closed) or not iterate.balance.active)
         self._trail = Trail()
         for iteration in count():
-            self._trail.add(iterate.balance)
+            self._trail.add(iterate.balance, iterate.merit)
             log.append(_record(iteration, iterate, notes))
             observe(log[-1])
             if self._converged(iterate) and not moves and STEADIED not in notes:
@@ -132,7 +132,7 @@ class Newton(ABC, Generic[Iterated, Corrected]):
                 iterate, keep = reopened, False
             following, notes = self._by_kept_factors(iterate) if keep else None, (KEPT_FACTORS,)
             if following is None:
-                if tangents == self._settings.max_iterations or not np.isfinite(iterate.merit):
+                if tangents == self._settings.max_iterations or not np.isfinite(iterate.merit) or self._trail.circles:
                     break
                 keep_bodies = not keep and self._bodies_serve(led)  # nor a part of factors that did not serve
                 opened = tangents > 0 and closings < constants.MAX_CLOSINGS and self._opened(iterate)
@@ -149,13 +149,14 @@ class Newton(ABC, Generic[Iterated, Corrected]):
         return self._given_up(iterate, tuple(log))
 
     def _given_up(self, iterate: Iterated, log: tuple[IterationRecord, ...]) -> Converged[Iterated]:
-        """What a loop comes to whose tangents are used up.
+        """What a loop comes to whose tangents are used up, or that goes round in a circle.
 
         Raises
         ------
         ConvergenceError
         """
-        why = self._too_tight(iterate) or self._trail.toggling(self._equilibrium.pairs)
+        circle = ", going round in a circle" if self._trail.circles else ""
+        why = self._too_tight(iterate) or circle + self._trail.toggling(self._equilibrium.pairs)
         raise ConvergenceError(f"Newton's method stopped at {iterate.left} after {log[-1].iteration} iterations{why}")
 
     def _too_tight(self, iterate: Iterated) -> str:

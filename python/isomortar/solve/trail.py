@@ -9,6 +9,7 @@ import numpy as np
 
 from isomortar._codes import PointState
 from isomortar.geometry.patch import IntArray
+from isomortar.model import constants
 from isomortar.solve.contact import Kinematics, PairMechanics
 from isomortar.solve.equilibrium import Balance
 from isomortar.solve.feet import beside_poles
@@ -35,18 +36,35 @@ class Trail:
     ----------
     states : list of bytes
         Their states of constraints.
+    merits : list of float
+        What was left to solve.
     """
 
     def __init__(self) -> None:
         self.states: list[bytes] = []
+        self.merits: list[float] = []
         self._last: deque[tuple[Kinematics, ...]] = deque(maxlen=RECENT)
         self._sizes: list[int] = []
 
-    def add(self, balance: Balance) -> None:
-        """Note an iterate."""
+    def add(self, balance: Balance, merit: float) -> None:
+        """Note an iterate, and what is left to solve there."""
         self.states.append(states(balance))
+        self.merits.append(merit)
         self._last.append(balance.kinematics)
         self._sizes = [response.state.size for response in balance.responses]
+
+    @property
+    def circles(self) -> bool:
+        """Whether the last iterates, far from a solution, are those of one or two iterations before (theory 6.10)."""
+        return any(self._repeats(period) for period in (1, 2))
+
+    def _repeats(self, period: int) -> bool:
+        """Whether they are those of so many iterations before (theory 6.10)."""
+        now, before = slice(-constants.CIRCLING, None), slice(-constants.CIRCLING - period, -period)
+        left, was = np.array(self.merits[now]), np.array(self.merits[before])
+        if len(was) < constants.CIRCLING or self.states[now] != self.states[before]:
+            return False
+        return bool(left.max() > constants.NEAR_SOLUTION and np.all(np.abs(left - was) <= constants.SAME_MERIT * was))
 
     def toggling(self, pairs: Sequence[PairMechanics]) -> str:
         """What changed to and fro in the last iterations, as a part of a sentence."""
