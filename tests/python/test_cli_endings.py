@@ -35,6 +35,7 @@ RUNS = f"launch = compile(open({str(LAUNCH)!r}).read(), 'launch', 'exec'); " + H
         (ImportError("libumfpack.so.5: cannot open"), 1, ["the installation is not complete", "libumfpack.so.5"]),
         (ZeroDivisionError("division by zero"), 3, ["ZeroDivisionError: division by zero", "fault of the program", "report"]),
         (KeyboardInterrupt(), 130, ["interrupted"]),
+        (SystemExit(130), 130, ["interrupted"]),
     ],
 )
 def test_every_error_has_its_sentence_and_code(
@@ -108,7 +109,9 @@ def test_a_run_that_is_asked_to_end_says_how_far_it_came(tmp_path: Path, number:
         process.send_signal(number)
         _, said = process.communicate(timeout=60)
     assert process.returncode == 130
-    assert said.splitlines()[-1].endswith("of 50 load steps done; they are in results/iron.h5; to go on, repeat the command with --resume")
+    *_, left, ended = said.splitlines()
+    assert left.endswith("of 50 load steps done; they are in results/iron.h5; to go on, repeat the command with --resume")
+    assert ended == "isomortar: interrupted"
     assert [path.name for path in (tmp_path / "results").iterdir()] == ["iron.h5"]
 
 

@@ -14,6 +14,7 @@ from forked import program
 from isomortar import driver
 from isomortar.errors import ConvergenceError, InputError
 from isomortar.harness import Bound, case
+from isomortar.scene import Scene
 
 SCENE = """
 format = 1
@@ -64,6 +65,16 @@ MET: tuple[tuple[BaseException, int, str], ...] = (
     (KeyboardInterrupt(), 130, "to go on"),
 )
 
+#: Words of commands that are interrupted as they read their scene.
+INTERRUPTED: tuple[tuple[str, ...], ...] = (
+    ("check", "bar.toml"),
+    ("run", "bar.toml"),
+    ("check-tangent", "bar.toml"),
+    ("trade", "bar.toml", "--want", "force.right.x", "--within", "1%"),
+    ("advise", "bar.toml", "--want", "force.right.x", "--within", "1%"),
+    ("report", "orders", "bar.toml"),
+)
+
 
 def raising(error: BaseException) -> Callable[..., Any]:
     """In the place of what computes: two load steps are said to be there, then it ends."""
@@ -104,4 +115,9 @@ def exit_codes() -> dict[str, float]:
             codes += found != code
             advised = "repeat the command with --resume" in said
             words += part not in said or "stopped with 2 of 2" not in said or advised != isinstance(error, KeyboardInterrupt)
+        for asked in INTERRUPTED:
+            with mock.patch.object(Scene, "load", side_effect=KeyboardInterrupt):
+                found, said = program(*asked, folder=folder)
+            codes += found != 130
+            words += not said.endswith("isomortar: interrupted\n")
     return {"codes": float(codes), "words": float(words)}

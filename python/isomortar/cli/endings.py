@@ -41,7 +41,9 @@ def told() -> Iterator[None]:
                     sys.stdout.flush()  # here a full disk still has its sentence
     except Exception as error:
         code, sentence = _ending(error, interrupted=bool(interrupts))
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, SystemExit) as error:
+        if isinstance(error, SystemExit) and error.code != INTERRUPTED:  # that is what Typer makes of Ctrl-C, without a word
+            raise
         code, sentence = _INTERRUPTED
     else:
         return
