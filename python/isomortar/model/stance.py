@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from isomortar._frozen import frozen
@@ -80,6 +82,16 @@ def _on_plane(points: FloatArray, slave: Cells, plane: RigidPlane) -> Stance:
 
 
 def _on_face(slave: Cells, master: Cells) -> Stance:
+    """By the slave's cells; where none of their middles is over the master, as of a slave far larger than that, by the master's."""
+    found, beside = _by_cells(slave, master)
+    if not beside:
+        return found
+    back, beside = _by_cells(master, slave)
+    return found if beside else replace(back, slave_area=found.slave_area, master_area=found.master_area, towards=-back.towards)
+
+
+def _by_cells(slave: Cells, master: Cells) -> tuple[Stance, bool]:
+    """How the cells of one face stand to the nearest ones of another, and whether all of them are beside it."""
     found = nearest(slave.centres, master.centres)
     normals, arms = master.normals[found], slave.centres - master.centres[found]
     distances = np.linalg.norm(arms, axis=1)
@@ -92,7 +104,8 @@ def _on_face(slave: Cells, master: Cells) -> Stance:
     apart = np.where(beside, distances - np.sqrt(2.0 * master.areas[found]), heights)
     closest = int(np.argmin(np.where(cosines < FACING, apart, np.inf)))
     gap = 0.0 if depth > 0.0 else max(float(apart.min()), 0.0)
-    return Stance(float(slave.areas.sum()), float(master.areas.sum()), cosine, depth, gap, thick, False, -normals[closest])
+    areas = float(slave.areas.sum()), float(master.areas.sum())
+    return Stance(*areas, cosine, depth, gap, thick, False, -normals[closest]), bool(beside.all())
 
 
 def nearest(points: FloatArray, others: FloatArray) -> IntArray:
