@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import codecs
+import re
 from pathlib import Path
 
 import pytest
 from told.wrong.keys import CASES, GOOD
 
 from isomortar.errors import InputError
+from isomortar.model.messages import IN_BRACES
 from isomortar.scene import Scene
 from isomortar.scene.keys import settable_keys
 from isomortar.scene.schema import SceneTable
@@ -199,3 +201,21 @@ def test_faults_of_a_geometry_file_name_the_file(tmp_path: Path) -> None:
 def test_a_size_that_no_number_holds_is_refused_without_a_warning_of_a_library() -> None:
     with pytest.raises(InputError, match="not finite"):
         Scene.load("press", ["bodies.block.geometry.top=1e308"]).problem()
+
+
+@pytest.mark.parametrize(
+    ("key", "path"),
+    [
+        ("plane", "contacts.floor.plane"),
+        ("force", "supports.top.force"),
+        ("mesh", "bodies.block.mesh"),
+        ("geometry", "bodies.block.geometry"),
+        ("motion", "stages.press.motions.top"),
+    ],
+)
+def test_how_a_table_is_written_is_a_way_to_write_it(key: str, path: str) -> None:
+    Scene.load("press", [f"{path}={IN_BRACES[key]}"])
+    with pytest.raises(InputError, match=re.escape(f"{path}: is 3; allowed: a table, as {IN_BRACES[key]}")):
+        Scene.load("press", [f"{path}=3"])
+    with pytest.raises(InputError, match=r"bodies.block: is 3; allowed: a table$"):
+        Scene.load("press", ["bodies.block=3"])

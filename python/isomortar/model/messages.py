@@ -86,6 +86,21 @@ _WRITTEN = {("stages",): "[[stages]]", ("record", "curves"): "[[record.curves]]"
     (name,): f"[{name}.NAME]" for name in ("materials", "bodies", "contacts", "supports", "loads")
 }
 
+#: Tables that are easily taken for something else, as a scene file writes them in one line, by their keys.
+IN_BRACES = {
+    "plane": "{ point = [0, 0, 0], normal = [0, 0, 1] }",
+    "force": "{ z = -10 }",
+    "mesh": "{ order = 2, elements = [4, 4, 2] }",
+    "geometry": '{ kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }',
+    "motion": "{ translate = [0, 0, -0.1], rotate = 10 }",
+}
+
+
+def _in_braces(place: tuple[int | str, ...]) -> str:
+    """How the table at a place is written, as a part of a sentence; empty: what stands there is clear, or one of many."""
+    key = "motion" if place[-2:-1] == ("motions",) else str(place[-1]) if len(place) > 2 else ""  # bodies.mesh is a name
+    return f", as {IN_BRACES[key]}" if key in IN_BRACES else ""
+
 
 def _given(value: Any) -> str:
     """A value as a scene file has it, not too much of it."""
@@ -104,7 +119,8 @@ def _sentence(fault: ErrorDetails) -> str:
         case kind if kind in _KINDS:
             quoted = isinstance(fault["input"], str) and _WITHOUT_QUOTES.fullmatch(fault["input"])
             written = _WRITTEN.get(tuple(map(str, fault["loc"]))) if given in ("a table", "a list of tables") else None
-            hint = ", without quotes" if quoted else f": each of its tables begins with {written}" if written else ""
+            tables = f": each of its tables begins with {written}" if written else ""
+            hint = ", without quotes" if quoted else tables or (_in_braces(fault["loc"]) if _KINDS[kind] == "a table" else "")
             return f"is {given}; allowed: {_KINDS[kind]}{hint}"
         case "missing" | "union_tag_not_found":
             return "is missing, but must be given"
