@@ -62,6 +62,22 @@ contacts.top = { slave = "loose.w1", master = "plate.w0", friction = 0.4 }
 supports.top.face = "plate.w1"
 stages = [{ name = "press", steps = 3, motions.top.translate = [0, 0, -0.03] }]
 """
+#: A bowl on a floor, where of three or five elements along it one control point is the lowest: weights straight down, and to all sides.
+_BOWL = """
+format = 1
+bodies.bowl.geometry = { kind = "bowl", half_width = 0.5, bottom = 0, rise = 0.1, top = 0.4 }
+contacts.floor = { slave = "bowl.w0", plane = {}, friction = 0.5 }
+stages = [{ name = "lay", steps = 1 }]
+"""
+_ASIDE = ([0, 0], [0.1, 0], [-0.1, 0], [0, 0.2], [0, -0.2], [0.13, 0.13], [-0.13, -0.13])
+#: A ring on a floor, of which one row of control points is the lowest.
+_RING = """
+format = 1
+bodies.ring.geometry = { kind = "ring", inner = 0.5, outer = 1.0, width = 0.5, centre = [0, 0, 1] }
+contacts.floor = { slave = "ring.v1", plane = {}, friction = 0.5 }
+loads.own = { body = "ring", weight = [0, 0, -0.02] }
+stages = [{ name = "lay", steps = 1 }]
+"""
 _BETWEEN = {"roller": _ROLLER, "in a gap": _IN_A_GAP}
 #: Two bodies, and a roller between them, which touches both.
 _PLATES = """
@@ -159,6 +175,35 @@ def incline(method: str) -> dict[str, float]:
     """Relative difference of contact and weight; cuts of the load increment."""
     (step,) = _computed(_INCLINE.format(WEIGHT.tolist()), method)
     return {"balance": float(np.abs(step.contacts[0].force_slave + WEIGHT).max() / 0.3), "cuts": float(step.cuts)}
+
+
+@case(
+    claim="A bowl that its weight lays on a floor rests there, straight or to a side, whether one control point is the lowest or several.",
+    tier="gate",
+    grid={"elements": (3, 4, 5), "method": ("monolithic", "uzawa")},
+    bounds={"balance": Bound(at_most=1e-8, reason="definition: contact bears the weight, to the tolerance of balance")},
+)
+def bowl(elements: int, method: str) -> dict[str, float]:
+    """Largest difference of contact and weight over the weight, of weights to all sides."""
+    off = list[np.ndarray]()
+    for aside in _ASIDE:
+        weight = 0.03 * np.array([*aside, -1.0])
+        load = f'loads.own = {{ body = "bowl", weight = {weight.tolist()} }}\nbodies.bowl.mesh.elements = [{elements}, {elements}, 2]\n'
+        (step,) = _computed(_BOWL + load, method)
+        off.append(np.abs(step.contacts[0].force_slave + step.loads[0].force) / np.abs(step.loads[0].force[2]))
+    return {"balance": float(np.max(off))}
+
+
+@case(
+    claim="A ring that its weight lays on a floor rests there on how few elements there may be.",
+    tier="gate",
+    grid={"elements": (4, 8)},
+    bounds={"balance": Bound(at_most=1e-8, reason="definition: contact bears the weight, to the tolerance of balance")},
+)
+def ring(elements: int) -> dict[str, float]:
+    """Relative difference of contact and weight."""
+    (step,) = _computed(_RING + f"bodies.ring.mesh.elements = [{elements}, 1, 1]\n", "monolithic")
+    return {"balance": float(abs(step.contacts[0].force_slave[2] / step.loads[0].force[2] + 1.0))}
 
 
 @case(

@@ -10,6 +10,11 @@ None of them is part of a problem. Thresholds at which something is refused, war
 BETWEEN = 0.1
 #: Least part along the normal of a rigid motion that a contact stands in the way of: loads close no contact that the body slides past.
 IN_THE_WAY = 0.05
+#: Rate of a gap, or a slip, by a rigid motion below which a constraint does not hold that: what differences of positions leave.
+HELD = 1e-3
+#: Share of a slave face's size by which constraints may be farther from the master than the nearest one, and begin as closed with it: a
+#: ring of four elements takes a tenth, and a body that turns farther until something stops it comes to another place (theory 6.8).
+NEXT = 0.5
 #: Share of a body's size within which control points are one: ends of rings and rows of poles are computed, and meet to round-off.
 SAME_POINT = 1e-9
 #: Share of a unit vector, or of the size of all, below which there is nothing of it: normals and axes are given to some digits.

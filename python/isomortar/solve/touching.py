@@ -6,11 +6,11 @@ See theory 6.8.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from isomortar._bindings import Control
-from isomortar._frozen import frozen
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
 from isomortar.model.entities import Problem
@@ -18,12 +18,13 @@ from isomortar.model.loads import Loads
 from isomortar.model.numbering import Numbering
 from isomortar.model.supports import BoolArray, Supports
 from isomortar.solve.contact import PairMechanics
-from isomortar.solve.free_motions import free_motions
+from isomortar.solve.free_motions import FreeMotion, free_motions
 from isomortar.solve.record import ContactState, State
+from isomortar.solve.resting import footing, mean_heights, next_to_nothing, rested
 from isomortar.solve.scales import Scales
 
 
-@frozen
+@dataclass(frozen=True)
 class _Approach:
     """A pair by each of some ways: its control quantities, its nearest constraints, and how far bodies go until these close."""
 
@@ -45,28 +46,38 @@ class Touching:
 
     def __init__(self, problem: Problem, numbering: Numbering, supports: Supports, loads: Loads) -> None:
         self._problem, self._numbering, self._supports, self._loads = problem, numbering, supports, loads
-        self._pulled = bool(problem.loads or supports.plates)
+
+    @property
+    def _turning(self) -> bool:
+        """Whether moments turn plates, whose work on motions is not told."""
+        return any(plate.across for plate in self._supports.plates)
+
+    def _motions(self, positions: FloatArray) -> list[FreeMotion]:
+        return free_motions(self._problem, self._numbering, self._supports, positions)
+
+    def _left(self, positions: FloatArray, time: float) -> FloatArray:
+        """What loads leave out of balance without contact, shape (control points, 3)."""
+        return self._supports.unbalanced(-sum(self._loads.forces(positions, time), np.zeros_like(positions)), positions, time)
 
     def _ways(self, positions: FloatArray, time: float, borne: set[str]) -> list[tuple[set[str], FloatArray]]:
-        """Bodies, and a way that each goes to a load time: as loads move it, or any way to and fro if none does (theory 6.8).
+        """Bodies, and a way that each goes to a load time: as loads move it, or any way if none does (theory 6.8).
 
         Where no loads act, those alone that no contact bears: supports press the others on what they are on.
         """
-        motions = free_motions(self._problem, self._numbering, self._supports, positions)
-        if not self._pulled:
+        motions = self._motions(positions)
+        if not (self._problem.loads or self._supports.plates):
             held = {number for number, piece in enumerate(self._numbering.pieces) if borne & {body.name for body in piece}}
             motions = [motion for motion in motions if motion.piece not in held]
         if not motions:
             return []
-        left = self._supports.unbalanced(-sum(self._loads.forces(positions, time), np.zeros_like(positions)), positions, time)
-        turning = any(plate.across for plate in self._supports.plates)
+        left = self._left(positions, time)
         found: list[tuple[set[str], FloatArray]] = []
         for number, piece in enumerate(self._numbering.pieces):
             own = np.reshape([motion.displacement for motion in motions if motion.piece == number], (-1, *positions.shape))
             works = -np.einsum("mij,ij->m", own, left)
             way = np.tensordot(works, own, 1)
-            driven = not turning and np.abs(works).max(initial=0.0) > constants.NO_PART * np.abs(left).sum()
-            ways = way[None] / np.abs(way).max() if driven else np.stack([own, -own], axis=1).reshape(-1, *positions.shape)
+            driven = not self._turning and np.abs(works).max(initial=0.0) > constants.NO_PART * np.abs(left).sum()
+            ways = way[None] / np.abs(way).max() if driven else np.concatenate([own, -own])
             found += [({body.name for body in piece}, one) for one in ways]
         return found
 
@@ -85,19 +96,40 @@ class Touching:
             return [None] * len(pairs)
         approaches = [_approach(pair, start.positions, contact, ways) for pair, contact in zip(pairs, start.contacts, strict=True)]
         first, size = np.min([approach.distances for approach in approaches], axis=0), np.sqrt(max(pair.pair.area for pair in pairs))
-        if not self._pulled:  # nothing presses a body on what it may go away from: something has to stand on both of its sides
-            room = first.reshape(-1, 2).sum(axis=1).repeat(2)
-            first = np.where(room <= constants.BETWEEN * size, first, -np.inf)
+        if not (self._problem.loads or self._supports.plates):
+            first = np.where(_to_and_fro(ways, first) <= constants.BETWEEN * size, first, -np.inf)
+        begun = [
+            not np.any(contact.pressure != 0.0)
+            and bool(np.any(np.isfinite(approach.distances) & (approach.distances <= first + next_to_nothing(pair))))
+            for pair, contact, approach in zip(pairs, start.contacts, approaches, strict=True)
+        ]
+        if not any(begun):
+            return [None] * len(pairs)
+        near = self._rested(pairs, start, time, approaches, begun)
         found: list[FloatArray | None] = []
-        for pair, contact, approach, penalty in zip(pairs, start.contacts, approaches, penalties, strict=True):
-            among = np.isfinite(approach.distances) & (approach.distances <= first + next_to_nothing(pair))
-            if np.any(contact.pressure != 0.0) or not among.any():
-                found.append(None)
-                continue
+        for pair, approach, begins, closed, penalty in zip(pairs, approaches, begun, near, penalties, strict=True):
             size = float(pair.parameters(approach.control, penalty)[0]) if isinstance(penalty, Scales) else penalty
             least = next_to_nothing(pair)
-            found.append(np.where(approach.near, size * np.maximum(least, least - mean_heights(approach.control)), 0.0))
+            found.append(np.where(closed, size * np.maximum(least, least - mean_heights(approach.control)), 0.0) if begins else None)
         return found
+
+    def _rested(
+        self, pairs: Sequence[PairMechanics], start: State, time: float, approaches: Sequence[_Approach], begun: Sequence[bool]
+    ) -> list[BoolArray]:
+        """What bears of each pair or begins, with the next constraints where bodies would turn about that alone."""
+        motions = np.stack([motion.displacement for motion in self._motions(start.positions)])
+        works = -np.einsum("mij,ij->m", motions, self._left(start.positions, time))
+        feet = [
+            footing(pair, start.positions, contact, approach.near, begins, motions)
+            for pair, contact, approach, begins in zip(pairs, start.contacts, approaches, begun, strict=True)
+        ]
+        return rested(feet, np.zeros_like(works) if self._turning else works)
+
+
+def _to_and_fro(ways: Sequence[tuple[set[str], FloatArray]], first: FloatArray) -> FloatArray:
+    """How far bodies can go along each way and back, until something stands in both: nothing presses them on what they may go away from."""
+    back = [next(k for k, (bodies, way) in enumerate(ways) if bodies == of and np.array_equal(way, -there)) for of, there in ways]
+    return first + first[back]
 
 
 def _approach(pair: PairMechanics, positions: FloatArray, start: ContactState, ways: Sequence[tuple[set[str], FloatArray]]) -> _Approach:
@@ -113,13 +145,3 @@ def _approach(pair: PairMechanics, positions: FloatArray, start: ContactState, w
             closes = rates > constants.IN_THE_WAY
             distances[k] = np.min(-heights[near][closes] / rates[closes], initial=np.inf)
     return _Approach(control, near, distances)
-
-
-def mean_heights(control: Control) -> FloatArray:
-    """Mean gaps of constraints, shape (n,), positive where they penetrate; of those without a foot minus infinity."""
-    return np.divide(control.gap, control.weight, out=np.full_like(control.gap, -np.inf), where=control.weight > 0.0)
-
-
-def next_to_nothing(pair: PairMechanics) -> float:
-    """A length that is next to nothing beside the slave face."""
-    return constants.NO_PART * float(np.sqrt(pair.pair.area))

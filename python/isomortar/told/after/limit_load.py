@@ -13,7 +13,7 @@ from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model.supports import BoolArray
 from isomortar.solve.contact import PairMechanics
 from isomortar.solve.record import ContactState, State
-from isomortar.solve.touching import mean_heights, next_to_nothing
+from isomortar.solve.resting import mean_heights, next_to_nothing
 
 #: Rates of gaps, beside the largest one of all motions, below which a motion is along the contact: faces are flat to some digits.
 ALONG = 1e-3

@@ -13,7 +13,7 @@ from isomortar.solve.contact import PairMechanics
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.free_motions import loaded_motions
 from isomortar.solve.record import ContactState, State
-from isomortar.solve.touching import mean_heights
+from isomortar.solve.resting import mean_heights
 from isomortar.told.after.load_work import load_works
 
 #: Share of a slave face's size within which its constraints stand at their master: what is as near has no way to go.

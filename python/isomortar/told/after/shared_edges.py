@@ -13,7 +13,7 @@ from isomortar.model.supports import BoolArray
 from isomortar.solve.contact import PairMechanics
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.record import State
-from isomortar.solve.touching import mean_heights, next_to_nothing
+from isomortar.solve.resting import mean_heights, next_to_nothing
 
 
 def shared_edges(equilibrium: Equilibrium, state: State) -> Iterator[str]:

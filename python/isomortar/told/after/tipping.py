@@ -18,7 +18,7 @@ from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.feet import gaps
 from isomortar.solve.free_motions import FreeMotion, direction, going
 from isomortar.solve.record import ContactState, State
-from isomortar.solve.touching import next_to_nothing
+from isomortar.solve.resting import next_to_nothing
 from isomortar.told.after.limit_load import ALONG, Touch, groups_of, heights
 from isomortar.told.after.load_work import borne_loads
 

@@ -1,0 +1,90 @@
+"""What bodies come to rest on: what they come to first, and the next constraints where they would turn about that alone (theory 6.8)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from isomortar._bindings import Control
+from isomortar.geometry.patch import FloatArray
+from isomortar.model import constants
+from isomortar.model.supports import BoolArray
+from isomortar.solve.contact import PairMechanics
+from isomortar.solve.metric import tangent_lengths
+from isomortar.solve.record import ContactState
+
+
+@dataclass(frozen=True)
+class Footing:
+    """Constraints of a pair.
+
+    Parameters
+    ----------
+    near : ndarray of bool, shape (n,)
+        Which bear, or begin as closed.
+    begins : bool
+        Whether others may begin with them.
+    beyond : ndarray, shape (n,)
+        How much farther these are from the master than the nearest one. Of a pair that is open, and stays so at first, how far the nearest
+        are: these hold bodies as soon. Infinite of all others.
+    gaps, slips : ndarray, shape (n, motions) and (n, 2, motions)
+        Their rates by rigid motions, all of them lengths.
+    """
+
+    near: BoolArray
+    begins: bool
+    beyond: FloatArray
+    gaps: FloatArray
+    slips: FloatArray
+
+
+def footing(pair: PairMechanics, positions: FloatArray, start: ContactState, near: BoolArray, begins: bool, motions: FloatArray) -> Footing:
+    """That of a pair, by its nearest constraints and motions of all control points, shape (motions, control points, 3) (theory 6.8)."""
+    least, bears = next_to_nothing(pair), bool(np.any(start.pressure != 0.0))
+    here, *there = (pair.kinematics(positions + way, start).control for way in (0.0 * motions[0], *(least * motions)))
+    area = np.where(here.weight > 0.0, here.weight, np.inf)
+    gaps = np.stack([(control.gap - here.gap) / area for control in there], axis=-1) / least
+    slips = np.stack([(control.slip - here.slip) / area[:, None] * tangent_lengths(here) for control in there], axis=-1) / least
+    heights = mean_heights(here)
+    beyond = (heights.max() if begins else 0.0) - np.where(begins | near, heights, -np.inf)
+    within = (beyond <= constants.NEXT * np.sqrt(pair.pair.area)) & ~np.bool_(bears)
+    return Footing(near & np.bool_(begins or bears), begins, np.where(within, beyond, np.inf), gaps, slips)
+
+
+def rested(feet: Sequence[Footing], works: FloatArray) -> list[BoolArray]:
+    """What is near of each pair, with the next constraints that close by motions which nothing near holds (theory 6.8).
+
+    Loads turn a body to the side on which they do work, along each of the motions; it turns to any side where they do none.
+    """
+    near, beyond = np.concatenate([foot.near for foot in feet]), np.concatenate([foot.beyond for foot in feet])
+    gaps, slips = np.concatenate([foot.gaps for foot in feet]), np.concatenate([foot.slips for foot in feet])
+    begins = np.repeat([foot.begins for foot in feet], [len(foot.near) for foot in feet])
+    while True:
+        left = _left(np.concatenate([gaps[near], *np.swapaxes(slips[near], 0, 1)]))
+        way = left.T @ (left @ works)
+        size = np.abs(way).max()
+        driven = size > constants.NO_PART * np.abs(works).max()
+        closes = gaps @ way / size if driven else np.abs(gaps @ left.T).max(axis=1, initial=0.0)
+        holds = np.abs(np.concatenate([gaps[:, None], slips], axis=1) @ left.T).max(axis=(1, 2), initial=0.0)
+        others = np.where((np.where(begins, closes, holds) > constants.HELD) & ~near, beyond, np.inf)
+        if not np.isfinite(others).any():
+            return np.split(near, np.cumsum([len(foot.near) for foot in feet])[:-1])
+        near[np.argmin(others)] = True
+
+
+def _left(rates: FloatArray) -> FloatArray:
+    """Orthogonal motions that change nothing of what has these rates, shape (of them, motions)."""
+    *_, values, ways = np.linalg.svd(np.vstack([rates, np.zeros((rates.shape[1],) * 2)]), full_matrices=False)
+    return np.asarray(ways[values <= constants.HELD])
+
+
+def mean_heights(control: Control) -> FloatArray:
+    """Mean gaps of constraints, shape (n,), positive where they penetrate; of those without a foot minus infinity."""
+    return np.divide(control.gap, control.weight, out=np.full_like(control.gap, -np.inf), where=control.weight > 0.0)
+
+
+def next_to_nothing(pair: PairMechanics) -> float:
+    """A length that is next to nothing beside the slave face."""
+    return constants.NO_PART * float(np.sqrt(pair.pair.area))
