@@ -150,6 +150,13 @@ SQUEEZED = (
     .replace('"ring.v0"', '"ring.u0"').replace('kind = "ring", inner = 0.6, outer = 1, width = 0.5, centre = [0, 0, 1]', BOX)
     .replace("stages =", 'loads.out = { face = "ring.u1", pressure = 0.05 }\nstages =').replace("-1.9", "-2.3")
 )  # fmt: skip
+#: A block of no even numbers on a plane without friction: round-off changes its gaps as it slides, and nothing slips in lengths.
+SMOOTH = """
+bodies.block.geometry = { kind = "box", lower = [-0.53756, -0.53756, 0], upper = [0.53756, 0.43652, 0.43188] }
+bodies.block.mesh = { order = [3, 2, 2], elements = [3, 2, 1] }
+contacts.floor = { slave = "block.w0", friction = 0, plane = {} }
+supports.top = { face = "block.w1", force = { x = -0.00148, z = -0.00625 } }
+"""
 WALL = 'contacts.wall = { slave = "block.u1", friction = 0.1, plane = { point = [1, 0, 0], normal = [-1, 0, 0] } }\n'
 #: Scenes, and what is to be told: bodies, how, and along what; nothing: they stand, or do something else.
 SCENES: dict[str, tuple[str, tuple[str, str, str] | None]] = {
@@ -172,6 +179,7 @@ SCENES: dict[str, tuple[str, tuple[str, str, str] | None]] = {
     "slides": (
         SCENE.replace("GROUND", GROUNDS["plane"].replace("= 1,", "= 0.1,")).replace("LOADS", LOADS["weight"]).replace("LEAN", "0.2"), None,
     ),
+    "slides without friction": (SMOOTH, None),
     "rolls": (RING, None),
     "in balance": (BLOWN, None),
     "squeezed": (SQUEEZED, None),

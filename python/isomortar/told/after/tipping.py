@@ -146,7 +146,8 @@ def _rates(touch: Touch, friction: float) -> FloatArray:
 def _opened(touch: Touch, way: FloatArray) -> float:
     """Share of what is over the master that a motion opens, or that is open; none if it goes along the contact."""
     rates, beside = touch.closing @ way / touch.weight, touch.beside @ way
-    speed = np.hypot(rates, touch.lengths(way) / touch.weight).max()
+    goes = 0.0 if touch.pair.friction.acts else np.abs(way).max()  # without friction slips have no lengths
+    speed = np.max([*np.hypot(rates, touch.lengths(way) / touch.weight), goes])
     opens, opens_more = rates < -ASKEW * speed, beside < -ASKEW * speed
     return float(1.0 - touch.share @ ~opens) if opens.any() or opens_more.any() else 0.0
 
@@ -182,11 +183,13 @@ def _gives_way(equilibrium: Equilibrium, bodies: _Loaded) -> str:
     ]
     met = " or ".join(repr(pair.pair.contact.name) for pair in open_)
     end = f" until contact {met} closes, where it may rest: bring it there by a support first" if met else ", and is nowhere at rest"
+    rubs = any(touch.pair.friction.acts for touch in bodies.touches)
     held = overturning(bodies.touches, bodies.works, bodies.sizes, [MORE * _friction(touch) for touch in bodies.touches]) is None
+    friction = "with the friction that they have" if rubs else "without friction"
+    more = "more friction, " if held else "" if rubs else "some friction, "
     return (
-        f"no pressures of contact {contacts}, with the friction that they have, are in balance with the loads on {names} by then: it "
-        f"slides, tips over, or both at once{end}. Take {'more friction, ' if held else ''}less load beside what "
-        "presses, or hold or move it by a support"
+        f"no pressures of contact {contacts}, {friction}, are in balance with the loads on {names} by then: it slides, tips over, or both "
+        f"at once{end}. Take {more}less load beside what presses, or hold or move it by a support"
     )
 
 
