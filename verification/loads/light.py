@@ -70,6 +70,16 @@ contacts.floor = { slave = "bowl.w0", plane = {}, friction = 0.5 }
 stages = [{ name = "lay", steps = 1 }]
 """
 _ASIDE = ([0, 0], [0.1, 0], [-0.1, 0], [0, 0.2], [0, -0.2], [0.13, 0.13], [-0.13, -0.13])
+#: A block on a rough floor, or above it, that a plate presses which does not keep it from going along.
+_PRESSED = """
+format = 1
+bodies.block.geometry = {{ kind = "box", lower = [0, 0, {lower}], upper = [1, 1, {upper}] }}
+bodies.block.mesh.elements = 2
+contacts.floor = {{ slave = "block.w0", plane = {{}}, friction = 0.4 }}
+supports.top = {{ face = "block.w1", components = {components} }}
+loads.side = {{ face = "block.u1", traction = [{push}, 0, 0] }}
+stages = [{{ name = "press", steps = 2, motions.top.translate = [0, 0, -0.05] }}]
+"""
 #: A ring on a floor, of which one row of control points is the lowest.
 _RING = """
 format = 1
@@ -140,6 +150,22 @@ def punch(force: float, gap: float, friction: float, method: str) -> dict[str, f
     """Relative difference of contact and force, and cuts of the load increment."""
     (step,) = _computed(_PUNCH.format(force=-force, gap=gap, top=gap + 8.0, friction=friction), method)
     return {"balance": float(abs(step.contacts[0].force_slave[2] / force + 1.0)), "cuts": float(step.cuts)}
+
+
+@case(
+    claim="A block that a support presses on a rough floor, and leaves free along that, is held by friction from the first increment on, "
+    "whether it touches the floor before or comes down to it, and whether a load pushes it along.",
+    tier="gate",
+    grid={"gap": (0.0, 0.01), "free": ("x", "xy"), "push": (0.0, 0.01), "method": ("monolithic", "uzawa")},
+    bounds={"balance": Bound(at_most=1e-7, reason="definition: friction bears the load, to the tolerance of balance")} | _CUTS,
+)
+def pressed(gap: float, free: str, push: float, method: str) -> dict[str, float]:
+    """Largest difference of friction and load over the pressing force, of both load steps; cuts of load increments."""
+    held = [component for component in "xyz" if component not in free]
+    text = _PRESSED.format(lower=gap, upper=1.0 + gap, components=held, push=push)
+    steps = _computed(text, method)
+    off = [(step.contacts[0].force_slave + step.loads[0].force)[:2] / step.contacts[0].force_slave[2] for step in steps]
+    return {"balance": float(np.abs(off).max()), "cuts": float(sum(step.cuts for step in steps))}
 
 
 @case(

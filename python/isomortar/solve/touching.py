@@ -16,6 +16,7 @@ from isomortar.model import constants
 from isomortar.model.entities import Problem
 from isomortar.model.loads import Loads
 from isomortar.model.numbering import Numbering
+from isomortar.model.rank import moved
 from isomortar.model.supports import BoolArray, Supports
 from isomortar.solve.contact import PairMechanics
 from isomortar.solve.free_motions import FreeMotion, free_motions
@@ -81,28 +82,27 @@ class Touching:
             found += [({body.name for body in piece}, one) for one in ways]
         return found
 
+    def _carried(self, positions: FloatArray, time: float, borne: set[str]) -> tuple[list[tuple[set[str], FloatArray]], float]:
+        """The way that supports carry all bodies to a load time, for those that no contact bears yet, and its length (theory 6.8)."""
+        way, increment = np.zeros_like(positions), self._supports.increment(positions, time)
+        for piece in self._numbering.pieces:
+            own = np.concatenate([self._numbering.points[body.name] for body in piece])
+            held, motions = self._supports.held[own], np.array([moved(piece, amounts, positions[own]) for amounts in np.eye(6)])
+            way[own] = np.tensordot(np.linalg.lstsq(motions[:, held].T, increment[own][held])[0], motions, 1)
+        length = float(np.abs(way).max())
+        free = {body.name for motion in self._motions(positions) for body in self._numbering.pieces[motion.piece]}
+        return ([(free - borne, way / length)] if length > 0.0 else []), length
+
     def closed(
         self, pairs: Sequence[PairMechanics], start: State, time: float, penalties: Sequence[float | Scales]
     ) -> list[FloatArray | None]:
         """Pressures whose trials are above zero where pairs close first (theory 6.8); None of other pairs, and of those that bear.
 
-        Loads close them, or what stands on both sides of a body.
+        Loads close them, or supports that carry a body, or what stands on both sides of it.
 
         With scales in its place a penalty is that of `PairMechanics.parameters`.
         """
-        bear = [pair.pair.contact.bodies for pair, contact in zip(pairs, start.contacts, strict=True) if np.any(contact.pressure != 0.0)]
-        ways = [] if len(bear) == len(pairs) else self._ways(start.positions, time, set[str]().union(*bear))
-        if not ways:
-            return [None] * len(pairs)
-        approaches = [_approach(pair, start.positions, contact, ways) for pair, contact in zip(pairs, start.contacts, strict=True)]
-        first, size = np.min([approach.distances for approach in approaches], axis=0), np.sqrt(max(pair.pair.area for pair in pairs))
-        if not (self._problem.loads or self._supports.plates):
-            first = np.where(_to_and_fro(ways, first) <= constants.BETWEEN * size, first, -np.inf)
-        begun = [
-            not np.any(contact.pressure != 0.0)
-            and bool(np.any(np.isfinite(approach.distances) & (approach.distances <= first + next_to_nothing(pair))))
-            for pair, contact, approach in zip(pairs, start.contacts, approaches, strict=True)
-        ]
+        approaches, begun = self._begun(pairs, start, time)
         if not any(begun):
             return [None] * len(pairs)
         near = self._rested(pairs, start, time, approaches, begun)
@@ -112,6 +112,28 @@ class Touching:
             least = next_to_nothing(pair)
             found.append(np.where(closed, size * np.maximum(least, least - mean_heights(approach.control)), 0.0) if begins else None)
         return found
+
+    def _begun(self, pairs: Sequence[PairMechanics], start: State, time: float) -> tuple[list[_Approach], list[bool]]:
+        """How pairs stand, and which of them begin: those that bodies come to first."""
+        bear = [pair.pair.contact.bodies for pair, contact in zip(pairs, start.contacts, strict=True) if np.any(contact.pressure != 0.0)]
+        borne = set[str]().union(*bear)
+        ways = [] if len(bear) == len(pairs) else self._ways(start.positions, time, borne)
+        if not ways:
+            return [], []
+        carried, length = self._carried(start.positions, time, borne)
+        both = list(zip(pairs, start.contacts, strict=True))
+        approaches = [_approach(pair, start.positions, contact, [*ways, *carried]) for pair, contact in both]
+        first, size = np.min([approach.distances for approach in approaches], axis=0), np.sqrt(max(pair.pair.area for pair in pairs))
+        comes, own = first <= (1.0 + constants.NO_PART) * length, len(ways)
+        alone = not (self._problem.loads or self._supports.plates)
+        comes[:own] = _to_and_fro(ways, first[:own]) <= constants.BETWEEN * size if alone else True
+        first = np.where(comes, first, -np.inf)
+        reached = [
+            np.isfinite(a.distances) & (a.distances <= first + next_to_nothing(pair)) for pair, a in zip(pairs, approaches, strict=True)
+        ]
+        return approaches, [
+            bool(which.any()) and not np.any(contact.pressure != 0.0) for which, (_, contact) in zip(reached, both, strict=True)
+        ]
 
     def _rested(
         self, pairs: Sequence[PairMechanics], start: State, time: float, approaches: Sequence[_Approach], begun: Sequence[bool]
