@@ -128,12 +128,11 @@ class Touching:
         alone = not (self._problem.loads or self._supports.plates)
         comes[:own] = _to_and_fro(ways, first[:own]) <= constants.BETWEEN * size if alone else True
         first = np.where(comes, first, -np.inf)
-        reached = [
-            np.isfinite(a.distances) & (a.distances <= first + next_to_nothing(pair)) for pair, a in zip(pairs, approaches, strict=True)
-        ]
-        return approaches, [
-            bool(which.any()) and not np.any(contact.pressure != 0.0) for which, (_, contact) in zip(reached, both, strict=True)
-        ]
+        begun = []
+        for (pair, contact), approach in zip(both, approaches, strict=True):
+            reached = np.isfinite(approach.distances) & (approach.distances <= first + next_to_nothing(pair))
+            begun.append(bool(reached.any()) and not np.any(contact.pressure != 0.0))
+        return approaches, begun
 
     def _rested(
         self, pairs: Sequence[PairMechanics], start: State, time: float, approaches: Sequence[_Approach], begun: Sequence[bool]
