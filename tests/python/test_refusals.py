@@ -15,7 +15,7 @@ import pytest
 import splinepy
 from matplotlib.figure import Figure
 from matplotlib.text import Text
-from told import corners, tipping, too_tight
+from told import corners, loose, tipping, too_tight
 from told.too_steep import LOADS, of_block, said
 from told.wrong.contacts import LAGRANGE, PAIR, PRESS
 from told.wrong.halves import PLANE
@@ -299,6 +299,8 @@ def of_causes(patch: pytest.MonkeyPatch) -> Told:
     yield "onto", tipping.before(1.2).partition("Loads")[2].replace(" turn", "loads turn", 1)
     yield "lifts", said(tipping.HEAD + tipping.LOWER + tipping.LIFTED).partition("Loads")[2].replace(" move", "loads move", 1)
     yield "gives way", corners.in_corner(0.5, (-0.4, 0.0, -1.0), "monolithic", "planes").partition("No p")[2].replace("res", "no pres", 1)
+    coarse = said(loose.ROLLER.replace("COUNT", "4"))
+    yield "averages apart", "contact " + coarse.partition("Contact ")[2].partition(". Contact")[0]
     yield "gives way, without friction", said(tipping.HEAD + tipping.SMOOTH).partition("No p")[2].replace("res", "no pres", 1)
     equilibrium = Equilibrium(Scene.from_toml(BLOCK + 'supports.top.face = "block.w1"').problem(), Ledger())
     reference = equilibrium.numbering.reference

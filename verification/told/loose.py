@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from told.too_steep import said
+
 from isomortar.errors import InputError
 from isomortar.harness import Bound, case
 from isomortar.scene import Scene
@@ -47,3 +49,32 @@ def named(low: float, first: str, second: str, supports: str) -> str:
 def held_by_touch() -> dict[str, float]:
     """How many."""
     return {"wrong": float(sum(named(*given) != name for *given, name in TRIED))}  # type: ignore[arg-type]
+
+
+#: A roller between a floor and a plate, which both of them touch along a line.
+ROLLER = """
+format = 1
+materials.m = { young = 40, poisson = 0.3 }
+bodies.roller = { geometry = { kind = "ring", outer = 0.5, inner = 0.3, width = 0.4 }, mesh.elements = [COUNT, 1, 1] }
+bodies.plate = { rigid = true, geometry = { kind = "box", lower = [-1.2, -1.2, 0.5], upper = [1.2, 1.2, 0.7] } }
+contacts.floor = { slave = "roller.v1", friction = 0.3, plane.point = [0, 0, -0.5] }
+contacts.plate = { slave = "roller.v1", friction = 0.3, master = "plate.w0" }
+supports = { plate.face = "plate.w1", hold = { edge = "roller.v0.w0", components = ["y"] } }
+stages = [{ name = "press", steps = 1, motions.plate.translate = [0, 0, -0.05] }]
+solver.max_cuts = 2
+"""
+
+
+@case(
+    claim="A roller that a plate presses on a floor, of elements too long for their averages to touch, is told to be refined there, and "
+    "runs on finer ones.",
+    tier="gate",
+    bounds={
+        "told": Bound(2.0, 2.0, "definition: the contacts of the coarse one that are told to be refined"),
+        "runs": Bound(1.0, 1.0, "definition: the same of finer elements"),
+    },
+)
+def averages_apart() -> dict[str, float]:
+    """How many."""
+    coarse, fine = (said(ROLLER.replace("COUNT", count)) for count in ("4", "16"))
+    return {"told": float(coarse.count("Refine roller.v1 where it touches")), "runs": float(fine == "")}

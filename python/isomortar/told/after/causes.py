@@ -17,6 +17,7 @@ from isomortar.solve.contact import PairMechanics
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.feet import closest_depths
 from isomortar.solve.record import State
+from isomortar.told.after.averages_apart import averages_apart
 from isomortar.told.after.on_the_way import on_the_way
 from isomortar.told.after.overcome import overcome
 from isomortar.told.after.shared_edges import shared_edges
@@ -69,6 +70,8 @@ def causes(equilibrium: Equilibrium, state: State, error: Exception) -> Iterator
         yield from shared_edges(equilibrium, state)
         yield from (sentence for _, sentence in on_the_way(equilibrium, state))
         yield from _few(problem.settings, str(error))
+    if not told and isinstance(error, SingularSystemError):
+        yield from averages_apart(equilibrium, state)
     yield from _flat(problem.deformable, equilibrium.solid.smallest_jacobians(positions))
     for body in problem.deformable:
         yield from _lengths(body, LENGTHS_BENT if isinstance(error, SingularSystemError) else LENGTHS)
