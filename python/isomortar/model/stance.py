@@ -41,6 +41,8 @@ class Stance:
         The middle of the slave's body lies behind a plane.
     towards : ndarray, shape (3,)
         From slave to master, where they are nearest.
+    faces : bool
+        Whether some of the slave faces the master, and not only an edge of that.
     """
 
     slave_area: float
@@ -51,6 +53,7 @@ class Stance:
     thickness: float
     behind: bool
     towards: FloatArray
+    faces: bool
 
 
 @remembered
@@ -77,7 +80,7 @@ def _on_plane(points: FloatArray, slave: Cells, plane: RigidPlane) -> Stance:
     depth, thick = _deepest(cosines, above, thickness)
     gap = max(float(above.min()), 0.0)
     return Stance(
-        float(slave.areas.sum()), np.inf, float(cosines.min()), depth, gap, thick, bool(heights.max() + heights.min() < 0.0), -normal
+        float(slave.areas.sum()), np.inf, float(cosines.min()), depth, gap, thick, bool(heights.max() + heights.min() < 0.0), -normal, True
     )
 
 
@@ -104,8 +107,9 @@ def _by_cells(slave: Cells, master: Cells) -> tuple[Stance, bool]:
     apart = np.where(beside, distances - np.sqrt(2.0 * master.areas[found]), heights)
     closest = int(np.argmin(np.where(cosines < FACING, apart, np.inf)))
     gap = 0.0 if depth > 0.0 else max(float(apart.min()), 0.0)
+    faces = bool(np.any(~beside & (cosines < FACING) & ~master.outermost((False, False))[found]))
     areas = float(slave.areas.sum()), float(master.areas.sum())
-    return Stance(*areas, cosine, depth, gap, thick, False, -normals[closest]), bool(beside.all())
+    return Stance(*areas, cosine, depth, gap, thick, False, -normals[closest], faces), bool(beside.all())
 
 
 def nearest(points: FloatArray, others: FloatArray) -> IntArray:

@@ -122,6 +122,12 @@ DOUBTFUL = {
         "Exchange the two: upper.w0 ends within lower.w1",
     ),
     "wholly beside": (*UNUSUAL["slave beside its master"], "upper.w0 is wholly beside its master"),
+    "between the points": (
+        PAIR.replace('slave = "upper.w0"\nmaster = "lower.w1"', 'slave = "lower.w1"\nmaster = "upper.w0"'),
+        "lower = [-0.4, -0.4, 0.0], upper = [0.4, 0.4, 0.6]",
+        "lower = [-0.03, -0.03, 0.0], upper = [0.03, 0.03, 0.6]",
+        "are beside its master, which is between them",
+    ),
     "cannot close": (PRESS, "point = [0, 0, 0]", "point = [0, 0, -0.5]", "0.5 apart at the start, and all supports together travel 0.1"),
     "bodies cannot close": (PAIR, "-0.4, 0.0], upper = [0.4, 0.4, 0.6]", "-0.4, 0.9], upper = [0.4, 0.4, 1.6]", "it cannot close"),
     "other unit of length": (

@@ -82,7 +82,7 @@ def doubts(problem: Problem, state: State) -> Iterator[str]:
         too_deep, beside = inside if found.depth > 0.0 else 0, not np.any(feet) and not before
         yield from _of_stance(contact, found, travel, too_deep, beside)
         yield from _of_ways(problem, contact, found, beside)
-        yield from of_edges(problem, contact, feet, found.gap)
+        yield from () if beside else of_edges(problem, contact, feet, found.gap)
         yield from _of_contact(contact)
         yield from _pressures(problem, contact)
         yield from of_rolling(problem, contact, found.towards)
@@ -171,6 +171,11 @@ def _of_stance(contact: Contact, found: Stance, travel: float, too_deep: int, be
             f"and {too_deep} of its slave quadrature points are inside their master without a foot: along averaged normals feet are found "
             "up to a tenth of the master's size deep. Nothing pushes those points out. Move one of the bodies; if a shrink fit is meant, "
             f'take contacts.{contact.name}.projection = "closest"'
+        )
+    elif beside and found.faces:
+        yield (
+            f"contact {contact.name!r}: all quadrature points of the slave face {contact.slave.words} are beside its master, which is "
+            f"between them, and meets none. Refine the slave there (bodies.{contact.slave.body}.mesh.elements), or exchange the two"
         )
     elif beside:
         yield (
