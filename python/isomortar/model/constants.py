@@ -125,7 +125,7 @@ MAX_CLOSINGS = 5
 #: tenth a roller between plates did not come to rest, with nothing three of them were thrown out.
 STEADY = 1e-3
 #: Merit of an iterate up to which contact holds such bodies by itself: closer to the solution nothing throws them out.
-HELD = 0.1
+STEADIED_ABOVE = 0.1
 #: How many tangents of a Newton loop hold such bodies at most: what has found no hold by then has none.
 MAX_STEADIED = 10
 #: How often the first solve is repeated with reversed slips held: each repetition may find more of them; the loop settles the rest.

@@ -164,6 +164,15 @@ class Equilibrium:
             scales = self.measures.scales(start.positions if first is None else first)
         return self.supports.increment(start.positions, time), scales
 
+    @property
+    def pulled(self) -> bool:
+        """Whether loads act, or supports with a force."""
+        return self._touching.pulled
+
+    def contact_may_hold(self, start: State) -> bool:
+        """Whether supports leave bodies rigid motions that contact would hold, if it were closed everywhere (theory 6.9)."""
+        return bool(self.loose) and self._touching.may_hold(self.pairs, start)
+
     def closed(self, start: State, penalties: Sequence[float | Scales]) -> list[FloatArray | None]:
         """First pressures of the pairs that loads close, of which all is open at the start; see `Touching.closed` (theory 6.8)."""
         return self._touching.closed(self.pairs, start, self.time, penalties)

@@ -97,7 +97,7 @@ class Newton(ABC, Generic[Iterated, Corrected]):
     def solve(
         self, iterate: Iterated, prescribed: FloatArray | None, observe: Callable[[IterationRecord], None], notes: tuple[str, ...] = ()
     ) -> Converged[Iterated]:
-        """Iterate until forces are in balance.
+        """Iterate until forces are in balance; bodies that begin without contact are held a little at first (theory 6.9).
 
         Parameters
         ----------
@@ -116,9 +116,10 @@ class Newton(ABC, Generic[Iterated, Corrected]):
         """
         moves = prescribed is not None and bool(np.any(prescribed))
         keep = self._keeps and self._factorised and not moves
-        log, tangents, closings, steadied = list[IterationRecord](), 0, 0, 0
+        log, tangents, closings = list[IterationRecord](), 0, 0
         led: tuple[Iterated, Iterated] | None = None  # from where to where by the last tangent
-        begins_loose = bool(self._equilibrium.loose) and (any(self._loads_closed) or not iterate.balance.active)
+        begins = any(self._loads_closed) or not iterate.balance.active
+        steadied = 0 if begins and self._equilibrium.contact_may_hold(self._start) else constants.MAX_STEADIED
         self._trail = Trail()
         for iteration in count():
             self._trail.add(iterate.balance, iterate.merit)
@@ -138,7 +139,7 @@ class Newton(ABC, Generic[Iterated, Corrected]):
                 opened = tangents > 0 and closings < constants.MAX_CLOSINGS and self._opened(iterate)
                 if opened:
                     iterate, keep_bodies, closings = self._closed_anew(iterate), False, closings + 1
-                steady = begins_loose and steadied < constants.MAX_STEADIED and (moves or iterate.merit > constants.HELD)
+                steady = steadied < constants.MAX_STEADIED and self._finds_hold(iterate, moves)
                 with self._equilibrium.steadied(steady):
                     iterate, following, notes = self._by_tangent(iterate, None if tangents else prescribed, iteration, keep_bodies)
                 notes = ((CLOSED_ANEW,) if opened else ()) + ((STEADIED,) if steady else ()) + notes
@@ -187,6 +188,11 @@ class Newton(ABC, Generic[Iterated, Corrected]):
     def _opened(self, iterate: Iterated) -> bool:
         """Whether loads closed something and all is open again, so that there is no tangent."""
         return any(self._loads_closed) and not iterate.balance.active
+
+    def _finds_hold(self, iterate: Iterated, moves: bool) -> bool:
+        """Whether bodies that begin without contact have yet to find what holds them: what loads press on something has (theory 6.9)."""
+        pressed = self._equilibrium.pulled and iterate.balance.active
+        return not pressed and (moves or iterate.merit > constants.STEADIED_ABOVE)
 
     @abstractmethod
     def _closed_anew(self, iterate: Iterated) -> Iterated:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
 from isomortar._bindings import Control
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
 from isomortar.model.supports import BoolArray
@@ -16,8 +16,8 @@ from isomortar.solve.metric import tangent_lengths
 from isomortar.solve.record import ContactState
 
 
-@dataclass(frozen=True)
-class Footing:
+@frozen
+class Foothold:
     """Constraints of a pair.
 
     Parameters
@@ -40,20 +40,49 @@ class Footing:
     slips: FloatArray
 
 
-def footing(pair: PairMechanics, positions: FloatArray, start: ContactState, near: BoolArray, begins: bool, motions: FloatArray) -> Footing:
-    """That of a pair, by its nearest constraints and motions of all control points, shape (motions, control points, 3) (theory 6.8)."""
-    least, bears = next_to_nothing(pair), bool(np.any(start.pressure != 0.0))
+@frozen
+class RatesOfPair:
+    """Control quantities of a pair, and rates of its gaps and slips by rigid motions, all of them lengths.
+
+    Parameters
+    ----------
+    control : Control
+    gaps, slips : ndarray, shape (n, motions) and (n, 2, motions)
+        Without friction slips are nothing that contact would hold.
+    """
+
+    control: Control
+    gaps: FloatArray
+    slips: FloatArray
+
+
+def rates(pair: PairMechanics, positions: FloatArray, start: ContactState, motions: FloatArray) -> RatesOfPair:
+    """Those of a pair by motions of all control points, shape (motions, control points, 3) (theory 6.8)."""
+    least = next_to_nothing(pair)
     here, *there = (pair.kinematics(positions + way, start).control for way in (0.0 * motions[0], *(least * motions)))
     area = np.where(here.weight > 0.0, here.weight, np.inf)
     gaps = np.stack([(control.gap - here.gap) / area for control in there], axis=-1) / least
     slips = np.stack([(control.slip - here.slip) / area[:, None] * tangent_lengths(here) for control in there], axis=-1) / least
-    heights = mean_heights(here)
+    return RatesOfPair(here, gaps, slips * pair.friction.acts)
+
+
+def hold_all(all_rates: Iterable[RatesOfPair]) -> bool:
+    """Whether constraints with these rates, all closed, leave no motion (theory 6.9)."""
+    return not len(_left(np.concatenate([rows for of in all_rates for rows in (of.gaps, *np.swapaxes(of.slips, 0, 1))])))
+
+
+def foothold(
+    pair: PairMechanics, positions: FloatArray, start: ContactState, near: BoolArray, begins: bool, motions: FloatArray
+) -> Foothold:
+    """That of a pair, by its nearest constraints and motions of all control points, shape (motions, control points, 3) (theory 6.8)."""
+    bears, by = bool(np.any(start.pressure != 0.0)), rates(pair, positions, start, motions)
+    heights = mean_heights(by.control)
     beyond = (heights.max() if begins else 0.0) - np.where(begins | near, heights, -np.inf)
     within = (beyond <= constants.NEXT * np.sqrt(pair.pair.area)) & ~np.bool_(bears)
-    return Footing(near & np.bool_(begins or bears), begins, np.where(within, beyond, np.inf), gaps, slips)
+    return Foothold(near & np.bool_(begins or bears), begins, np.where(within, beyond, np.inf), by.gaps, by.slips)
 
 
-def rested(feet: Sequence[Footing], works: FloatArray) -> list[BoolArray]:
+def rested(feet: Sequence[Foothold], works: FloatArray) -> list[BoolArray]:
     """What is near of each pair, with the next constraints that close by motions which nothing near holds (theory 6.8).
 
     Loads turn a body to the side on which they do work, along each of the motions; it turns to any side where they do none.

@@ -6,26 +6,25 @@ See theory 6.8.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from isomortar._bindings import Control
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
 from isomortar.model.entities import Problem
 from isomortar.model.loads import Loads
 from isomortar.model.numbering import Numbering
-from isomortar.model.rank import moved
 from isomortar.model.supports import BoolArray, Supports
 from isomortar.solve.contact import PairMechanics
 from isomortar.solve.free_motions import FreeMotion, free_motions
 from isomortar.solve.record import ContactState, State
-from isomortar.solve.resting import footing, mean_heights, next_to_nothing, rested
+from isomortar.solve.resting import foothold, hold_all, mean_heights, next_to_nothing, rates, rested
 from isomortar.solve.scales import Scales
 
 
-@dataclass(frozen=True)
+@frozen
 class _Approach:
     """A pair by each of some ways: its control quantities, its nearest constraints, and how far bodies go until these close."""
 
@@ -43,10 +42,16 @@ class Touching:
     numbering : Numbering
     supports : Supports
     loads : Loads
+
+    Attributes
+    ----------
+    pulled : bool
+        Whether loads act, or supports with a force.
     """
 
     def __init__(self, problem: Problem, numbering: Numbering, supports: Supports, loads: Loads) -> None:
         self._problem, self._numbering, self._supports, self._loads = problem, numbering, supports, loads
+        self.pulled = bool(problem.loads or supports.plates)
 
     @property
     def _turning(self) -> bool:
@@ -61,12 +66,12 @@ class Touching:
         return self._supports.unbalanced(-sum(self._loads.forces(positions, time), np.zeros_like(positions)), positions, time)
 
     def _ways(self, positions: FloatArray, time: float, borne: set[str]) -> list[tuple[set[str], FloatArray]]:
-        """Bodies, and a way that each goes to a load time: as loads move it, or any way if none does (theory 6.8).
+        """Bodies, and a way that each goes to a load time: as loads move it, or any way to and fro if none does (theory 6.8).
 
         Where no loads act, those alone that no contact bears: supports press the others on what they are on.
         """
         motions = self._motions(positions)
-        if not (self._problem.loads or self._supports.plates):
+        if not self.pulled:
             held = {number for number, piece in enumerate(self._numbering.pieces) if borne & {body.name for body in piece}}
             motions = [motion for motion in motions if motion.piece not in held]
         if not motions:
@@ -78,27 +83,16 @@ class Touching:
             works = -np.einsum("mij,ij->m", own, left)
             way = np.tensordot(works, own, 1)
             driven = not self._turning and np.abs(works).max(initial=0.0) > constants.NO_PART * np.abs(left).sum()
-            ways = way[None] / np.abs(way).max() if driven else np.concatenate([own, -own])
+            ways = way[None] / np.abs(way).max() if driven else np.stack([own, -own], axis=1).reshape(-1, *positions.shape)
             found += [({body.name for body in piece}, one) for one in ways]
         return found
-
-    def _carried(self, positions: FloatArray, time: float, borne: set[str]) -> tuple[list[tuple[set[str], FloatArray]], float]:
-        """The way that supports carry all bodies to a load time, for those that no contact bears yet, and its length (theory 6.8)."""
-        way, increment = np.zeros_like(positions), self._supports.increment(positions, time)
-        for piece in self._numbering.pieces:
-            own = np.concatenate([self._numbering.points[body.name] for body in piece])
-            held, motions = self._supports.held[own], np.array([moved(piece, amounts, positions[own]) for amounts in np.eye(6)])
-            way[own] = np.tensordot(np.linalg.lstsq(motions[:, held].T, increment[own][held])[0], motions, 1)
-        length = float(np.abs(way).max())
-        free = {body.name for motion in self._motions(positions) for body in self._numbering.pieces[motion.piece]}
-        return ([(free - borne, way / length)] if length > 0.0 else []), length
 
     def closed(
         self, pairs: Sequence[PairMechanics], start: State, time: float, penalties: Sequence[float | Scales]
     ) -> list[FloatArray | None]:
         """Pressures whose trials are above zero where pairs close first (theory 6.8); None of other pairs, and of those that bear.
 
-        Loads close them, or supports that carry a body, or what stands on both sides of it.
+        Loads close them, or what stands on both sides of a body.
 
         With scales in its place a penalty is that of `PairMechanics.parameters`.
         """
@@ -113,6 +107,11 @@ class Touching:
             found.append(np.where(closed, size * np.maximum(least, least - mean_heights(approach.control)), 0.0) if begins else None)
         return found
 
+    def may_hold(self, pairs: Sequence[PairMechanics], start: State) -> bool:
+        """Whether contact that is closed everywhere would hold all motions that supports leave (theory 6.9)."""
+        motions = np.stack([motion.displacement for motion in self._motions(start.positions)])
+        return hold_all(rates(pair, start.positions, contact, motions) for pair, contact in zip(pairs, start.contacts, strict=True))
+
     def _begun(self, pairs: Sequence[PairMechanics], start: State, time: float) -> tuple[list[_Approach], list[bool]]:
         """How pairs stand, and which of them begin: those that bodies come to first."""
         bear = [pair.pair.contact.bodies for pair, contact in zip(pairs, start.contacts, strict=True) if np.any(contact.pressure != 0.0)]
@@ -120,14 +119,12 @@ class Touching:
         ways = [] if len(bear) == len(pairs) else self._ways(start.positions, time, borne)
         if not ways:
             return [], []
-        carried, length = self._carried(start.positions, time, borne)
         both = list(zip(pairs, start.contacts, strict=True))
-        approaches = [_approach(pair, start.positions, contact, [*ways, *carried]) for pair, contact in both]
+        approaches = [_approach(pair, start.positions, contact, ways) for pair, contact in both]
         first, size = np.min([approach.distances for approach in approaches], axis=0), np.sqrt(max(pair.pair.area for pair in pairs))
-        comes, own = first <= (1.0 + constants.NO_PART) * length, len(ways)
-        alone = not (self._problem.loads or self._supports.plates)
-        comes[:own] = _to_and_fro(ways, first[:own]) <= constants.BETWEEN * size if alone else True
-        first = np.where(comes, first, -np.inf)
+        if not self.pulled:  # nothing presses a body on what it may go away from: something has to stand on both of its sides
+            room = first.reshape(-1, 2).sum(axis=1).repeat(2)
+            first = np.where(room <= constants.BETWEEN * size, first, -np.inf)
         begun = []
         for (pair, contact), approach in zip(both, approaches, strict=True):
             reached = np.isfinite(approach.distances) & (approach.distances <= first + next_to_nothing(pair))
@@ -141,16 +138,10 @@ class Touching:
         motions = np.stack([motion.displacement for motion in self._motions(start.positions)])
         works = -np.einsum("mij,ij->m", motions, self._left(start.positions, time))
         feet = [
-            footing(pair, start.positions, contact, approach.near, begins, motions)
+            foothold(pair, start.positions, contact, approach.near, begins, motions)
             for pair, contact, approach, begins in zip(pairs, start.contacts, approaches, begun, strict=True)
         ]
         return rested(feet, np.zeros_like(works) if self._turning else works)
-
-
-def _to_and_fro(ways: Sequence[tuple[set[str], FloatArray]], first: FloatArray) -> FloatArray:
-    """How far bodies can go along each way and back, until something stands in both: nothing presses them on what they may go away from."""
-    back = [next(k for k, (bodies, way) in enumerate(ways) if bodies == of and np.array_equal(way, -there)) for of, there in ways]
-    return first + first[back]
 
 
 def _approach(pair: PairMechanics, positions: FloatArray, start: ContactState, ways: Sequence[tuple[set[str], FloatArray]]) -> _Approach:
