@@ -55,20 +55,22 @@ def _initialiser(kind: type) -> Callable[..., None]:
     """Make the initialiser of a class of `frozen`: values by place and by name, what is left out by its default."""
     told = _told(kind)
     names, expected = tuple(told), told.keys()
-    defaults = {name: f.default for name, f in told.items() if f.default is not MISSING}
+    in_order = {name: f.default for name, f in told.items()}
     factories = [(name, f.default_factory) for name, f in told.items() if f.default_factory is not MISSING]
+    needed = tuple(name for name, f in told.items() if f.default is MISSING and f.default_factory is MISSING)
     finish = getattr(kind, "__post_init__", None)
 
     def initialise(self: Any, *given: Any, **named: Any) -> None:
         values = self.__dict__
-        values.update(defaults)
+        values.update(in_order)
         values.update(zip(names, given, strict=False))
         values.update(named)
-        for name, make in factories:
-            if name not in values:
-                values[name] = make()
-        if values.keys() != expected or len(given) > len(names) or not named.keys().isdisjoint(names[: len(given)]):
+        fits = values.keys() == expected and len(given) <= len(names) and named.keys().isdisjoint(names[: len(given)])
+        if not fits or not all(map(named.__contains__, needed[len(given) :])):
             inspect.signature(kind).bind(*given, **named)  # says what is wrong
+        for name, make in factories:
+            if values[name] is MISSING:
+                values[name] = make()
         if finish is not None:
             finish(self)
 

@@ -82,6 +82,7 @@ def test_records_are_those_of_the_standard_library(name: str, given: tuple[Any, 
     ours, theirs = OURS[name](*given, **named), STANDARD[name](*given, **named)
     assert repr(ours) == repr(theirs)
     assert asdict(ours) == asdict(theirs)
+    assert list(vars(ours)) == list(vars(theirs))
     assert [f.name for f in fields(ours)] == [f.name for f in fields(theirs)]
     assert vars(copy(ours)) == vars(deepcopy(ours)) == vars(theirs)
     again = (OURS[name](*given, **named), STANDARD[name](*given, **named))

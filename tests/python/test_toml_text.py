@@ -6,6 +6,7 @@ import math
 import tomllib
 from typing import Any
 
+import numpy as np
 from hypothesis import given
 from hypothesis import strategies as some
 
@@ -37,6 +38,10 @@ def test_what_is_written_is_read_back(data: dict[str, Any]) -> None:
     assert kinds(tomllib.loads(dump(data))) == kinds(data)
     assert kinds(tomllib.loads(f"x = {in_a_line(data)}")) == {"x": kinds(data)}
     assert "\n" not in in_a_line(data)
+
+
+def test_numbers_of_numpy_are_numbers() -> None:
+    assert tomllib.loads(dump({"x": np.float64(1e-7)})) == {"x": 1e-7}
 
 
 def test_what_is_no_number_is_read_back() -> None:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
-from isomortar.errors import ConvergenceError, FoldedElementError, LostProjectionError, PathError, SingularSystemError
+from isomortar.errors import ConvergenceError, PathError
 from isomortar.march.recording import Recording
 from isomortar.model import constants
 from isomortar.model.checks import check
@@ -14,7 +14,7 @@ from isomortar.model.entities import Problem
 from isomortar.solve.distances import between, largest
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.extrapolation import with_rates
-from isomortar.solve.method import Increment, Method
+from isomortar.solve.method import FAILURES, Increment, Method
 from isomortar.solve.monolithic import Monolithic
 from isomortar.solve.record import Observer, State, StepResult
 from isomortar.solve.timing import Ledger
@@ -22,9 +22,6 @@ from isomortar.solve.uzawa import Uzawa
 from isomortar.told.before.doubts import doubts
 from isomortar.told.before.pairing import of_pairing
 from isomortar.told.during.watches import Watches
-
-_REASONS_TO_CUT = (ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError)
-
 
 _METHODS: dict[str, type[Method]] = {"monolithic": Monolithic, "uzawa": Uzawa}
 
@@ -110,7 +107,7 @@ class Simulation:
             try:
                 parts = self._advance(state, time, target, step)
                 self._watches.look(state.positions, parts[-1].balance.positions, increment / longest)
-            except _REASONS_TO_CUT as error:
+            except FAILURES as error:
                 self._cut(step, state, target, increment, longest, error)
                 passage.cuts += 1
                 continue

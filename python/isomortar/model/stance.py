@@ -90,7 +90,9 @@ def _on_face(slave: Cells, master: Cells) -> Stance:
     if not beside:
         return found
     back, beside = _by_cells(master, slave)
-    return found if beside else replace(back, slave_area=found.slave_area, master_area=found.master_area, towards=-back.towards)
+    if beside or not back.faces:
+        return found
+    return replace(back, slave_area=found.slave_area, master_area=found.master_area, towards=-back.towards)
 
 
 def _by_cells(slave: Cells, master: Cells) -> tuple[Stance, bool]:

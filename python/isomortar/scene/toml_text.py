@@ -22,7 +22,7 @@ def in_a_line(value: Any) -> str:
     if isinstance(value, list):
         return "[" + ", ".join(map(in_a_line, value)) + "]"
     if isinstance(value, float):
-        return repr(value)  # "inf" and "nan" are TOML's as well
+        return repr(float(value))  # NumPy's as well; "inf" and "nan" are TOML's, too
     return json.dumps(value, ensure_ascii=False).replace("\x7f", r"\u007f")
 
 

@@ -173,9 +173,9 @@ class Equilibrium:
         """Whether supports leave bodies rigid motions that contact would hold, if it were closed everywhere (theory 6.9)."""
         return bool(self.loose) and self._touching.may_hold(self.pairs, start)
 
-    def closed(self, start: State, penalties: Sequence[float | Scales]) -> list[FloatArray | None]:
+    def closed(self, start: State, penalties: Sequence[float | Scales], rests: bool) -> list[FloatArray | None]:
         """First pressures of the pairs that loads close, of which all is open at the start; see `Touching.closed` (theory 6.8)."""
-        return self._touching.closed(self.pairs, start, self.time, penalties)
+        return self._touching.closed(self.pairs, start, self.time, penalties, rests)
 
     def state(self, balance: Balance) -> State:
         """The state that a balance leaves, to go on from."""

@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from typing import TypeVar
 
 import numpy as np
 
 from isomortar._bindings import Law
 from isomortar._frozen import frozen
+from isomortar.errors import ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.newton import KEPT_FACTORS
 from isomortar.solve.record import AugmentationRecord, IterationRecord, Observer, State
+
+#: What a load increment may fail by: a shorter one, or another way to its end, may come through.
+FAILURES = (ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError)
+_Found = TypeVar("_Found")
 
 
 @frozen
@@ -51,6 +58,20 @@ class Method(ABC):
         ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError
             The increment has to be cut.
         """
+
+    def _seeking_hold(self, start: State, solve: Callable[[bool], _Found]) -> _Found:
+        """What a way of solving finds without help, or else while bodies seek what will hold them, if contact may (theory 6.9).
+
+        With help it is called with True. What it fails by without is what is told.
+        """
+        try:
+            return solve(False)
+        except FAILURES:
+            if not self._equilibrium.contact_may_hold(start):
+                raise
+            with suppress(*FAILURES):
+                return solve(True)
+            raise
 
 
 def augmentation_record(

@@ -11,7 +11,7 @@ import numpy as np
 from isomortar._bindings import NO_FRICTION, Law, Response
 from isomortar._codes import PointState
 from isomortar._frozen import frozen
-from isomortar.errors import ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError
+from isomortar.errors import FoldedElementError, LostProjectionError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
 from isomortar.solve.bordered import Border, Correction, from_lengths, in_lengths, solve_bordered, solve_with_kept_factors
@@ -19,7 +19,7 @@ from isomortar.solve.contact import Kinematics, Multipliers
 from isomortar.solve.distances import apart, largest, round_off
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.extrapolation import multipliers_ahead, positions_ahead
-from isomortar.solve.method import Increment, Method, augmentation_record
+from isomortar.solve.method import FAILURES, Increment, Method, augmentation_record
 from isomortar.solve.metric import contravariant
 from isomortar.solve.newton import Converged, Iterate, Newton
 from isomortar.solve.record import IterationRecord, State
@@ -36,16 +36,16 @@ class Monolithic(Method):
     def advance(self, start: State, time: float, step: int) -> Increment:
         """Solve the increment; see `Method.advance`."""
         observe = partial(self._observer.iteration, step, time, 1)
-        newton, found = self._from_ahead(start, time, observe) or self._from_start(start, time, observe)
+        newton, found = self._from_ahead(start, time, observe) or self._seeking_hold(start, partial(self._from_start, start, time, observe))
         last = found.iterate
         self._equilibrium.complete(last.balance)
         record = augmentation_record(1, newton.settled(last), (last.gap_pressure, last.gap_traction), found.log)
         return Increment(last.balance, (record,), (found.order,))
 
-    def _from_start(self, start: State, time: float, observe: Callable[[IterationRecord], None]) -> _Solved:
+    def _from_start(self, start: State, time: float, observe: Callable[[IterationRecord], None], seeks_hold: bool) -> _Solved:
         """The solution from the start, with the prescribed increment in the first solve."""
         prescribed, scales = self._equilibrium.begin(start, time)
-        newton = _BorderedNewton(self._equilibrium, start, scales)
+        newton = _BorderedNewton(self._equilibrium, start, scales, seeks_hold)
         return newton, newton.solve(newton.first(), prescribed, observe)
 
     def _from_ahead(self, start: State, time: float, observe: Callable[[IterationRecord], None]) -> _Solved | None:
@@ -57,7 +57,7 @@ class Monolithic(Method):
             _, scales = self._equilibrium.begin(start, time, positions)
             newton = _BorderedNewton(self._equilibrium, start, scales)
             return newton, newton.solve(newton.ahead(positions, time - start.rates.time), None, observe, (EXTRAPOLATION,))
-        except (ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError):
+        except FAILURES:
             return None
 
 
@@ -97,8 +97,8 @@ class _BorderedIterate(Iterate):
 class _BorderedNewton(Newton[_BorderedIterate, Correction]):
     """Newton's method for positions and multipliers."""
 
-    def __init__(self, equilibrium: Equilibrium, start: State, scales: Scales) -> None:
-        super().__init__(equilibrium, start, scales)
+    def __init__(self, equilibrium: Equilibrium, start: State, scales: Scales, seeks_hold: bool = False) -> None:
+        super().__init__(equilibrium, start, scales, seeks_hold)
         self._margin = constants.SLIP_MARGIN if "margin" in self._settings.measures else 0.0
         self._borders: list[Border | None] = []
         self._secants = Secants()

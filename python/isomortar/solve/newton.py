@@ -85,10 +85,12 @@ class Newton(ABC, Generic[Iterated, Corrected]):
         Last converged state: slips count from it.
     scales : Scales
         What the residual is measured against.
+    seeks_hold : bool
+        Whether bodies that begin without contact are helped to find what will hold them (theory 6.9).
     """
 
-    def __init__(self, equilibrium: Equilibrium, start: State, scales: Scales) -> None:
-        self._equilibrium, self._start, self._scales = equilibrium, start, scales
+    def __init__(self, equilibrium: Equilibrium, start: State, scales: Scales, seeks_hold: bool) -> None:
+        self._equilibrium, self._start, self._scales, self._seeks_hold = equilibrium, start, scales, seeks_hold
         self._settings = equilibrium.problem.settings
         self._keeps = "keeping" in self._settings.measures
         self._factorised, self._made_at = False, start.positions
@@ -119,7 +121,7 @@ class Newton(ABC, Generic[Iterated, Corrected]):
         log, tangents, closings = list[IterationRecord](), 0, 0
         led: tuple[Iterated, Iterated] | None = None  # from where to where by the last tangent
         begins = any(self._loads_closed) or not iterate.balance.active
-        steadied = 0 if begins and self._equilibrium.contact_may_hold(self._start) else constants.MAX_STEADIED
+        steadied = 0 if begins and self._seeks_hold else constants.MAX_STEADIED
         self._trail = Trail()
         for iteration in count():
             self._trail.add(iterate.balance, iterate.merit)
@@ -181,7 +183,7 @@ class Newton(ABC, Generic[Iterated, Corrected]):
 
     def _nearest(self, positions: FloatArray, penalties: Sequence[float | Scales]) -> list[FloatArray | None]:
         """Pressures that close what loads close first, from some positions on; None of pairs that they do not close (theory 6.8)."""
-        closed = self._equilibrium.closed(replace(self._start, positions=positions), penalties)
+        closed = self._equilibrium.closed(replace(self._start, positions=positions), penalties, self._seeks_hold)
         self._loads_closed = [pressure is not None for pressure in closed]
         return closed
 

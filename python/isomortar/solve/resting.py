@@ -59,7 +59,8 @@ class RatesOfPair:
 def rates(pair: PairMechanics, positions: FloatArray, start: ContactState, motions: FloatArray) -> RatesOfPair:
     """Those of a pair by motions of all control points, shape (motions, control points, 3) (theory 6.8)."""
     least = next_to_nothing(pair)
-    here, *there = (pair.kinematics(positions + way, start).control for way in (0.0 * motions[0], *(least * motions)))
+    here, own = pair.kinematics(positions, start).control, np.concatenate([pair.pair.slave.point, pair.pair.master_face])
+    there = [pair.kinematics(positions + least * way, start).control if np.any(way[own]) else here for way in motions]
     area = np.where(here.weight > 0.0, here.weight, np.inf)
     gaps = np.stack([(control.gap - here.gap) / area for control in there], axis=-1) / least
     slips = np.stack([(control.slip - here.slip) / area[:, None] * tangent_lengths(here) for control in there], axis=-1) / least

@@ -88,18 +88,19 @@ class Touching:
         return found
 
     def closed(
-        self, pairs: Sequence[PairMechanics], start: State, time: float, penalties: Sequence[float | Scales]
+        self, pairs: Sequence[PairMechanics], start: State, time: float, penalties: Sequence[float | Scales], rests: bool
     ) -> list[FloatArray | None]:
         """Pressures whose trials are above zero where pairs close first (theory 6.8); None of other pairs, and of those that bear.
 
         Loads close them, or what stands on both sides of a body.
 
-        With scales in its place a penalty is that of `PairMechanics.parameters`.
+        With scales in its place a penalty is that of `PairMechanics.parameters`. If a body `rests`, the next constraints begin with those
+        that it comes to first, where it would turn about these alone.
         """
         approaches, begun = self._begun(pairs, start, time)
         if not any(begun):
             return [None] * len(pairs)
-        near = self._rested(pairs, start, time, approaches, begun)
+        near = self._rested(pairs, start, time, approaches, begun) if rests else [approach.near for approach in approaches]
         found: list[FloatArray | None] = []
         for pair, approach, begins, closed, penalty in zip(pairs, approaches, begun, near, penalties, strict=True):
             size = float(pair.parameters(approach.control, penalty)[0]) if isinstance(penalty, Scales) else penalty
@@ -108,8 +109,13 @@ class Touching:
         return found
 
     def may_hold(self, pairs: Sequence[PairMechanics], start: State) -> bool:
-        """Whether contact that is closed everywhere would hold all motions that supports leave (theory 6.9)."""
-        motions = np.stack([motion.displacement for motion in self._motions(start.positions)])
+        """Whether contact that is closed everywhere would hold all that supports leave free, of which some bears nothing (theory 6.9)."""
+        bear = [pair.pair.contact.bodies for pair, contact in zip(pairs, start.contacts, strict=True) if np.any(contact.pressure != 0.0)]
+        borne = set[str]().union(*bear)
+        free = self._motions(start.positions)
+        if all(borne & {body.name for body in self._numbering.pieces[motion.piece]} for motion in free):
+            return False
+        motions = np.stack([motion.displacement for motion in free])
         return hold_all(rates(pair, start.positions, contact, motions) for pair, contact in zip(pairs, start.contacts, strict=True))
 
     def _begun(self, pairs: Sequence[PairMechanics], start: State, time: float) -> tuple[list[_Approach], list[bool]]:

@@ -26,8 +26,8 @@ from isomortar.solve.secants import Secants
 class _PositionNewton(Newton[Iterate, FloatArray]):
     """Newton's method for the positions, with the multipliers of one augmentation held."""
 
-    def __init__(self, equilibrium: Equilibrium, start: State, scales: Scales) -> None:
-        super().__init__(equilibrium, start, scales)
+    def __init__(self, equilibrium: Equilibrium, start: State, scales: Scales, seeks_hold: bool) -> None:
+        super().__init__(equilibrium, start, scales, seeks_hold)
         self._closes = False  # whether the first iterate has constraints closed whatever they bear
         self._secants = Secants()
 
@@ -125,14 +125,18 @@ class Uzawa(Method):
     """Solves load increments by augmentations of control pressures and tractions."""
 
     def advance(self, start: State, time: float, step: int) -> Increment:
-        """Solve the increment; see `Method.advance` (theory 7.1, 7.2)."""
+        """Solve the increment; see `Method.advance`."""
+        return self._seeking_hold(start, partial(self._augmented, start, time, step))
+
+    def _augmented(self, start: State, time: float, step: int, seeks_hold: bool) -> Increment:
+        """Augment until multipliers and positions are those of each other (theory 7.1, 7.2)."""
         equilibrium = self._equilibrium
         prescribed, scales = equilibrium.begin(start, time)
         factors = np.array([self._settings.penalty_normal, self._settings.penalty_tangential])
         base = [factors * pair.stiffness(scales) / pair.penalty_area for pair in equilibrium.pairs]
         laws = [pair.law(b, s.pressure, s.traction) for pair, b, s in zip(equilibrium.pairs, base, start.contacts, strict=True)]
 
-        newton = _PositionNewton(equilibrium, start, scales)
+        newton = _PositionNewton(equilibrium, start, scales, seeks_hold)
         positions, records, orders, growth = start.positions, [], [], 1.0
         for augmentation in range(1, self._settings.max_augmentations + 1):
             first = newton.first(laws, positions) if augmentation == 1 else newton.held(laws, positions)

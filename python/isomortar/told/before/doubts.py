@@ -164,7 +164,7 @@ def _inside_and_before(problem: Problem, contact: Contact, positions: FloatArray
 
 def _of_stance(contact: Contact, found: Stance, travel: float, too_deep: int, beside: bool) -> Iterator[str]:
     """How the faces of a contact stand to each other; no prescribed point goes farther than `travel`."""
-    ratio = np.sqrt(found.slave_area / found.master_area)
+    ratio, far = np.sqrt(found.slave_area / found.master_area), found.gap > 2.0 * travel > 0.0
     if too_deep and (_overlaps(found) or beside):
         yield (
             f"contact {contact.name!r}: the bodies overlap by {found.depth:.3g} at the start (the thinner is {found.thickness:.3g} thick), "
@@ -172,12 +172,12 @@ def _of_stance(contact: Contact, found: Stance, travel: float, too_deep: int, be
             "up to a tenth of the master's size deep. Nothing pushes those points out. Move one of the bodies; if a shrink fit is meant, "
             f'take contacts.{contact.name}.projection = "closest"'
         )
-    elif beside and found.faces:
+    elif beside and found.faces and not far:
         yield (
             f"contact {contact.name!r}: all quadrature points of the slave face {contact.slave.words} are beside its master, which is "
             f"between them, and meets none. Refine the slave there (bodies.{contact.slave.body}.mesh.elements), or exchange the two"
         )
-    elif beside:
+    elif beside and not found.faces:
         yield (
             f"contact {contact.name!r}: the slave face {contact.slave.words} is wholly beside its master at the "
             "start; it meets only what motions bring before it. Check places and faces"
@@ -187,7 +187,7 @@ def _of_stance(contact: Contact, found: Stance, travel: float, too_deep: int, be
             f"contact {contact.name!r}: the bodies overlap by {found.depth:.3g} at the start (the thinner is {found.thickness:.3g} thick); "
             "the first load step pushes them apart. If no shrink fit is meant, move one of them"
         )
-    elif found.gap > 2.0 * travel > 0.0:
+    elif far:
         yield (
             f"contact {contact.name!r} is {found.gap:.3g} apart at the start, and all supports together travel {travel:.3g}: "
             "it cannot close. Check places, motions and units"
