@@ -24,17 +24,13 @@ class Foothold:
     ----------
     near : ndarray of bool, shape (n,)
         Which bear, or begin as closed.
-    begins : bool
-        Whether others may begin with them.
     beyond : ndarray, shape (n,)
-        How much farther these are from the master than the nearest one. Of a pair that is open, and stays so at first, how far the nearest
-        are: these hold bodies as soon. Infinite of all others.
+        How much farther others, which may begin with them, are from the master than the nearest one; infinite of those that may not.
     gaps, slips : ndarray, shape (n, motions) and (n, 2, motions)
         Their rates by rigid motions, all of them lengths.
     """
 
     near: BoolArray
-    begins: bool
     beyond: FloatArray
     gaps: FloatArray
     slips: FloatArray
@@ -78,9 +74,9 @@ def foothold(
     """That of a pair, by its nearest constraints and motions of all control points, shape (motions, control points, 3) (theory 6.8)."""
     bears, by = bool(np.any(start.pressure != 0.0)), rates(pair, positions, start, motions)
     heights = mean_heights(by.control)
-    beyond = (heights.max() if begins else 0.0) - np.where(begins | near, heights, -np.inf)
-    within = (beyond <= constants.NEXT * np.sqrt(pair.pair.area)) & ~np.bool_(bears)
-    return Foothold(near & np.bool_(begins or bears), begins, np.where(within, beyond, np.inf), by.gaps, by.slips)
+    beyond = (heights.max() if begins else 0.0) - heights  # a contact without a foot has none to begin with
+    within = np.bool_(begins) & (beyond <= constants.NEXT * np.sqrt(pair.pair.area))
+    return Foothold(near & np.bool_(begins or bears), np.where(within, beyond, np.inf), by.gaps, by.slips)
 
 
 def rested(feet: Sequence[Foothold], works: FloatArray) -> list[BoolArray]:
@@ -90,15 +86,13 @@ def rested(feet: Sequence[Foothold], works: FloatArray) -> list[BoolArray]:
     """
     near, beyond = np.concatenate([foot.near for foot in feet]), np.concatenate([foot.beyond for foot in feet])
     gaps, slips = np.concatenate([foot.gaps for foot in feet]), np.concatenate([foot.slips for foot in feet])
-    begins = np.repeat([foot.begins for foot in feet], [len(foot.near) for foot in feet])
     while True:
         left = _left(np.concatenate([gaps[near], *np.swapaxes(slips[near], 0, 1)]))
         way = left.T @ (left @ works)
         size = np.abs(way).max()
         driven = size > constants.NO_PART * np.abs(works).max()
         closes = gaps @ way / size if driven else np.abs(gaps @ left.T).max(axis=1, initial=0.0)
-        holds = np.abs(np.concatenate([gaps[:, None], slips], axis=1) @ left.T).max(axis=(1, 2), initial=0.0)
-        others = np.where((np.where(begins, closes, holds) > constants.HELD) & ~near, beyond, np.inf)
+        others = np.where((closes > constants.HELD) & ~near, beyond, np.inf)
         if not np.isfinite(others).any():
             return np.split(near, np.cumsum([len(foot.near) for foot in feet])[:-1])
         near[np.argmin(others)] = True
