@@ -93,7 +93,7 @@ def test_factors_go_with_their_simulation() -> None:
     """And do not wait for Python to look for cycles: it sees none of the kernel's memory."""
     simulation = Simulation(Scene.load("press", ["bodies.block.mesh.elements=[6,6,3]", "stages.press.steps=1"]).problem())
     assert [result.step for result in simulation.run()] == [1]
-    assert isinstance(simulation.equilibrium._system, CondensedSystem)
+    assert isinstance(simulation.equilibrium.systems.in_use, CondensedSystem)
     gone = weakref.ref(simulation.equilibrium)
     gc.disable()
     try:

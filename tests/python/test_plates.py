@@ -79,7 +79,7 @@ def test_all_linear_systems_see_plates_alike() -> None:
     simulation = Simulation(replace(given, settings=replace(given.settings, method="uzawa")))
     results = list(simulation.run())
     equilibrium = simulation.equilibrium
-    system = equilibrium._system
+    system = equilibrium.systems.in_use
     assert isinstance(system, CondensedSystem)
     assert system.ordering is None  # no general factors took its place
     assert len(equilibrium.supports.copies) == 100

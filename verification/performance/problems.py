@@ -37,8 +37,9 @@ class System:
 
     def analysed(self) -> CheckedSystem:
         """A system to factorise it by, as a run makes one: by parts where these take fewer operations. All is analysed anew."""
-        self.equilibrium._bodies = None
-        return self.equilibrium.new_system(self.sources, len(self.right))
+        systems = self.equilibrium.systems
+        systems.bodies = None
+        return systems.new(self.sources, len(self.right))
 
     @cached_property
     def matrix(self) -> sparse.csr_array:

@@ -70,7 +70,7 @@ def first_step(mesh: Mesh) -> Step:
     simulation = Simulation(problem(*mesh))
     (step,) = islice(simulation.run(), 1)
     equilibrium = simulation.equilibrium
-    bodies = equilibrium._bodies
+    bodies = equilibrium.systems.bodies
     assert bodies, "something was factorised"
     tangents, solves = step.counters["solid tangents"], step.counters["solves"]
     return Step(len(equilibrium.supports.free), bodies.factors.faces, dict(step.timings), tangents, solves, peak_memory())

@@ -64,7 +64,7 @@ class Simulation:
         self._recording = Recording(problem, self.equilibrium, resume_from)
         self._step = resume_from.step if resume_from else 0
         self._increment = resume_from.next_increment if resume_from else 1.0
-        self.equilibrium.orderings = dict(resume_from.orderings) if resume_from else {}
+        self.equilibrium.orderings.update(resume_from.orderings if resume_from else {})
         self.state = self._recording.state(resume_from) if resume_from else self.equilibrium.initial_state()
         self._watches = Watches(self.equilibrium, self._step, self.state.contacts)
 

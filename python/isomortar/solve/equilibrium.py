@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
 import numpy as np
-from scipy import sparse
 
 from isomortar._bindings import Law, Response
 from isomortar._codes import PointState
@@ -23,12 +22,13 @@ from isomortar.model.pairs import Pair
 from isomortar.model.rank import motions_left
 from isomortar.model.solid import Solid
 from isomortar.model.supports import Supports
-from isomortar.solve.condensed import Bodies, CondensedSystem, engine_of, touched
+from isomortar.solve.condensed import engine_of
 from isomortar.solve.contact import Kinematics, PairMechanics
 from isomortar.solve.record import State
 from isomortar.solve.scales import PieceMeasures, Scales
 from isomortar.solve.singular import PairConditions, explain
-from isomortar.solve.system import CheckedSystem, LinearSystem, Source, add_product, entries
+from isomortar.solve.system import Source, add_product
+from isomortar.solve.systems import Systems
 from isomortar.solve.timing import Ledger
 from isomortar.solve.touching import Touching
 
@@ -70,7 +70,9 @@ class Equilibrium:
     time : float
         Load time at the end of the increment that was begun last: loads are those of then.
     orderings : dict
-        Orderings of the unknowns that are in use, by the number of sources: with each pair that is in contact the matrix differs.
+        Orderings of the unknowns that are known, by the number of sources: with each pair that is in contact the matrix differs.
+    systems : Systems
+        What is solved, while the supports of a stage hold.
 
     Raises
     ------
@@ -102,10 +104,7 @@ class Equilibrium:
         self.supports = Supports(self.problem, self.numbering, stage)
         self.measures = PieceMeasures(self.numbering, self.supports, self.solid)
         self.solid_source = Source(self.solid.pattern, self.supports.equation, self.supports.equation)
-        self._bodies: Bodies | None = None
-        self._system: CheckedSystem | None = None
-        self._system_patterns: list[object] = []
-        self._solid_entries: sparse.csr_array | None = None
+        self.systems = Systems(len(self.supports.free), self.orderings, self.ledger, self._engine)
         self._touching = Touching(self.problem, self.numbering, self.supports, self.loads)
         #: Pieces that supports leave a rigid motion.
         self.loose = [piece for piece in self.numbering.pieces if len(motions_left(self.problem, piece, stage))]
@@ -156,8 +155,8 @@ class Equilibrium:
             What forces are measured against.
         """
         self.time, self._known = time, None
-        if self._system is not None:
-            self._system.begin()
+        if self.systems.in_use:
+            self.systems.in_use.begin()
         for pair, contact in zip(self.pairs, start.contacts, strict=True):
             pair.begin(self.supports, start.positions, contact, time)
         with self.ledger.phase("solid"):
@@ -271,9 +270,9 @@ class Equilibrium:
         """
         free, supports = self.supports.free, self.supports
         out = float(np.linalg.norm(before.unbalanced.ravel()[free]))
-        if self._system is None or len(supports.copies) or out == 0.0:
+        if self.systems.in_use is None or len(supports.copies) or out == 0.0:
             return np.inf
-        made = self._system.by_bodies((after.positions - before.positions).ravel()[free])
+        made = self.systems.in_use.by_bodies((after.positions - before.positions).ravel()[free])
         if made is None:
             return np.inf
         change = supports.gathered(after.internal - before.internal, before.positions).ravel()[free]
@@ -371,19 +370,18 @@ class Equilibrium:
         """
         if not len(right):  # every position is prescribed
             return right
-        system = self._system_for(sources, len(right))
+        system = self.systems.of(sources, len(right))
         try:
             system.factorise(values)
         except SingularSystemError as error:
             raise explain(system.rcond, system.near_null(), self.supports, positions, self.numbering, multipliers) from error
-        if system.ordering:
-            self.orderings[len(sources)] = system.ordering
+        self.systems.note_ordering()
         return system.solve(right)
 
     def solve_again(self, right: FloatArray) -> FloatArray:
         """Solve with the factors of the last `solve`."""
-        assert self._system is not None, "nothing was solved before"
-        return self._system.solve_again(right)
+        assert self.systems.in_use, "nothing was solved before"
+        return self.systems.in_use.solve_again(right)
 
     @property
     def ends_stage(self) -> bool:
@@ -393,44 +391,13 @@ class Equilibrium:
     @property
     def was_solved(self) -> bool:
         """Whether there has been a system to solve since these supports hold."""
-        return self._system is not None
+        return self.systems.in_use is not None
 
     def moved_by(self, forces: FloatArray) -> FloatArray | None:
         """What forces on the free unknowns move, by the factors of the last `solve` (theory 5.26); None before there are any."""
-        if self._system is None:
+        system = self.systems.in_use
+        if system is None:
             return None
-        right = np.zeros(self._system.size)
+        right = np.zeros(system.size)
         right[: len(forces)] = forces
-        return self._system.solve_again(right)[: len(forces)]
-
-    def _system_for(self, sources: list[Source], size: int) -> CheckedSystem:
-        """The linear system of these sources: the last one, as long as all patterns stand."""
-        patterns: list[object] = [source.pattern for source in sources]
-        if (
-            self._system is None
-            or len(patterns) != len(self._system_patterns)
-            or any(a is not b for a, b in zip(patterns, self._system_patterns, strict=True))
-        ):
-            self._system = None  # its factors go before others come
-            self._system = self.new_system(sources, size)
-            self._system_patterns = patterns
-        return self._system
-
-    def new_system(self, sources: Sequence[Source], size: int) -> CheckedSystem:
-        """A linear system of some sources, the first of them the solid's: by parts, where that is worth its operations (theory 5.13)."""
-        free = len(self.supports.free)
-        if self._solid_entries is None:
-            self._solid_entries = entries(sources[:1], free)
-        known, ledger, orderings = self._solid_entries, self.ledger, self.orderings
-
-        def general() -> LinearSystem:  # without `self`: in a cycle factors would stay until Python looks for cycles
-            return LinearSystem(size, sources, ledger, known, orderings.get(len(sources)))
-
-        if free == 0:  # multipliers alone
-            return general()
-        if self._bodies is None:
-            self._bodies = Bodies(sources[0], known, self.ledger, self._engine)
-        self._bodies.act_on(touched(sources[1:], free))
-        if self._bodies.condense(size - free):
-            return CondensedSystem(self._bodies, size, sources, general, self.ledger)
-        return general()
+        return system.solve_again(right)[: len(forces)]
