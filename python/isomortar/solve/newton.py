@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import count
 from typing import Generic, TypeVar
@@ -71,6 +71,35 @@ class Converged(Generic[Iterated]):
     order: float
 
 
+@dataclass
+class _Loop(Generic[Iterated]):
+    """What a Newton loop has yet to do, and what it has used up.
+
+    Parameters
+    ----------
+    prescribed : ndarray, shape (control points, 3), or None
+        Increment of the prescribed positions, for the first tangent; None: there they are.
+    seeks_hold : bool
+        Whether loose bodies are held a little until contact holds them (theory 6.9).
+    tangents, closings, steadied : int
+        How many tangents there were; of them those that had closed anew what loads close first, and those that held loose bodies.
+    led : tuple of Iterate, or None
+        From where to where the last tangent led, if it tells what the bodies' part of it is good for.
+    """
+
+    prescribed: FloatArray | None
+    seeks_hold: bool
+    tangents: int = 0
+    closings: int = 0
+    steadied: int = 0
+    led: tuple[Iterated, Iterated] | None = None
+
+    @property
+    def moves(self) -> bool:
+        """Whether supports have yet to move."""
+        return self.tangents == 0 and self.prescribed is not None and bool(np.any(self.prescribed))
+
+
 class Newton(ABC, Generic[Iterated, Corrected]):
     """Newton's method for one load increment; what its unknowns are, and how an update is shortened, say the methods of contact.
 
@@ -99,7 +128,7 @@ class Newton(ABC, Generic[Iterated, Corrected]):
     def solve(
         self, iterate: Iterated, prescribed: FloatArray | None, observe: Callable[[IterationRecord], None], notes: tuple[str, ...] = ()
     ) -> Converged[Iterated]:
-        """Iterate until forces are in balance; bodies that begin without contact are held a little at first (theory 6.9).
+        """Iterate until forces are in balance.
 
         Parameters
         ----------
@@ -116,18 +145,14 @@ class Newton(ABC, Generic[Iterated, Corrected]):
         ------
         ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError
         """
-        moves = prescribed is not None and bool(np.any(prescribed))
-        keep = self._keeps and self._factorised and not moves
-        log, tangents, closings = list[IterationRecord](), 0, 0
-        led: tuple[Iterated, Iterated] | None = None  # from where to where by the last tangent
-        begins = any(self._loads_closed) or not iterate.balance.active
-        steadied = 0 if begins and self._seeks_hold else constants.MAX_STEADIED
+        loop = _Loop[Iterated](prescribed, self._seeks_hold and (any(self._loads_closed) or not iterate.balance.active))
+        keep, log = self._keeps and self._factorised and not loop.moves, list[IterationRecord]()
         self._trail = Trail()
         for iteration in count():
             self._trail.add(iterate.balance, iterate.merit)
             log.append(_record(iteration, iterate, notes))
             observe(log[-1])
-            if self._converged(iterate) and not moves and STEADIED not in notes:
+            if self._converged(iterate) and not loop.moves and STEADIED not in notes:
                 reopened = self._reopened(iterate)
                 if reopened is iterate:
                     self._have_factors(iterate)
@@ -135,21 +160,28 @@ class Newton(ABC, Generic[Iterated, Corrected]):
                 iterate, keep = reopened, False
             following, notes = self._by_kept_factors(iterate) if keep else None, (KEPT_FACTORS,)
             if following is None:
-                if tangents == self._settings.max_iterations or not np.isfinite(iterate.merit) or self._trail.circles:
+                if loop.tangents == self._settings.max_iterations or not np.isfinite(iterate.merit) or self._trail.circles:
                     break
-                keep_bodies = not keep and self._bodies_serve(led)  # nor a part of factors that did not serve
-                opened = tangents > 0 and closings < constants.MAX_CLOSINGS and self._opened(iterate)
-                if opened:
-                    iterate, keep_bodies, closings = self._closed_anew(iterate), False, closings + 1
-                steady = steadied < constants.MAX_STEADIED and self._finds_hold(iterate, moves)
-                with self._equilibrium.steadied(steady):
-                    iterate, following, notes = self._by_tangent(iterate, None if tangents else prescribed, iteration, keep_bodies)
-                notes = ((CLOSED_ANEW,) if opened else ()) + ((STEADIED,) if steady else ()) + notes
-                tangents, steadied, moves = tangents + 1, steadied + steady, False
-                led = None if steady else (iterate, following)
+                iterate, following, notes = self._by_new_factors(iterate, iteration, loop, keep)
             keep = self._keeps and STEADIED not in notes and self._serve(iterate, following)
             iterate = following
         return self._given_up(iterate, tuple(log))
+
+    def _by_new_factors(
+        self, iterate: Iterated, iteration: int, loop: _Loop[Iterated], kept: bool
+    ) -> tuple[Iterated, Iterated, tuple[str, ...]]:
+        """The iterate, the next one by another tangent, and what acted; `kept`: factors were kept that did not serve."""
+        keep_bodies = not kept and self._bodies_serve(loop.led)  # nor a part of factors that did not serve
+        opened = loop.tangents > 0 and loop.closings < constants.MAX_CLOSINGS and self._opened(iterate)
+        if opened:
+            iterate, keep_bodies = self._closed_anew(iterate), False
+        steady = loop.seeks_hold and loop.steadied < constants.MAX_STEADIED and self._finds_hold(iterate, loop.moves)
+        with self._equilibrium.steadied(steady):
+            prescribed = None if loop.tangents else loop.prescribed
+            iterate, following, notes = self._by_tangent(iterate, prescribed, iteration, keep_bodies)
+        loop.tangents, loop.closings, loop.steadied = loop.tangents + 1, loop.closings + opened, loop.steadied + steady
+        loop.led = None if steady else (iterate, following)
+        return iterate, following, ((CLOSED_ANEW,) if opened else ()) + ((STEADIED,) if steady else ()) + notes
 
     def _given_up(self, iterate: Iterated, log: tuple[IterationRecord, ...]) -> Converged[Iterated]:
         """What a loop comes to whose tangents are used up, or that goes round in a circle.

@@ -17,26 +17,6 @@ from isomortar.solve.record import ContactState
 
 
 @frozen
-class Foothold:
-    """Constraints of a pair.
-
-    Parameters
-    ----------
-    near : ndarray of bool, shape (n,)
-        Which bear, or begin as closed.
-    beyond : ndarray, shape (n,)
-        How much farther others, which may begin with them, are from the master than the nearest one; infinite of those that may not.
-    gaps, slips : ndarray, shape (n, motions) and (n, 2, motions)
-        Their rates by rigid motions, all of them lengths.
-    """
-
-    near: BoolArray
-    beyond: FloatArray
-    gaps: FloatArray
-    slips: FloatArray
-
-
-@frozen
 class RatesOfPair:
     """Control quantities of a pair, and rates of its gaps and slips by rigid motions, all of them lengths.
 
@@ -50,6 +30,28 @@ class RatesOfPair:
     control: Control
     gaps: FloatArray
     slips: FloatArray
+
+    def held(self, closed: BoolArray) -> FloatArray:
+        """What constraints would hold if these were closed, shape (its rates, motions)."""
+        return np.concatenate([self.gaps[closed], *np.swapaxes(self.slips[closed], 0, 1)])
+
+
+@frozen
+class Foothold:
+    """What a pair may begin with.
+
+    Parameters
+    ----------
+    near : ndarray of bool, shape (n,)
+        Constraints that bear, or begin as closed.
+    beyond : ndarray, shape (n,)
+        How much farther others, which may begin with them, are from the master than the nearest one; infinite of those that may not.
+    rates : RatesOfPair
+    """
+
+    near: BoolArray
+    beyond: FloatArray
+    rates: RatesOfPair
 
 
 def rates(pair: PairMechanics, positions: FloatArray, start: ContactState, motions: FloatArray) -> RatesOfPair:
@@ -65,7 +67,7 @@ def rates(pair: PairMechanics, positions: FloatArray, start: ContactState, motio
 
 def hold_all(all_rates: Iterable[RatesOfPair]) -> bool:
     """Whether constraints with these rates, all closed, leave no motion (theory 6.9)."""
-    return not len(_left(np.concatenate([rows for of in all_rates for rows in (of.gaps, *np.swapaxes(of.slips, 0, 1))])))
+    return not len(_left([by.held(np.ones(len(by.gaps), dtype=np.bool_)) for by in all_rates]))
 
 
 def foothold(
@@ -76,7 +78,7 @@ def foothold(
     heights = mean_heights(by.control)
     beyond = (heights.max() if begins else 0.0) - heights  # a contact without a foot has none to begin with
     within = np.bool_(begins) & (beyond <= constants.NEXT * np.sqrt(pair.pair.area))
-    return Foothold(near & np.bool_(begins or bears), np.where(within, beyond, np.inf), by.gaps, by.slips)
+    return Foothold(near & np.bool_(begins or bears), np.where(within, beyond, np.inf), by)
 
 
 def rested(feet: Sequence[Foothold], works: FloatArray) -> list[BoolArray]:
@@ -84,23 +86,24 @@ def rested(feet: Sequence[Foothold], works: FloatArray) -> list[BoolArray]:
 
     Loads turn a body to the side on which they do work, along each of the motions; it turns to any side where they do none.
     """
-    near, beyond = np.concatenate([foot.near for foot in feet]), np.concatenate([foot.beyond for foot in feet])
-    gaps, slips = np.concatenate([foot.gaps for foot in feet]), np.concatenate([foot.slips for foot in feet])
+    ends = np.cumsum([len(foot.near) for foot in feet])[:-1]
+    beyond, gaps = np.concatenate([foot.beyond for foot in feet]), np.concatenate([foot.rates.gaps for foot in feet])
+    near = np.concatenate([foot.near for foot in feet])
     while True:
-        left = _left(np.concatenate([gaps[near], *np.swapaxes(slips[near], 0, 1)]))
+        left = _left([foot.rates.held(closed) for foot, closed in zip(feet, np.split(near, ends), strict=True)])
         way = left.T @ (left @ works)
         size = np.abs(way).max()
         driven = size > constants.NO_PART * np.abs(works).max()
         closes = gaps @ way / size if driven else np.abs(gaps @ left.T).max(axis=1, initial=0.0)
         others = np.where((closes > constants.HELD) & ~near, beyond, np.inf)
         if not np.isfinite(others).any():
-            return np.split(near, np.cumsum([len(foot.near) for foot in feet])[:-1])
+            return np.split(near, ends)
         near[np.argmin(others)] = True
 
 
-def _left(rates: FloatArray) -> FloatArray:
-    """Orthogonal motions that change nothing of what has these rates, shape (of them, motions)."""
-    *_, values, ways = np.linalg.svd(np.vstack([rates, np.zeros((rates.shape[1],) * 2)]), full_matrices=False)
+def _left(held: Sequence[FloatArray]) -> FloatArray:
+    """Orthogonal motions that change nothing of what is held, with these rates, shape (of them, motions)."""
+    *_, values, ways = np.linalg.svd(np.vstack([*held, np.zeros((held[0].shape[1],) * 2)]), full_matrices=False)
     return np.asarray(ways[values <= constants.HELD])
 
 

@@ -65,28 +65,6 @@ class Touching:
         """What loads leave out of balance without contact, shape (control points, 3)."""
         return self._supports.unbalanced(-sum(self._loads.forces(positions, time), np.zeros_like(positions)), positions, time)
 
-    def _ways(self, positions: FloatArray, time: float, borne: set[str]) -> list[tuple[set[str], FloatArray]]:
-        """Bodies, and a way that each goes to a load time: as loads move it, or any way to and fro if none does (theory 6.8).
-
-        Where no loads act, those alone that no contact bears: supports press the others on what they are on.
-        """
-        motions = self._motions(positions)
-        if not self.pulled:
-            held = {number for number, piece in enumerate(self._numbering.pieces) if borne & {body.name for body in piece}}
-            motions = [motion for motion in motions if motion.piece not in held]
-        if not motions:
-            return []
-        left = self._left(positions, time)
-        found: list[tuple[set[str], FloatArray]] = []
-        for number, piece in enumerate(self._numbering.pieces):
-            own = np.reshape([motion.displacement for motion in motions if motion.piece == number], (-1, *positions.shape))
-            works = -np.einsum("mij,ij->m", own, left)
-            way = np.tensordot(works, own, 1)
-            driven = not self._turning and np.abs(works).max(initial=0.0) > constants.NO_PART * np.abs(left).sum()
-            ways = way[None] / np.abs(way).max() if driven else np.stack([own, -own], axis=1).reshape(-1, *positions.shape)
-            found += [({body.name for body in piece}, one) for one in ways]
-        return found
-
     def closed(
         self, pairs: Sequence[PairMechanics], start: State, time: float, penalties: Sequence[float | Scales], rests: bool
     ) -> list[FloatArray | None]:
@@ -97,10 +75,17 @@ class Touching:
         With scales in its place a penalty is that of `PairMechanics.parameters`. If a body `rests`, the next constraints begin with those
         that it comes to first, where it would turn about these alone.
         """
-        approaches, begun = self._begun(pairs, start, time)
-        if not any(begun):
+        bear = _bear(start)
+        motions = [] if all(bear) else self._motions(start.positions)
+        left = self._left(start.positions, time) if motions else np.zeros(0)
+        ways = self._ways(motions, left, _bodies(pairs, bear))
+        if not ways:
             return [None] * len(pairs)
-        near = self._rested(pairs, start, time, approaches, begun) if rests else [approach.near for approach in approaches]
+        approaches = [_approach(pair, start.positions, contact, ways) for pair, contact in zip(pairs, start.contacts, strict=True)]
+        begun = self._begun(pairs, approaches, bear)
+        near = [approach.near for approach in approaches]
+        if rests and any(begun):
+            near = self._rested(pairs, start, near, begun, motions, left)
         found: list[FloatArray | None] = []
         for pair, approach, begins, closed, penalty in zip(pairs, approaches, begun, near, penalties, strict=True):
             size = float(pair.parameters(approach.control, penalty)[0]) if isinstance(penalty, Scales) else penalty
@@ -110,44 +95,74 @@ class Touching:
 
     def may_hold(self, pairs: Sequence[PairMechanics], start: State) -> bool:
         """Whether contact that is closed everywhere would hold all that supports leave free, of which some bears nothing (theory 6.9)."""
-        bear = [pair.pair.contact.bodies for pair, contact in zip(pairs, start.contacts, strict=True) if np.any(contact.pressure != 0.0)]
-        borne = set[str]().union(*bear)
-        free = self._motions(start.positions)
-        if all(borne & {body.name for body in self._numbering.pieces[motion.piece]} for motion in free):
+        free, borne = self._motions(start.positions), _bodies(pairs, _bear(start))
+        if all(borne & self._names(motion.piece) for motion in free):
             return False
-        motions = np.stack([motion.displacement for motion in free])
+        motions = _displacements(free)
         return hold_all(rates(pair, start.positions, contact, motions) for pair, contact in zip(pairs, start.contacts, strict=True))
 
-    def _begun(self, pairs: Sequence[PairMechanics], start: State, time: float) -> tuple[list[_Approach], list[bool]]:
-        """How pairs stand, and which of them begin: those that bodies come to first."""
-        bear = [pair.pair.contact.bodies for pair, contact in zip(pairs, start.contacts, strict=True) if np.any(contact.pressure != 0.0)]
-        borne = set[str]().union(*bear)
-        ways = [] if len(bear) == len(pairs) else self._ways(start.positions, time, borne)
-        if not ways:
-            return [], []
-        both = list(zip(pairs, start.contacts, strict=True))
-        approaches = [_approach(pair, start.positions, contact, ways) for pair, contact in both]
-        first, size = np.min([approach.distances for approach in approaches], axis=0), np.sqrt(max(pair.pair.area for pair in pairs))
+    def _names(self, piece: int) -> set[str]:
+        """Bodies of a piece, by its number."""
+        return {body.name for body in self._numbering.pieces[piece]}
+
+    def _ways(self, motions: list[FreeMotion], left: FloatArray, borne: set[str]) -> list[tuple[set[str], FloatArray]]:
+        """Bodies, and a way that each goes: as loads move it by what they leave, or any way to and fro if none does (theory 6.8).
+
+        Where no loads act, those alone that no contact bears: supports press the others on what they are on.
+        """
+        found: list[tuple[set[str], FloatArray]] = []
+        for piece in sorted({motion.piece for motion in motions}):
+            if not self.pulled and borne & self._names(piece):
+                continue
+            own = _displacements([motion for motion in motions if motion.piece == piece])
+            works = -np.einsum("mij,ij->m", own, left)
+            way = np.tensordot(works, own, 1)
+            driven = not self._turning and np.abs(works).max() > constants.NO_PART * np.abs(left).sum()
+            ways = way[None] / np.abs(way).max() if driven else np.stack([own, -own], axis=1).reshape(-1, *left.shape)
+            found += [(self._names(piece), one) for one in ways]
+        return found
+
+    def _begun(self, pairs: Sequence[PairMechanics], approaches: Sequence[_Approach], bear: Sequence[bool]) -> list[bool]:
+        """Which pairs begin: those that bodies come to first (theory 6.8)."""
+        first = np.min([approach.distances for approach in approaches], axis=0)
         if not self.pulled:  # nothing presses a body on what it may go away from: something has to stand on both of its sides
             room = first.reshape(-1, 2).sum(axis=1).repeat(2)
-            first = np.where(room <= constants.BETWEEN * size, first, -np.inf)
-        begun = []
-        for (pair, contact), approach in zip(both, approaches, strict=True):
-            reached = np.isfinite(approach.distances) & (approach.distances <= first + next_to_nothing(pair))
-            begun.append(bool(reached.any()) and not np.any(contact.pressure != 0.0))
-        return approaches, begun
+            first = np.where(room <= constants.BETWEEN * np.sqrt(max(pair.pair.area for pair in pairs)), first, -np.inf)
+        reached = [approach.distances <= first + next_to_nothing(pair) for pair, approach in zip(pairs, approaches, strict=True)]
+        return [
+            bool(np.any(near & np.isfinite(approach.distances))) and not bears
+            for near, approach, bears in zip(reached, approaches, bear, strict=True)
+        ]
 
     def _rested(
-        self, pairs: Sequence[PairMechanics], start: State, time: float, approaches: Sequence[_Approach], begun: Sequence[bool]
+        self,
+        pairs: Sequence[PairMechanics],
+        start: State,
+        near: Sequence[BoolArray],
+        begun: Sequence[bool],
+        motions: Sequence[FreeMotion],
+        left: FloatArray,
     ) -> list[BoolArray]:
-        """What bears of each pair or begins, with the next constraints where bodies would turn about that alone."""
-        motions = np.stack([motion.displacement for motion in self._motions(start.positions)])
-        works = -np.einsum("mij,ij->m", motions, self._left(start.positions, time))
-        feet = [
-            foothold(pair, start.positions, contact, approach.near, begins, motions)
-            for pair, contact, approach, begins in zip(pairs, start.contacts, approaches, begun, strict=True)
-        ]
-        return rested(feet, np.zeros_like(works) if self._turning else works)
+        """What bears of each pair or begins, with the next constraints where bodies would turn about that alone (theory 6.8)."""
+        ways = _displacements(motions)
+        works = np.zeros(len(ways)) if self._turning else -np.einsum("mij,ij->m", ways, left)
+        parts = zip(pairs, start.contacts, near, begun, strict=True)
+        return rested([foothold(pair, start.positions, contact, closed, begins, ways) for pair, contact, closed, begins in parts], works)
+
+
+def _bear(start: State) -> list[bool]:
+    """Which pairs bear something."""
+    return [bool(np.any(contact.pressure != 0.0)) for contact in start.contacts]
+
+
+def _bodies(pairs: Sequence[PairMechanics], bear: Sequence[bool]) -> set[str]:
+    """Bodies that a pair is between which bears something."""
+    return set[str]().union(*(pair.pair.contact.bodies for pair, bears in zip(pairs, bear, strict=True) if bears))
+
+
+def _displacements(motions: Sequence[FreeMotion]) -> FloatArray:
+    """What motions do to all control points, shape (motions, control points, 3)."""
+    return np.stack([motion.displacement for motion in motions])
 
 
 def _approach(pair: PairMechanics, positions: FloatArray, start: ContactState, ways: Sequence[tuple[set[str], FloatArray]]) -> _Approach:
