@@ -16,7 +16,8 @@ from isomortar._bindings import Law
 from isomortar.geometry.patch import FloatArray
 from isomortar.geometry.primitives import box
 from isomortar.geometry.refinement import mesh
-from isomortar.model.entities import Body, Contact, Face, Material, Motion, Problem, RigidPlane, SolverSettings, Stage, Support
+from isomortar.model.entities import Body, Contact, Face, Material, Motion, Problem, RigidPlane, Stage, Support
+from isomortar.model.settings import SolverSettings
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.record import State
 from isomortar.solve.timing import Ledger

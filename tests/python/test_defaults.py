@@ -124,7 +124,7 @@ def own_classes(module: object) -> list[type]:
 
 def test_defaults_of_a_problem():
     found = {}
-    for entity in filter(is_dataclass, own_classes(entities)):
+    for entity in filter(is_dataclass, [*own_classes(entities), *own_classes(settings)]):
         made = {f.name: f.default_factory() for f in fields(entity) if f.default_factory is not MISSING}
         given = {f.name: f.default for f in fields(entity) if f.default is not MISSING}
         found[entity.__name__] = {name: plain(value) for name, value in (given | made).items()}

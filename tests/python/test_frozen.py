@@ -13,7 +13,7 @@ from typing import Any, ClassVar
 import pytest
 
 from isomortar._frozen import frozen
-from isomortar.model.entities import SolverSettings
+from isomortar.model.settings import SolverSettings
 
 
 def family(freeze: Callable[..., Any]) -> dict[str, Any]:

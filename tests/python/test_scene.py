@@ -17,7 +17,8 @@ import isomortar
 import isomortar.scene
 from isomortar.errors import InputError
 from isomortar.geometry.primitives import ring
-from isomortar.model.entities import Face, Material, Motion, Problem, RigidPlane, SolverSettings
+from isomortar.model.entities import Face, Material, Motion, Problem, RigidPlane
+from isomortar.model.settings import SolverSettings
 from isomortar.scene import Scene, bundled_scenes, json_schema
 from isomortar.scene.source import as_options, read_source
 

@@ -13,7 +13,8 @@ import pytest
 from isomortar.errors import ConvergenceError
 from isomortar.march.simulation import Simulation
 from isomortar.model import constants
-from isomortar.model.entities import Measure, Motion, Problem, Stage
+from isomortar.model.entities import Motion, Problem, Stage
+from isomortar.model.settings import Measure
 from isomortar.scene import Scene
 from isomortar.solve import bordered, monolithic
 from isomortar.solve.equilibrium import Equilibrium

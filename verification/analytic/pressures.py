@@ -10,7 +10,8 @@ from isomortar.geometry.quadrature import contact_points, volume_points
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import LAGRANGE, NURBS, Bound, case
 from isomortar.march.simulation import Simulation
-from isomortar.model.entities import Body, Contact, Face, Material, Motion, Problem, RigidPlane, SolverSettings, Stage, Support
+from isomortar.model.entities import Body, Contact, Face, Material, Motion, Problem, RigidPlane, Stage, Support
+from isomortar.model.settings import SolverSettings
 from isomortar.results.bezier import sampling_matrix
 from isomortar.results.fields import contact_surfaces
 

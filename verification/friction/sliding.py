@@ -13,7 +13,8 @@ from isomortar.geometry.primitives import box
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
 from isomortar.march.simulation import Simulation
-from isomortar.model.entities import Body, Contact, Face, Material, Motion, Problem, RigidPlane, SolverSettings, Stage, Support
+from isomortar.model.entities import Body, Contact, Face, Material, Motion, Problem, RigidPlane, Stage, Support
+from isomortar.model.settings import SolverSettings
 from isomortar.solve.record import StepResult
 
 FRICTION = 0.3

@@ -10,7 +10,7 @@ from typing import Any, get_args
 import numpy as np
 from fuzz.mutation import numbers
 
-from isomortar.model.entities import Measure
+from isomortar.model.settings import Measure
 
 #: Powers of a quarter by which the units of the twin differ: exact, also under a root.
 LENGTH, MODULUS = 4.0**-7, 4.0**9

@@ -13,7 +13,8 @@ from isomortar.errors import ConvergenceError
 from isomortar.harness import Bound, case
 from isomortar.march.simulation import Simulation
 from isomortar.model import constants
-from isomortar.model.entities import Problem, SolverSettings
+from isomortar.model.entities import Problem
+from isomortar.model.settings import SolverSettings
 from isomortar.scene import Scene
 from isomortar.solve.method import Increment
 from isomortar.solve.monolithic import Monolithic

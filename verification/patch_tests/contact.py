@@ -19,7 +19,8 @@ from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, Curve, Matches, Shown, case
 from isomortar.harness.cases import Tier
 from isomortar.march.simulation import Simulation
-from isomortar.model.entities import Body, Contact, Face, Material, Motion, Problem, SolverSettings, Stage, Support
+from isomortar.model.entities import Body, Contact, Face, Material, Motion, Problem, Stage, Support
+from isomortar.model.settings import SolverSettings
 
 #: All lengths become this many times as long.
 STRETCH = 0.95

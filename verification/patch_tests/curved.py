@@ -17,7 +17,8 @@ from isomortar.geometry.quadrature import contact_points, volume_points
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import LAGRANGE, NURBS, Bound, Curve, Shown, case
 from isomortar.march.simulation import Simulation
-from isomortar.model.entities import Body, Contact, Face, Material, Motion, Problem, SolverSettings, Stage, Support
+from isomortar.model.entities import Body, Contact, Face, Material, Motion, Problem, Stage, Support
+from isomortar.model.settings import SolverSettings
 
 MATERIAL = Material()
 #: Radii of the inner bore, the joint and the outer surface before the interference.

@@ -13,7 +13,8 @@ from isomortar._codes import PointState
 from isomortar.geometry.patch import Direction, FloatArray, Patch
 from isomortar.harness import Bound, case
 from isomortar.march.simulation import Simulation
-from isomortar.model.entities import Body, Contact, Face, Material, Motion, Problem, RigidPlane, SolverSettings, Stage, Support
+from isomortar.model.entities import Body, Contact, Face, Material, Motion, Problem, RigidPlane, Stage, Support
+from isomortar.model.settings import SolverSettings
 
 
 def graded(span: float) -> Patch:

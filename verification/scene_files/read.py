@@ -17,7 +17,8 @@ from isomortar.geometry.patch import Patch
 from isomortar.geometry.primitives import ring
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
-from isomortar.model.entities import RigidPlane, SolverSettings
+from isomortar.model.entities import RigidPlane
+from isomortar.model.settings import SolverSettings
 from isomortar.scene import Scene, bundled_scenes
 from isomortar.scene import build as building
 from isomortar.scene.geometry_file import read_geometry, write_geometry

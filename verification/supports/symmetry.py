@@ -14,7 +14,8 @@ from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
 from isomortar.harness.cases import Tier
 from isomortar.march.simulation import Simulation
-from isomortar.model.entities import Body, Contact, Enforcement, Face, Material, Motion, Problem, RigidPlane, SolverSettings, Stage, Support
+from isomortar.model.entities import Body, Contact, Enforcement, Face, Material, Motion, Problem, RigidPlane, Stage, Support
+from isomortar.model.settings import SolverSettings
 from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
 

@@ -15,7 +15,7 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.geometry.refinement import surface_samples
 from isomortar.model import constants
 from isomortar.model.contact_checks import check_contacts
-from isomortar.model.entities import Body, Contact, Face, Problem, RigidPlane, SolverSettings, Support, unit
+from isomortar.model.entities import Body, Contact, Face, Problem, RigidPlane, Support, unit
 from isomortar.model.glue import check_glue, named, pieces
 from isomortar.model.load_checks import check_loads
 from isomortar.model.magnitudes import check_magnitudes
@@ -24,6 +24,7 @@ from isomortar.model.messages import input_error, located
 from isomortar.model.numbering import Numbering, check_closed
 from isomortar.model.rank import rigid_rank
 from isomortar.model.rational import QUADRATURE_TOLD, quadrature_error, too_few_points
+from isomortar.model.settings import SolverSettings
 
 #: Sizes of bodies, and forces and force densities (Young's modulus times the square of the size, and over the size) whose squares and
 #: cubes are normal numbers.

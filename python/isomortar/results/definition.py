@@ -23,11 +23,11 @@ from isomortar.model.entities import (
     Material,
     Problem,
     Raised,
-    SolverSettings,
     Stage,
     Support,
     SymmetryPlane,
 )
+from isomortar.model.settings import SolverSettings
 from isomortar.results.layout import CONTROL_POINTS, KNOTS, WEIGHTS, Quantity
 
 _AXES = "uvw"

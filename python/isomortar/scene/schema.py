@@ -14,7 +14,8 @@ from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import PydanticCustomError, core_schema
 
 from isomortar.geometry.patch import Closed, Direction, Family, Patch
-from isomortar.model.entities import PLACES, Enforcement, Material, Motion, Projection, SolverSettings
+from isomortar.model.entities import PLACES, Enforcement, Material, Motion, Projection
+from isomortar.model.settings import SolverSettings
 from isomortar.model.values import Count, Point, Positive, Real
 from isomortar.scene.primitives import Primitive
 from isomortar.scene.types import (

@@ -16,7 +16,7 @@ from isomortar._sparse import Ordering
 from isomortar.errors import KernelError, SingularSystemError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
-from isomortar.model.entities import SolverSettings
+from isomortar.model.settings import SolverSettings
 from isomortar.model.supports import BoolArray
 from isomortar.solve.system import CheckedSystem, LinearSystem, Source, orderings
 from isomortar.solve.timing import Ledger

@@ -15,10 +15,10 @@ from isomortar._frozen import frozen
 from isomortar.errors import LostProjectionError
 from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model import constants
-from isomortar.model.entities import SolverSettings
 from isomortar.model.held import held_by, nothing_held
 from isomortar.model.moments import moment
 from isomortar.model.pairs import Pair
+from isomortar.model.settings import SolverSettings
 from isomortar.model.supports import BoolArray, Supports
 from isomortar.solve.apart import Separation
 from isomortar.solve.feet import Feet

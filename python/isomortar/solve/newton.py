@@ -16,7 +16,7 @@ from isomortar._frozen import frozen
 from isomortar.errors import ConvergenceError, FoldedElementError, LostProjectionError, SingularSystemError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
-from isomortar.model.entities import SolverSettings
+from isomortar.model.settings import SolverSettings
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.record import IterationRecord, State
 from isomortar.solve.scales import Scales
@@ -170,7 +170,10 @@ class Newton(ABC, Generic[Iterated, Corrected]):
     def _by_new_factors(
         self, iterate: Iterated, iteration: int, loop: _Loop[Iterated], kept: bool
     ) -> tuple[Iterated, Iterated, tuple[str, ...]]:
-        """The iterate, the next one by another tangent, and what acted; `kept`: factors were kept that did not serve."""
+        """The iterate, the next one by another tangent, and what acted; loose bodies may be held in it a little (theory 6.9).
+
+        `kept`: factors were kept that did not serve.
+        """
         keep_bodies = not kept and self._bodies_serve(loop.led)  # nor a part of factors that did not serve
         opened = loop.tangents > 0 and loop.closings < constants.MAX_CLOSINGS and self._opened(iterate)
         if opened:

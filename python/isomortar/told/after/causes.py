@@ -11,7 +11,8 @@ from isomortar.errors import PathError, SingularSystemError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
 from isomortar.model.contrasts import element_lengths
-from isomortar.model.entities import Body, Contact, Problem, SolverSettings
+from isomortar.model.entities import Body, Contact, Problem
+from isomortar.model.settings import SolverSettings
 from isomortar.model.sheet import Sheet
 from isomortar.solve.contact import PairMechanics
 from isomortar.solve.equilibrium import Equilibrium

@@ -9,7 +9,8 @@ import numpy as np
 
 from isomortar.geometry.patch import opposite
 from isomortar.model.contrasts import element_lengths
-from isomortar.model.entities import Body, Contact, Face, Problem, SolverSettings
+from isomortar.model.entities import Body, Contact, Face, Problem
+from isomortar.model.settings import SolverSettings
 from isomortar.model.sheet import Sheet
 
 #: Mean lengths of elements in two directions further apart make them slender, as when numbers of elements are in another order.
