@@ -9,7 +9,7 @@ from pydantic import BaseModel
 from isomortar.geometry.patch import Direction
 from isomortar.geometry.quadrature import contact_points, volume_points
 from isomortar.march.simulation import Simulation
-from isomortar.model import constants, entities
+from isomortar.model import constants, entities, settings
 from isomortar.scene import Scene, primitives, schema
 from isomortar.solve.record import StepResult
 
