@@ -56,7 +56,8 @@ stages = [{ name = "fall", steps = 1 }]
 """
 
 
-def _computed(text: str, method: str, *more: str) -> list[StepResult]:
+def computed(text: str, method: str, *more: str) -> list[StepResult]:
+    """All load steps of a scene by a method, with more changes."""
     return list(Simulation(Scene.from_toml(text, overrides=[f'solver.method="{method}"', *more]).problem()).run())
 
 
@@ -74,7 +75,7 @@ def first_in_the_way(pressed: str, beside: str, method: str) -> dict[str, float]
     """Largest difference of positions, relative to the pad, and cuts of load increments."""
     alone = _PAD + _PRESSED[pressed]
     both = alone.replace("[contacts.die]", f"[contacts]\n{_BESIDE[beside]}[contacts.die]")
-    found = [_computed(text, method, "solver.newton_tolerance=1e-13") for text in (alone, both)]
+    found = [computed(text, method, "solver.newton_tolerance=1e-13") for text in (alone, both)]
     apart = [np.abs(one.state.positions - other.state.positions).max() for one, other in zip(*found, strict=True)]
     bears = [step.contacts[-1].active for steps in found for step in steps]
     return {"apart": float(np.max(apart)), "bears": float(np.min(bears)), "cuts": float(sum(step.cuts for step in found[1]))}
@@ -92,7 +93,7 @@ def first_in_the_way(pressed: str, beside: str, method: str) -> dict[str, float]
 def two_steps(first: str, method: str) -> dict[str, float]:
     """What is left of the weight, and the share of it that the step bears which bears less."""
     second = {"low": "high", "high": "low"}[first]
-    (step,) = _computed(_BEAM.replace("FIRST", first).replace("SECOND", second), method)
+    (step,) = computed(_BEAM.replace("FIRST", first).replace("SECOND", second), method)
     weight = 0.01 * 2.0 * 0.5 * 0.4
     forces = np.array([contact.force_slave[2] for contact in step.contacts])
     return {"balance": float(abs(forces.sum() / weight - 1.0)), "least": float(forces.min() / weight)}
