@@ -33,7 +33,7 @@ _AXES = {"along y": "[0, 1, 0]", "askew": "[1, 2, 3]"}
 _EXACT = "round-off: positions are trigonometric polynomials of the angle, of order one, so that differences are exact"
 
 
-def _bar(axis: str) -> Equilibrium:
+def bar(axis: str) -> Equilibrium:
     """The bar; turned about an axis askew its other end takes the side's component with it."""
     text = _BAR.replace("AXIS", _AXES[axis])
     if axis == "askew":
@@ -41,7 +41,7 @@ def _bar(axis: str) -> Equilibrium:
     return Equilibrium(Scene.from_toml(text).problem(), Ledger())
 
 
-def _turned(supports: Supports, numbering: Numbering, way: FloatArray) -> FloatArray:
+def plates_turned(supports: Supports, numbering: Numbering, way: FloatArray) -> FloatArray:
     """Positions in shape where the two plates have turned by some angles, and the second one gone along x and z."""
     found = numbering.reference.copy()
     for plate, angle in zip(supports.plates, way, strict=True):
@@ -66,12 +66,12 @@ def _turned(supports: Supports, numbering: Numbering, way: FloatArray) -> FloatA
 )
 def tangent(axis: str) -> dict[str, float]:
     """Relative errors: plates off the shape that they are in, slopes and bends of positions by angles, the matrix and a product of it."""
-    equilibrium, random = _bar(axis), np.random.default_rng(4)
+    equilibrium, random = bar(axis), np.random.default_rng(4)
     supports, numbering = equilibrium.supports, equilibrium.numbering
     angles, length = np.array([0.2, -0.3]), np.pi / 3
-    here = _turned(supports, numbering, angles)
+    here = plates_turned(supports, numbering, angles)
     slopes, bends = supports.slopes(here)
-    ahead, behind = (_turned(supports, numbering, angles + way * length) for way in (1.0, -1.0))
+    ahead, behind = (plates_turned(supports, numbering, angles + way * length) for way in (1.0, -1.0))
     of, lengths = supports.copies, np.repeat([p.length for p in supports.plates], [len(p.points) for p in supports.plates])[:, None]
     goes = supports.unknowns[3 * numbering.count :].reshape(-1, 3) >= 0
     first = goes * (ahead - behind)[of] / (2.0 * np.sin(length) * lengths)
@@ -191,10 +191,10 @@ def leaning() -> dict[str, float]:
 )
 def far_turns() -> dict[str, float]:
     """How many, of a plate about an axis askew."""
-    equilibrium, random = _bar("askew"), np.random.default_rng(5)
+    equilibrium, random = bar("askew"), np.random.default_rng(5)
     snapping, numbering, wrong, far = Snapping(equilibrium), equilibrium.numbering, 0, 0
     for begin, way in zip(random.uniform(-180.0, 180.0, 200), random.uniform(-80.0, 80.0, 200), strict=True):
-        before, after = (_turned(equilibrium.supports, numbering, np.radians([0.0, angle])) for angle in (begin, begin + way))
+        before, after = (plates_turned(equilibrium.supports, numbering, np.radians([0.0, angle])) for angle in (begin, begin + way))
         said = ""
         try:
             snapping.look(before, after, 1.0)
