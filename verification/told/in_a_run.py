@@ -51,6 +51,20 @@ HISTORIES: tuple[tuple[tuple[Given, ...], str], ...] = (
     (((9, 1.0, 1.0, 0, 1e-31, 3e-7),) * 2, ""),  # all sticks
 )
 
+#: Runs that go on from load step 3: what the second contact was in there, what follows, and what is said.
+GOING_ON: tuple[tuple[Given, tuple[Given, ...], str], ...] = (
+    (CLOSED, (CLOSED,), ""),
+    (OPEN, (OPEN, OPEN), ""),  # what was closed before is not known
+    (OPEN, (OPEN, CLOSED, OPEN, OPEN), "opened in load step 6"),
+    (CLOSED, (OPEN, OPEN), "opened in load step 4"),
+    (OPEN, ((9, 3e-7, 1e-7, 0, 1.0, 0.0),), "oscillate"),
+    ((9, 1.0, 1.0, 5, 1.0, 0.0), ((9, 1.0, 1.0, 5, 1.0, 0.0),), ""),
+    ((9, 1.0, 1.0, 5, 1.0, 0.0), ((9, 1.0, 1.0, 7, 1.0, 0.0),), "2 slave quadrature points have left the master"),
+    (CLOSED, ((9, 1.0, 1.0, 5, 1.0, 0.0),), "5 slave quadrature points have left the master"),
+    ((0, 0.0, 0.0, -1, 0.0, 0.0), ((0, 0.0, 0.0, -1, 0.0, 0.0),), ""),
+    (CLOSED, ((0, 0.0, 0.0, -1, 0.0, 0.0), CLOSED, (0, 0.0, 0.0, -1, 0.0, 0.0)), "beside"),
+)
+
 
 def made(result: ContactResult, state: ContactState, given: Given) -> tuple[ContactResult, ContactState]:
     """A result and state with some numbers; -1 points without a foot: all."""
@@ -61,14 +75,15 @@ def made(result: ContactResult, state: ContactState, given: Given) -> tuple[Cont
     range_ = np.array([-0.25 * field, field])
     slip = active if friction > 1e-20 else 0  # below that it is round-off
     told = replace(result, active=active, slip=slip, pressure_field=range_, excluded=points, friction_work=friction, spurious_work=spurious)
-    return told, replace(state, pressure=pressure)
+    feet = np.where(np.arange(len(state.projected)) < points, 0, 1).astype(state.projected.dtype)
+    return told, replace(state, pressure=pressure, projected=feet)
 
 
-def said(problem: Problem, start: tuple[ContactState, ...], step: StepResult, history: tuple[Given, ...]) -> str:
-    """What is said of a history of the second contact, beside one that stays closed."""
-    advice = StepAdvice(problem, 0, start)
+def said(problem: Problem, start: tuple[ContactState, ...], step: StepResult, history: tuple[Given, ...], begun: int = 0) -> str:
+    """What is said of a history of the second contact, beside one that stays closed, in a run that goes on from load step `begun`."""
+    advice = StepAdvice(problem, begun, start)
     heard: list[str] = []
-    for number, given in enumerate(history, start=1):
+    for number, given in enumerate(history, start=begun + 1):
         both = [made(*of) for of in zip(step.contacts, step.state.contacts, (CLOSED, given), strict=True)]
         heard += advice.after_step(number, [result for result, _ in both], [state for _, state in both])
     heard += advice.at_the_end({})
@@ -76,7 +91,8 @@ def said(problem: Problem, start: tuple[ContactState, ...], step: StepResult, hi
 
 
 @case(
-    claim="At the ends of load steps it is said once what is doubtful of a contact, of that contact, and nothing of what is sound.",
+    claim="At the ends of load steps it is said once what is doubtful of a contact, of that contact, and nothing of what is sound; also in "
+    "runs that go on, by how the contact was before.",
     tier="gate",
     bounds={"wrong": Bound(0.0, 0.0, "definition: histories of which something else is said, or nothing, or too much")},
 )
@@ -90,5 +106,10 @@ def histories() -> dict[str, float]:
     for history, expected in HISTORIES:
         words = SAID.get(expected, expected)
         heard = said(problem, start, step, history)
+        wrong += heard.count("contact '") != bool(words) or heard.count("contact 'told'") != bool(words) or words not in heard
+    for given, history, expected in GOING_ON:
+        words = SAID.get(expected, expected)
+        before = tuple(made(*of)[1] for of in zip(step.contacts, step.state.contacts, (CLOSED, given), strict=True))
+        heard = said(problem, before, step, history, 3)
         wrong += heard.count("contact '") != bool(words) or heard.count("contact 'told'") != bool(words) or words not in heard
     return {"wrong": float(wrong)}
