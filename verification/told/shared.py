@@ -15,6 +15,7 @@ from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.record import StepResult
+from isomortar.told.after.shared_edges import shared_edges
 from isomortar.told.during.sharing import Sharing
 
 TOLD = re.compile(r"contacts 'floor' and 'wall', load step 1: (\d+) slave control points at the edge between them bear on both and stick")
@@ -137,3 +138,38 @@ def side_by_side() -> dict[str, float]:
     except ConvergenceError as error:
         return {"said": float("at the edge" in str(error)), "given up": 1.0}
     return {"said": 0.0, "given up": 0.0}
+
+
+_BETWEEN = 'contacts.three = { slave = "left.u1", master = "right.u0" }'
+#: In the place of the contact between the blocks: one more of the face that another one has; the blocks are glued, and one is at a wall.
+ONE_FACE = THREE.replace(_BETWEEN, 'contacts.three = { slave = "left.w0", plane = { point = [0, 0, 1] } }')
+GLUED = THREE.replace(_BETWEEN, 'glue = [["left.u1", "right.u0"]]\ncontacts.three = { slave = "left.u0", plane = { normal = [1, 0, 0] } }')
+GLUED = GLUED.replace('contacts.two = { slave = "right.w0", master = "base.w1" }\n', "").replace('"left.w0"', '["left.w0", "right.w0"]')
+FROM_BOTH, FROM_ONE, FROM_THREE = "from 'one' or 'three', or", "from 'one', or", "from 'three', or"
+#: A scene, what is changed in it, and where friction is to be taken from; none: nothing is said.
+EDGES: tuple[tuple[str, tuple[str, ...], str], ...] = (
+    (THREE, (), FROM_BOTH),
+    (THREE, ("contacts.three.friction=0",), FROM_ONE),
+    (THREE, ("contacts.one.friction=0",), FROM_THREE),
+    (THREE, ("contacts.one.friction=0", "contacts.three.friction=0"), ""),
+    (THREE, ("bodies.right.geometry.lower=[0.6,0,1]", "bodies.right.geometry.upper=[1.1,1,2]"), ""),  # a gap is between them
+    (ONE_FACE, (), ""),
+    (GLUED, (), FROM_BOTH),
+    (GLUED, ("contacts.three.plane.point=[-0.1,0,0]",), ""),
+)
+
+
+@case(
+    claim="Contacts that touch at an edge between adjoining faces of a body are told, by the friction that one or both have; of two "
+    "contacts of one face, and of faces that touch nothing, nothing is said.",
+    tier="gate",
+    bounds={"wrong": Bound(0.0, 0.0, "definition: scenes of which something else is said")},
+)
+def at_edges() -> dict[str, float]:
+    """How many."""
+    wrong = 0
+    for text, changes, words in EDGES:
+        simulation = Simulation(Scene.from_toml(text, overrides=changes).problem())
+        told = list(shared_edges(simulation.equilibrium, simulation.state))
+        wrong += len(told) != bool(words) or any("'one' and 'three' touch on 4" not in one or words not in one for one in told)
+    return {"wrong": float(wrong)}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from isomortar.errors import ConvergenceError
 from isomortar.harness import Bound, case
 from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
+from isomortar.told.after.more_friction import more_friction
 from isomortar.told.after.sliding import sliding
 
 #: A block of elements of other sizes than one, which a plate presses onto a floor by 1 and pushes along it.
@@ -78,3 +80,29 @@ def told_to_slide() -> dict[str, float]:
         "moment": abs(moment - 1.0),
         "limit": abs(limit - 1.0),
     }
+
+
+#: What limits two contacts at their constraints: the largest tractions there and how much of what they bear in all is theirs.
+CAPPED = {"one": 0.2, "other": None}
+LIMITS: tuple[tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...], str], ...] = (
+    ((0.1, 0.1), (1.0, 1.0), (1.0,), "more friction"),
+    ((0.1, 0.2), (1.0, 1.0), (1.0,), "more friction or a larger contacts.one.traction_max"),
+    ((0.2, 0.2), (1.0, 1.0), (0.0,), "a larger contacts.one.traction_max"),
+    ((0.1, 0.2), (1.0, 0.1), (1.0,), "more friction"),  # of which the part is less than a twentieth
+    ((0.1, 0.2), (0.0, 1.0), (0.04,), "a larger contacts.one.traction_max"),
+)
+
+
+@case(
+    claim="What would let contacts bear more friction is told by what limits it: the coefficient, or the largest traction, or both.",
+    tier="gate",
+    bounds={"wrong": Bound(0.0, 0.0, "definition: limits of which something else is told")},
+)
+def what_limits() -> dict[str, float]:
+    """How many."""
+    floor = Scene.from_toml(SCENE.replace("HELD", '"x", "y"').replace("FORCE", "{}").replace("MOMENT", "moment = 0")).problem().contacts[0]
+    one, other = (replace(floor, name=name, traction_max=most) for name, most in CAPPED.items())
+    wrong = 0
+    for tractions, parts, others, words in LIMITS:
+        wrong += more_friction([(one, np.array(tractions), np.array(parts)), (other, np.ones(1), np.array(others))]) != words
+    return {"wrong": float(wrong)}
