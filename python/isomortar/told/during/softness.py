@@ -67,7 +67,7 @@ def _soft(body: Body) -> float:
 def _is_held(problem: Problem, body: Body, face: Face, stage: int) -> bool:
     """Whether supports hold a face of a body as a whole in a stage, or a body does that is glued to it and much stiffer."""
     glued = [problem.body(other.body) for pair in problem.glue for one, other in (pair, pair[::-1]) if one == face]
-    return problem.holds(face, stage) or any(other.rigid or other.modulus > STIFFER * body.modulus for other in glued)
+    return problem.holds(face, stage) or any(other.modulus > STIFFER * body.modulus for other in glued)
 
 
 def _confined(body: Body) -> float:
