@@ -10,6 +10,7 @@ from unittest.mock import patch
 import numpy as np
 from told.runs import Heard
 
+from isomortar.errors import InputError
 from isomortar.harness import Bound, case
 from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
@@ -126,6 +127,34 @@ def stretching() -> dict[str, float]:
         [text for text in run(STRETCHING, changes)[0] if BORNE.search(text)] for changes in ((), ("bodies.a.mesh.elements=[8, 8, 1]",))
     )
     return {"said": float(len(said)), "others": float(len(finer) + len(run(weighted(1.0))[0]))}
+
+
+#: The ring's end, without a hole: a disc of which the axis is a pole; and each with what makes averaged normals no cure, which is refused.
+DISC = TURNING.replace("inner = 0.15", "inner = 0").replace("elements = [8, 3, 1]", "elements = [8, 12, 1]")
+NO_CURE = {"paper's sum": (TURNING, ('solver.slip_sum="paper"',)), "pole": (DISC, ())}
+AVERAGED = 'contacts.c.projection="averaged"'
+
+
+def is_refused(text: str, changes: tuple[str, ...]) -> bool:
+    """Whether a scene with averaged normals is."""
+    try:
+        Scene.from_toml(text, overrides=(*changes, AVERAGED)).problem()
+    except InputError:
+        return True
+    return False
+
+
+@case(
+    claim="Averaged normals are told as a cure of friction that goes astray where they are allowed, and else not.",
+    tier="gate",
+    grid={"scene": ("ring", *NO_CURE)},
+    bounds={"wrong": Bound(0.0, 0.0, "definition: told and refused, or allowed and not told, or nothing is told")},
+)
+def cures(scene: str) -> dict[str, float]:
+    """Whether it is."""
+    text, changes = NO_CURE.get(scene, (TURNING, ()))
+    (said,), _ = run(text, changes)
+    return {"wrong": float(('or take contacts.c.projection = "averaged"' in said) == is_refused(text, changes))}
 
 
 @case(

@@ -1,7 +1,11 @@
-"""Increments in which bodies fall into themselves, or plates turn far: cut while shorter ones may show more, and told of once else."""
+"""Increments in which bodies fall into themselves, or plates turn far: cut while shorter ones may show more, and told of once else.
+
+So is what shrinks by more than its law resists.
+"""
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from unittest.mock import patch
 
 import numpy as np
@@ -14,6 +18,7 @@ from isomortar.scene import Scene
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.timing import Ledger
 from isomortar.told.during.inside_out import InsideOut
+from isomortar.told.during.shrunk import LEAST_VOLUMES, Shrunk
 from isomortar.told.during.snapping import Snapping
 
 #: Two blocks, one of which is pressed evenly.
@@ -132,3 +137,20 @@ def turning_far() -> dict[str, float]:
         wrong += words not in said or ("support 'other', load step 2" in said) != bool(words)
     watch.look(far, on, SHORT)
     return {"wrong": float(wrong + len(list(watch.after_step(3))))}
+
+
+@case(
+    claim="A body that is pressed to less of its volume than its law resists is told of, once, and beside it one that is not; of laws that "
+    "resist the more nothing is said.",
+    tier="gate",
+    grid={"law": (NEO_HOOKE, HOOKE, *LEAST_VOLUMES)},
+    bounds={"wrong": Bound(0.0, 0.0, "definition: load steps after which something else is said")},
+)
+def shrinking(law: str) -> dict[str, float]:
+    """Of four, in which a block is pressed to more of its volume than that, to less, to less still, and to more again."""
+    equilibrium = blocks(0, law)
+    watch, least, heard = Shrunk(equilibrium), LEAST_VOLUMES.get(law, 0.5), []
+    for step, share in enumerate((1.01, 0.99, 0.5, 1.01), start=1):
+        heard.append("; ".join(watch.after_step(SimpleNamespace(positions=squeezed(equilibrium, share * least)), step)))  # type: ignore[arg-type]
+    told = [bool(said) for said in heard] == [False, law in LEAST_VOLUMES, False, False]
+    return {"wrong": float(not told or heard[1].count("body 'pressed', load step 2: it is pressed to") != (law in LEAST_VOLUMES))}

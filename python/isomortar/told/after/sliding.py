@@ -49,7 +49,7 @@ def sliding(equilibrium: Equilibrium, state: State) -> Iterator[tuple[set[int], 
         most = float(sum(parts.sum() for _, _, parts in limits))
         friction = np.sum([_friction(pair, state.positions, begun) for pair, begun in pairs], axis=0)
         along = np.linalg.norm(np.einsum("mij,ij->m", np.stack(motions), friction))
-        if most > 0.0 and borne > ALL * most and along > HOLDS * np.linalg.norm(friction, axis=1).sum():
+        if borne > ALL * most and along > HOLDS * np.linalg.norm(friction, axis=1).sum():
             contacts = " and ".join(repr(pair.pair.contact.name) for pair, _ in pairs)
             yield (
                 {number},

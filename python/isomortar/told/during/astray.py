@@ -77,15 +77,11 @@ def astray(mechanics: PairMechanics, balance: Balance, number: int) -> tuple[flo
     pair, response, projections = mechanics.pair, balance.responses[number], balance.kinematics[number].projections
     acts = np.repeat(np.any(response.state[pair.slave.test.nodes] > 0, axis=1), pair.slave.per_element)
     points = np.flatnonzero(acts & (projections.slips > 0)).astype(np.int32)
-    if not points.size:
-        return 0.0, 0.0
     foot, tangents = _surface(pair, balance.positions, projections.xi[points])
     before, tangents_before = _surface(pair, balance.positions, projections.origin[points])
     normals, normals_before = _normals(tangents), _normals(tangents_before)
     plain = np.einsum("qi,qi->q", normals, normals_before) > np.cos(np.radians(BENT))  # and no number where there is no normal
     points, foot, before, tangents = points[plain], foot[plain], before[plain], tangents[plain]
-    if not points.size:
-        return 0.0, 0.0
     area = pair.slave.area[points]
     share = _beside(_slips(projections, points, tangents), _along(foot - before, tangents), area, _least(balance.positions))
     return share, _borne(mechanics, balance, number, points, tangents)
