@@ -98,3 +98,68 @@ def asked() -> dict[str, float]:
             except LostProjectionError:
                 wrong += not acts
     return {"wrong": float(wrong)}
+
+
+#: A slave on a ball, or a disc, of which all elements end at a pole, or of which those next to the slave do not.
+ON_A_BALL = """
+format = 1
+bodies.slave.geometry = { kind = "box", lower = [-0.1, -0.1, 1], upper = [0.1, 0.1, 1.2] }
+bodies.ball = { geometry = { kind = "sphere", outer = 1, axis = "y" }, mesh.elements = [4, 1, ELEMENTS], rigid = true }
+contacts.c = { slave = "slave.w0", master = "ball.v1", friction = FRICTION, projection = "closest" }
+supports.top.face = "slave.w1"
+stages = [{ name = "press", steps = 1, motions.top.translate = [0, 0, -0.1] }]
+"""
+_AT_POLE = "ends at a pole"
+
+
+def said_of(feet: Feet, positions: np.ndarray, *given: object) -> str:
+    """Why feet are refused; nothing, where they are not."""
+    try:
+        feet.check(positions, *given)  # type: ignore[arg-type]
+    except LostProjectionError as error:
+        return str(error)
+    return ""
+
+
+@case(
+    claim="Feet in elements that end at a pole are refused with friction alone, and other doubts of them are told as they are.",
+    tier="gate",
+    grid={"friction": (0.0, 0.3), "elements": (2, 6)},
+    bounds={"wrong": Bound(0.0, 0.0, "definition: doubts of which something else is said")},
+)
+def at_poles(friction: float, elements: int) -> dict[str, float]:
+    """Of no doubt, and each kind of it."""
+    equilibrium = Equilibrium(
+        Scene.from_toml(ON_A_BALL.replace("FRICTION", str(friction)).replace("ELEMENTS", str(elements))).problem(), Ledger()
+    )
+    positions, pair = equilibrium.numbering.reference, equilibrium.pairs[0]
+    found = pair.kinematics(positions, equilibrium.initial_state().contacts[0]).projections
+    feet, acts = Feet(pair.pair, ORIGIN), SimpleNamespace(state=np.ones(pair.pair.slave.test.count, dtype=np.int32))
+    wrong = 0
+    for status, words, without_slips in ((0, _AT_POLE if elements == 2 else "", True), *KINDS):
+        said = said_of(feet, positions, replace(found, doubt=np.full(len(found.found), status, dtype=np.int32)), acts)
+        expected = "" if without_slips and friction == 0.0 else words
+        wrong += expected not in said or bool(said) != bool(expected)
+    return {"wrong": float(wrong)}
+
+
+@case(
+    claim="A point that the projection gives up is told with its contact and where it is, round-off as zero; of positions that are no "
+    "numbers without that.",
+    tier="gate",
+    bounds={"wrong": Bound(0.0, 0.0, "definition: points of which something else is said")},
+)
+def given_up() -> dict[str, float]:
+    """Of three: as it is, next to zero, and nowhere."""
+    equilibrium = Equilibrium(Scene.from_toml(SCENE.replace("FRICTION", "0.3")).problem(), Ledger())
+    positions, pair = equilibrium.numbering.reference, equilibrium.pairs[0].pair
+    x, y, _ = gauss_points(round(np.sqrt(pair.slave.per_element)))[0]
+    places = (
+        (positions, f", at ({x:.4g}, {y:.4g}, 0)"),
+        (positions + 1e-13, f", at ({x:.4g}, {y:.4g}, 0)"),
+        (positions + 1e-6, f", at ({x:.4g}, {y:.4g}, 1e-06)"),
+        (positions * np.nan, ""),
+    )
+    feet, error = Feet(pair, np.zeros(3)), LostProjectionError("it is lost", 0)
+    said = [str(feet.named(error, at)) for at, _ in places]
+    return {"wrong": float(sum(one != f"contact 'c': it is lost{where}" for one, (_, where) in zip(said, places, strict=True)))}
