@@ -232,3 +232,25 @@ def shortest_increment(degrees: float, cuts: int) -> dict[str, float]:
     time, parts = re.findall(r"at load time (\S+), even with an increment of 1/(\d+) step", said)[0]
     expected = int(np.maximum(np.ceil(degrees / LARGEST_TURN), 1.0)) * 2**cuts
     return {"off": abs(int(parts) - expected) + abs(round(1.0 / float(time)) - expected)}
+
+
+#: A block that is pressed, and touches nothing.
+ALONE = """
+format = 1
+bodies.block = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }, mesh.elements = 2 }
+supports = { top.face = "block.w1", base.face = "block.w0" }
+stages = [{ name = "press", steps = 1, motions.top.translate = [0, 0, -0.9] }]
+solver = { max_iterations = 1, max_cuts = 1 }
+"""
+
+
+@case(
+    claim="A load step of a scene without contact that is given up says why, by both methods.",
+    tier="gate",
+    grid={"method": ("monolithic", "uzawa")},
+    bounds={"wrong": Bound(0.0, 0.0, "definition: whether something else is said, or it ends otherwise")},
+)
+def without_contact(method: str) -> dict[str, float]:
+    """Whether it is."""
+    said_of = error(ALONE, f"solver.method={method}")
+    return {"wrong": float("after 1 iterations. Load steps may need more than solver.max_iterations = 1" not in said_of)}
