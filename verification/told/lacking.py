@@ -104,7 +104,7 @@ def warnings(text: str, **values: str) -> list[str]:
     },
 )
 def lacking() -> dict[str, float]:
-    """How many of seven, four, three, and five."""
+    """How many of seven, four, four, and five."""
     supports = 0
     for slant, held, along, behind in SUPPORTS:
         said = warnings(PUSHED, SLANT=slant, HELD=held, ALONG=along)
@@ -118,6 +118,8 @@ def lacking() -> dict[str, float]:
     for stiff, few in (("10", True), ("100", True), ("5", False)):
         said = [warning for warning in warnings(ON_A_FINER_ONE, STIFF=stiff) if "quadrature points of the slave" in warning]
         points += [POINTS in warning and CURE in warning for warning in said] != [True] * few
+    halved = warnings(ON_A_FINER_ONE.replace("quadrature = [4, 2]", "subcells = 1, quadrature = [2, 1]"), STIFF="10")  # as many points
+    points += sum(POINTS in warning and "contacts.c.quadrature = [12, 6]" in warning for warning in halved) != 1
     poles = 0
     for far, told in FAR.items():
         said = warnings(BESIDE_A_POLE, FROM=str(far), TO=str(far + 1.0))
