@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from told.too_steep import said
+from transforms import scaled
 
 from isomortar.errors import InputError
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
+from isomortar.told.after.averages_apart import averages_apart
 
 #: A block on one that is held, another one on that, and one that is glued to that.
 SCENE = """
@@ -74,7 +77,37 @@ solver.max_cuts = 2
         "runs": Bound(1.0, 1.0, "definition: the same of finer elements"),
     },
 )
-def averages_apart() -> dict[str, float]:
+def too_coarse() -> dict[str, float]:
     """How many."""
     coarse, fine = (said(ROLLER.replace("COUNT", count)) for count in ("4", "16"))
     return {"told": float(coarse.count("Refine roller.v1 where it touches")), "runs": float(fine == "")}
+
+
+#: How far the roller is above the floor, what else is changed, and whether the floor's averages are told to be apart: points are at it up
+#: to a tenth of that, 0.0625.
+ABOVE: tuple[tuple[float, tuple[str, ...], bool], ...] = (
+    (0.0, (), True),
+    (0.006, (), True),
+    (0.008, (), False),
+    (0.0, ("contacts.floor.enforcement=knots",), False),  # whose constraints are points
+    (0.0, ("supports.hold.components=['x','y','z']",), False),
+    (0.0, ("supports.hold={face='roller.w0'}",), False),
+)
+
+
+@case(
+    claim="Averages are told to be apart where points are at the master, beside how far apart they are, of bodies that can move freely; "
+    "not of constraints at points.",
+    tier="gate",
+    grid={"unit": (1.0, 2.0**-10, 2.0**10)},
+    bounds={"wrong": Bound(0.0, 0.0, "definition: rollers of which something else is told, in that unit of length")},
+)
+def points_at_master(unit: float) -> dict[str, float]:
+    """How many of six."""
+    wrong = 0
+    for above, changes, is_told in ABOVE:
+        text = ROLLER.replace("COUNT", "4").replace("[0, 0, -0.5]", f"[0, 0, {-0.5 - above}]")
+        simulation = Simulation(scaled(Scene.from_toml(text, overrides=changes).problem(), unit, 1.0))
+        told = [sentence for sentence in averages_apart(simulation.equilibrium, simulation.state) if "contact 'floor'" in sentence]
+        wrong += len(told) != is_told
+    return {"wrong": float(wrong)}

@@ -31,7 +31,7 @@ def averages_apart(equilibrium: Equilibrium, state: State) -> Iterator[str]:
     motions = free_motions(equilibrium.problem, numbering, equilibrium.supports, state.positions)
     free = {body.name for motion in motions for body in numbering.pieces[motion.piece]}
     for pair, begun in zip(equilibrium.pairs, state.contacts, strict=True):
-        apart = _apart(pair, state, begun) if pair.pair.contact.of_averages and free & pair.pair.contact.bodies else 0.0
+        apart = _apart(pair, state, begun) if free & pair.pair.contact.bodies else 0.0
         if apart:
             contact = pair.pair.contact
             yield (
