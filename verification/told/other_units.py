@@ -5,11 +5,19 @@ from __future__ import annotations
 from collections import Counter
 
 from told.alike import words
+from told.given_up import ALONE, COHESIVE, ELSEWHERE, TAKEN_AWAY
+from told.loose import ROLLER
 from told.runs import LONG, PLATES, Heard
+from told.shared import THREE
+from told.tipping import SCENES as TIPPING
+from told.tipping import whole
 from told.wrong.doubts import DOUBTFUL
+from told.wrong.plates import ROLLS
 from told.wrong.runs import RUNS
+from told.wrong.singular import CORNER
 from transforms import scaled
 
+from isomortar.errors import ConvergenceError
 from isomortar.harness import Bound, case
 from isomortar.march.outlook import outlook
 from isomortar.march.simulation import Simulation
@@ -62,3 +70,31 @@ def runs_in_units(run: str) -> dict[str, float]:
     problem = Scene.from_toml((RUNS | PLATES)[run][0]).problem()
     said = of_a_run(problem)
     return {"others": sum(others(said, of_a_run(scaled(problem, *units))) for units in UNITS)}
+
+
+#: Load steps that are given up: bodies that tip, lift, or slide, move freely, or go to and fro, and averages that are apart.
+GIVEN_UP = {name: whole(name) for name in TIPPING}
+GIVEN_UP |= {"averages": ROLLER.replace("COUNT", "4"), "edges": THREE, "away": TAKEN_AWAY, "on its way": ELSEWHERE, "rolls away": ROLLS}
+GIVEN_UP |= {"cohesion": COHESIVE, "corner": CORNER, "alone": ALONE}
+
+
+def why(problem: Problem) -> Counter[tuple[str, ...]]:
+    """The words of why a run of it is given up; nothing, where it is not."""
+    try:
+        list(Simulation(problem).run())
+    except ConvergenceError as error:
+        return Counter([words(str(error))])
+    return Counter()
+
+
+@case(
+    claim="What is said of a load step that is given up does not depend on the units of its scene.",
+    tier="gate",
+    grid={"scene": tuple(GIVEN_UP)},
+    bounds={"others": _SAID},
+)
+def given_up_in_units(scene: str) -> dict[str, float]:
+    """How many."""
+    problem = Scene.from_toml(GIVEN_UP[scene]).problem()
+    said = why(problem)
+    return {"others": sum(others(said, why(scaled(problem, *units))) for units in UNITS)}

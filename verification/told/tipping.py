@@ -189,6 +189,12 @@ SCENES: dict[str, tuple[str, tuple[str, str, str] | None]] = {
 }  # fmt: skip
 
 
+def whole(scene: str) -> str:
+    """All of one of them."""
+    text, _ = SCENES[scene]
+    return text.replace("METHOD", "monolithic").replace("YOUNG", "10000") if "METHOD" in text else HEAD + text
+
+
 @case(
     claim="Of several bodies, glued or on each other or over their table's edge, the one is told of that tips; of bodies that slide or "
     "roll, or that something else holds, it is not said, and of one that is lifted that it lifts off.",
@@ -198,9 +204,8 @@ SCENES: dict[str, tuple[str, tuple[str, str, str] | None]] = {
 )
 def tipping(scene: str) -> dict[str, float]:
     """Whether something else is told."""
-    text, expected = SCENES[scene]
-    whole = text.replace("METHOD", "monolithic").replace("YOUNG", "10000") if "METHOD" in text else HEAD + text
-    found = TOLD.search(said(whole))
+    _, expected = SCENES[scene]
+    found = TOLD.search(said(whole(scene)))
     return {"others": float((found and (found[1], found[2], found[3])) != expected)}
 
 
