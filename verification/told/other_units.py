@@ -9,8 +9,8 @@ from told.given_up import ALONE, COHESIVE, ELSEWHERE, TAKEN_AWAY
 from told.loose import ROLLER
 from told.runs import LONG, PLATES, Heard
 from told.shared import THREE
+from told.tipping import ABOVE, HEAD, LIFTED, LOWER, whole
 from told.tipping import SCENES as TIPPING
-from told.tipping import whole
 from told.wrong.doubts import DOUBTFUL
 from told.wrong.plates import ROLLS
 from told.wrong.runs import RUNS
@@ -75,6 +75,8 @@ def runs_in_units(run: str) -> dict[str, float]:
 #: Load steps that are given up: bodies that tip, lift, or slide, move freely, or go to and fro, and averages that are apart.
 GIVEN_UP = {name: whole(name) for name in TIPPING}
 GIVEN_UP |= {"averages": ROLLER.replace("COUNT", "4"), "edges": THREE, "away": TAKEN_AWAY, "on its way": ELSEWHERE, "rolls away": ROLLS}
+GIVEN_UP |= {f"{place} to go": HEAD + LOWER + LIFTED + ABOVE.replace("PLACE", place) for place in ("1.5", "9")}
+GIVEN_UP |= {"above": COHESIVE.replace("[0, 0, 0], upper = [0.5, 0.6, 0.4]", "[0, 0, 0.1], upper = [0.5, 0.6, 0.5]")}
 GIVEN_UP |= {"cohesion": COHESIVE, "corner": CORNER, "alone": ALONE}
 
 
