@@ -150,19 +150,28 @@ def given_up() -> dict[str, float]:
 
 @case(
     claim="Of a body that its loads move to a contact it is said, where that is given up, that a motion should bring it there: while "
-    "nothing bears it and no support holds it, and not where the tangent is singular, which tells what can move freely.",
+    "nothing bears it, no support holds it and it has a way to go, and not where the tangent is singular, which tells what can move freely.",
     tier="gate",
     bounds={"wrong": Bound(0.0, 0.0, "definition: what is said of bodies that are borne or held, or not said of one on its way")},
 )
 def on_the_way() -> dict[str, float]:
-    """Of five."""
+    """Of seven."""
     waits, touches, words = lifted(0.1), lifted(0.0), "touches nothing where that begins"
     held = Simulation(Scene.from_toml(BLOCK + "supports.top.face = 'block.w1'").problem())
     next(touches.run())
     other = Simulation(Scene.from_toml(ELSEWHERE).problem())
     other.equilibrium.time = 1.0
     told = "".join(said(other))
-    wrong = [words not in "".join(said(waits)), words in "".join(said(touches)), words in "".join(said(held)), words in told]
+    apart = 0.01 * float(np.sqrt(0.5 * 0.6))  # a hundredth of the face's size is no way to go
+    near, far = ("".join(said(lifted(share * apart))) for share in (0.98, 1.02))
+    wrong = [
+        words in near,
+        words not in far,
+        words not in "".join(said(waits)),
+        words in "".join(said(touches)),
+        words in "".join(said(held)),
+        words in told,
+    ]
     return {"wrong": float(sum(wrong) + (words in "".join(said(waits, SingularSystemError("")))))}
 
 

@@ -76,7 +76,6 @@ def runs_in_units(run: str) -> dict[str, float]:
 GIVEN_UP = {name: whole(name) for name in TIPPING}
 GIVEN_UP |= {"averages": ROLLER.replace("COUNT", "4"), "edges": THREE, "away": TAKEN_AWAY, "on its way": ELSEWHERE, "rolls away": ROLLS}
 GIVEN_UP |= {f"{place} to go": HEAD + LOWER + LIFTED + ABOVE.replace("PLACE", place) for place in ("1.5", "9")}
-GIVEN_UP |= {"above": COHESIVE.replace("[0, 0, 0], upper = [0.5, 0.6, 0.4]", "[0, 0, 0.1], upper = [0.5, 0.6, 0.5]")}
 GIVEN_UP |= {"cohesion": COHESIVE, "corner": CORNER, "alone": ALONE}
 
 
