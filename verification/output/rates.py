@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from isomortar.harness import Bound, case
 from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
 from isomortar.solve.extrapolation import multipliers_ahead, positions_ahead
+from isomortar.solve.record import ContactRates
 
 #: A pad that comes down onto a plane in the second of three load steps, is dragged, and lifted; beside it one that stays above another.
 SCENE = """
@@ -72,3 +75,33 @@ def kept() -> dict[str, float]:
             found["ahead"] = float(np.maximum(found["ahead"], off.max() / (1.0 + np.abs(straight).max())))
             found["cut off"] += float(np.count_nonzero(straight < 0.0))
     return found
+
+
+@case(
+    claim="Multipliers go on along their rates, but for those whose conditions may repeat others: around points that have no foot they "
+    "stay as they are, and no others do.",
+    tier="gate",
+    bounds={
+        "loose": Bound(0.0, 0.0, "definition: pressures and tractions around points without a foot, which stay"),
+        "others": Bound(at_most=1e-14, reason="definition: straight on, and no pressure below zero; round-off"),
+        "both": Bound(at_least=1.0, reason="definition: constraints of either kind, whichever are fewer"),
+    },
+)
+def loose_ones() -> dict[str, float]:
+    """Largest differences, with each of the slave's elements beside the master in turn, by rates that are drawn by lot."""
+    simulation, random = Simulation(Scene.from_toml(SCENE).problem()), np.random.default_rng(8)
+    *_, last = simulation.run()
+    (begun, *_), (pair, *_) = last.state.contacts, simulation.equilibrium.pairs
+    rates = ContactRates(*(random.standard_normal(of.shape) for of in (begun.pressure, begun.traction)))
+    found, both = {"loose": [0.0], "others": [0.0]}, []
+    for element, nodes in enumerate(pair.pair.slave.test.nodes):
+        projected = np.ones_like(begun.projected)
+        projected[element * pair.pair.slave.per_element] = 0
+        pressure, traction = multipliers_ahead(pair, replace(begun, projected=projected), rates, 0.5)
+        straight = np.maximum(begun.pressure + 0.5 * rates.pressure, 0.0), begun.traction + 0.5 * rates.traction
+        loose = np.isin(np.arange(len(pressure)), nodes)
+        for name, some, expected in (("loose", loose, (begun.pressure, begun.traction)), ("others", ~loose, straight)):
+            off = [np.abs(of[some] - other[some]).max(initial=0.0) for of, other in zip((pressure, traction), expected, strict=True)]
+            found[name].append(float(np.max(off)))
+        both += [np.count_nonzero(loose), np.count_nonzero(~loose)]
+    return {name: float(np.max(off)) for name, off in found.items()} | {"both": float(np.min(both))}

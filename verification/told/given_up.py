@@ -150,7 +150,7 @@ def given_up() -> dict[str, float]:
 
 @case(
     claim="Of a body that its loads move to a contact it is said, where that is given up, that a motion should bring it there: while "
-    "nothing bears it, no support holds it and it has a way to go, and not where the tangent is singular, which tells what can move freely.",
+    "nothing bears it, no support holds it and it has a way to go, and not where a singular tangent tells what can move freely.",
     tier="gate",
     bounds={"wrong": Bound(0.0, 0.0, "definition: what is said of bodies that are borne or held, or not said of one on its way")},
 )

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 from trade.searched import WANT, Known, dials, off
@@ -115,6 +116,29 @@ def failing(seed: int) -> dict[str, float]:
         search.truth.choice == first.truth.choice,
     ]
     return {"wrong": float(said.count(False))}
+
+
+@case(
+    claim="Where nothing is recommended it is said whether the budget was spent, or what was tried does not come so near; where runs fail "
+    "what is recommended is one of the others, within its target.",
+    tier="gate",
+    grid={"seed": (1, 2, 3)},
+    bounds={"wrong": Bound(0.0, 0.0, "definition: of two searches in vain, and of one all of whose further runs fail, by two targets")},
+)
+def in_vain(seed: int) -> dict[str, float]:
+    """Those that say something else, or recommend what failed, or is farther off."""
+    known = Watched(seed)
+    search, wrong = searching(known), 0
+    search.find_truth([0.0])
+    known.fails = lambda choice, runs=tuple(known.outcomes): choice not in runs  # type: ignore[misc]
+    for share in SHARES:
+        best = search.answer(share * search.uncertainty).best
+        wrong += best is not None and not off(best, search.truth) <= share * search.uncertainty
+    for budget, words in ((0.5 * known.spent, "within the budget"), (math.inf, "comes so near for less")):
+        search.budget = budget
+        with patch.object(search, "_pursued", return_value=None):
+            wrong += words not in search.answer(SHARES[0] * search.uncertainty).why
+    return {"wrong": float(wrong)}
 
 
 @case(

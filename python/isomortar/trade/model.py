@@ -142,7 +142,7 @@ class Model:
         for outcome in self._centres[:1]:
             for number in range(len(self._dials)):
                 starts |= {self._turned(outcome.choice, number, s, kept) for s in self.settings(number)}
-        known = sorted(start for start in starts if all((n, s) in self._effects for n, s in enumerate(start)))
+        known = sorted(start for start in starts - self._failed if all((n, s) in self._effects for n, s in enumerate(start)))
         ends = [end for end in (self._descended(start, target, kept) for start in known) if end]
         best = min(ends, key=lambda choice: self.forecast(choice).cost, default=None)
         while best is not None:
