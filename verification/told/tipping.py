@@ -9,6 +9,11 @@ import numpy as np
 from told.too_steep import said
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
+from isomortar.scene import Scene
+from isomortar.told.after.overcome import overcome
+from isomortar.told.after.tipping import giving_way
+from isomortar.told.after.tipping import tipping as tipping_over
 
 #: A block twice as high as wide: it stands while the middle of its loads is over its base, here as far as its control points carry.
 SCENE = """
@@ -270,3 +275,44 @@ def lifted(method: str, friction: float) -> dict[str, float]:
     found = TOLD.search(sentence)
     lifts = found is not None and found[1] == "move" and found[3] == "0, 0, 1" and "lifts off" in sentence
     return {"lifts": float(lifts), "slides": float("of what it can" in sentence)}
+
+
+#: A block that leans, and beside it one that a plate presses, one that falls and touches nothing, and one without a load.
+AMONG = (
+    HEAD
+    + """
+bodies.one = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 2] }, mesh.elements = [4, 2, 2] }
+bodies.pressed = { geometry = { kind = "box", lower = [4, 0, 0], upper = [5, 1, 1] }, mesh.elements = [2, 2, 1] }
+bodies.falling = { geometry = { kind = "box", lower = [8, 0, 1], upper = [9, 1, 2] }, mesh.elements = [2, 2, 1] }
+bodies.still = { geometry = { kind = "box", lower = [12, 0, 0], upper = [13, 1, 1] }, mesh.elements = [2, 2, 1] }
+contacts.one = { slave = "one.w0", friction = FRICTION, plane = {} }
+contacts.pressed = { slave = "pressed.w0", friction = 1, plane = {} }
+contacts.falling = { slave = "falling.w0", friction = 1, plane = {} }
+contacts.still = { slave = "still.w0", friction = 1, plane = {} }
+supports.pressed = { face = "pressed.w1", components = ["x", "y"], force.z = -50 }
+supports.falling = { face = "falling.v0", components = ["y"] }
+supports.still = { face = "still.v0", components = ["y"] }
+loads.one = { body = "one", weight = [LEAN, 0, -1] }
+loads.falling = { body = "falling", weight = [0.5, 0, -1] }
+"""
+)
+#: By friction and lean of the first one, of what of it is told: that it tips, that nothing balances its loads, that it slides.
+OF_ONE = {("1", "0.8"): (True, True, False), ("0.3", "0.4"): (True, True, True), ("0.3", "0.1"): (False, False, False)}
+
+
+@case(
+    claim="What is told of bodies that tip or slide is told of these by their own loads, whatever is beside them: bodies that plates "
+    "press, that touch nothing, or that nothing moves.",
+    tier="gate",
+    bounds={"wrong": Bound(0.0, 0.0, "definition: sentences on other bodies, or that are missing, or too many")},
+)
+def among_others() -> dict[str, float]:
+    """Of nine that may be said."""
+    wrong = 0
+    for (friction, lean), expected in OF_ONE.items():
+        simulation = Simulation(Scene.from_toml(AMONG.replace("FRICTION", friction).replace("LEAN", lean)).problem())
+        simulation.equilibrium.time = 1.0
+        for sentences, is_told in zip((tipping_over, giving_way, overcome), expected, strict=True):
+            told = [sentence for _, sentence in sentences(simulation.equilibrium, simulation.state)]
+            wrong += len(told) != is_told or any("body 'one'" not in sentence for sentence in told)
+    return {"wrong": float(wrong)}
