@@ -35,23 +35,24 @@ def load_works(equilibrium: Equilibrium, positions: FloatArray, motions: Sequenc
 
     Which is that of the piece's own loads: those of heavier ones have none in it.
     """
-    parts = [_parts(equilibrium, positions, motion) for motion in motions]
-    works = np.array([part.sum() for part in parts])
+    works, sizes = np.array([_work(equilibrium, positions, motion) for motion in motions]).reshape(-1, 2).T
     pieces, largest = np.array([motion.piece for motion in motions], dtype=np.int64), np.zeros(len(equilibrium.numbering.pieces))
-    np.maximum.at(largest, pieces, [np.abs(part).sum() for part in parts])
+    np.maximum.at(largest, pieces, sizes)
     return np.where(np.abs(works) > constants.NO_PART * largest[pieces], works, 0.0)
 
 
-def _parts(equilibrium: Equilibrium, positions: FloatArray, motion: FreeMotion) -> FloatArray:
-    """The work on a motion of the force on each control point, and of each plate's force and moment."""
+def _work(equilibrium: Equilibrium, positions: FloatArray, motion: FreeMotion) -> tuple[float, float]:
+    """The work on a motion of forces on control points and of plates' forces and moments, and what it would be if all went along it."""
     supports, time = equilibrium.supports, equilibrium.time
     forces = sum(equilibrium.loads.forces(positions, time), supports.fading(time))
-    parts = [np.ravel(forces * motion.displacement)]
+    work = float(np.sum(forces * motion.displacement))
+    size = float(np.linalg.norm(forces, axis=1) @ np.linalg.norm(motion.displacement, axis=1))
     piece, (shift, turn) = equilibrium.numbering.pieces[motion.piece], motion.amounts.reshape(2, 3)
-    (centre, size), bodies = extent(piece), {body.name for body in piece}
+    (centre, length), bodies = extent(piece), {body.name for body in piece}
     for plate in supports.plates:
         if equilibrium.problem.supports[plate.support].place.body in bodies:
             there = supports.centre(equilibrium.problem.supports[plate.support], time, positions)
-            goes = shift + np.cross(turn, there - centre) / size
-            parts.append(supports.factor(plate, time) * np.append(plate.force * goes, plate.moment * (plate.axis @ turn) / size))
-    return np.concatenate(parts)
+            goes = shift + np.cross(turn, there - centre) / length
+            parts = supports.factor(plate, time) * np.append(plate.force * goes, plate.moment * (plate.axis @ turn) / length)
+            work, size = work + float(parts.sum()), size + float(np.abs(parts).sum())
+    return work, size

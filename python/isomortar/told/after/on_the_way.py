@@ -1,4 +1,4 @@
-"""Bodies on their way to a contact by loads alone: nothing bears them until they touch, and no increment makes that way shorter."""
+"""Bodies on their way to a contact by loads alone: nothing bears them until they touch, or says where they are."""
 
 from __future__ import annotations
 
@@ -16,6 +16,15 @@ from isomortar.solve.record import ContactState, State
 from isomortar.solve.resting import mean_heights
 from isomortar.told.after.load_work import load_works
 
+#: What loads do to a body on its way, and what helps: as they move it, or balance each other and deform it, as pressure in a tube.
+DRIVEN = (
+    "and its loads move it until something bears it: smaller increments make that way no shorter. Bring it into contact by the motion of a "
+    "support first, in a stage of its own, or begin nearer"
+)
+BALANCED = (
+    "and its loads balance each other: nothing says where it goes before it touches. Hold it by a support, begin nearer, or with a load "
+    "that closes the gap at once"
+)
 #: Share of a slave face's size within which its constraints stand at their master: what is as near has no way to go.
 NEAR = 0.01
 
@@ -32,19 +41,14 @@ def on_the_way(equilibrium: Equilibrium, state: State) -> Iterator[tuple[set[int
     motions = loaded_motions(equilibrium.problem, equilibrium.numbering, equilibrium.supports, state.positions)
     works = load_works(equilibrium, state.positions, motions)
     driven = {motion.piece for motion, work in zip(motions, works, strict=True) if work != 0.0}
-    contacts = zip(equilibrium.pairs, state.contacts, strict=True) if driven else ()
+    bodies = {load.body for load in equilibrium.problem.loads}
+    pieces = {k: piece for k, piece in enumerate(equilibrium.numbering.pieces) if not bodies.isdisjoint(body.name for body in piece)}
+    contacts = zip(equilibrium.pairs, state.contacts, strict=True) if motions else ()
     near = {name for pair, begun in contacts if _is_near(pair, state.positions, begun) for name in pair.pair.contact.bodies}
-    for number in sorted(driven):
+    for number in sorted(driven | {motion.piece for motion in motions if motion.piece in pieces}):
         piece = equilibrium.numbering.pieces[number]
         if near.isdisjoint(body.name for body in piece):
-            yield (
-                {number},
-                (
-                    f"{named(piece, piece[0].name)} touches nothing where that begins, and its loads move it until something bears it: "
-                    "smaller increments make that way no shorter. Bring it into contact by the motion of a support first, in a stage of "
-                    "its own, or begin nearer"
-                ),
-            )
+            yield {number}, f"{named(piece, piece[0].name)} touches nothing where that begins, {DRIVEN if number in driven else BALANCED}"
 
 
 def _is_near(pair: PairMechanics, positions: FloatArray, begun: ContactState) -> bool:
