@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 from told.circling import round_in_a_circle
+from told.other_ways import DUAL, pressed
 from told.shared import THREE
 from told.word_by_word import SENTENCES
 from told.wrong.causes import said, scene
@@ -92,6 +93,8 @@ def of_causes() -> Iterator[tuple[str, str]]:
     yield "shared edge", "\n".join(said(Simulation(Scene.from_toml(THREE).problem())))
     yield "on the way", "\n".join(said(lifted(0.1)))
     yield "on the way, balanced", "\n".join(said(begun(BALANCED)))
+    yield "averages", error(DUAL).partition("iterations. ")[2]
+    yield "smooth friction", "\n".join(said(pressed(), ConvergenceError("Newton's method stopped at 1")))
     flat: Simulation = scene()
     positions = flat.state.positions.copy()
     positions[np.unique(flat.equilibrium.numbering.points["lower"]), 2] *= 0.05

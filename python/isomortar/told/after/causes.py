@@ -20,6 +20,7 @@ from isomortar.solve.feet import closest_depths
 from isomortar.solve.record import State
 from isomortar.told.after.averages_apart import averages_apart
 from isomortar.told.after.on_the_way import on_the_way
+from isomortar.told.after.other_ways import other_ways
 from isomortar.told.after.overcome import overcome
 from isomortar.told.after.shared_edges import shared_edges
 from isomortar.told.after.sliding import sliding
@@ -40,6 +41,8 @@ PENALTY = 1e3
 SMALL_PENALTY = 0.1
 #: By the setting that ends them, how an error says that iterations did.
 ENDED = {"max_iterations": "Newton's method stopped", "max_augmentations": "augmentations left"}
+#: What it says where it advises something by itself.
+ADVICE = "take "
 #: Elastic slips below this share of the slave make friction so stiff that Newton's method goes to and fro: a press failed at 2e-4.
 SHORT_SLIP = 1e-3
 
@@ -47,8 +50,8 @@ SHORT_SLIP = 1e-3
 BESIDE = "beside the master"
 
 
-def causes(equilibrium: Equilibrium, state: State, error: Exception) -> Iterator[str]:
-    """Sentences, without a capital, on what a person should look at.
+def causes(equilibrium: Equilibrium, state: State, error: Exception) -> Sequence[str]:
+    """Sentences, without a capital, on what a person should look at; where there is nothing, on other ways.
 
     Parameters
     ----------
@@ -58,6 +61,13 @@ def causes(equilibrium: Equilibrium, state: State, error: Exception) -> Iterator
     error : Exception
         Why the next one did not.
     """
+    found, words = list(_causes(equilibrium, state, error)), str(error)
+    bare = any(ended in words for ended in ENDED.values()) and ADVICE not in words.lower()
+    return found if found or not bare else list(other_ways(equilibrium.problem, state))
+
+
+def _causes(equilibrium: Equilibrium, state: State, error: Exception) -> Iterator[str]:
+    """What there is."""
     problem, positions = equilibrium.problem, state.positions
     if isinstance(error, PathError):
         yield _path(error.error, problem.settings.max_cuts)

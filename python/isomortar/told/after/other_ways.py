@@ -1,0 +1,42 @@
+"""What mostly lets a load step converge that is given up while nothing else is told: averages, and friction without a corner."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from isomortar.model.entities import Contact, Problem
+from isomortar.model.sheet import Sheet
+from isomortar.solve.record import State
+
+#: Elastic slip that is advised, as a share of the slave's size: of four scenes that friction ended three came to their end by it.
+SLIP = 2e-3
+
+
+def other_ways(problem: Problem, state: State) -> Iterator[str]:
+    """Sentences, without a capital: on contacts that are not of averages, if there are any, else on those that bear with friction.
+
+    Of 11 scenes that constraints at points, or dual ones, ended so all came to their end by averages.
+
+    Parameters
+    ----------
+    problem : Problem
+    state : State
+        Where the last load increment ended that converged.
+    """
+    others = [contact for contact in problem.contacts if contact.enforcement != "mortar"]
+    for contact in others:
+        yield (
+            f"contact {contact.name!r}: load steps that are given up by constraints of this kind, {contact.enforcement!r}, mostly come to "
+            f'their end by averages: take contacts.{contact.name}.enforcement = "mortar"'
+        )
+    for contact, begun in zip(problem.contacts, state.contacts, strict=True) if not others else ():
+        if _sticks_or_slips(contact) and begun.pressure.any():
+            slip = SLIP * Sheet.of(problem, contact.slave).size
+            yield (
+                f"contact {contact.name!r}: friction sticks or slips, and Newton's method may find no way from one to the other: take "
+                f"contacts.{contact.name}.elastic_slip = {slip:.1g}, by which it is smooth"
+            )
+
+
+def _sticks_or_slips(contact: Contact) -> bool:
+    return (contact.friction > 0.0 or contact.cohesion > 0.0) and contact.elastic_slip == 0.0
