@@ -130,7 +130,7 @@ def system_refuses() -> dict[str, float]:
         wrong = int(not refused(lambda: fail(old), ResultsError, "old.svg cannot be written: No space"))
         wrong += old.read_text(encoding="utf-8") != "whole"
         wrong += not refused(lambda: fail(new), ResultsError, "new.svg cannot be written: No space") or new.exists()
-        wrong += not refused(lambda: replace(place, b"content"), ResultsError, "what it held before is still in it")
+        wrong += not refused(lambda: replace(place, b"content"), ResultsError, "place.h5 cannot be written")
         wrong += not refused(lambda: replace(old / "below.h5", b"content"), ResultsError, "old.svg is a file, and no folder")
         wrong += not refused(lambda: write_whole(place, "content"), ResultsError, "place.h5 cannot be written")
         wrong += not refused(lambda: write_whole(old / "below" / "page.html", ""), ResultsError, "old.svg is a file, and no folder")

@@ -138,8 +138,7 @@ def replace(path: Path, *parts: bytes) -> None:
             file.writelines(parts)
         _put(fresh, path)
     except OSError as error:
-        kept = "; what it held before is still in it" if path.exists() else ""
-        raise ResultsError(f"{path} cannot be written: {error.strerror or error}{kept}") from error
+        raise ResultsError(f"{path} cannot be written: {error.strerror or error}") from error
     finally:
         with suppress(OSError):
             fresh.unlink()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Literal
 
@@ -136,7 +137,10 @@ class ResultsWriter(Observer):
         """Put the file as it is in memory in the place of that on the disk."""
         self._file.flush()
         image = self._file.id.get_file_image()
-        replace(self.path, seal(image), image)
+        try:
+            replace(self.path, seal(image), image)
+        except ResultsError as error:
+            raise ResultsError(f"{error}{_still_in(self.path)}") from error
         self._unstored = False
 
     def _begin(self, scene_text: str, version: str) -> None:
@@ -227,6 +231,13 @@ class ResultsWriter(Observer):
         self._datasets.put("rates", layout.RATES, rates, kept)
         for contact, of_contact in zip(self._problem.contacts, rates.contacts, strict=True):
             self._datasets.put(f"rates/contacts/{contact.name}", _wanted(contact, layout.CONTACT_RATES), of_contact, kept)
+
+
+def _still_in(path: Path) -> str:
+    """What results hold that could not be replaced, as the end of a sentence; empty, where they hold no load step or are not there."""
+    with suppress(ResultsError), Results(path) as stored:
+        return "".join(f"; it still holds load steps up to {last}" for last in stored.steps[-1:])
+    return ""
 
 
 def _put_scene(file: h5py.File, text: str) -> None:
