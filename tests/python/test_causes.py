@@ -156,7 +156,7 @@ def test_bodies_pressed_flat_are_named_with_what_is_left_of_them() -> None:
 def test_the_message_of_a_step_that_is_given_up_ends_with_the_causes() -> None:
     simulation = scene(POISSON=0.499999)
     with pytest.raises(ConvergenceError, match=r"step: no luck\. With Poisson's ratio 0\.499999 body 'lower'"):
-        simulation._cut(1, simulation.state, 1.0, 0.5**8, 1.0, ConvergenceError("no luck"))
+        simulation._cut(1, simulation.state, 1.0, 0.5**8, 1.0, ConvergenceError("no luck"), [])
 
 
 #: Six points a cell are more than the elements of the master.

@@ -243,7 +243,12 @@ def of_files(patch: pytest.MonkeyPatch) -> Told:
     Path("other.h5").write_bytes(files.sealed(Path("other.h5").read_bytes()))
     yield "without a curve", re.sub(r"\(.*?\),", "(#),", refusal(lambda: Results("other.h5").curve("time")))
     Path("there").mkdir()
-    yield "kept", re.sub(r"written: [^;]*", "written: #", refusal(lambda: files.replace(Path("there"), b"")))
+    yield "not replaced", _but_the_end(refusal(lambda: files.replace(Path("there"), b"")))
+    half = ResultsWriter("half.h5", problem(), "", "0")
+    half.recorded(step_result(1))
+    with patch.context() as within:
+        within.setattr(files.os, "fsync", _full)
+        yield "kept", re.sub(r"written: [^;]*", "written: #", refusal(lambda: half.recorded(step_result(2))))
     Path("file").touch()
     yield "no folder", refusal(lambda: files.make_folder(Path("file/folder")))
     yield "not written", _but_the_end(refusal(lambda: _written(Path("none/new.svg"))))
@@ -254,6 +259,10 @@ def of_files(patch: pytest.MonkeyPatch) -> Told:
 def _written(path: Path) -> None:
     with files.writing(path) as fresh:
         fresh.touch()
+
+
+def _full(_: int) -> None:
+    raise OSError(28, "No space left on device")
 
 
 def _but_the_end(text: str) -> str:
@@ -281,6 +290,8 @@ def on_the_way(patch: pytest.MonkeyPatch) -> Told:
     few = ["solver.max_iterations=1", "solver.max_cuts=0"]
     yield "Newton", without_digits(_stopped(PRESS, *few))
     yield "Newton, too tight", without_digits(too_tight.ending(too_tight.TIGHT["both"])).partition("iterations")[2]
+    short = too_tight.ending(too_tight.TIGHT["of increments so short that more is left"])
+    yield "Newton, too tight before", without_digits(short).partition("iterations. ")[2]
     patch.setattr(system.constants, "REFUSED_ABOVE", -1.0)
     patch.setattr(system.constants, "REFINED_ABOVE", -1.0)
     yield "digits", without_digits(_stopped(PRESS, "solver.max_cuts=0"))

@@ -223,9 +223,9 @@ def test_a_loop_that_ends_too_early_says_which_states_change(method: str, which:
 def test_cuts_end_where_time_no_longer_moves() -> None:
     """Where supports turn far in a load step, increments are short to begin with."""
     simulation = Simulation(small_iron(max_cuts=30))
-    simulation._cut(4, simulation.state, 3.5, 2.0**-40, 2.0**-30, ConvergenceError("no"))
+    simulation._cut(4, simulation.state, 3.5, 2.0**-40, 2.0**-30, ConvergenceError("no"), [])
     with pytest.raises(ConvergenceError, match="does not converge"):
-        simulation._cut(4, simulation.state, 3.5, 2.0**-52, 2.0**-30, ConvergenceError("no"))
+        simulation._cut(4, simulation.state, 3.5, 2.0**-52, 2.0**-30, ConvergenceError("no"), [])
 
 
 def test_stiff_and_fine_slave_is_warned_about() -> None:

@@ -26,15 +26,17 @@ class Passage:
     log : list of AugmentationRecord
     orders : list of float
         Observed orders of Newton's method, where they could be told.
-    substeps, cuts : int
-        Increments that it took, and those that were too long.
+    cuts : list of str
+        Why increments that were too long did not converge.
+    substeps : int
+        Increments that it took.
     """
 
     work: FloatArray
     log: list[AugmentationRecord] = field(default_factory=list)
     orders: list[float] = field(default_factory=list)
+    cuts: list[str] = field(default_factory=list)
     substeps: int = 0
-    cuts: int = 0
 
     def add(self, part: Increment, work: FloatArray) -> None:
         """Go on by an increment, in which work was done."""
@@ -108,7 +110,7 @@ class Recording:
             augmentations=tuple(passage.log),
             newton_order=float(np.median(passage.orders)) if passage.orders else float("nan"),
             substeps=passage.substeps,
-            cuts=passage.cuts,
+            cuts=len(passage.cuts),
             next_increment=next_increment,
             timings=timings,
             counters={

@@ -108,8 +108,8 @@ class Simulation:
                 parts = self._advance(state, time, target, step)
                 self._watches.look(state.positions, parts[-1].balance.positions, increment / longest)
             except FAILURES as error:
-                self._cut(step, state, target, increment, longest, error)
-                passage.cuts += 1
+                self._cut(step, state, target, increment, longest, error, passage.cuts)
+                passage.cuts.append(str(error))
                 continue
             for part, end in zip(parts, np.linspace(time, target, len(parts) + 1)[1:], strict=True):
                 passage.add(part, self._recording.work(state, part.balance))
@@ -158,13 +158,16 @@ class Simulation:
         else:
             self._increment = min(1.0, max(increment, self._increment))
 
-    def _cut(self, step: int, state: State, time: float, increment: float, longest: float, error: Exception) -> None:
-        """Halve the load increment, or give up with a sentence that says where and why; `state` is where the increment began."""
+    def _cut(self, step: int, state: State, time: float, increment: float, longest: float, error: Exception, cuts: Sequence[str]) -> None:
+        """Halve the load increment, or give up with a sentence that says where and why.
+
+        It began at `state`; `cuts` says why longer ones of the load step were cut.
+        """
         self._increment = 0.5 * increment / longest
         if self._increment < 0.5**self.problem.settings.max_cuts or time - 0.5 * increment == time:
             from isomortar.told.after.causes import causes  # within: a run that comes to its end gives none up
 
-            stage, likely = self.problem.stages[self.problem.stage_of(step)].name, causes(self.equilibrium, state, error)
+            stage, likely = self.problem.stages[self.problem.stage_of(step)].name, causes(self.equilibrium, state, error, cuts)
             alone = "" if self.problem.settings.max_cuts else ", the only one that solver.max_cuts = 0 allows"
             raise ConvergenceError(
                 f"load step {step} (stage {stage!r}) does not converge at load time {time:.6g}, even with an increment of "

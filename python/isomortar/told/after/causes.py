@@ -43,6 +43,8 @@ SMALL_PENALTY = 0.1
 ENDED = {"max_iterations": "Newton's method stopped", "max_augmentations": "augmentations left"}
 #: What it says where it advises something by itself.
 ADVICE = "take "
+#: How an error says that its tolerances ask for more digits than round-off leaves; a cure follows.
+TOO_TIGHT = "which is next to round-off: "
 #: Elastic slips below this share of the slave make friction so stiff that Newton's method goes to and fro: a press failed at 2e-4.
 SHORT_SLIP = 1e-3
 
@@ -50,7 +52,7 @@ SHORT_SLIP = 1e-3
 BESIDE = "beside the master"
 
 
-def causes(equilibrium: Equilibrium, state: State, error: Exception) -> Sequence[str]:
+def causes(equilibrium: Equilibrium, state: State, error: Exception, longer: Sequence[str] = ()) -> Sequence[str]:
     """Sentences, without a capital, on what a person should look at; where there is nothing, on other ways.
 
     Parameters
@@ -60,18 +62,21 @@ def causes(equilibrium: Equilibrium, state: State, error: Exception) -> Sequence
         Where the last load increment ended that converged.
     error : Exception
         Why the next one did not.
+    longer : sequence of str
+        Why longer ones did not, which were cut.
     """
-    found, words = list(_causes(equilibrium, state, error)), str(error)
+    found, words = list(_causes(equilibrium, state, error, longer)), str(error)
     bare = any(ended in words for ended in ENDED.values()) and ADVICE not in words.lower()
     return found if found or not bare else list(other_ways(equilibrium.problem, state))
 
 
-def _causes(equilibrium: Equilibrium, state: State, error: Exception) -> Iterator[str]:
+def _causes(equilibrium: Equilibrium, state: State, error: Exception, longer: Sequence[str]) -> Iterator[str]:
     """What there is."""
     problem, positions = equilibrium.problem, state.positions
     if isinstance(error, PathError):
         yield _path(error.error, problem.settings.max_cuts)
         return
+    yield from _too_tight(longer, str(error))
     told = set[int]()
     for judge in (sliding, overcome, tipping, giving_way):
         found = [(pieces, sentence) for pieces, sentence in judge(equilibrium, state) if told.isdisjoint(pieces)]
@@ -162,6 +167,13 @@ def _few(settings: SolverSettings, error: str) -> Iterator[str]:
         given, usual = getattr(settings, name), getattr(SolverSettings(), name)
         if words in error and given < usual:
             yield f"load steps may need more than solver.{name} = {given}: take {usual}, the default"
+
+
+def _too_tight(longer: Sequence[str], error: str) -> Iterator[str]:
+    """Tolerances that longer increments missed by round-off alone: shorter ones have more of it, as a share of less."""
+    cures = [words.partition(TOO_TIGHT)[2] for words in longer if TOO_TIGHT in words]
+    if cures and TOO_TIGHT not in error:
+        yield f"longer increments ended next to round-off: {cures[-1]}"
 
 
 def _penalties(problem: Problem) -> Iterator[str]:
