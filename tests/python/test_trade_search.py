@@ -127,9 +127,37 @@ def test_what_can_not_be_refined_has_no_truth(scene):
         search.find_truth([0.1])
 
 
-def test_what_is_nothing_in_a_scene_is_said_to_be(scene):
-    _, answer = searched(scene, 0.01, wants=("force.top.y",))
+@pytest.mark.parametrize("want", ["force.top.y", "force.top.z@drag:end", "moment.top.x", "moment.top", "edge.floor"])
+def test_what_is_nothing_in_a_scene_is_said_at_once(scene, want):
+    class Symmetric(Formula):
+        def formula(self, choice):
+            found = super().formula(choice)
+            leaning = {"force": [[(1.0, 1e-15, 1e-14)] * 4], "moment": [[(1e-16, 0.0, 1e-15)] * 4], "pressure": [0.0, 0.0]}
+            return replace(found, numbers=found.numbers | leaning)
+
+    laboratory = Symmetric(scene, synthetic())
+    with pytest.raises(IsomortarError, match=r"has nothing but round-off, as by symmetry"):
+        searched(scene, 0.01, laboratory, wants=("force.top.x", want))
+    assert laboratory.calls == 1
+
+
+def test_what_may_be_next_to_nothing_is_traded(scene):
+    _, answer = searched(scene, 0.01, wants=("gap.floor", "force.top.x"))
+    assert answer.best
+
+
+def test_over_refined_runs_that_have_nothing_in_common_end_after_two_levels(scene):
+    """Of what an uneven mesh alone makes: a budget without an end would be spent to half."""
+
+    class Uneven(Formula):
+        def formula(self, choice):
+            found = super().formula(choice)
+            leaning = 1e-3 * math.cos(1.0 + sum(7.0 * n * number for n, number in enumerate(choice, 1)))
+            return replace(found, numbers=found.numbers | {"force": [[(1.0, leaning, 0.0)] * 4]})
+
+    search, answer = searched(scene, 0.01, Uneven(scene, synthetic()), wants=("force.top.y",))
     assert "is nothing in this scene" in answer.why
+    assert search.laboratory.calls < 30
 
 
 def test_a_scene_that_stops_has_nothing_to_trade(scene):

@@ -133,12 +133,12 @@ def _screened(search: Search, known: Known, costs: Axes, changes: Axes) -> tuple
 
 
 class Nothing(Known):
-    """Runs of which nothing comes."""
+    """Runs of which nothing comes, but round-off of the scene as it is."""
 
     def formula(self, choice: Choice) -> Tried:
         """The run of a choice."""
         run = super().formula(choice)
-        return replace(run, numbers=run.numbers | {"two": np.zeros(2)})
+        return replace(run, numbers=run.numbers | {"two": np.full(2, 1e-30 if choice == self.own else 0.0)})
 
 
 @case(

@@ -152,7 +152,7 @@ def what_is_missing() -> dict[str, float]:
 
 def noise(choice: Choice) -> float:
     """A number that every run has another one of."""
-    return float(np.sin(1e3 * np.array(choice) @ np.arange(1.0, 1.0 + len(choice))))
+    return float(np.sin(1.0 + 1e3 * np.array(choice) @ np.arange(1.0, 1.0 + len(choice))))
 
 
 #: What a number is besides what is told well of the other one: off by too much, and round-off.

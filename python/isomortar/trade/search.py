@@ -89,13 +89,19 @@ class Search:
         Raises
         ------
         IsomortarError
-            It does not come to its end, or does not tell what is wanted.
+            It does not come to its end, does not tell what is wanted, or has nothing of it.
         """
         (own,) = self.laboratory.run([self.laboratory.own])
         untold = [] if own.failure else [w.text for w in self.wants if not np.isfinite(w.values(own.numbers, own.numbers)).all()]
         failure = f"not finite: {', '.join(untold)}" if untold else own.failure
         if failure:
             raise IsomortarError(f"the scene as it is does not come to its end, so that there is nothing to trade: {failure}")
+        nothing = [w.text for w in self.wants if w.is_nothing(own.numbers)]
+        if nothing:
+            raise IsomortarError(
+                f"of {', '.join(nothing)} the scene as it is has nothing but round-off, as by symmetry, of which errors are no share: want "
+                "something else of it"
+            )
         return own
 
     @property
@@ -137,7 +143,7 @@ class Search:
         One differs in both, which may hide an error of either behind that of the other: one more differs from the truth in its mesh alone.
         They are as good as a target asks: what for 5 % spends nothing on load steps that change a thousandth may be enough for 1 % as well.
         Meshes that change nothing either are looked at once more beside the finer ones.
-        Ends where all is told or half of the budget is spent.
+        Ends where all is told, half of the budget is spent, or two levels tell next to nothing.
 
         Raises
         ------
@@ -148,7 +154,7 @@ class Search:
         for target in sorted(targets, reverse=True):
             while self.truth is None or self._stirs(target) or RESOLVED * self.uncertainty > target:
                 level = next(levels, None)
-                if level is None or not self._refine(level, target):
+                if level is None or self._hopeless or not self._refine(level, target):
                     return
 
     def answer(self, target: float) -> Recommendation:
@@ -179,6 +185,11 @@ class Search:
     @property
     def _over(self) -> bool:
         return self.laboratory.spent > self.budget
+
+    @property
+    def _hopeless(self) -> bool:
+        """Whether over-refined runs of two levels, one after the other, differ by half of what is wanted: a third one tells nothing."""
+        return self._before is not None and not self.uncertainty < NOTHING
 
     def _refine(self, level: int, target: float) -> bool:
         """Run over-refined runs of a level; whether they tell the truth better than those before."""

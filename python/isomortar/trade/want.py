@@ -26,6 +26,8 @@ _FORM = "QUANTITY.NAME[.COMPONENT][@STAGE][:PART]"
 _SUPPORT, _CURVES = ("force", "moment"), ("force", "moment", "displacement", "area")
 _FIELDS = ("pressure", "traction", "edge", "gap")  # at the end
 _COMPONENTS, _PARTS = ("x", "y", "z", "norm"), ("curve", "end", "peak", "roughness")
+#: What is less than this share of the vector of which it is a component is what tolerances and round-off leave.
+ROUND_OFF = 1e-9
 #: Load steps of a stage that have a second difference.
 _BENDS = 3
 
@@ -49,6 +51,8 @@ class Want:
         Of the norm that errors are measured in.
     whole : float
         What errors are a share of; NaN: the size of the truth.
+    beside : callable
+        From the numbers of a run to the size of that of which it is one part: of a component the vector, of a moment force times length.
     """
 
     text: str
@@ -57,10 +61,16 @@ class Want:
     shown: Callable[[Problem], bool] = lambda _: True
     power: int = 2
     whole: float = math.nan
+    beside: Callable[[Mapping[str, Any]], float] = lambda _: 0.0
 
     def size(self, values: FloatArray, weights: FloatArray) -> float:
         """Weighted norm of some values."""
         return float((weights @ np.abs(values) ** self.power) ** (1.0 / self.power))
+
+    def is_nothing(self, run: Mapping[str, Any]) -> bool:
+        """Whether a run has nothing of it but round-off, as of forces by symmetry; of a gap that is as it should be."""
+        size = self.size(self.values(run, run), self.weights(run))
+        return math.isnan(self.whole) and size <= ROUND_OFF * self.beside(run)
 
 
 def wanted(text: str, problem: Problem) -> Want:
@@ -108,7 +118,9 @@ def wanted(text: str, problem: Problem) -> Want:
     _among(component, _COMPONENTS, f"{text!r} has no such component")
     if part == "roughness":
         _bent(text, stages, problem)
-    return _of_curve(text, lambda run: _component(np.asarray(run[quantity], float)[names.index(where)], component), stages, part, problem)
+    number = names.index(where)
+    curve = _of_curve(text, lambda run: _component(np.asarray(run[quantity], float)[number], component), stages, part, problem)
+    return curve if part == "roughness" else replace(curve, beside=_beside(quantity, number, problem))
 
 
 def wishes(problem: Problem) -> tuple[str, ...]:
@@ -146,6 +158,15 @@ def _of_curve(text: str, curve: Callable[[Mapping[str, Any]], FloatArray], stage
         return part in ("end", "peak") or all(other.stages[n].steps >= least for n, least in zip(stages, needed, strict=True))
 
     return Want(text, values, lambda _: np.full(count, 1.0 / count), shown)
+
+
+def _beside(quantity: str, number: int, problem: Problem) -> Callable[[Mapping[str, Any]], float]:
+    """The largest vector of a support, beside which components are something or nothing; of moments force times the scene's length."""
+    vector, length = quantity, 1.0
+    if quantity == "moment":
+        points = np.concatenate([body.patch.control_points for body in problem.bodies])
+        vector, length = "force", float(np.linalg.norm(np.ptp(points, axis=0)))
+    return lambda run: length * float(np.linalg.norm(np.asarray(run[vector], float)[number], axis=1).max())
 
 
 def _of_field(text: str, quantity: str, number: int, problem: Problem) -> Want:
