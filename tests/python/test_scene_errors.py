@@ -10,7 +10,7 @@ import pytest
 from told.wrong.keys import CASES, GOOD
 
 from isomortar.errors import InputError
-from isomortar.model.messages import IN_BRACES
+from isomortar.model.messages import IN_BRACES, NAMES
 from isomortar.scene import Scene
 from isomortar.scene.keys import settable_keys
 from isomortar.scene.schema import SceneTable
@@ -219,3 +219,24 @@ def test_how_a_table_is_written_is_a_way_to_write_it(key: str, path: str) -> Non
         Scene.load("press", [f"{path}=3"])
     with pytest.raises(InputError, match=r"bodies.block: is 3; allowed: a table$"):
         Scene.load("press", ["bodies.block=3"])
+
+
+@pytest.mark.parametrize(
+    ("path", "name"),
+    [
+        ("contacts.interface.slave", "slave.w0"),
+        ("contacts.interface.master", "master.w1"),
+        ("supports.top.face", "slave.w1"),
+        ("bodies.slave.material", "rubber"),
+    ],
+)
+@pytest.mark.parametrize("value", ["3", "{ young = 3 }", "true"])
+def test_names_that_something_else_stands_for_are_told_as_names(path: str, name: str, value: str) -> None:
+    """Of a slave it was said that a list is allowed, of a material that a text is."""
+    allowed = NAMES[path.rpartition(".")[2]]
+    given = re.search(r'as "(\w+)', allowed)
+    assert given
+    assert not path.endswith("material") or given[1] == name
+    Scene.load("iron", [f"{path}={name}"])
+    with pytest.raises(InputError, match=re.escape(f"{path}: is {'a table' if value[0] == '{' else value}; allowed: {allowed}")):
+        Scene.load("iron", [f"{path}={value}"])

@@ -96,10 +96,21 @@ IN_BRACES = {
 }
 
 
-def _in_braces(place: tuple[int | str, ...]) -> str:
-    """How the table at a place is written, as a part of a sentence; empty: what stands there is clear, or one of many."""
+#: Names of things that are easily put in their place, or in a list, by their keys.
+NAMES = {
+    "material": 'a name, as "rubber" of a table [materials.rubber]',
+    "slave": 'a face, as "block.w0", or a list of them',
+    "master": 'a face, as "block.w0", or a list of them',
+    "face": 'a face, as "block.w0"',
+}
+
+
+def _allowed(kind: str, place: tuple[int | str, ...]) -> str:
+    """What may stand at a place, and how it is written where it is easily taken for something else."""
     key = "motion" if place[-2:-1] == ("motions",) else str(place[-1]) if len(place) > 2 else ""  # bodies.mesh is a name
-    return f", as {IN_BRACES[key]}" if key in IN_BRACES else ""
+    if kind != "a table":
+        return NAMES.get(key, kind)
+    return f"{kind}, as {IN_BRACES[key]}" if key in IN_BRACES else kind
 
 
 def _given(value: Any) -> str:
@@ -120,8 +131,9 @@ def _sentence(fault: ErrorDetails) -> str:
             quoted = isinstance(fault["input"], str) and _WITHOUT_QUOTES.fullmatch(fault["input"])
             written = _WRITTEN.get(tuple(map(str, fault["loc"]))) if given in ("a table", "a list of tables") else None
             tables = f": each of its tables begins with {written}" if written else ""
-            hint = ", without quotes" if quoted else tables or (_in_braces(fault["loc"]) if _KINDS[kind] == "a table" else "")
-            return f"is {given}; allowed: {_KINDS[kind]}{hint}"
+            if quoted or tables:
+                return f"is {given}; allowed: {_KINDS[kind]}{tables or ', without quotes'}"
+            return f"is {given}; allowed: {_allowed(_KINDS[kind], fault['loc'])}"
         case "missing" | "union_tag_not_found":
             return "is missing, but must be given"
         case "union_tag_invalid":

@@ -301,7 +301,7 @@ class Search:
         assert self.truth
         told = (
             f"over-refined runs differ by {percent(self.uncertainty)} in {worst}, and {percent(target)} is less than {RESOLVED:g} times "
-            f"that: nobody could tell whether it is reached. Meshes about {finer:.1f} times finer would tell"
+            f"that: nobody could tell whether it is reached. Meshes about {finer:.3g} times finer would tell"
         )
         if self._finest:
             return f"{told}, and none that are finer are tried: begin with finer meshes in the scene"

@@ -28,10 +28,10 @@ def of_pairing(problem: Problem, pairs: Sequence[PairMechanics]) -> Iterator[str
         master_area = _area(master.patch.control_points[master.patch.face_points(master.face)])
         finer = (master_area / elements) / (pair.pair.area / pair.pair.slave.elements)
         if stiffer > STIFFER and finer > 1.0:
-            how = "rigid" if slave.rigid else f"{stiffer:.0f} times stiffer"
+            how = "rigid" if slave.rigid else f"{stiffer:.3g} times stiffer"
             yield (
                 f"contact {contact.name!r}: the slave {contact.slave.body!r} is {how} and its elements "
-                f"are {finer:.1f} times smaller than the master's; control pressures may be far off. Swap slave and master, or refine the "
+                f"are {finer:.3g} times smaller than the master's; control pressures may be far off. Swap slave and master, or refine the "
                 "master"
             )
     for contact in problem.contacts:
@@ -60,7 +60,7 @@ def few_points(problem: Problem, contact: Contact) -> Iterator[str]:
     if share < ENOUGH and max(body.modulus for body in slave.bodies) >= _softest(master):
         needed = [int(np.ceil(2.0 * points / share)) for points in contact.quadrature]
         yield (
-            f"contact {contact.name!r}: quadrature points of the slave are {1.0 / share:.1f} elements of its softer or equal master apart, "
+            f"contact {contact.name!r}: quadrature points of the slave are {1.0 / share:.3g} elements of its softer or equal master apart, "
             f"which dents between them. Swap slave and master, refine the slave, or take contacts.{contact.name}.quadrature = {needed}"
         )
 
