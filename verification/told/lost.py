@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
+from told.runs import Heard
 
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, case
@@ -162,3 +163,50 @@ def pushed_aside(axis: int, way: int) -> dict[str, float]:
         told = LostDigits(simulation.equilibrium).after_step(replace(balance, positions=positions), result)
         wrong += len({found[1] for sentence in told if (found := SAID.search(sentence))} ^ bodies)
     return {"wrong": float(wrong)}
+
+
+#: A block on another one, pressed by what is next to nothing, in four ways; the first load is one of a size that nothing is lost of.
+SMALL = """
+format = 1
+bodies.low = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1.2, 1.1, 0.5] }, mesh = { order = 2, elements = [3, 3, 1] } }
+bodies.up = { geometry = { kind = "box", lower = [0.3, 0.25, 0.5], upper = [0.9, 0.8, 1.0] }, mesh = { order = 2, elements = [2, 2, 1] } }
+contacts.c = { slave = "up.w0", master = "low.w1", friction = 0.3 }
+supports.base.face = "low.w0"
+WAY
+"""
+_FREE = 'supports.top = { face = "up.w1", components = ["x", "y"]'
+WAYS = {
+    "motion": 'supports.top.face = "up.w1"\nstages = [{ name = "press", steps = 1, motions.top.translate = [0, 0, -SIZE] }]',
+    "force": _FREE + ', force = { z = -SIZE } }\nstages = [{ name = "press", steps = 1 }]',
+    "pressure": _FREE + ' }\nloads.wind = { face = "up.w1", pressure = SIZE }\nstages = [{ name = "press", steps = 1 }]',
+    "weight": _FREE + ' }\nloads.own = { body = "up", weight = [0, 0, -SIZE] }\nstages = [{ name = "press", steps = 1 }]',
+}
+SIZES = (1e-8, 1e-11, 1e-14, 1e-15, 1e-16, 1e-18, 1e-20)
+
+
+def borne(way: str, size: float) -> tuple[float, bool]:
+    """The force of a contact over the size of what presses it, and whether anything is said of round-off."""
+    heard = Heard()
+    (result,) = Simulation(Scene.from_toml(SMALL.replace("WAY", WAYS[way].replace("SIZE", repr(size)))).problem(), heard).run()
+    return float(result.contacts[0].force_slave[2]) / size, any("round-off" in said for said in heard.said)
+
+
+@case(
+    claim="Loads and motions so small that round-off takes a twentieth of what a contact bears of them are told; others are not.",
+    tier="gate",
+    grid={"way": tuple(WAYS)},
+    bounds={
+        "silent": Bound(0.0, 0.0, "definition: of sizes, those at which a twentieth is lost and nothing is said"),
+        "wrong": Bound(0.0, 0.0, "definition: those at which a ten-thousandth is lost at the most, and it is said"),
+        "lost": Bound(at_least=1.0, reason="definition: of the first, or nothing is tried"),
+    },
+)
+def too_small(way: str) -> dict[str, float]:
+    """How many of each."""
+    found = [borne(way, size) for size in SIZES]
+    off = [(abs(force / found[0][0] - 1.0), told) for force, told in found]
+    return {
+        "silent": float(sum(share > 0.05 and not told for share, told in off)),
+        "wrong": float(sum(share < 1e-4 and told for share, told in off)),
+        "lost": float(sum(share > 0.05 for share, _ in off)),
+    }

@@ -99,8 +99,8 @@ class Search:
         nothing = [w.text for w in self.wants if w.is_nothing(own.numbers)]
         if nothing:
             raise IsomortarError(
-                f"of {', '.join(nothing)} the scene as it is has nothing but round-off, as by symmetry, of which errors are no share: want "
-                "something else of it"
+                f"of {', '.join(nothing)} the scene as it is has nothing but round-off, as by symmetry or on a mesh that is too coarse for "
+                "it, and errors are no share of that: want something else, or refine the scene"
             )
         return own
 

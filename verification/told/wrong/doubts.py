@@ -137,6 +137,7 @@ DOUBTFUL = {
         "same unit of length",
     ),
     "other unit of motions": (PRESS, "[0, 0, -0.1]", "[0, 0, -100]", "moves by 100 in each load step"),
+    "motions of round-off": (PAIR, "[0, 0, -0.1]", "[0, 0, -1e-13]", "takes the digits of forces"),
     "held on both sides": (*UNUSUAL["support on the contact face"], "can move nothing: its slave face is held by support 'bottom'"),
     "friction in per cent": (PRESS, "[supports.top]", "friction = 30\n[supports.top]", "Was it meant in per cent, 0.3?"),
     "friction of no material": (PRESS, "[supports.top]", "friction = 3\n[supports.top]", "is above what materials have"),

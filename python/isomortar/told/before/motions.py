@@ -17,12 +17,15 @@ from isomortar.model.supports import Supports
 
 #: Share of what is between the supports of two sides by which they may come nearer to each other: beyond, nothing is left between them.
 FLAT = 0.9
+#: Share of a body's size below which ways have lost digits by round-off of positions: at 1e-13 forces of a block were off by some per cent.
+SHORT = 1e-12
 
 
 def of_motions(problem: Problem) -> Iterator[str]:
     """Sentences on the motions of a problem's supports, whatever they bring into contact."""
     for support in problem.supports:
         yield from _far_steps(problem, support)
+        yield from _short_ways(problem, support)
         yield from _idle_motions(problem, support)
         yield from _as_absolute(problem, support)
     yield from _idle_stages(problem)
@@ -98,6 +101,17 @@ def _far_steps(problem: Problem, support: Support) -> Iterator[str]:
                 f"support {support.name!r} moves by {step:.3g} in each load step of stage {stage.name!r}, and its body is {size:.3g} long. "
                 "Take more load steps; or are the units not the same?"
             )
+
+
+def _short_ways(problem: Problem, support: Support) -> Iterator[str]:
+    """A support whose ways are next to round-off of the positions."""
+    size = problem.body(support.place.body).size
+    way = max((float(np.linalg.norm(motion.translate)) for motion in support.motions), default=0.0)
+    if 0.0 < way < SHORT * size and not support.turns:
+        yield (
+            f"support {support.name!r} moves by {way:.3g} in a stage at the most, and its body is {size:.3g} long: round-off of its "
+            "positions takes the digits of forces. Take a longer way; or are the units not the same?"
+        )
 
 
 def _idle_motions(problem: Problem, support: Support) -> Iterator[str]:

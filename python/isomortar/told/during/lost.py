@@ -34,17 +34,25 @@ class LostDigits:
         by_round_off = measures.free_norms(balance.unbalanced) > problem.settings.newton_tolerance * sizes
         for number in [k for k, so in enumerate(by_round_off) if so and k not in self._told]:
             own, piece = equilibrium.numbering.piece_points(number), equilibrium.numbering.pieces[number]
-            if not _deforms(equilibrium.numbering.reference[own], balance.positions[own]):
+            bodies = {body.name for body in piece}
+            if not (self._loaded(bodies, result) or _deforms(equilibrium.numbering.reference[own], balance.positions[own])):
                 continue
             size = float(np.ptp(equilibrium.numbering.reference[own], axis=0).max())
-            left, borne = problem.images * self._left(balance, own, size), self._borne({body.name for body in piece}, size, result)
+            left, borne = problem.images * self._left(balance, own, size), self._borne(bodies, size, result)
             if left > LOST * borne:
                 self._told.add(number)
                 yield (
                     f"{named(piece, piece[0].name)}, load step {result.step}: its forces are lost in round-off: {left:.2g} is out of "
-                    f"balance where supports and contacts bear {borne:.2g}. It is too thin for so small a load: take larger motions, or "
-                    "a thicker body"
+                    f"balance where supports and contacts bear {borne:.2g}. It is too thin or too stiff for so small a load: take larger "
+                    "motions or loads, or a thicker or softer body; or are the units not the same?"
                 )
+
+    def _loaded(self, bodies: set[str], result: StepResult) -> bool:
+        """Whether forces are given on bodies that are one: these are to be borne, however little they deform."""
+        problem = self._equilibrium.problem
+        given = [found.force for load, found in zip(problem.loads, result.loads, strict=True) if load.body in bodies]
+        given += [r.force for s, r in zip(problem.supports, result.reactions, strict=True) if s.pressed and s.place.body in bodies]
+        return bool(np.any(given))
 
     def _left(self, balance: Balance, own: slice, size: float) -> float:
         """The largest sum of a body's unbalanced forces, where it is and moved as it stands: one alone may be small by chance."""
