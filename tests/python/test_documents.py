@@ -89,6 +89,16 @@ def test_commands_have_the_options_that_are_shown(page: Path) -> None:
         assert shown <= known, f"{line}: {command.name} has no {', '.join(sorted(shown - known))}"
 
 
+def test_runs_that_the_readme_shows_can_be_run_one_after_the_other() -> None:
+    """A file of results that exists is an error: `run press --cost` came behind `run press`, and `run iron` behind `make demo`."""
+    begun = {"iron"}  # by make demo
+    for line in commands(ROOT / "README.md"):
+        _, command, *words = shlex.split(line, comments=True)
+        if command == "run" and not {"--overwrite", "--resume", "--help", "--output"} & set(words):
+            assert words[0] not in begun, f"{line}: results/{words[0]}.h5 is there already"
+            begun.add(words[0])
+
+
 def test_make_tells_all_that_it_makes() -> None:
     told = subprocess.run(["make", "help"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
     makefile = text(ROOT / "Makefile")

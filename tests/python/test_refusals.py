@@ -241,6 +241,9 @@ def of_files(patch: pytest.MonkeyPatch) -> Told:
         file.attrs["format_version"] = layout.FORMAT_VERSION
         del file["curves/time"]
     Path("other.h5").write_bytes(files.sealed(Path("other.h5").read_bytes()))
+    with Results("run.h5") as ended:
+        pass
+    yield "closed", refusal(lambda: ended.curve("time"))
     yield "without a curve", re.sub(r"\(.*?\),", "(#),", refusal(lambda: Results("other.h5").curve("time")))
     Path("there").mkdir()
     yield "not replaced", _but_the_end(refusal(lambda: files.replace(Path("there"), b"")))

@@ -94,6 +94,15 @@ def test_what_is_drawn_may_be_chosen(results_path: Path, tmp_path: Path) -> None
         plot(results_path, tmp_path, step=9)
 
 
+def test_one_thing_that_is_drawn_may_stand_without_a_list(results_path: Path, tmp_path: Path) -> None:
+    one, same = (
+        plot(results_path, tmp_path / name, fields=f, only=o, formats=t)
+        for name, f, o, t in [("a", "gap", "maps", "svg"), ("b", ["gap"], ["maps"], ["svg"])]
+    )
+    assert [path.name for path in one] == [path.name for path in same]
+    assert all(path.suffix == ".svg" for path in one)
+
+
 def test_curves_need_no_state(tmp_path: Path) -> None:
     """They are of all load steps, whichever one bodies and maps would be of, and whatever was kept of it."""
     writer = ResultsWriter(tmp_path / "run.h5", problem(), "", "0", states="last")

@@ -354,6 +354,29 @@ for step in range(first, 10000):
 """
 
 
+#: What can be asked of results, after their file is closed as before.
+ASKED: dict[str, Callable[[Results], object]] = {
+    **{name: lambda results, name=name: getattr(results, name) for name in dir(Results) if isinstance(getattr(Results, name), property)},
+    **{name: lambda results, name=name: getattr(results, name)() for name in ("timings", "counters", "augmentations", "last_step")},
+    **{name: lambda results, name=name: getattr(results, name) for name in ("scene_text", "problem", "steps", "stages", "warnings")},
+    "curve": lambda results: results.curve("time"),
+    "of a support": lambda results: results.curve("force", support="rim"),
+    "contact": lambda results: results.contact("tread"),
+    "step": lambda results: results.step(1),
+    "to_dataframe": lambda results: results.to_dataframe(),
+}
+
+
+@pytest.mark.parametrize("name", ASKED)
+def test_closed_results_are_said_to_be_closed(name: str, tmp_path: Path) -> None:
+    """It was said that another version had written them, and to run the scene again."""
+    write(tmp_path / "run.h5", range(1, 3))
+    with Results(tmp_path / "run.h5") as results:
+        pass
+    with pytest.raises(ResultsError, match=r"run\.h5 is closed: read it before that"):
+        ASKED[name](results)
+
+
 def test_a_kill_at_any_moment_leaves_the_last_completed_step(tmp_path: Path) -> None:
     """SIGKILL at random moments of a run that does nothing but write; it resumes and is killed again, ten times."""
     path = tmp_path / "run.h5"

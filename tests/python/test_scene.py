@@ -166,6 +166,11 @@ def test_overrides_are_options_that_a_shell_takes_as_they_stand() -> None:
     assert words == [word for override in overrides for word in ("--set", override)]
 
 
+def test_one_override_may_stand_without_a_list() -> None:
+    """A text was taken for a list of its letters."""
+    assert Scene.load("press", "solver.max_cuts=3").problem().settings.max_cuts == 3
+
+
 def test_overrides_may_be_values_by_path() -> None:
     texts = [
         "bodies.master.mesh.order=[3, 2, 2]",

@@ -76,6 +76,7 @@ def plot(
         The results file is missing, damaged, or holds no such load step, or not the one before it, of a slip; or a figure cannot be
         written.
     """
+    fields, only, formats = ([given] if isinstance(given, str) else given for given in (fields, only, formats))
     _among("field", fields, FIELDS)
     _among("only", only, DRAWABLE)
     _among("format", formats, FORMATS)

@@ -288,6 +288,8 @@ class Results:
             )
 
     def _read(self, action: Callable[[h5py.File], Value]) -> Value:
+        if not self._file:
+            raise ResultsError(f"{self.path} is closed: read it before that, within its with block, or open it again")
         try:
             return action(self._file)
         except ResultsError:

@@ -104,8 +104,8 @@ def apply_overrides(data: dict[str, Any], overrides: SceneChanges) -> None:
     data : dict
         A scene file's content.
     overrides : iterable of str, or mapping of str to value
-        ``KEY=VALUE`` each: a dotted path (stages by name or number) and a TOML value; a bare word is taken as text. A mapping has
-        values of Python by path.
+        ``KEY=VALUE`` each, one alone without a list, too: a dotted path (stages by name or number) and a TOML value; a bare word is
+        taken as text. A mapping has values of Python by path.
 
     Raises
     ------
@@ -118,7 +118,7 @@ def apply_overrides(data: dict[str, Any], overrides: SceneChanges) -> None:
                 raise InputError(f"override {path!r} is no path of keys, e.g. solver.max_cuts")
             _set(data, path, _plain(value, path))
         return
-    for override in overrides:
+    for override in [overrides] if isinstance(overrides, str) else overrides:
         path, equals, value = (part.strip() for part in override.partition("="))
         if not equals or not _PATH.fullmatch(path):
             raise InputError(f"override {override!r} is not of the form KEY=VALUE, e.g. solver.max_cuts=4")
