@@ -11,6 +11,7 @@ import typer
 
 from isomortar.cli import completion
 from isomortar.cli.endings import FAILED
+from isomortar.cli.tables import print_whole
 from isomortar.cli.verification import CASES
 
 if TYPE_CHECKING:
@@ -89,7 +90,7 @@ def _print(answer: Answer) -> None:
     table = Table(*headings(benchmark), title=benchmark.question, title_justify="left")
     for row in answer.rows:
         table.add_row(*(text(row.get(name, "")) for name in benchmark.columns))
-    console.print(table)
+    print_whole(console, table)
     for row in answer.rows:
         if NOTE in row:
             console.print(_line(row), markup=False, soft_wrap=True)

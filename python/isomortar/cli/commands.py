@@ -22,6 +22,7 @@ from isomortar.cli.mutants import mutants
 from isomortar.cli.options import Overrides, ResultsArgument, SceneArgument
 from isomortar.cli.paper import paper
 from isomortar.cli.report import report
+from isomortar.cli.tables import print_whole
 from isomortar.cli.trade import advise, trade
 from isomortar.cli.verification import bless, verify
 from isomortar.errors import InputError
@@ -140,7 +141,7 @@ def run(
 
             from isomortar.cli.cost import costs
 
-            Console(stderr=True).print(costs(results))
+            print_whole(Console(stderr=True), costs(results))
     print(path)
 
 
@@ -277,7 +278,7 @@ def check_tangent(
     from isomortar.harness.tangents import check_tangent
 
     report = check_tangent(isomortar.Scene.load(scene, overrides or ()).problem(), step)
-    Console().print(report)
+    print_whole(Console(), report)
     raise typer.Exit(0 if report.passes else FAILED)
 
 

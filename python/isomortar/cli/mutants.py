@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from isomortar.cli.endings import FAILED
+from isomortar.cli.tables import print_whole
 from isomortar.cli.verification import CASES, CORES, REFERENCES, CasesOption, ReferencesOption
 
 if TYPE_CHECKING:
@@ -111,7 +112,7 @@ def _print(score: Score) -> None:
     table = Table("caught first by", *score.folders, "all")
     for family, counts in score.catches.items():
         table.add_row(family, *(str(counts[folder] or "") for folder in score.folders), str(counts.total()))
-    console.print(table)
+    print_whole(console, table)
     for attacked in score.survivors:
         fault = attacked.fault
         lines = [f"survived: {fault.place} {fault.name} ({score.kind(attacked)})", f"- {fault.old.strip()}", f"+ {fault.new.strip()}"]

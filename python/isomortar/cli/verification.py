@@ -15,6 +15,7 @@ import typer
 
 from isomortar.cli import completion
 from isomortar.cli.endings import FAILED
+from isomortar.cli.tables import print_whole
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -132,7 +133,7 @@ def bless(
     chosen, lookup = find(cases, case), finder(references)
     measured = measure_all(chosen.cells, results, lookup, _submitter(jobs, None), False)
     found = blessing.changes(measured, lookup)
-    Console().print(_table(found))
+    print_whole(Console(), _table(found))
     print(blessing.picture(results, chosen, found))
     if not yes:
         typer.confirm("Make these the reference?", abort=True)
