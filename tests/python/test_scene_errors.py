@@ -125,7 +125,7 @@ NO_TOML = {
     "point without digits": ("a = { b = 5., c = 1 }\nd = 1\n", "a = { b = 5., c = 1 }", "in braces one line"),
     "comma at the end": ("a = { b = 1, }\nc = 1\n", "a = { b = 1, }", "no comma at its end"),
     "end": ("format = 1\nname\n\n", "name", "a key has = behind it"),
-    "open": ("format = 1\nbodies = [1\n", "bodies = [1", "'bodies = [1'"),
+    "open": ("format = 1\nbodies = [1\n", "bodies = [1", "digits on both sides of a point"),
     "twice": ("a = 1\na = 2\nb = 1\n", "a = 2", "stands once"),
     "twice at the end": ("a = 1\na = 2", "a = 2", "stands once"),
     "quote": ('format = 1\nname = "a\n[bodies]\n', 'name = "a', "unless they are three"),
@@ -195,6 +195,18 @@ def test_faults_of_a_geometry_file_name_the_file(tmp_path: Path) -> None:
         with pytest.raises(InputError, match=said) as error:
             Scene.from_toml(scene, tmp_path).problem()
         assert error.value.field == "bodies.lower.file"
+
+
+@pytest.mark.parametrize("wrong", ["5.", ".5", "1 2", "1;2", "True", "1.e3", "1d0"])
+@pytest.mark.parametrize("before", [0, 10, 40, 200])
+@pytest.mark.parametrize("braces", ["a = [{}]", "a = {{ b = [{}] }}"])
+def test_the_place_that_is_wrong_is_shown_with_what_may_be_wanted(wrong: str, before: int, braces: str) -> None:
+    """Of a long line its beginning was shown, and nothing was said of a list."""
+    with pytest.raises(InputError) as error:
+        Scene.from_toml(braces.format(f"{before * '1, '}{wrong}{before * ', 1'}"))
+    said = re.search(r"where it says '([^']*)'\. .*digits on both sides of a point", str(error.value))
+    assert said
+    assert wrong in said[1]
 
 
 @pytest.mark.filterwarnings("error")

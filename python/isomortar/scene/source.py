@@ -23,8 +23,11 @@ SceneChanges = Iterable[str] | Mapping[str, Any]
 _NO_NAME = re.compile(r"[\x00-,./:-@\[-^`{-\xa0]")
 _PATH = re.compile(r"[\w-]+(\.[\w-]+)*")
 
+#: Characters of a line that are shown of a scene that is no TOML.
+_SHOWN = 60
 #: What a message of TOML's reader may want, by words of it.
 _HINTS = {
+    "Unclosed array": ". A list has commas between its entries and ends at a ], and numbers have digits on both sides of a point",
     "Unclosed inline table": ". Texts stand in quotes, numbers have digits on both sides of a point, and a table in braces one line",
     "Invalid value|newline|value pair": ". Texts stand in quotes, numbers have digits on both sides of a point, and a key has = behind it",
     "character '.n'|Expected \"'|Unterminated": ". A text ends at quotes as those that begin it: on the same line, unless they are three",
@@ -70,10 +73,12 @@ def parse(text: str, name: str) -> dict[str, Any]:
 
 
 def _line(text: str, message: str) -> str:
-    """The line that a message is about, as far as it is short, and what it may want."""
+    """The line that a message is about, of a long one what is round the place, and what it may want."""
     lines, found = text.rstrip().split("\n"), re.search(r"\(at (?:line (\d+)|end of)", message)
     number = _unclosed(text, message) if found and not found[1] else int(found[1]) - 1 if found else 0
-    said = f", where it says {lines[number].strip()[:60]!r}" if found else ""
+    column = re.search(r"column (\d+)", message)
+    begin = int(column[1]) - _SHOWN // 2 if column and int(column[1]) > _SHOWN else 0
+    said = f", where it says {lines[number][begin:].strip()[:_SHOWN]!r}" if found else ""
     return said + next((words for what, words in _HINTS.items() if re.search(what, message + said)), "")
 
 
