@@ -195,6 +195,7 @@ def of_files(patch: pytest.MonkeyPatch) -> Told:
     yield "no TOML, braces", refusal(lambda: Scene.load("braces.toml")).partition(")")[2]
     Path("point.toml").write_text("a = { b = 5., c = 2 }\n")
     yield "no TOML, point", refusal(lambda: Scene.load("point.toml")).partition(")")[2]
+    yield "a scene for results", refusal(lambda: Results("point.toml"))
     Path("list.toml").write_text(f"a = [{40 * '1, '}5., 2, 3]\n")
     yield "no TOML, list", refusal(lambda: Scene.load("list.toml")).partition(")")[2]
     yield "value", _but_the_end(refusal(lambda: apply_overrides({"solver": {}}, ["solver.max_cuts=[1"])))

@@ -265,6 +265,8 @@ class Results:
 
     def _check_seal(self) -> None:
         """HDF5 must not see a damaged file: it may read wrong numbers from it, end the process, or never come back."""
+        if not is_marked(self.path) and self.path.suffix == ".toml":
+            raise ResultsError(f"{self.path} is a scene file, and no results: isomortar run {self.path} computes them")
         if not is_marked(self.path):
             raise ResultsError(f"{self.path} is no results file of isomortar, or one of an earlier version: run the scene again")
         if not is_whole(self.path):
