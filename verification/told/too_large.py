@@ -10,12 +10,15 @@ from unittest.mock import patch
 from solid.too_few_points import in_turn
 from told.either_way import SCENE as BLOCKS
 from told.weights import SCENE as COLUMN
+from told.weights import column as contact_of_column
 
 from isomortar.errors import InputError
 from isomortar.harness import Bound, case
 from isomortar.march.outlook import outlook
+from isomortar.march.simulation import Simulation
 from isomortar.model.memory import memory_needed
 from isomortar.model.rational import quadrature_error
+from isomortar.model.rational_faces import pressure_error
 from isomortar.scene import Scene
 
 WITHIN, BEYOND = 0.99, 1.01
@@ -104,4 +107,55 @@ def quadrature() -> dict[str, float]:
             wrong += (
                 quadrature_error(replace(in_turn(contrast), quadrature=(u, v, w))) > TOLD or "off by about" in column(contrast, points)[1]
             )
+    return {"wrong": float(wrong)}
+
+
+@case(
+    claim="Points of a contact that miss more than a hundredth of a uniform pressure are told of.",
+    tier="gate",
+    bounds={"wrong": Bound(0.0, 0.0, "definition: weights on either side of that of which something else is said")},
+)
+def of_a_contact() -> dict[str, float]:
+    """Of two."""
+    wrong = 0
+    for share in (WITHIN, BEYOND):
+        low, high = 1.0, 20.0
+        while high / low > 1.0 + 1e-6:
+            middle = (low * high) ** 0.5
+            problem = contact_of_column(middle, "plane")
+            low, high = (middle, high) if pressure_error(problem, problem.contacts[0]) < share * TOLD else (low, middle)
+        said = Simulation(contact_of_column(low, "plane")).doubts()
+        wrong += any("quadrature points" in sentence for sentence in said) != (share > 1.0)
+    return {"wrong": float(wrong)}
+
+
+def of_spans(ratio: float) -> str:
+    """The blocks, of which the lower one has two elements on each other, one so many times as high as the other."""
+    low = 1.0 / (1.0 + ratio)
+    points = [[x, y, z] for z in (-0.5, -0.5 + 0.5 * low, 0.0) for y in (-1.0, 1.0) for x in (-1.0, 1.0)]
+    knots = [[0, 0, 1, 1], [0, 0, 1, 1], [0, 0, low, 1, 1]]
+    start, end = BLOCKS.index("bodies.below.geometry"), BLOCKS.index("contacts.c")
+    return f"{BLOCKS[:start]}bodies.below.patch = {{ order = 1, knots = {knots}, control_points = {points} }}\n{BLOCKS[end:]}"
+
+
+#: How many times as long elements are, and whether that is told.
+SPANS = {0.99e7: False, 1.01e7: True}
+#: Parts of its force that the upper block's elements of order 1 add by their Poisson's ratio (theory 9.1), and how that is told.
+LOCKING = {0.98: "come out some 100 % too large", 1.02: "come out several times too large"}
+
+
+@case(
+    claim="Elements along a direction that are ten million times as long as others are told of, and not less; and how much elements lock "
+    "in words where it is more than all of the force.",
+    tier="gate",
+    bounds={"wrong": Bound(0.0, 0.0, "definition: blocks of which something else is said")},
+)
+def of_elements() -> dict[str, float]:
+    """Of four."""
+    wrong = sum(("lost in round-off" in told_with(of_spans(ratio), (), float("inf"))[1]) != is_told for ratio, is_told in SPANS.items())
+    for share, words in LOCKING.items():
+        moduli = share / 0.02 + 13.0 / 6.0  # bulk over shear modulus, of elements half as long as the block
+        poisson = (3.0 * moduli - 2.0) / (2.0 * (3.0 * moduli + 1.0))
+        material = (f"materials={{soft={{young=1,poisson={poisson!r}}}}}", "bodies.above.mesh={order=1,elements=[4,2,2]}")
+        wrong += words not in told_with(BLOCKS, material, float("inf"))[1]
     return {"wrong": float(wrong)}
