@@ -201,7 +201,7 @@ class LinearSystem(CheckedSystem):
                 try:
                     sound.append(factors.factorise(self.values))
                 except SingularSystemError as error:  # by this ordering
-                    refused = refused or error
+                    refused = error
             if refused and not sound:
                 raise refused
             best = min(sound, key=lambda factors: factors.flops)
