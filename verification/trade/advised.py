@@ -182,7 +182,7 @@ def has(problem: Problem, name: str) -> bool:
     tier="gate",
     bounds={"wrong": Bound(0.0, 0.0, "definition: variants that are not offered, or for nothing, or do not make what they promise")},
 )
-def variants() -> dict[str, float]:
+def offered_variants() -> dict[str, float]:
     """How many, of nine scenes."""
     wrong = 0
     for changes, names in OFFERED:
