@@ -47,6 +47,8 @@ class Held:
     moved : ndarray of bool, shape (test functions,)
         Where a component along the plane is prescribed, and by now has moved, or any beside a rigid body: slips there are given, so that
         they tell nothing of the traction along it while that sticks, nor of the one across while it slips.
+    idle : ndarray of bool, shape (test functions,)
+        Where supports hold a control point wholly, and an edge of the master that it is at: it bears nothing, however deep it is.
     """
 
     bears: IntArray
@@ -55,6 +57,7 @@ class Held:
     rests: BoolArray
     still: IntArray
     moved: BoolArray
+    idle: BoolArray
 
     @cached_property
     def _limited(self) -> IntArray:
@@ -87,8 +90,9 @@ class Held:
 def nothing_held(pair: Pair) -> Held:
     """All multipliers are free."""
     n = pair.slave.test.count
-    here, there = np.zeros((2, n), dtype=np.bool_)
-    return Held(np.ones(n, dtype=np.int32), np.tile(np.eye(2), (n, 1, 1)), np.zeros((n, 2)), here, np.zeros(n, dtype=np.int32), there)
+    rests, moved, idle = np.zeros((3, n), dtype=np.bool_)
+    still = np.zeros(n, dtype=np.int32)
+    return Held(np.ones(n, dtype=np.int32), np.tile(np.eye(2), (n, 1, 1)), np.zeros((n, 2)), rests, still, moved, idle)
 
 
 def held_by(supports: Supports, pair: Pair, start: FloatArray, time: float) -> Held:
@@ -100,6 +104,8 @@ def held_by(supports: Supports, pair: Pair, start: FloatArray, time: float) -> H
         _beside_surface(held, pair, start, supports.held & ~supports.moved(time))
         if pair.rigid_master:  # which way its normals go is known where feet are found: whatever is held may be what they press along
             held.rests[:] = held.moved[:] = pair.all_carriers(supports.held).any(axis=1)
+        else:
+            _beside_held_edge(held, pair, supports.held)
     return held
 
 
@@ -140,6 +146,14 @@ def _beside_surface(held: Held, pair: Pair, start: FloatArray, still: BoolArray)
             same = slice_[component] | (np.abs(places[:, component] - place[0]) <= constants.NO_PART * size)
             held.free[own[:, component] & same, :, coordinate] = 0.0
             held.free[own[:, component] & same, coordinate, :] = 0.0
+
+
+def _beside_held_edge(held: Held, pair: Pair, prescribed: BoolArray) -> None:
+    """Constraints of control points that supports hold wholly, at an edge of the master that they hold, too."""
+    own = pair.all_carriers(prescribed).all(axis=1)
+    for (_, edge), at_edge in zip(pair.master_edges, pair.at_edges, strict=True):
+        held.idle[:] |= own & at_edge & np.all(prescribed[edge])
+    held.bears[held.idle] = 0
 
 
 def _slave_coordinate(pair: Pair, start: FloatArray, component: int) -> int:

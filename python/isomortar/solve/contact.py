@@ -198,7 +198,7 @@ class PairMechanics:
         if isinstance(kinematics, PutOff):
             return False
         depth = constants.SUNK * np.sqrt(self.pair.area)
-        alone = (self.held.bears == 0) & (kinematics.control.weight > 0)
+        alone = (self.held.bears == 0) & ~self.held.idle & (kinematics.control.weight > 0)
         sunk = alone & (kinematics.control.gap > depth * kinematics.control.weight)
         self.held.bears[sunk] = 1
         return bool(sunk.any())
