@@ -127,7 +127,7 @@ def _face_arrays(contact: Contact, sheet: Sheet, numbering: Numbering, mirror: I
 
 
 def _in_line(places: FloatArray, edge: FloatArray) -> NDArray[np.bool_]:
-    """Which places are on the line, or in the plane, of the points of an edge; none, where these are in no plane."""
+    """Which places are on the line, or in the plane, of the points of an edge; none, where these are in no plane (theory 4.11)."""
     middle, size = edge.mean(axis=0), np.ptp(edge, axis=0).max()
     _, extents, axes = np.linalg.svd(np.linalg.qr(edge - middle, mode="r"))  # a triangle of three rows, however many points
     across = axes[np.count_nonzero(extents > constants.NO_PART * size) :]
