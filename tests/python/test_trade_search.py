@@ -157,7 +157,7 @@ def test_over_refined_runs_that_have_nothing_in_common_end_after_two_levels(scen
 
     search, answer = searched(scene, 0.01, Uneven(scene, synthetic()), wants=("force.top.y",))
     assert "is nothing in this scene" in answer.why
-    assert search.laboratory.calls < 30
+    assert search.laboratory.spent < 1e3  # of 6.5e4 on all levels
 
 
 def test_a_scene_that_stops_has_nothing_to_trade(scene):
