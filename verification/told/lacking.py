@@ -55,7 +55,7 @@ supports = { base.face = "base.w0", top.face = "b.w1" }
 stages = [{ name = "press", steps = 4, motions.top.translate = [0, 0, -0.01] }]
 """
 #: Elements of the base are 1/8 long, points of the slave 1 / sqrt(8) apart: twice as many as that takes are to be given.
-POINTS = "quadrature points of the slave are 2.8 elements of its softer or equal master apart"
+POINTS = "quadrature points of the slave are 2.83 elements of its softer or equal master apart"
 CURE = "contacts.c.quadrature = [23, 12]"
 
 #: A slave of two elements, a short one of a tenth next to the pole of a dome and a long one, both a fifth wide, so far from the pole.
