@@ -36,7 +36,6 @@ class StepAdvice:
         self._borne = Borne(problem, states)
         self._begun = self._last = step
         self._closed = {name: step for name, state in zip(self._slaves, states, strict=True) if np.any(state.pressure)}
-        self._bore = set[str]()
         self._given: set[tuple[str, str]] = set()
         self._excluded = [int(np.count_nonzero(state.projected == 0)) for state in states]
         self._work = {name: np.zeros(2) for name in self._slaves}
@@ -54,8 +53,6 @@ class StepAdvice:
             yield from self._leaving(name, step, result, excluded, len(state.projected))
             largest, field = float(state.pressure.max()), float(result.pressure_field[1])
             bears = self._borne.more_than_nothing(number, field)
-            if bears or self._borne.more_than_nothing(number, float(np.abs(state.traction).max(initial=0.0))):
-                self._bore.add(name)
             if result.active > 3 and bears and largest > OSCILLATION * field and self._first(name, "oscillation"):
                 yield (
                     f"contact {name!r}, load step {step}: control pressures reach {largest:.3g} where the pressure field reaches "
@@ -82,10 +79,9 @@ class StepAdvice:
         """
         for name in self._slaves:
             closed = self._closed.get(name)
-            if name not in self._bore and not self._begun:
-                how = "it was open" if closed is None else "it bore nothing but round-off"
-                yield f"contact {name!r} never closed: {how} at the end of every load step{_why_open(unseen.get(name))}"
-            elif closed is not None and self._last - closed > 1:
+            if closed is None and not self._begun:
+                yield f"contact {name!r} never closed: it was open at the end of every load step{_why_open(unseen.get(name))}"
+            if closed is not None and self._last - closed > 1:
                 yield (
                     f"contact {name!r} opened in load step {closed + 1} and stayed open: all load steps after it computed bodies apart. "
                     "If that is not meant, look at the directions of the motions"

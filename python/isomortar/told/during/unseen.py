@@ -8,11 +8,10 @@ from isomortar.model import constants
 from isomortar.solve.contact import PutOff
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.feet import gaps
-from isomortar.told.borne import round_off
 
 
 class Unseen:
-    """The largest depth at which slave points of each contact were while it bore nothing: constraints may be active by round-off.
+    """The largest depth at which slave points of each contact were while no constraint of it was active.
 
     Attributes
     ----------
@@ -22,14 +21,13 @@ class Unseen:
 
     def __init__(self, equilibrium: Equilibrium) -> None:
         self._equilibrium = equilibrium
-        self._round_off = [round_off(equilibrium.problem, contact) for contact in equilibrium.problem.contacts]
         self.depths = dict[str, float]()
 
     def after_step(self, balance: Balance) -> None:
-        """Look at the contacts that bear nothing, and are in reach, at the end of a load step."""
+        """Look at the contacts that are open, and in reach, at the end of a load step."""
         for number, contact in enumerate(self._equilibrium.problem.contacts):
             kinematics = balance.kinematics[number]
-            if isinstance(kinematics, PutOff) or np.abs(balance.responses[number].pressure).max() > self._round_off[number]:
+            if isinstance(kinematics, PutOff) or np.any(balance.responses[number].state):
                 continue
             depth = float(gaps(self._equilibrium.pairs[number].pair, balance.positions, kinematics.projections).max(initial=0.0))
             if depth > constants.CLEAR * float(np.abs(balance.positions).max()):
