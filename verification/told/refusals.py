@@ -27,6 +27,16 @@ control_points = [[{0}, 5, 5], [{1}, 5, 5], [{0}, 6, 5], [{1}, 6, 5], [{0}, 5, 6
 [supports.cube]
 face = "cube.w0"
 """
+#: A wedge that stands on a block with its edge, or beside it at a height: points of the block beyond that edge are under no flank.
+WEDGE = """
+format = 1
+bodies.wedge = {{ geometry = {{ kind = "wedge", bottom = [0, 0], top = [-0.4, 0.4], y = [-0.5, 0.5], z = [{0}, {1}] }}, rigid = true }}
+bodies.block = {{ geometry = {{ kind = "box", lower = [-1, -0.4, -0.8], upper = [1, 0.4, 0] }}, mesh.elements = [12, 1, 4] }}
+contacts.left = {{ slave = "block.w1", master = "wedge.u0" }}
+contacts.right = {{ slave = "block.w1", master = "wedge.u1" }}
+supports = {{ base.face = "block.w0", top.face = "wedge.w1" }}
+stages = [{{ name = "press", steps = 4, motions.top.translate = [0, 0, -0.1] }}]
+"""
 #: A bowl with its pole on a block.
 BOWL = HOLLOW.replace("[2, 2, 1] }\n\n[bodies.lower]", "[4, 1, 2] }\n[bodies.lower]")
 
@@ -67,6 +77,8 @@ CASES: tuple[tuple[str, tuple[str, ...], str], ...] = (
     (SCENE, (_CONTACT + "friction=0,smoothing=0.068}",), "would be pressed away from afar"),
     (SCENE, ("bodies.above.geometry.lower=[-0.25,-0.25,-0.44]",), ""),
     (SCENE, ("bodies.above.geometry.lower=[-0.25,-0.25,-0.46]",), "they have passed through each other"),
+    (WEDGE.format(0.0, 0.4), (), ""),
+    (WEDGE.format(-0.3, 0.1), (), "they have passed through each other"),
     (SCENE, (_RAISED, loaded("above.w0", "pressure=0.1")), ""),
     (SCENE, (_RAISED, loaded("above.u0", "traction=[0.1,0,0]")), ""),
     (SCENE, (_RAISED, loaded("above.u0", "pressure=0.1")), "functions of 'above' are of another order at w0"),

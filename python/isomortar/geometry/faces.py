@@ -6,13 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from isomortar._frozen import frozen
-from isomortar.geometry.patch import Direction, FloatArray, Patch, opposite
+from isomortar.geometry.patch import Direction, FloatArray, IntArray, Patch, opposite
 from isomortar.geometry.splines import Spline
 
 #: Cells in a direction, at least: round a ring they then are off it by a five-hundredth of its radius.
 CELLS = 48
 #: Share of a face's size that an edge is longer than, unless it is a pole.
 POINT = 1e-9
+#: Share of a cell's side by which a place is farther than its middle where it is beyond the cell's edge: half of it, and round-off.
+BEYOND = 0.5 + 1e-9
 
 
 @frozen
@@ -24,6 +26,8 @@ class Cells:
     centres, normals : ndarray, shape (n, 3)
         Normals are of unit length, out of the body; zero for cells without an area.
     areas : ndarray, shape (n,)
+    sides : ndarray, shape (n, 2, 3)
+        From the middle of one of a cell's edges to that of the opposite one, along both directions.
     thickness : ndarray, shape (n,)
         Distance of each centre from that of its counterpart on the opposite face.
     shape : tuple of int
@@ -33,6 +37,7 @@ class Cells:
     centres: FloatArray
     normals: FloatArray
     areas: FloatArray
+    sides: FloatArray
     thickness: FloatArray
     shape: tuple[int, int]
 
@@ -43,16 +48,29 @@ class Cells:
             line[1:-1] = True
         return ~np.logical_and.outer(*inner).ravel()
 
+    def beyond(self, numbers: IntArray, arms: FloatArray) -> NDArray[np.bool_]:
+        """Which places are beyond an edge of the face, by numbers of cells, shape (k,), and from where their centres are, shape (k, 3)."""
+        first, second = self.sides[numbers, 0], self.sides[numbers, 1]
+        normals = np.cross(first, second)
+        squares = np.einsum("ij,ij->i", normals, normals)
+        parts = np.stack([np.einsum("ij,ij->i", np.cross(arms, second), normals), np.einsum("ij,ij->i", np.cross(first, arms), normals)])
+        ways = np.divide(parts, squares, out=np.zeros_like(parts), where=squares > 0.0)
+        places, last = np.stack(np.unravel_index(numbers, self.shape)), np.array(self.shape)[:, None] - 1
+        return np.asarray(np.any((places == 0) & (ways < -BEYOND) | (places == last) & (ways > BEYOND), axis=0))
+
 
 def cells(patch: Patch, face: str) -> Cells:
     """The cells of a face. Its coordinates say which way is out, not where the opposite face is: bodies may be bent round."""
     grid, other = _grid(patch, face), _grid(patch, opposite(face))
+    along = 0.5 * (grid[1:, 1:] + grid[1:, :-1] - grid[:-1, 1:] - grid[:-1, :-1])
+    aside = 0.5 * (grid[1:, 1:] + grid[:-1, 1:] - grid[1:, :-1] - grid[:-1, :-1])
     across = np.cross(grid[1:, 1:] - grid[:-1, :-1], grid[1:, :-1] - grid[:-1, 1:])
     if face[1] == "1":
         across = -across
     length = np.linalg.norm(across, axis=-1).ravel()
     normals = across.reshape(-1, 3) / np.where(length > 0.0, length, 1.0)[:, None]
-    return Cells(_centres(grid), normals, 0.5 * length, np.linalg.norm(_centres(other) - _centres(grid), axis=1), across.shape[:2])
+    sides, thickness = np.stack([along, aside], axis=2).reshape(-1, 2, 3), np.linalg.norm(_centres(other) - _centres(grid), axis=1)
+    return Cells(_centres(grid), normals, 0.5 * length, sides, thickness, across.shape[:2])
 
 
 def edges(patch: Patch, face: str, closed: tuple[bool, bool]) -> FloatArray:

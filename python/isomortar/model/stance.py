@@ -86,17 +86,17 @@ def _on_plane(points: FloatArray, slave: Cells, plane: RigidPlane) -> Stance:
 
 def _on_face(slave: Cells, master: Cells) -> Stance:
     """By the slave's cells; where none of their middles is over the master, as of a slave far larger than that, by the master's."""
-    found, beside = _by_cells(slave, master)
-    if not beside:
+    found, none = _by_cells(slave, master)
+    if not none:
         return found
-    back, beside = _by_cells(master, slave)
-    if beside or not back.faces:
+    back, none = _by_cells(master, slave)
+    if none or not back.faces:
         return found
     return replace(back, slave_area=found.slave_area, master_area=found.master_area, towards=-back.towards)
 
 
 def _by_cells(slave: Cells, master: Cells) -> tuple[Stance, bool]:
-    """How the cells of one face stand to the nearest ones of another, and whether all of them are beside it."""
+    """How the cells of one face stand to the nearest ones of another, and whether none of them is over it."""
     found = nearest(slave.centres, master.centres)
     normals, arms = master.normals[found], slave.centres - master.centres[found]
     distances = np.linalg.norm(arms, axis=1)
@@ -104,14 +104,15 @@ def _by_cells(slave: Cells, master: Cells) -> tuple[Stance, bool]:
     heights = np.einsum("ij,ij->i", arms, normals)
     beside = np.linalg.norm(arms - heights[:, None] * normals, axis=1) > np.sqrt(2.0 * master.areas[found])
     thickness = np.minimum(slave.thickness, master.thickness[found])
-    depth, thick = _deepest(cosines, np.where(beside, np.inf, heights), thickness)
+    over = ~beside & ~master.beyond(found, arms)
+    depth, thick = _deepest(cosines, np.where(over, heights, np.inf), thickness)
     cosine = float(_product(_some(slave.normals), _some(master.normals).T).min())
     apart = np.where(beside, distances - np.sqrt(2.0 * master.areas[found]), heights)
     closest = int(np.argmin(np.where(cosines < FACING, apart, np.inf)))
     gap = 0.0 if depth > 0.0 else max(float(apart.min()), 0.0)
     faces = bool(np.any(~beside & (cosines < FACING) & ~master.outermost((False, False))[found]))
     areas = float(slave.areas.sum()), float(master.areas.sum())
-    return Stance(*areas, cosine, depth, gap, thick, False, -normals[closest], faces), bool(beside.all())
+    return Stance(*areas, cosine, depth, gap, thick, False, -normals[closest], faces), not over.any()
 
 
 def nearest(points: FloatArray, others: FloatArray) -> IntArray:
