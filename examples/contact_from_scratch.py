@@ -1,8 +1,7 @@
 """A rubber block pressed onto a rigid plane and dragged along it, from the parts of the program, top down.
 
-    python examples/contact_from_scratch.py
-
-Three nested loops: load steps, augmentations of the contact multipliers (Uzawa), Newton's method for the positions.
+`python examples/contact_from_scratch.py`. Three nested loops: load steps, augmentations of the contact multipliers (Uzawa), Newton's method
+for the positions.
 """
 
 from __future__ import annotations

@@ -44,7 +44,7 @@ ONE_BY_ONE: tuple[tuple[tuple[str, ...], int, str], ...] = (
     (("run", "bar.toml", "--output", "link.h5", "--overwrite"), 1, "symbolic link"),
     *((("run", "bar.toml", "--output", "new.h5", "--log", log), 2, "scene file of this run") for log in ("bar.toml", "link.toml")),
     (("run", "bar.toml", "--output", "new.h5", "--log", "new.h5"), 2, "results file of this run"),
-    (("info", "bar.toml"), 1, "no results file"),
+    (("info", "bar.toml"), 1, "is a scene file, and no results"),
     (("export", "none.h5"), 1, "does not exist"),
     (("view", "none.h5"), 1, "does not exist"),
     (("film", "bar.h5"), 1, "has no contact"),

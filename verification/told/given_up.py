@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from told.circling import round_in_a_circle
 from told.other_ways import DUAL, pressed
-from told.shared import THREE
+from told.shared import CORNERED
 from told.word_by_word import SENTENCES
 from told.wrong.causes import said, scene
 from told.wrong.contacts import PRESS
@@ -90,7 +90,7 @@ def of_causes() -> Iterator[tuple[str, str]]:
     yield from ((name, "\n".join(said(scene(**changed)))) for name, changed in changes.items())
     yield "few iterations", "\n".join(said(scene(PENALTY="100\nmax_iterations = 2"), ConvergenceError("Newton's method stopped at 1")))
     yield "thin, bent", "\n".join(said(scene(TOP=1.0004), SingularSystemError("")))
-    yield "shared edge", "\n".join(said(Simulation(Scene.from_toml(THREE).problem())))
+    yield "shared edge", "\n".join(said(Simulation(Scene.from_toml(CORNERED).problem())))
     yield "on the way", "\n".join(said(lifted(0.1)))
     yield "on the way, balanced", "\n".join(said(begun(BALANCED)))
     yield "averages", error(DUAL).partition("iterations. ")[2]

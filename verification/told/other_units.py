@@ -8,7 +8,7 @@ from told.alike import words
 from told.given_up import ALONE, COHESIVE, ELSEWHERE, TAKEN_AWAY
 from told.loose import ROLLER
 from told.runs import LONG, PLATES, Heard
-from told.shared import THREE
+from told.shared import CORNERED
 from told.tipping import ABOVE, HEAD, LIFTED, LOWER, whole
 from told.tipping import SCENES as TIPPING
 from told.wrong.doubts import DOUBTFUL
@@ -74,7 +74,7 @@ def runs_in_units(run: str) -> dict[str, float]:
 
 #: Load steps that are given up: bodies that tip, lift, or slide, move freely, or go to and fro, and averages that are apart.
 GIVEN_UP = {name: whole(name) for name in TIPPING}
-GIVEN_UP |= {"averages": ROLLER.replace("COUNT", "4"), "edges": THREE, "away": TAKEN_AWAY, "on its way": ELSEWHERE, "rolls away": ROLLS}
+GIVEN_UP |= {"averages": ROLLER.replace("COUNT", "4"), "edges": CORNERED, "away": TAKEN_AWAY, "on its way": ELSEWHERE, "rolls away": ROLLS}
 GIVEN_UP |= {f"{place} to go": HEAD + LOWER + LIFTED + ABOVE.replace("PLACE", place) for place in ("1.5", "9")}
 GIVEN_UP |= {"cohesion": COHESIVE, "corner": CORNER, "alone": ALONE}
 

@@ -60,31 +60,26 @@ def shared(floor: float, wall: float) -> dict[str, float]:
     return {"wrong": float(wrong)}
 
 
-#: Two blocks beside each other that are pressed onto a third one, and bulge against each other on it.
-THREE = """
+#: A block in the corner between two others that is pressed down, and towards the one beside it.
+CORNERED = """
 format = 1
-bodies.base = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }, mesh.elements = 2 }
+bodies.base = { geometry = { kind = "box", lower = [-0.5, 0, 0], upper = [0.5, 1, 1] }, mesh.elements = 3 }
 bodies.left = { geometry = { kind = "box", lower = [0, 0, 1], upper = [0.5, 1, 2] }, mesh.elements = 2 }
-bodies.right = { geometry = { kind = "box", lower = [0.5, 0, 1], upper = [1, 1, 2] }, mesh.elements = 2 }
-contacts.one = { slave = "left.w0", master = "base.w1" }
-contacts.two = { slave = "right.w0", master = "base.w1" }
-contacts.three = { slave = "left.u1", master = "right.u0" }
-supports = { foot.face = "base.w0", near.face = "left.w1", far.face = "right.w1" }
+bodies.right = { geometry = { kind = "box", lower = [0.5, 0, 0.5], upper = [1, 1, 1.8] }, mesh.elements = 3 }
+contacts.one = { slave = "left.w0", master = "base.w1", friction = 0.6 }
+contacts.three = { slave = "left.u1", master = "right.u0", friction = 0.6 }
+supports = { foot.face = "base.w0", near.face = "left.w1", far.face = "right.u1" }
 solver = { max_cuts = 2 }
-stages = [{ name = "press", steps = 1, motions.near.translate = [0, 0, -0.1], motions.far.translate = [0, 0, -0.1] }]
+stages = [{ name = "press", steps = 1, motions.near.translate = [0.1, 0, -0.1] }]
 """
 #: What is advised there, as changes of the scene.
-CURES = {
-    "friction from one": ("contacts.three.friction=0",),
-    "refine": ("bodies.left.mesh.elements=4", "bodies.right.mesh.elements=4"),
-    "uzawa": ("solver.method=uzawa",),
-}
+CURES = (("contacts.one.friction=0",), ("contacts.three.friction=0",))
 
 
 def ending(changes: tuple[str, ...] = ()) -> str:
     """Why that is given up; nothing, where it is not."""
     try:
-        list(Simulation(Scene.from_toml(THREE, overrides=changes).problem()).run())
+        list(Simulation(Scene.from_toml(CORNERED, overrides=changes).problem()).run())
     except ConvergenceError as error:
         return str(error)
     return ""
@@ -96,13 +91,13 @@ def ending(changes: tuple[str, ...] = ()) -> str:
     tier="gate",
     bounds={
         "told": Bound(1.0, 1.0, "definition: sentences on the contacts that share an edge"),
-        "cured": Bound(3.0, 3.0, "definition: cures that help"),
+        "cured": Bound(2.0, 2.0, "definition: cures that help"),
     },
 )
 def pushed_along() -> dict[str, float]:
     """How many."""
     told = ending().count("Contacts 'one' and 'three' touch on 4 slave control points at the edge between their faces")
-    return {"told": float(told), "cured": float(sum(not ending(changes) for changes in CURES.values()))}
+    return {"told": float(told), "cured": float(sum(not ending(changes) for changes in CURES))}
 
 
 #: Two patches glued to one, each with a contact with the same plane, that are pressed farther than they are thick.
@@ -140,12 +135,24 @@ def side_by_side() -> dict[str, float]:
     return {"said": 0.0, "given up": 0.0}
 
 
+#: Two blocks beside each other on a third one.
+THREE = """
+format = 1
+bodies.base = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }, mesh.elements = 2 }
+bodies.left = { geometry = { kind = "box", lower = [0, 0, 1], upper = [0.5, 1, 2] }, mesh.elements = 2 }
+bodies.right = { geometry = { kind = "box", lower = [0.5, 0, 1], upper = [1, 1, 2] }, mesh.elements = 2 }
+contacts.one = { slave = "left.w0", master = "base.w1" }
+contacts.two = { slave = "right.w0", master = "base.w1" }
+contacts.three = { slave = "left.u1", master = "right.u0" }
+supports = { foot.face = "base.w0", near.face = "left.w1", far.face = "right.w1" }
+stages = [{ name = "press", steps = 1, motions.near.translate = [0, 0, -0.1], motions.far.translate = [0, 0, -0.1] }]
+"""
 _BETWEEN = 'contacts.three = { slave = "left.u1", master = "right.u0" }'
 #: In the place of the contact between the blocks: one more of the face that another one has; the blocks are glued, and one is at a wall.
 ONE_FACE = THREE.replace(_BETWEEN, 'contacts.three = { slave = "left.w0", plane = { point = [0, 0, 1] } }')
 GLUED = THREE.replace(_BETWEEN, 'glue = [["left.u1", "right.u0"]]\ncontacts.three = { slave = "left.u0", plane = { normal = [1, 0, 0] } }')
 GLUED = GLUED.replace('contacts.two = { slave = "right.w0", master = "base.w1" }\n', "").replace('"left.w0"', '["left.w0", "right.w0"]')
-FROM_BOTH, FROM_ONE, FROM_THREE = "from 'one' or 'three', or", "from 'one', or", "from 'three', or"
+FROM_BOTH, FROM_ONE, FROM_THREE = "friction from 'one' or 'three'", "friction from 'one'", "friction from 'three'"
 #: A scene, what is changed in it, and where friction is to be taken from; none: nothing is said.
 EDGES: tuple[tuple[str, tuple[str, ...], str], ...] = (
     (THREE, (), FROM_BOTH),
@@ -171,5 +178,5 @@ def at_edges() -> dict[str, float]:
     for text, changes, words in EDGES:
         simulation = Simulation(Scene.from_toml(text, overrides=changes).problem())
         told = list(shared_edges(simulation.equilibrium, simulation.state))
-        wrong += len(told) != bool(words) or any("'one' and 'three' touch on 4" not in one or words not in one for one in told)
+        wrong += len(told) != bool(words) or any("'one' and 'three' touch on 4" not in one or not one.endswith(words) for one in told)
     return {"wrong": float(wrong)}

@@ -48,7 +48,7 @@ class Held:
         Where a component along the plane is prescribed, and by now has moved, or any beside a rigid body: slips there are given, so that
         they tell nothing of the traction along it while that sticks, nor of the one across while it slips.
     idle : ndarray of bool, shape (test functions,)
-        Where supports hold a control point wholly, and an edge of the master that it is at: it bears nothing, however deep it is.
+        Where supports hold a control point wholly, and an edge of the master that it is on: it bears nothing, however deep it is.
     """
 
     bears: IntArray
@@ -105,7 +105,7 @@ def held_by(supports: Supports, pair: Pair, start: FloatArray, time: float) -> H
         if pair.rigid_master:  # which way its normals go is known where feet are found: whatever is held may be what they press along
             held.rests[:] = held.moved[:] = pair.all_carriers(supports.held).any(axis=1)
         else:
-            _beside_held_edge(held, pair, supports.held)
+            _at_held_edge(held, supports, pair, start, time)
     return held
 
 
@@ -148,12 +148,25 @@ def _beside_surface(held: Held, pair: Pair, start: FloatArray, still: BoolArray)
             held.free[own[:, component] & same, coordinate, :] = 0.0
 
 
-def _beside_held_edge(held: Held, pair: Pair, prescribed: BoolArray) -> None:
-    """Constraints of control points that supports hold wholly, at an edge of the master that they hold, too."""
-    own = pair.all_carriers(prescribed).all(axis=1)
-    for (_, edge), at_edge in zip(pair.master_edges, pair.at_edges, strict=True):
-        held.idle[:] |= own & at_edge & np.all(prescribed[edge])
+def _at_held_edge(held: Held, supports: Supports, pair: Pair, start: FloatArray, time: float) -> None:
+    """Constraints of control points that supports hold wholly, on an edge of the master that they hold, too, before and after."""
+    own = pair.all_carriers(supports.held).all(axis=1)
+    edges = [edge for _, edge in pair.master_edges if np.all(supports.held[edge])]
+    if not edges or not own.any():
+        return
+    end = start + supports.increment(start, time)
+    for edge in edges:
+        held.idle[own] |= np.all([_on_line(pair.at_tests(places)[own], places[edge]) for places in (start, end)], axis=0)
     held.bears[held.idle] = 0
+
+
+def _on_line(places: FloatArray, line: FloatArray) -> BoolArray:
+    """Which places are on the line through some points, one after the other."""
+    ways = np.diff(line, axis=0)
+    squares, arms = np.square(ways).sum(axis=1), places[:, None] - line[:-1]
+    shares = np.divide(np.einsum("psi,si->ps", arms, ways), squares, out=np.zeros(arms.shape[:2]), where=squares > 0.0)
+    apart = np.linalg.norm(arms - np.clip(shares, 0.0, 1.0)[..., None] * ways, axis=2).min(axis=1)
+    return np.asarray(apart <= constants.NO_PART * np.ptp(line, axis=0).max())
 
 
 def _slave_coordinate(pair: Pair, start: FloatArray, component: int) -> int:

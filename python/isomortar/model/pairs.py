@@ -47,8 +47,6 @@ class Pair:
         Whether the master is a face of a rigid body.
     master_edges : list of (int, ndarray of int)
         For each edge of that face the surface coordinate that runs across it, and its control points.
-    at_edges : list of ndarray of bool
-        Which constraints are at rest in line with each of these, or in its plane.
     neighbour_matrix, neighbours : csr_array, Pattern
         Test functions that share an element.
     pieces : ndarray of int
@@ -86,7 +84,6 @@ class Pair:
             self.rigid_master = sheet.rigid
             self.master_edges = [(0, grid[:, 0]), (0, grid[:, -1]), (1, grid[0]), (1, grid[-1])]
             self.master = _face_arrays(contact, sheet, numbering, mirrors_at(problem, numbering, self.master_edges))
-        self.at_edges = [_in_line(self.at_tests(numbering.reference), numbering.reference[edge]) for _, edge in self.master_edges]
         self.neighbour_matrix = sparse.csr_array(self.elements_of_point @ self.elements_of_point.T)
         self.neighbours: Pattern = pattern_of(self.neighbour_matrix)
         names = contact.bodies & {body.name for body in problem.deformable}
@@ -124,11 +121,3 @@ def _face_arrays(contact: Contact, sheet: Sheet, numbering: Numbering, mirror: I
     kind = AveragedFaceArrays if contact.averaged else FaceArrays
     brim = 0.0 if contact.of_averages else constants.BRIM
     return kind(*sheet.arrays(numbering), brim, mirror)
-
-
-def _in_line(places: FloatArray, edge: FloatArray) -> NDArray[np.bool_]:
-    """Which places are on the line, or in the plane, of the points of an edge; none, where these are in no plane (theory 4.11)."""
-    middle, size = edge.mean(axis=0), np.ptp(edge, axis=0).max()
-    _, extents, axes = np.linalg.svd(np.linalg.qr(edge - middle, mode="r"))  # a triangle of three rows, however many points
-    across = axes[np.count_nonzero(extents > constants.NO_PART * size) :]
-    return np.asarray(np.all(np.abs((places - middle) @ across.T) <= constants.NO_PART * size, axis=1) & bool(len(across)))

@@ -18,7 +18,6 @@ from isomortar.solve.resting import mean_heights, next_to_nothing
 
 def shared_edges(equilibrium: Equilibrium, state: State) -> Iterator[str]:
     """Sentences, without a capital, on contacts that touch on the same slave control points, of which friction holds some."""
-    cure = ', or try solver.method = "uzawa"' if equilibrium.problem.settings.method == "monolithic" else ""
     touching = [_touching(pair, state, number) for number, pair in enumerate(equilibrium.pairs)]
     for (i, one), (j, other) in combinations(enumerate(equilibrium.pairs), 2):
         first, second = one.pair, other.pair
@@ -29,7 +28,7 @@ def shared_edges(equilibrium: Equilibrium, state: State) -> Iterator[str]:
             yield (
                 f"contacts {first.contact.name!r} and {second.contact.name!r} touch on {count} slave control points at the edge between "
                 "their faces, and what sticks to one master there is pushed along by the other one: take friction from "
-                f"{' or '.join(rough)}, or refine towards that edge{cure}"
+                f"{' or '.join(rough)}"
             )
 
 
