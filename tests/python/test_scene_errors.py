@@ -126,6 +126,8 @@ NO_TOML = {
     "comma at the end": ("a = { b = 1, }\nc = 1\n", "a = { b = 1, }", "no comma at its end"),
     "end": ("format = 1\nname\n\n", "name", "a key has = behind it"),
     "open": ("format = 1\nbodies = [1\n", "bodies = [1", "digits on both sides of a point"),
+    "blanks": (f"bodies = {{a=1{' ' * 90}", "{a=1", "a table in braces one line"),
+    "another blank": ("a = 1\nb = [1, 2\u00a0", "b = [1, 2", "ends at a ]"),
     "twice": ("a = 1\na = 2\nb = 1\n", "a = 2", "stands once"),
     "twice at the end": ("a = 1\na = 2", "a = 2", "stands once"),
     "quote": ('format = 1\nname = "a\n[bodies]\n', 'name = "a', "unless they are three"),

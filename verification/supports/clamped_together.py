@@ -114,7 +114,7 @@ def off_the_edge(kind: str) -> dict[str, float]:
 
 
 @case(
-    claim="A face that a support holds presses what is clamped round it, in the plane of that edge: the force is that of the exchanged pair.",
+    claim="A face that a support holds presses what is clamped round it, in that edge's plane: the force is that of the exchanged pair.",
     tier="gate",
     bounds={"off": Bound(at_most=0.1, reason="discretisation: of coarse faces, of which one or the other is the slave")},
 )

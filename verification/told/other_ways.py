@@ -12,6 +12,7 @@ from told.wrong.singular import error
 from isomortar.errors import ConvergenceError, SingularSystemError
 from isomortar.harness import Bound, case
 from isomortar.march.simulation import Simulation
+from isomortar.told.after.other_ways import other_ways as other_ways_of
 
 #: A bowl that is pressed into a block, by dual functions of high order, which lose the digits that are asked for.
 DUAL = """
@@ -97,3 +98,20 @@ def no_other_way() -> dict[str, float]:
     ]
     wrong = [any("elastic_slip = " in sentence for sentence in sentences) for sentences in others]
     return {"wrong": float(sum(wrong) + (len(said(pressed(), stopped)) != 1))}
+
+
+@case(
+    claim="Other ways are advised for contacts that bear: constraints of one that is open are not what ends a load step.",
+    tier="gate",
+    bounds={"wrong": Bound(0.0, 0.0, "definition: advice on the contact that is open, or none on the one that bears")},
+)
+def of_what_bears() -> dict[str, float]:
+    """Of two contacts, the open one by other constraints, and with both of them open."""
+    simulation = pressed()
+    problem, state = simulation.problem, simulation.state
+    (contact,), (bears,) = problem.contacts, state.contacts
+    both = replace(problem, contacts=(contact, replace(contact, name="other", enforcement="dual")))
+    is_open = replace(bears, pressure=np.zeros_like(bears.pressure))
+    one, none = (list(other_ways_of(both, replace(state, contacts=(first, is_open)))) for first in (bears, is_open))
+    wrong = (len(one), len(none)) != (1, 1) or "elastic_slip" not in one[0] or "'other'" not in none[0]
+    return {"wrong": float(wrong)}

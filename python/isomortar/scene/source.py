@@ -74,11 +74,12 @@ def parse(text: str, name: str) -> dict[str, Any]:
 
 def _line(text: str, message: str) -> str:
     """The line that a message is about, of a long one what is round the place, and what it may want."""
-    lines, found = text.rstrip().split("\n"), re.search(r"\(at (?:line (\d+)|end of)", message)
+    lines, found = text.rstrip(" \t\r\n").split("\n"), re.search(r"\(at (?:line (\d+)|end of)", message)
     number = _unclosed(text, message) if found and not found[1] else int(found[1]) - 1 if found else 0
     column = re.search(r"column (\d+)", message)
-    begin = int(column[1]) - _SHOWN // 2 if column and int(column[1]) > _SHOWN else 0
-    said = f", where it says {lines[number][begin:].strip()[:_SHOWN]!r}" if found else ""
+    line = lines[number].rstrip()
+    begin = max(0, min(int(column[1]) - _SHOWN // 2, len(line) - _SHOWN)) if column and int(column[1]) > _SHOWN else 0
+    said = f", where it says {line[begin:].strip()[:_SHOWN]!r}" if found else ""
     return said + next((words for what, words in _HINTS.items() if re.search(what, message + said)), "")
 
 

@@ -79,6 +79,7 @@ class Search:
         self.truth: Tried | None = None
         self.rivals: tuple[Tried, ...] = ()  # other over-refined runs: how far they are from the truth is its own error
         self._before: Tried | None = None  # the truth before this one
+        self._uncertain = math.inf  # how much that was
         self._finest = False  # whether the truth has the dearest settings that there are
         self._stirring: set[int] = set()  # dials that may change what is wanted beside finer settings of others alone
 
@@ -188,8 +189,8 @@ class Search:
 
     @property
     def _hopeless(self) -> bool:
-        """Whether over-refined runs of two levels, one after the other, differ by half of what is wanted: a third one tells nothing."""
-        return self._before is not None and not self.uncertainty < NOTHING
+        """Whether over-refined runs of two levels, one after the other, differ by half of what is wanted, and of as much as before."""
+        return self._before is not None and not self.uncertainty < max(NOTHING, NOTHING * self._uncertain)
 
     def _refine(self, level: int, target: float) -> bool:
         """Run over-refined runs of a level; whether they tell the truth better than those before."""
@@ -212,6 +213,7 @@ class Search:
             return False
         if failed:
             raise IsomortarError(f"an over-refined run, which tells the truth, does not come to its end: {failed[0].failure}")
+        self._uncertain = self.uncertainty if self.truth else math.inf
         self._before, self.truth, self.rivals = self.truth, truth, tuple(rivals)
         return True
 

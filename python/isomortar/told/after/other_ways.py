@@ -14,7 +14,7 @@ SLIP, SMOOTHING = 2e-3, 1e-5
 
 
 def other_ways(problem: Problem, state: State) -> Iterator[str]:
-    """Sentences, without a capital: on contacts that are not of averages, if there are any, else on those that bear with friction.
+    """Sentences, without a capital, on those that bear, if any do: on contacts that are not of averages, else on those with friction.
 
     Of 16 scenes that constraints at points, or dual ones, ended so 13 came to their end by averages.
 
@@ -24,14 +24,15 @@ def other_ways(problem: Problem, state: State) -> Iterator[str]:
     state : State
         Where the last load increment ended that converged.
     """
-    others = [contact for contact in problem.contacts if contact.enforcement != "mortar"]
+    bear = [contact for contact, begun in zip(problem.contacts, state.contacts, strict=True) if begun.pressure.any()]
+    others = [contact for contact in bear or problem.contacts if contact.enforcement != "mortar"]
     for contact in others:
         yield (
             f"contact {contact.name!r}: load steps that are given up by constraints of this kind, {contact.enforcement!r}, mostly come to "
             f'their end by averages: take contacts.{contact.name}.enforcement = "mortar"'
         )
-    for contact, begun in zip(problem.contacts, state.contacts, strict=True) if not others else ():
-        if _sticks_or_slips(contact) and begun.pressure.any():
+    for contact in bear if not others else ():
+        if _sticks_or_slips(contact):
             size = Sheet.of(problem, contact.slave).size
             modulus = min(body.modulus for body in problem.deformable if body.name in contact.bodies)
             pressed = f", or contacts.{contact.name}.smoothing = {SMOOTHING * size * modulus:.1g}, by which pressures are"
