@@ -19,6 +19,8 @@ from isomortar.trade.want import Want
 
 #: Where over-refined runs differ by this share of what is wanted, it is round-off or nothing they have in common.
 NOTHING = 0.5
+#: What meshes twice as fine leave of an error that falls with the square of the elements' size: where no more is left, more may tell.
+SQUARE = 0.25
 #: A target is told from the truth's own error where it is this many times as large.
 RESOLVED = 3.0
 #: Forecasts aim at this share of the target; what is measured may take all of it.
@@ -189,8 +191,8 @@ class Search:
 
     @property
     def _hopeless(self) -> bool:
-        """Whether over-refined runs of two levels, one after the other, differ by half of what is wanted, and of as much as before."""
-        return self._before is not None and not self.uncertainty < max(NOTHING, NOTHING * self._uncertain)
+        """Whether over-refined runs of two levels, one after the other, differ by half of what is wanted, and do not come nearer."""
+        return self._before is not None and not self.uncertainty < max(NOTHING, SQUARE * self._uncertain)
 
     def _refine(self, level: int, target: float) -> bool:
         """Run over-refined runs of a level; whether they tell the truth better than those before."""
