@@ -19,8 +19,6 @@ from isomortar.trade.want import Want
 
 #: Where over-refined runs differ by this share of what is wanted, it is round-off or nothing they have in common.
 NOTHING = 0.5
-#: What meshes twice as fine leave of an error that falls with the square of the elements' size: where no more is left, more may tell.
-SQUARE = 0.25
 #: A target is told from the truth's own error where it is this many times as large.
 RESOLVED = 3.0
 #: Forecasts aim at this share of the target; what is measured may take all of it.
@@ -81,7 +79,6 @@ class Search:
         self.truth: Tried | None = None
         self.rivals: tuple[Tried, ...] = ()  # other over-refined runs: how far they are from the truth is its own error
         self._before: Tried | None = None  # the truth before this one
-        self._uncertain = math.inf  # how much that was
         self._finest = False  # whether the truth has the dearest settings that there are
         self._stirring: set[int] = set()  # dials that may change what is wanted beside finer settings of others alone
 
@@ -191,8 +188,8 @@ class Search:
 
     @property
     def _hopeless(self) -> bool:
-        """Whether over-refined runs of two levels, one after the other, differ by half of what is wanted, and do not come nearer."""
-        return self._before is not None and not self.uncertainty < max(NOTHING, SQUARE * self._uncertain)
+        """Whether over-refined runs of two levels, one after the other, differ by half of what is wanted: a third one tells nothing."""
+        return self._before is not None and not self.uncertainty < NOTHING
 
     def _refine(self, level: int, target: float) -> bool:
         """Run over-refined runs of a level; whether they tell the truth better than those before."""
@@ -215,7 +212,6 @@ class Search:
             return False
         if failed:
             raise IsomortarError(f"an over-refined run, which tells the truth, does not come to its end: {failed[0].failure}")
-        self._uncertain = self.uncertainty if self.truth else math.inf
         self._before, self.truth, self.rivals = self.truth, truth, tuple(rivals)
         return True
 
