@@ -42,7 +42,8 @@ DEMKO = ("--set", 'contacts.floor.enforcement="demko"')
 
 def loaded(folder: Path, *arguments: str) -> set[str]:
     """Names of the modules that a command has loaded in a process of its own, those that they stand in included."""
-    subprocess.run([sys.executable, "-c", COMMAND, "names", *arguments], check=True, cwd=folder, stdout=subprocess.DEVNULL)
+    unseen = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    subprocess.run([sys.executable, "-c", COMMAND, "names", *arguments], check=True, cwd=folder, **unseen)
     return set((folder / "names").read_text().splitlines())
 
 
@@ -91,8 +92,9 @@ def test_a_command_that_is_asked_for_is_set_up_alone() -> None:
         assert asked(words) is app
 
 
-def test_a_quiet_run_loads_nothing_for_progress(tmp_path: Path) -> None:
-    assert "rich" not in loaded(tmp_path, "run", *PRESS, "--quiet", "--output", "scene.h5")
+@pytest.mark.parametrize("more", [(), ("--quiet",), ("--verbose",)])
+def test_what_draws_is_loaded_for_a_terminal_alone(tmp_path: Path, more: tuple[str, ...]) -> None:
+    assert "rich" not in loaded(tmp_path, "run", *PRESS, *more, "--output", "scene.h5")
 
 
 def test_a_run_builds_its_problem_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -72,7 +72,8 @@ PARTS = {
         Part(0.3, 32, {"inner": 3.2, "outer": 1.1}),
         Part(0.2, 20, {"outer": 2.4}),
         Part(0.0, 3),
-        Part(3.3, 33),
+        Part(3.0, 30),
+        Part(0.3, 12),
     ),
 }
 #: What is told: forces on the quarter at so many mm, as published.

@@ -279,15 +279,14 @@ def progress(problem: Problem, quiet: bool = False, verbose: bool = False, log: 
         if "ipykernel" in sys.modules:
             yield NotebookProgress(problem, print, drawn, keep)
             return
-        from rich.console import Console
+        if not sys.stderr.isatty():
+            yield Progress(problem, partial(print, file=sys.stderr), plain, keep)
+            return
+        from rich.console import Console  # within: it takes a tenth of a start
+        from rich.live import Live
 
         console = Console(stderr=True)
         tell = partial(console.print, markup=False, highlight=False, soft_wrap=True)
-        if not console.is_terminal:
-            yield Progress(problem, tell, plain, keep)
-            return
-        from rich.live import Live
-
         observer = LiveProgress(problem, tell, drawn, keep)
         with Live(observer, console=console, refresh_per_second=5):
             yield observer
