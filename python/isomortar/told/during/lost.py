@@ -8,6 +8,7 @@ import numpy as np
 
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.glue import named
+from isomortar.model.rigid import deformation
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.record import StepResult
 
@@ -73,8 +74,5 @@ class LostDigits:
 
 
 def _deforms(reference: FloatArray, positions: FloatArray) -> bool:
-    """Whether displacements are more than a rigid motion, the closest of which is a polar decomposition."""
-    before, after = reference - reference.mean(axis=0), positions - positions.mean(axis=0)
-    u, _, v = np.linalg.svd(before.T @ after)
-    turn = u @ np.diag([1.0, 1.0, np.linalg.det(u @ v)]) @ v
-    return bool(np.abs(after - before @ turn).max() > DEFORMED * np.ptp(reference, axis=0).max())
+    """Whether displacements are more than a rigid motion."""
+    return bool(np.abs(deformation(reference, positions)).max() > DEFORMED * np.ptp(reference, axis=0).max())

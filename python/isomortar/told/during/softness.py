@@ -1,4 +1,4 @@
-"""How bodies give way on both sides of a contact, at its points: as deep ones do, (1 - nu^2) / E, and as layers on what holds them."""
+"""How bodies give way on both sides of a contact: as deep ones do, (1 - nu^2) / E, as layers on what holds them, and how far they go."""
 
 from __future__ import annotations
 
@@ -9,12 +9,15 @@ from isomortar.geometry.patch import FloatArray, opposite
 from isomortar.model.entities import Body, Face, Problem
 from isomortar.model.numbering import Numbering
 from isomortar.model.pairs import Pair
+from isomortar.model.rigid import deformation
 from isomortar.model.sheet import Sheet
 
 #: Softness of an incompressible layer over (1 - nu^2) / E: it goes sideways beside the contact. Fitted at Poisson's ratio 0.49.
 SIDEWAYS = 0.35
 #: A body that is glued to one so many times as stiff is a layer on it.
 STIFFER = 10.0
+#: Times what it is pressed in that a body goes, up to which it does not bend (of balls and cylinders on blocks: 0.7 to 1.2).
+STILL = 1.3
 
 
 def softness(problem: Problem, numbering: Numbering, pair: Pair, projections: Projections) -> tuple[FloatArray, FloatArray]:
@@ -42,6 +45,32 @@ def thinness(problem: Problem, numbering: Numbering, pair: Pair, projections: Pr
                 thickness = np.linalg.norm(numbering.reference[here] - numbering.reference[behind], axis=1)
                 thin[here] = 1.0 / (_confined(body) * thickness)
     return _at_points(problem, numbering, pair, projections, thin)
+
+
+def gone(problem: Problem, numbering: Numbering, pair: Pair, positions: FloatArray, places: FloatArray, forces: FloatArray) -> FloatArray:
+    """How far slave and master have gone where forces at slave points act, from what of their faces has gone least the same way, (2,).
+
+    Zero of what is rigid. Rigid motions do not count: a roller that turns has not given way (theory 9.10, 9.15).
+    """
+    pieces = [numbering.piece_points(piece) for piece in range(len(numbering.pieces))]
+    ways = np.concatenate([deformation(numbering.reference[own], positions[own]) for own in pieces])
+    acting, found = np.flatnonzero(forces), np.zeros(2)
+    shape = pair.slave.shape
+    faces = [pair.slave.point[: pair.slave.highest + 1]]
+    functions = [(shape.nodes[acting // pair.slave.per_element], shape.values[acting])]
+    if isinstance(pair.contact.master, Face):
+        nodes, values = surface_functions(*Sheet.of(problem, pair.contact.master).arrays(numbering), places[acting])
+        faces.append(pair.master_face)
+        functions.append((nodes, values[:, 0]))
+    for side, (face, (nodes, values)) in enumerate(zip(faces, functions, strict=True)):
+        mean = forces[acting] @ np.einsum("qa,qac->qc", values, ways[face[nodes]]) / forces.sum()
+        found[side] = np.linalg.norm(ways[face] - mean, axis=1).max()
+    return found
+
+
+def local(pressed: float, went: float) -> float:
+    """Share of how far a body has gone that it is pressed in by, about (theory 9.15): of a beam that bends it is little."""
+    return min(1.0, (STILL * pressed / went) ** 2) if went > 0.0 else 1.0
 
 
 def _at_points(
