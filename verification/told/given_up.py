@@ -95,6 +95,10 @@ def of_causes() -> Iterator[tuple[str, str]]:
     yield "on the way, balanced", "\n".join(said(begun(BALANCED)))
     yield "averages", error(DUAL).partition("iterations. ")[2]
     yield "smooth friction", "\n".join(said(pressed(), ConvergenceError("Newton's method stopped at 1")))
+    yield (
+        "smooth pressures",
+        "\n".join(said(scene(SLIP="0\nfriction = 0"), ConvergenceError("Newton's method stopped at 1; constraints 1 change their states"))),
+    )
     flat: Simulation = scene()
     positions = flat.state.positions.copy()
     positions[np.unique(flat.equilibrium.numbering.points["lower"]), 2] *= 0.05

@@ -67,7 +67,7 @@ def causes(equilibrium: Equilibrium, state: State, error: Exception, longer: Seq
     """
     found, words = list(_causes(equilibrium, state, error, longer)), str(error)
     bare = any(ended in words for ended in ENDED.values()) and ADVICE not in words.lower()
-    return found if found or not bare else list(other_ways(equilibrium.problem, state))
+    return found if found or not bare else list(other_ways(equilibrium.problem, state, error))
 
 
 def _causes(equilibrium: Equilibrium, state: State, error: Exception, longer: Sequence[str]) -> Iterator[str]:
