@@ -50,22 +50,31 @@ def thinness(problem: Problem, numbering: Numbering, pair: Pair, projections: Pr
 def gone(problem: Problem, numbering: Numbering, pair: Pair, positions: FloatArray, places: FloatArray, forces: FloatArray) -> FloatArray:
     """How far slave and master have gone where forces at slave points act, from what of their faces has gone least the same way, (2,).
 
-    Zero of what is rigid. Rigid motions do not count: a roller that turns has not given way (theory 9.10, 9.15).
+    Zero of what is rigid. Along the mean normal there, and but for rigid motions: a roller that turns has not given way, and a block that
+    is squeezed across has not bent (theory 9.10, 9.15).
     """
     pieces = [numbering.piece_points(piece) for piece in range(len(numbering.pieces))]
     ways = np.concatenate([deformation(numbering.reference[own], positions[own]) for own in pieces])
     acting, found = np.flatnonzero(forces), np.zeros(2)
-    shape = pair.slave.shape
-    faces = [pair.slave.point[: pair.slave.highest + 1]]
-    functions = [(shape.nodes[acting // pair.slave.per_element], shape.values[acting])]
+    nodes, own = pair.slave.shape.nodes[acting // pair.slave.per_element], pair.slave.point
+    along = ways @ _mean_normal(np.einsum("qda,qac->qdc", pair.slave.slopes[acting], positions[own[nodes]]), forces[acting])
+    faces, functions = [own[: pair.slave.highest + 1]], [(nodes, pair.slave.shape.values[acting])]
     if isinstance(pair.contact.master, Face):
-        nodes, values = surface_functions(*Sheet.of(problem, pair.contact.master).arrays(numbering), places[acting])
+        feet, values = surface_functions(*Sheet.of(problem, pair.contact.master).arrays(numbering), places[acting])
         faces.append(pair.master_face)
-        functions.append((nodes, values[:, 0]))
+        functions.append((feet, values[:, 0]))
     for side, (face, (nodes, values)) in enumerate(zip(faces, functions, strict=True)):
-        mean = forces[acting] @ np.einsum("qa,qac->qc", values, ways[face[nodes]]) / forces.sum()
-        found[side] = np.linalg.norm(ways[face] - mean, axis=1).max()
+        mean = forces[acting] @ np.einsum("qa,qa->q", values, along[face[nodes]]) / forces.sum()
+        found[side] = np.abs(along[face] - mean).max()
     return found
+
+
+def _mean_normal(tangents: FloatArray, forces: FloatArray) -> FloatArray:
+    """Unit normal of a surface with given tangents, shape (points, 2, 3), weighted with forces; zero where they cancel each other."""
+    normals = np.cross(tangents[:, 0], tangents[:, 1])
+    lengths = np.linalg.norm(normals, axis=1)
+    normal = forces @ (normals / np.where(lengths > 0.0, lengths, 1.0)[:, None])
+    return np.asarray(normal / (np.linalg.norm(normal) or 1.0))
 
 
 def local(pressed: float, went: float) -> float:
