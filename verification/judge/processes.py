@@ -98,6 +98,8 @@ def ends(way: str) -> dict[str, float]:
     before = used()
     spent = run([sys.executable, "-S", "-c", "import time\nwhile time.process_time() < 0.1: pass"]).cpu_seconds
     wrong += [f"{spent} s, {used() - before} s"] * (not (0.1 <= spent < 1.0 and used() - before >= spent))
+    with Process([sys.executable, "-S", "-c", "bytes(1 << 30)"], Limits(memory=1 << 29)) as process:
+        wrong += ["memory without end"] * (process.wait(PATIENCE).status != 1)
     if way == WAYS[0]:  # it takes a second
         with Process([sys.executable, "-S", "-c", "while True: pass"], Limits(cpu_seconds=1)) as process:
             wrong += ["no limit"] * (process.wait(60.0).words != "no end within its seconds of the processor")

@@ -12,6 +12,7 @@ from output.records import load_steps
 from isomortar.harness import Bound, case
 from isomortar.model.numbering import Numbering
 from isomortar.results import style
+from isomortar.results.bodies import VIEW
 from isomortar.results.coloured import draw_coloured
 from isomortar.scene import Scene
 
@@ -69,3 +70,25 @@ def round_off(field: str) -> dict[str, float]:
     faces = [c for c in figure.axes[0].collections if isinstance(c, PathCollection)]
     drawn = np.concatenate([c.get_facecolor() for c in faces])
     return {"colours": float(np.abs(np.median(drawn, axis=0) - style.field_colours()(0.0)).max())}
+
+
+@case(
+    claim="Each part of a face has the colour of the field in its own middle, wherever it is seen.",
+    tier="gate",
+    bounds={
+        "off": Bound(at_most=0.005, reason="definition: half of parts at most are a colour off, of 256; lines and corners have their own")
+    },
+)
+def in_place() -> dict[str, float]:
+    """Median distance of a colour, of all of them, from that of a displacement away from who looks, which grows along the picture."""
+    problem = Scene.from_toml(SCENE).problem()
+    (step,), at_rest = load_steps(problem), Numbering(problem).reference
+    right, up, away = VIEW.axes
+    moved = at_rest + np.outer(at_rest @ (0.3 * right + 0.5 * up) + 0.6, away)
+    figure = draw_coloured(problem, replace(step, state=replace(step.state, positions=moved)), "displacement")
+    (parts,) = (c for c in figure.axes[0].collections if isinstance(c, PathCollection))
+    middles = np.array([np.asarray(path.vertices)[:-1].mean(axis=0) for path in parts.get_paths()])
+    exact = (middles @ [0.3, 0.5] + 0.6) / figure.axes[1].get_ylim()[1]
+    scale = style.field_colours()(np.linspace(0.0, 1.0, 256))
+    found = [np.abs(scale - colour).sum(axis=1).argmin() / 255 for colour in np.asarray(parts.get_facecolor())]
+    return {"off": float(np.median(np.abs(found - exact)))}

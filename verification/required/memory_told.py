@@ -14,6 +14,7 @@ from isomortar.solve.system import LinearSystem
 MESHES: dict[str, tuple[str, int, str]] = {
     "quadratic": ("N", 2, "[5,4,3]"),
     "quartic": ("N", 4, "[5,5,3]"),
+    "of many": ("N", 2, "[12,10,6]"),
     "Lagrange": ("L", 3, "[3,3,2]"),
     "quartic Lagrange": ("L", 4, "[4,4,2]"),
 }
