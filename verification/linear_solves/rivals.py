@@ -86,7 +86,7 @@ OFF = (
         "told": Bound(0.0, 0.0, "definition: nearness to a singular system, and the ordering, that are not those of the factors in use"),
     },
 )
-def refined(by: str) -> dict[str, float]:
+def looked_at(by: str) -> dict[str, float]:
     """How many solutions are others, or are taken or refused where they are not to be; what else is told of the factors."""
     equilibrium = Equilibrium(Scene.from_toml(SCENE).problem(), Ledger())
     source, size, ledger = equilibrium.solid_source, len(equilibrium.supports.free), equilibrium.ledger
