@@ -65,6 +65,7 @@ class Sharp(Laboratory):
         of_stage = Dial("load steps", tuple(map(Setting, map(str, steps))), 0, "")
         self.dials, self._error, self._worth = (*meshes, of_stage, order), error, worth
         self._counts = (*elements, steps)
+        self.fails: Callable[[Choice], bool] = lambda _: False
         super().__init__(None, self.dials, Path(), None, lambda _: None)  # type: ignore[arg-type]
 
     def off(self, choice: Choice) -> float:
@@ -73,10 +74,9 @@ class Sharp(Laboratory):
         return float(self._error(*counts) / self._worth ** choice[-1])
 
     def _measured(self, choices: Sequence[Choice], *_: Any, **__: Any) -> dict[Choice, Tried]:
-        return {
-            choice: Tried(choice, "", {"one": 1.0 + self.off(choice), "choice": choice, "cpu_seconds": 1.0}, "", 1.0, 0.0)
-            for choice in choices
-        }
+        numbers = {choice: {"one": 1.0 + self.off(choice), "choice": choice, "cpu_seconds": 1.0} for choice in choices}
+        fails = {choice: self.fails(choice) for choice in choices}
+        return {c: Tried(c, "", {} if fails[c] else numbers[c], "failed" * fails[c], 1.0, 0.0) for c in choices}
 
 
 def told_over_real(elements: Sequence[Sequence[int]], error: Callable[..., float], worth: float = 1.0) -> float:
@@ -94,7 +94,7 @@ def told_over_real(elements: Sequence[Sequence[int]], error: Callable[..., float
 
 #: Least share of the real error that has to be told: targets are as many times what is told.
 TOLD = Bound(at_least=0.99 / RESOLVED, reason="definition: targets are as many times what is told")
-LONG = (12, 16, 20, 24, 30, 36)
+LONG, SHORT = (12, 16, 20, 24, 30, 36), (4, 5, 7, 8, 10, 12)
 
 
 @case(
@@ -111,8 +111,8 @@ def own_error(worth: float) -> dict[str, float]:
 
 #: Errors of two meshes: one that is no matter until the other is finer, as of a slave on a coarse master; one that has few settings.
 TOGETHER: dict[str, tuple[Sequence[Sequence[int]], Callable[..., float]]] = {
-    "a slave on a coarse master": ([LONG, (4, 5, 7, 8, 10, 12)], lambda master, slave, _: np.maximum(0.6 / master, 0.16 / slave)),
-    "a slave that yields more": ([LONG, (4, 5, 7, 8, 10, 12)], lambda master, slave, _: np.hypot(0.6 / master, 0.16 / slave)),
+    "a slave on a coarse master": ([LONG, SHORT], lambda master, slave, _: np.maximum(0.6 / master, 0.16 / slave)),
+    "a slave that yields more": ([LONG, SHORT], lambda master, slave, _: np.hypot(0.6 / master, 0.16 / slave)),
     "few settings": ([LONG, (4, 8, 12)], lambda along, round_it, _: 0.2 / along + 0.2 / round_it),
 }
 
@@ -127,6 +127,39 @@ TOGETHER: dict[str, tuple[Sequence[Sequence[int]], Callable[..., float]]] = {
 def own_error_of_two(scene: str) -> dict[str, float]:
     """The smaller one of a loose and a tight target."""
     return {"told over real": told_over_real(*TOGETHER[scene])}
+
+
+#: Errors of a mesh and of two more, which change nothing beside it as it is, and which of these are to be refined as it is.
+BESIDE: dict[str, tuple[Callable[..., float], tuple[bool, bool]]] = {
+    "the first": (lambda mesh, one, _, __: np.maximum(0.6 / mesh, 0.16 / one), (True, False)),
+    "the second": (lambda mesh, _, other, __: np.maximum(0.6 / mesh, 0.16 / other), (False, True)),
+    "both": (lambda mesh, one, other, _: np.maximum(0.6 / mesh, 0.08 / one + 0.08 / other), (True, True)),
+    "both at once": (lambda mesh, one, other, _: np.maximum(0.6 / mesh, 0.16 / np.minimum(one, other)), (True, True)),
+    "none": (lambda mesh, _, __, ___: 0.6 / mesh, (False, False)),
+}
+#: Runs that fail of those that look for what they change, by the settings of both.
+FAILS: dict[str, tuple[Choice, ...]] = {"none": (), "before": ((0, 0),), "alone": ((0, 1), (1, 0))}
+
+
+@case(
+    claim="Of meshes that change nothing beside others as they are those that do beside finer ones are refined, and no others; where runs "
+    "that look for them fail none is, or, where only those of one alone do, all of them.",
+    tier="gate",
+    grid={"changes": tuple(BESIDE), "fails": tuple(FAILS)},
+    bounds={"wrong": Bound(0.0, 0.0, "definition: meshes that are refined and change nothing, or change much and are not")},
+)
+def beside_finer(changes: str, fails: str) -> dict[str, float]:
+    """How many of two."""
+    error, stir = BESIDE[changes]
+    known = Sharp([LONG, SHORT, SHORT], error)
+    known.fails = lambda choice: choice[0] == choice[4] == 1 and choice[1:3] in FAILS[fails]
+    search = Search(known, known.dials, [Want("one", lambda run, _: np.array([run["one"]]), lambda _: np.ones(1))], math.inf)
+    search.screen()
+    search.find_truth([0.025])
+    assert search.truth
+    finer = [setting > dial.own + 1 for dial, setting in zip(known.dials[1:3], search.truth.choice[1:3], strict=True)]
+    known_of = {"none": stir, "before": (False, False), "alone": (any(stir),) * 2}[fails]
+    return {"wrong": float(np.sum(np.array(finer) != known_of))}
 
 
 @case(
