@@ -180,6 +180,30 @@ def control_points(variant: str, summed: bool, law: str) -> dict[str, float]:
     return differences | {"capped": float(np.mean([radius(p, made.friction) == made.friction.parameters[-1] for p in slipping]))}
 
 
+@case(
+    claim="What is no number makes what follows from it at its control point none, and nothing of another one: it is not taken for open.",
+    tier="gate",
+    grid={"of": ("gap", "pressure", "slip", "traction"), "law": tuple(FRICTION)},
+    bounds={"wrong": Bound(0.0, 0.0, "definition: pressures and tractions that are numbers and should not be, or are none and should be")},
+)
+def no_number(of: str, law: str) -> dict[str, float]:
+    """How many, where each control point presses and one of its quantities, or multipliers, is none."""
+    pair = Equilibrium(bowl("plane"), Ledger()).pairs[0].pair
+    random, n, points = np.random.default_rng(18), len(pair.slave.point), len(pair.slave.area)
+    slip, metric = 0.03 * random.standard_normal((n, 2)), metrics(random, n)
+    control = Control(np.ones(n), np.ones(n), random.uniform(0.0, 0.05, n), slip, metric, metrics(random, points))
+    traction = 0.4 * random.standard_normal((n, 2))
+    made = Law(
+        PENALTIES, FRICTION[law], np.ones(n), traction, False, np.ones(n, np.int32), np.tile(np.eye(2), (n, 1, 1)), np.zeros(n, np.int32)
+    )
+    spoiled = {"gap": control.gap, "pressure": made.pressure, "slip": control.slip[:, 0], "traction": traction[:, 1]}[of]
+    spoiled[::2] = np.nan
+    response = _bindings.augmented_multipliers(pair.slave, control, made)
+    none = np.arange(n) % 2 == 0
+    pressures, tractions = np.isnan(response.pressure), np.isnan(response.traction).any(axis=1)
+    return {"wrong": float(np.sum(pressures != (none & (of in ("gap", "pressure")))) + np.sum(tractions != none))}
+
+
 def metrics(random: np.random.Generator, count: int) -> FloatArray:
     """Positive definite metrics 11, 12, 22 of size one, not diagonal, shape (count, 3)."""
     tangents = np.eye(2) + 0.3 * random.standard_normal((count, 2, 2))

@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 from told.runs import Heard
-from told.unstable import EULER, column
+from told.unstable import column
 from told.unstable import told as told_of_part
 
 from isomortar.harness import Bound, case
 from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
 
-ENDS = ("free", "sticking")
+ENDS = ("free", "sticking", "sticking on a plane")
+#: A plate that comes down is as good as a plane to which the column goes.
+PLANE = {
+    'bodies.p = { rigid = true, geometry = { kind = "box", lower = [-1, -1, 1], upper = [1, 1, 1.5] }, mesh.elements = [2, 2, 1] }\n': "",
+    'master = "p.w0"': "plane = { point = [0, 0, 1], normal = [0, 0, -1] }",
+    'supports.hand.face = "p.w1"\n': "",
+    "motions.hand.translate = [0, 0, -": "motions.base.translate = [0, 0, ",
+}
 MOVED = {
     "lower = [0, 0, 0], upper = [0.04, 0.1, 1]": "lower = [-0.02, -0.05, 0], upper = [0.02, 0.05, 1]",
     "elements = [1, 2, 8]": "elements = [2, 2, 8]",
@@ -27,8 +34,8 @@ END, LATER = "}]\n", '}, { name = "hold", steps = 1 }]\n'
 
 def of_half(end: str, share: float, symmetry: str) -> str:
     """A column that bears a share of Euler's load halved by planes through its middle."""
-    scene = column(end, share, "monolithic")
-    for old, new in MOVED.items():
+    scene = column(end.removesuffix(" on a plane"), share, "monolithic")
+    for old, new in (MOVED | (PLANE if end.endswith("plane") else {})).items():
         scene = scene.replace(old, new)
     return f"symmetry = {{ {symmetry} }}\n{scene.removesuffix(END)}{LATER}"
 
@@ -54,7 +61,6 @@ def told(text: str, plane: str) -> int:
 )
 def mirrored(end: str) -> dict[str, float]:
     """How many of each."""
-    assert end in EULER
     planes = ("x = 0", "x = 0, y = 0")
     return {
         "below": float(sum(told(of_half(end, 0.92, symmetry), "x") for symmetry in planes)),
