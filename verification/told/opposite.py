@@ -21,7 +21,7 @@ contacts.pair = {{ slave = "upper.w0", master = "lower.w1", projection = "{proje
 supports = {{ hand.face = "upper.w1", base.face = "lower.w0" }}
 stages = [{{ name = "press", steps = 2, motions.hand.translate = [0, 0, -0.2] }}]
 """
-BESIDE, APART, OVER = "is wholly beside its master", "apart at the start", "goes over an edge"
+BESIDE, APART, OVER, BETWEEN = "is wholly beside its master", "apart at the start", "goes over an edge", "which is between them"
 #: How far apart they are: within the way of the motion, twice that and more, and beyond the reach of averaged normals.
 GAPS = (0.1, 0.6, 1.0, 3.0, 20.0)
 
@@ -44,6 +44,25 @@ def opposite(projection: str, order: int) -> dict[str, float]:
             wrong += (BESIDE in said) != (aside > 0.0)
             wrong += (OVER in likely) != (aside > 0.0)
             wrong += (APART in said) != (aside == 0.0 and gap > 0.4)
+    return {"wrong": float(wrong)}
+
+
+@case(
+    claim="A slave whose points are all beside a small master opposite it is said to have it between them where it can close, and to be "
+    "apart from it where it can not.",
+    tier="gate",
+    grid={"projection": ("closest", "averaged")},
+    bounds={"wrong": Bound(0.0, 0.0, "definition: sentences that are untrue or missing, of five distances")},
+)
+def between_the_points(projection: str) -> dict[str, float]:
+    """How many sentences are wrong."""
+    wrong = 0
+    for gap in GAPS:
+        text = SCENE.format(aside=0.12, end=0.18, gap=gap, top=gap + 1.0, order=2, projection=projection)
+        text = text.replace("0.12, 0,", "0.12, 0.12,").replace("0.18, 1,", "0.18, 0.18,")
+        text = text.replace('slave = "upper.w0", master = "lower.w1"', 'slave = "lower.w1", quadrature = [3, 3], master = "upper.w0"')
+        said = " ".join(Simulation(Scene.from_toml(text).problem()).doubts())
+        wrong += (BESIDE in said) + ((BETWEEN in said) != (gap < 0.4)) + ((APART in said) != (gap > 0.4))
     return {"wrong": float(wrong)}
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 
 import numpy as np
 from solid.too_few_points import in_turn
@@ -104,3 +105,32 @@ def few_enough(quadrature: str) -> dict[str, float]:
     told = [json.loads(found[1]) for text in said if (found := re.search(r"quadrature = (\[.*?\])", text))]
     wrong = bool(told) == ("40" in quadrature)
     return {"silent": float(not said), "too many": float(sum(n > MOST for rule in told for n in rule)), "cures": float(wrong)}
+
+
+#: Contrasts of weights, points of the body, enforcements, and what is said to be off: forces of the body, pressures of the contact.
+OF_WHICH = (
+    (5.0, "[60, 60, 2]", "points", (False, True)),
+    (5.0, "[60, 60, 2]", "knots", (False, False)),
+    (5.0, "[4, 4, 2]", "points", (True, False)),
+    (5.0, "[4, 4, 2]", "knots", (True, False)),
+    (3.0, "[4, 4, 2]", "points", (False, False)),
+)
+
+
+@case(
+    claim="Of weights that differ too much for the points of a body that is told, and for those of its contact where the body's follow "
+    "them, and averages of these are what acts.",
+    tier="gate",
+    bounds={"wrong": Bound(0.0, 0.0, "definition: sentences that are missing, or said of what is followed or does not act")},
+)
+def of_which() -> dict[str, float]:
+    """How many."""
+    wrong = 0
+    for contrast, points, enforcement, expected in OF_WHICH:
+        more = "" if enforcement == "points" else ', enforcement = "knots"'
+        problem = column(contrast, "plane", more)
+        (body, *others), rule = problem.bodies, json.loads(points)
+        said = " ".join(Simulation(replace(problem, bodies=(replace(body, quadrature=tuple(rule)), *others))).doubts())
+        found = "forces at its control points are off" in said, "pressures are off" in said
+        wrong += sum(one != other for one, other in zip(found, expected, strict=True))
+    return {"wrong": float(wrong)}
