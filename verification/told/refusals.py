@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from told.either_way import RESTING, SCENE
+from told.either_way import PRESSED, RESTING, SCENE
 from told.word_by_word import refused
 from told.wrong.doubts import DOME, HOLLOW
 
@@ -108,6 +108,8 @@ CASES: tuple[tuple[str, tuple[str, ...], str], ...] = (
     (SCENE, ("contacts c.friction=0.1",), "is not of the form KEY=VALUE"),
     (SCENE, ("contacts.c.friction=0,1",), "is not a TOML value"),
     (SCENE, ("contacts.c.friction=[0,\n1]",), "more than one line"),
+    (PRESSED, ("stages.one.motions.top={translate=[0.01,0,0]}",), ""),
+    *((PRESSED, (f"stages.one.motions.top={{translate=[0,0,{way}]}}",), "along z, where supports.top.force does") for way in (0.01, -0.01)),
     (RESTING, (loaded("below.u0", "pressure=0.1"),), ""),
     (THROUGHOUT, (loaded("below.u0", "pressure=0.1"),), "prescribes all components or their forces"),
 )
