@@ -15,7 +15,8 @@ STEPS, TIMES = 5, 7
 
 
 @case(
-    claim="Each load step is told its own CPU seconds, by phase and those of none, and its own counts; all add up to what has passed.",
+    claim="Each load step is told its own CPU seconds, by phase and those of none, its own counts, and its largest sizes; all add up "
+    "to what has passed.",
     tier="gate",
     bounds={
         "seconds": Bound(at_most=1e-12, reason="round-off: of differences of times of some thousand seconds"),
@@ -32,6 +33,9 @@ def timed() -> dict[str, float]:
             solves = int(random.integers(1, 9))
             ledger.counts["solves"] += solves
             ledger.work[0] += 2 * solves
+            sizes = random.integers(1, 1000, 3).tolist()
+            for size in sizes:
+                ledger.largest(timing.SIZES[0], size)
             for name in random.choice(timing.PHASES, TIMES):
                 between, within = random.uniform(1.0, 20.0, 2)
                 now += between
@@ -42,6 +46,7 @@ def timed() -> dict[str, float]:
             expected["total"] = sum(expected.values())
             seconds, counts = ledger.take()
             wrong += seconds.keys() != expected.keys() or (counts["solves"], counts[next(iter(WORK))]) != (solves, 2 * solves)
+            wrong += [counts[name] for name in timing.SIZES] != [np.max(sizes), 0]
             differences = [abs(seconds.get(name, np.nan) - value) for name, value in expected.items()]
             worst = float(np.maximum(worst, np.max(differences) / expected["total"]))
     return {"seconds": worst, "counts": float(wrong)}
