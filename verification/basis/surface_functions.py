@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from isomortar import _bindings
-from isomortar.geometry.patch import Family, FloatArray, Patch
+from isomortar.geometry.patch import Family, FloatArray, IntArray, Patch
 from isomortar.geometry.primitives import box
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import LAGRANGE, NURBS, Bound, case
@@ -46,3 +48,25 @@ def partition_of_unity(kind: str) -> dict[str, float]:
 def non_negative(kind: str) -> dict[str, float]:
     """Smallest value of any function at any point."""
     return {"smallest": float(functions(kind).min())}
+
+
+@case(
+    claim="Functions of weights that hardly differ are those of these weights, and of one weight everywhere those without any.",
+    tier="gate",
+    grid={"share": (0.0, 1e-9, 1e-6, 1e-3, 0.1)},
+    bounds={"error": Bound(at_most=50 * EPSILON, reason="round-off: of quotients of sums, against polynomials and their weights")},
+)
+def nearly_alike(share: float) -> dict[str, float]:
+    """Largest difference from w_i N_i over the sum of all of these."""
+    meshed = mesh(box((0, 0, 0), (1, 1, 1)), ("N",) * 3, (2, 2, 2), (4, 3, 1))
+    weights = 0.7 * (1.0 + share * np.random.default_rng(5).uniform(0.0, 1.0, len(meshed.weights)))
+    points = np.random.default_rng(6).uniform(0.0, 1.0, (40, 2)) * [meshed.directions[k].boundaries[-1] for k in (0, 1)]
+
+    def values(weights: FloatArray) -> tuple[IntArray, FloatArray]:
+        arrays = patch_arrays(replace(meshed, weights=weights), np.arange(len(weights), dtype=np.int32))
+        nodes, found = _bindings.surface_functions(arrays, 3, 1, points)
+        return nodes, found[:, 0]
+
+    nodes, found = values(weights)
+    exact = values(np.ones(len(weights)))[1] * weights[meshed.face_points("w1")[nodes]]
+    return {"error": float(np.abs(found - exact / exact.sum(axis=1, keepdims=True)).max())}

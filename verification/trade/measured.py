@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 import tempfile
 from pathlib import Path
+from unittest.mock import patch
 
 import numpy as np
 from rational_functions import shares
@@ -12,6 +14,7 @@ from isomortar.accuracy.sampling import slave_grid
 from isomortar.harness import Bound, case
 from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
+from isomortar.solve import timing
 from isomortar.trade import run as trades
 
 #: Half of a bowl that is pressed onto a plane and dragged along it; a wall that it does not reach.
@@ -57,18 +60,20 @@ def measured() -> dict[str, float]:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "scene.toml"
         path.write_text(SCENE, encoding="utf-8")
-        run = trades.traded.function(str(path))
+        with patch.object(timing, "process_time", itertools.count().__next__):
+            run = trades.traded.function(str(path))
     scene = Scene.from_toml(SCENE)
     problem = scene.problem()
-    steps = list(Simulation(problem).run())
+    with patch.object(timing, "process_time", itertools.count().__next__):
+        steps = list(Simulation(problem).run())
     told = {name: [[getattr(s.reactions[n], name) for s in steps] for n in range(len(problem.supports))] for name in ("force", "moment")}
     told["displacement"] = [[s.reactions[n].displacement for s in steps] for n in range(len(problem.supports))]
     grids = [slave_grid(scene, problem, number) for number in range(2)]
     fields, areas = [], []
     for number, (contact, grid) in enumerate(zip(problem.contacts, grids, strict=True)):
-        patch = problem.body("bowl").patch
-        face = patch.face_points(contact.slave.face)
-        at = shares(patch.face_directions(contact.slave.face), patch.weights[face], _places(grid.places))
+        body = problem.body("bowl").patch
+        face = body.face_points(contact.slave.face)
+        at = shares(body.face_directions(contact.slave.face), body.weights[face], _places(grid.places))
         pressures = [at @ s.state.contacts[number].pressure for s in steps]
         fields.append((pressures[-1], at @ steps[-1].contacts[number].traction_norm, at @ steps[-1].state.positions[face][:, 2]))
         areas.append([2.0 * grid.weights[p > 0.0].sum() for p in pressures])
@@ -80,6 +85,7 @@ def measured() -> dict[str, float]:
         "unknowns": steps[-1].state.positions.size,
         "solves": sum(s.counters["solves"] for s in steps),
         "cuts": sum(s.cuts for s in steps),
+        "phases": [sum(s.timings[name] for s in steps) for name in timing.PHASES],
     }
     return {
         "curves": float(np.max([np.abs(run["time"] - TIMES).max(), *(np.abs(np.array(run[name]) - told[name]).max() for name in told)])),
