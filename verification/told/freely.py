@@ -31,7 +31,7 @@ ALONG = {"(1, 0, 0)": (2.0, 0.0, 0.0), "(0, 1, 0)": (0.0, -3.0, 0.0), "(0, -0.5,
     grid={"size": (1e-3, 1.0, 1e3), "away": (0.0, 1e3)},
     bounds={"wrong": Bound(0.0, 0.0, "definition: motions in closed form of which something else is said")},
 )
-def freely(size: float, away: float) -> dict[str, float]:
+def goes_freely(size: float, away: float) -> dict[str, float]:
     """How many."""
     place = away * size
     problem = Scene.from_toml(SCENE.format(place=place, end=place + size, size=size)).problem()
