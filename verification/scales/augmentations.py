@@ -11,6 +11,7 @@ from isomortar.errors import ConvergenceError
 from isomortar.harness import Bound, case
 from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
+from isomortar.scene import Scene
 from isomortar.solve.record import StepResult
 
 _TOLERANCE = (
@@ -91,3 +92,38 @@ def digits(master: str, tolerance: float) -> dict[str, float]:
     problem = at_few_points(bowl(master))
     settings = replace(problem.settings, penalty_normal=1e3, penalty_tangential=1e2)
     return against_monolithic(replace(problem, settings=settings), tolerance)
+
+
+#: A bowl that is pressed onto a plane and pushed along it, with penalties that are small.
+SOFTLY = """
+format = 1
+bodies.bowl.geometry = { kind = "bowl", half_width = 0.5, bottom = 0, rise = 0.1, top = 0.5 }
+bodies.bowl.mesh = { order = [2, 2, 1], elements = [4, 4, 1] }
+contacts.floor = { slave = "bowl.w0", plane = { point = [0, 0, 0] }, friction = 0.3 }
+supports.top.face = "bowl.w1"
+stages = [{ name = "press", steps = 1, motions.top.translate = [0.01, 0, -0.04] }]
+solver = { max_augmentations = 400, max_cuts = 0 }
+"""
+
+
+@case(
+    claim="Augmentations that change little, as by small penalties, go on until contact conditions are met within their tolerance.",
+    tier="gate",
+    grid={"penalty": (0.1, 0.01)},
+    bounds={
+        "off": Bound(at_most=0.01, reason="definition: solver.augmentation_tolerance, of the force that the monolithic method finds"),
+        "augmentations": Bound(at_least=20.0, reason="definition: by larger penalties half as many are enough"),
+    },
+)
+def by_small_penalties(penalty: float) -> dict[str, float]:
+    """Largest component that a force is off by, over the force; how many augmentations that took."""
+    small = [f"solver.penalty_{way}={penalty}" for way in ("normal", "tangential")]
+    found, exact = (
+        list(Simulation(Scene.from_toml(SOFTLY, overrides=[f"solver.method='{method}'", *more]).problem()).run())[-1]
+        for method, more in (("uzawa", small), ("monolithic", []))
+    )
+    force = exact.reactions[0].force
+    return {
+        "off": float(np.abs(found.reactions[0].force - force).max() / np.linalg.norm(force)),
+        "augmentations": float(len(found.augmentations)),
+    }
