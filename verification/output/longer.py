@@ -53,6 +53,8 @@ CHANGES: dict[str, Callable[[Problem], Problem]] = {
     "longer": lambda p: stretched(p, 6, 2.0, 2.0),
     "longer by a third": lambda p: stretched(p, 4, 4 / 3, 4 / 3),
     "longer, and a stage more": lambda p: extended(stretched(p, 6, 2.0, 2.0), 2),
+    "longer, motions a little faster": lambda p: stretched(p, 6, 2.0 * (1.0 + 1e-8), 2.0),
+    "longer, loads a little more": lambda p: stretched(p, 6, 2.0, 2.0 * (1.0 + 1e-8)),
     "a stage more": lambda p: extended(p, 2),
     "slower": lambda p: stretched(p, 6, 1.0, 2.0),
     "loads slower": lambda p: stretched(p, 6, 2.0, 1.0),

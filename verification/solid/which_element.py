@@ -53,3 +53,38 @@ def which_element(size: str) -> dict[str, float]:
             except FoldedElementError as error:
                 other[number] += error.place != e
     return {"other": float(other[0]), "of volumes": float(other[1])}
+
+
+#: Gauss points of an element along a direction.
+GAUSS = np.polynomial.legendre.leggauss(3)[0] / 2.0 + 0.5
+
+
+@case(
+    claim="A body that is folded at rest is refused wherever in an element that is: at each of its corners alone, by the J that is least.",
+    tier="gate",
+    bounds={
+        "taken": Bound(0.0, 0.0, "definition: corners of which nothing is said"),
+        "least": Bound(at_most=5e-3, reason="round-off: three digits as text"),
+        "alone": Bound(0.0, 0.0, "definition: corners at which more than one Gauss point is folded"),
+    },
+)
+def each_corner() -> dict[str, float]:
+    """How many of eight; largest relative difference of what is told from the least J at the Gauss points; wrong scenes."""
+    patch, taken, least, alone = mesh(CUBE, ("L", "L", "L"), (1, 1, 1), (1, 1, 1)), 0, [0.0], 0
+    places = np.stack(np.meshgrid(GAUSS, GAUSS, GAUSS, indexing="ij"), axis=-1).reshape(-1, 3)
+    corners = np.array([[k & 1, k >> 1 & 1, k >> 2] for k in range(8)])
+    shares = np.prod(np.where(corners == 1, places[:, None], 1.0 - places[:, None]), axis=-1)
+    signs = 2.0 * corners - 1.0
+    slopes = np.stack([shares * signs[:, j] / np.where(corners[:, j] == 1, places[:, None, j], 1.0 - places[:, None, j]) for j in range(3)])
+    for k, corner in enumerate(corners):
+        positions = patch.control_points.copy()
+        positions[k] -= 0.5 * (2.0 * corner - 1.0)
+        exact = np.linalg.det(np.einsum("jqa,ac->qcj", slopes, positions))
+        alone += np.count_nonzero(exact <= 0.0) != 1
+        try:
+            volumes(patch, positions)
+            taken += 1
+        except FoldedElementError as error:
+            told = float(str(error).partition("J = ")[2].partition(")")[0])
+            least.append(abs(told / float(exact.min()) - 1.0))
+    return {"taken": float(taken), "least": float(np.max(least)), "alone": float(alone)}

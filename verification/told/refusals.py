@@ -45,6 +45,28 @@ _PAPER = "solver.slip_sum='paper'"
 _RAISED = "bodies.above.mesh={order=2,elements=2,contact_order=3}"
 _TWO = "supports.top.components=['x','z']"
 
+#: Half of a body that one plane cuts at its middle, with its first direction in two elements, of which one ends at a knot.
+CUT = """
+format = 1
+symmetry = {{ x = 0 }}
+[bodies.b.patch]
+order = [2, 1, 1]
+knots = [[0, 0, 0, {}, 1, 1, 1], [0, 0, 1, 1], [0, 0, 1, 1]]
+control_points = [
+  [-1, 0, 0], [-0.5, 0, 0], [0.5, 0, 0], [1, 0, 0], [-1, 1, 0], [-0.5, 1, 0], [0.5, 1, 0], [1, 1, 0],
+  [-1, 0, 1], [-0.5, 0, 1], [0.5, 0, 1], [1, 0, 1], [-1, 1, 1], [-0.5, 1, 1], [0.5, 1, 1], [1, 1, 1],
+]
+[contacts.c]
+slave = "b.w0"
+plane = {{ point = [0, 0, 0] }}
+[supports.top]
+face = "b.w1"
+[[stages]]
+name = "press"
+steps = 1
+motions.top.translate = [0, 0, -0.01]
+"""
+
 
 def far(place: float) -> str:
     """The scene with a third body at a place."""
@@ -110,6 +132,8 @@ CASES: tuple[tuple[str, tuple[str, ...], str], ...] = (
     (SCENE, ("contacts.c.friction=[0,\n1]",), "more than one line"),
     (PRESSED, ("stages.one.motions.top={translate=[0.01,0,0]}",), ""),
     *((PRESSED, (f"stages.one.motions.top={{translate=[0,0,{way}]}}",), "along z, where supports.top.force does") for way in (0.01, -0.01)),
+    (CUT.format(0.5), (), ""),
+    (CUT.format(0.4), (), "is not its own mirror image in the plane x = 0"),
     (RESTING, (loaded("below.u0", "pressure=0.1"),), ""),
     (THROUGHOUT, (loaded("below.u0", "pressure=0.1"),), "prescribes all components or their forces"),
 )

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 from solid.too_few_points import in_turn
+from told.word_by_word import refused
 
 from isomortar.harness import Bound, case
 from isomortar.march.simulation import Simulation
@@ -33,17 +34,20 @@ MASTERS = {"plane": "plane = {}", "block": 'master = "block.w1"'}
 
 def column(contrast: float, master: str, more: str = "") -> Problem:
     """The problem; `more`: keys of its contact."""
+    return Scene.from_toml(written(contrast, master, more)).problem()
+
+
+def written(contrast: float, master: str, more: str = "") -> str:
+    """The scene."""
     patch = in_turn(contrast).patch
-    return Scene.from_toml(
-        SCENE.format(
-            knots=[direction.knots.tolist() for direction in patch.directions],
-            points=patch.control_points.tolist(),
-            weights=patch.weights.tolist(),
-            elements=3,
-            master=MASTERS[master],
-            more=more,
-        )
-    ).problem()
+    return SCENE.format(
+        knots=[direction.knots.tolist() for direction in patch.directions],
+        points=patch.control_points.tolist(),
+        weights=patch.weights.tolist(),
+        elements=3,
+        master=MASTERS[master],
+        more=more,
+    )
 
 
 def off(problem: Problem) -> float:
@@ -133,4 +137,30 @@ def of_which() -> dict[str, float]:
         said = " ".join(Simulation(replace(problem, bodies=(replace(body, quadrature=tuple(rule)), *others))).doubts())
         found = "forces at its control points are off" in said, "pressures are off" in said
         wrong += sum(one != other for one, other in zip(found, expected, strict=True))
+    return {"wrong": float(wrong)}
+
+
+#: Contrasts of weights, other changes, and what the body is refused with; none: it is taken.
+REFUSED: tuple[tuple[float, list[str], str], ...] = (
+    (12.0, [], ""),
+    (30.0, [], "Take bodies.column.mesh.quadrature = [16, 16, 8] and as many in its contacts, or bring the weights nearer"),
+    (100.0, [], "Take bodies.column.mesh.quadrature = [32, 32, 16] and as many in its contacts, or bring the weights nearer"),
+    (100.0, ["bodies.column.mesh.elements=[4,4,4]"], "about 25 %. Bring the weights nearer"),
+    (300.0, [], "about 23 %. Bring the weights nearer"),
+    (1e6, [], "about 24 %. Bring the weights nearer"),
+)
+
+
+@case(
+    claim="Bodies whose weights differ far too much for their points are refused, with as many points as would do, where these are not too "
+    "many.",
+    tier="gate",
+    bounds={"wrong": Bound(0.0, 0.0, "definition: bodies that are taken or refused and should not be, and wrong cures")},
+)
+def of_bodies() -> dict[str, float]:
+    """How many."""
+    wrong = 0
+    for contrast, changes, words in REFUSED:
+        said = refused(written(contrast, "plane"), "bodies.column.mesh.quadrature=[4,4,2]", *changes)
+        wrong += bool(said) != bool(words) or words not in said
     return {"wrong": float(wrong)}
