@@ -31,8 +31,8 @@ KNOTS: tuple[tuple[Family, int, list[float], str], ...] = (
     ("L", 1, [0, 2, 1], "must increase strictly"),
     ("L", 4, [0, 1], ""),
     ("L", 5, [0, 1], "allowed for L: 1 to 4"),
-    ("N", 10, [0] * 11 + [1] * 11, ""),
-    ("N", 11, [0] * 12 + [1] * 12, "allowed for N: 1 to 10"),
+    ("N", 10, [0.0] * 11 + [1.0] * 11, ""),
+    ("N", 11, [0.0] * 12 + [1.0] * 12, "allowed for N: 1 to 10"),
     ("N", 0, [0, 1], "allowed for N: 1 to 10"),
 )
 
