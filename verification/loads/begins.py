@@ -158,6 +158,24 @@ def side_by_side(rollers: int, method: str) -> dict[str, float]:
     return {name: float(np.abs(values).max() / mean) for name, values in left.items()} | {"cuts": float(sum(step.cuts for step in steps))}
 
 
+@case(
+    claim="Rollers that supports hold first, and let go, begin between two bodies in the stage in which these alone hold them.",
+    tier="gate",
+    bounds={"between": Bound(at_most=1e-6, reason="definition: each bears below what it bears above, to the tolerance of balance")} | CUTS,
+)
+def let_go() -> dict[str, float]:
+    """Differences of forces above and below, over the mean; cuts of load increments."""
+    held = 'supports.NAME = { face = "NAME.w0", stages = ["hold"] }\n'
+    rollers = ((_BETWEEN_PLATES + held).replace("NAME", f"r{k}").replace("AT", str(x)) for k, x in enumerate(_PLACES[2]))
+    plates = _PLATES.replace("stages = [", 'stages = [{ name = "hold", steps = 1 }, ')
+    plates = plates.replace("supports = { top.face", "supports.top.face").replace(
+        ', base.face = "floor.w0" }', '\nsupports.base.face = "floor.w0"'
+    )
+    steps = computed(plates + "".join(rollers), "monolithic")
+    forces = np.array([contact.force_slave[2] for contact in steps[-1].contacts]).reshape(-1, 2)
+    return {"between": float(np.abs(forces.sum(axis=1)).max() / np.abs(forces).mean()), "cuts": float(sum(step.cuts for step in steps))}
+
+
 #: A block that its base leaves free along x, and a wall beside it; a tool may hold it by friction.
 _BESIDE = """
 format = 1
