@@ -114,3 +114,39 @@ def variants() -> dict[str, float]:
             own, body = (of.problem().body("base") for of in (scene, rigid))
             otherwise += not body.rigid or not np.array_equal(own.patch.control_points, body.patch.control_points)
     return {"offered": float(offered), "otherwise": float(otherwise)}
+
+
+#: What is changed of the scene, and dials of it that are not offered then.
+LACKING: tuple[tuple[tuple[str, ...], set[str]], ...] = (
+    (("bodies.base.rigid=true",), {"quadrature of base"}),
+    (("bodies.base.mesh.contact_order=3",), {"order at the contact of base"}),
+)
+#: Points of either contact, of one of them in subcells; those that follow from orders, and from the finer elements of a master.
+POINTS = (
+    ("contacts.between.quadrature=[5,6]", "contacts.between.subcells=2", "contacts.side.quadrature=[7,8]"),
+    (),
+    ("bodies.base.mesh.elements=[12,12,2]",),
+)
+
+
+@case(
+    claim="Dials turn what a scene has: no points of rigid bodies, no order at a contact that has one of its own; and of each contact the "
+    "points that it has, in the subcells that it has.",
+    tier="gate",
+    bounds={
+        "wrong": Bound(0.0, 0.0, "definition: dials that are missing, or too many; contacts with other points than their own and two more")
+    },
+)
+def of_what_there_is() -> dict[str, float]:
+    """How many."""
+    every, wrong = {dial.name for dial in all_of(Scene.from_toml(SCENE), KNOBS)}, 0
+    for changes, lacking in LACKING:
+        wrong += len({dial.name for dial in all_of(Scene.from_toml(SCENE, overrides=changes), KNOBS)} ^ (every - lacking))
+    for changes in POINTS:
+        scene = Scene.from_toml(SCENE, overrides=changes)
+        for k, own in enumerate(scene.whole().contacts):
+            (dial,) = (dial for dial in all_of(scene, KNOBS) if dial.name == f"quadrature of {own.name}")
+            (more,) = (setting for setting in dial.settings if setting.label == "+2")
+            found = changed(scene, [more]).whole().contacts[k]
+            wrong += (found.quadrature, found.subcells) != (tuple(n + 2 for n in own.quadrature), own.subcells)
+    return {"wrong": float(wrong)}
