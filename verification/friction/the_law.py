@@ -204,6 +204,34 @@ def no_number(of: str, law: str) -> dict[str, float]:
     return {"wrong": float(np.sum(pressures != (none & (of in ("gap", "pressure")))) + np.sum(tractions != none))}
 
 
+#: Share of its functions that a control point has over the master, up to which it has as good as none.
+LEAST_WEIGHT = 1e-10
+
+
+@case(
+    claim="A control point with next to nothing of its functions over the master bears nothing, and one with a little more does.",
+    tier="gate",
+    grid={"summed": (False, True)},
+    bounds={
+        "wrong": Bound(0.0, 0.0, "definition: control points on either side of the least share that are open or closed and should not be")
+    },
+)
+def next_to_no_weight(summed: bool) -> dict[str, float]:
+    """How many, where each would press."""
+    pair = Equilibrium(bowl("plane"), Ledger()).pairs[0].pair
+    random, n = np.random.default_rng(19), len(pair.slave.point)
+    whole = np.zeros(n)
+    element = np.repeat(pair.slave.test.nodes, pair.slave.per_element, axis=0)
+    np.add.at(whole, element, pair.slave.test.values * pair.slave.area[:, None])
+    share = np.where(np.arange(n) % 2 == 0, 0.9, 1.1)
+    weight, metric = LEAST_WEIGHT * share * whole, metrics(random, n)
+    control = Control(weight, np.ones(n), 0.01 * weight, np.zeros((n, 2)), metric, metrics(random, len(pair.slave.area)))
+    stays, free = np.zeros(n, dtype=np.int32), np.tile(np.eye(2), (n, 1, 1))
+    made = Law(PENALTIES, NONE, np.ones(n), np.zeros((n, 2)), summed, np.ones(n, dtype=np.int32), free, stays)
+    closed = _bindings.augmented_multipliers(pair.slave, control, made).pressure > 0.0
+    return {"wrong": float(np.count_nonzero(closed != (share > 1.0)))}
+
+
 def metrics(random: np.random.Generator, count: int) -> FloatArray:
     """Positive definite metrics 11, 12, 22 of size one, not diagonal, shape (count, 3)."""
     tangents = np.eye(2) + 0.3 * random.standard_normal((count, 2, 2))
