@@ -10,6 +10,7 @@ from told.runs import Heard
 from isomortar.harness import Bound, case
 from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
+from isomortar.told.during import narrow
 
 #: A block under something rigid, which is pressed into it.
 SCENE = """
@@ -389,3 +390,34 @@ def told_otherwise(enforcement: str) -> dict[str, float]:
             off.append(abs(force / true[way] - 1.0))
     about, worst = np.array(told or [(np.nan, np.nan)]).T
     return {"said": float(len(off)), "worst": float(np.max(off / worst)), "mean": float(np.mean(about) / np.mean(off))}
+
+
+#: Rows that bear along each coordinate, of how many, whether a pole goes round it, and the coordinates along which more elements are named.
+FEW = (
+    ((1.5, 1.5), (9, 9), (False, False), "u and v"),
+    ((1.5, 6.0), (9, 9), (False, False), "u"),
+    ((6.0, 1.5), (9, 9), (False, False), "v"),
+    ((1.5, 2.0), (9, 2), (False, False), "u"),
+    ((2.0, 1.5), (2, 9), (False, False), "v"),
+    ((1.5, 2.0), (9, 3), (False, False), "u and v"),
+    ((2.4, 2.6), (9, 9), (False, False), "u"),
+    ((3.0, 3.5), (9, 9), (False, False), "u"),
+    ((8.0, 8.0), (9, 9), (True, False), "v"),
+    ((8.0, 8.0), (9, 9), (False, True), "u"),
+)
+
+
+@case(
+    claim="Of a contact that is too narrow more elements are named along the coordinates along which few rows bear it, and not along one "
+    "all of whose rows do, nor round a pole.",
+    tier="gate",
+    bounds={"wrong": Bound(0.0, 0.0, "definition: coordinates that are others, of ten ways to bear")},
+)
+def along_which() -> dict[str, float]:
+    """How many."""
+    problem, wrong = Scene.load("press").problem(), 0
+    for rows, counts, poles, along in FEW:
+        found = narrow.Bearing(np.array(rows), counts, np.full(2, 4.0), (False, False), poles, 0.0, 0.0)
+        said = narrow._told(problem, problem.contacts[0], found, 1)
+        wrong += f"many elements or more along {along} (" not in said
+    return {"wrong": float(wrong)}
