@@ -421,3 +421,33 @@ def along_which() -> dict[str, float]:
         said = narrow._told(problem, problem.contacts[0], found, 1)
         wrong += f"many elements or more along {along} (" not in said
     return {"wrong": float(wrong)}
+
+
+#: A bowl on a plane, of which what is beyond a plane may be left out.
+PARTS = """
+format = 1
+PLANES
+solver.method = "uzawa"
+bodies.bowl = { geometry = { kind = "bowl", half_width = 0.5, bottom = 0, rise = 0.1, top = 0.5 }, mesh = { order = 2, elements = 4 } }
+contacts.c = { slave = "bowl.w0", plane = {}, friction = 0, enforcement = "KIND" }
+supports.top.face = "bowl.w1"
+stages = [{ name = "press", steps = 1, motions.top.translate = [0, 0, -0.01] }]
+"""
+#: Rows below which a contact is too narrow, where elements have two rows along one coordinate and six along the other.
+LEAST = {"mortar": (1.3, 1.3), "knots": (1.3, 1.3), "dual": (2.02, 2.02), "kts": (1.3, 3.0)}
+
+
+@case(
+    claim="By dual functions and at Gauss points more rows are too few than by others, but for parts of a body beside a mirror.",
+    tier="gate",
+    grid={"enforcement": tuple(LEAST)},
+    bounds={"wrong": Bound(0.0, 0.0, "definition: of the whole, a half and a quarter those with other numbers of rows")},
+)
+def too_few(enforcement: str) -> dict[str, float]:
+    """How many."""
+    wrong = 0
+    for planes in ("", "symmetry = { x = 0 }", "symmetry = { x = 0, y = 0 }"):
+        problem = Scene.from_toml(PARTS.replace("KIND", enforcement).replace("PLANES", planes)).problem()
+        least = narrow._least(problem, problem.contacts[0], np.array([2.0, 6.0]))
+        wrong += least.tolist() != list(LEAST["mortar" if planes else enforcement])
+    return {"wrong": float(wrong)}
