@@ -71,7 +71,7 @@ def lowered(direction: Direction, order: int) -> Direction:
         return direction
     lines, counts = np.unique(direction.knots, return_counts=True)
     left = counts - (direction.order - order)
-    if direction.family != "N" or not 1 <= order < direction.order or np.any(left < 1):
+    if not 1 <= order < direction.order or np.any(left < 1):  # of Lagrange elements none is left
         raise InputError(
             f"no direction of order {order} comes to one of order {direction.order} ({direction.family}) with these knots by raising it"
         )
