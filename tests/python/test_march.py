@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from isomortar import run
-from isomortar.errors import ConvergenceError
+from isomortar.errors import ConvergenceError, InputError
 from isomortar.march.simulation import Simulation
 from isomortar.model import constants
 from isomortar.model.constants import EASY_ITERATIONS, HARD_TANGENTS
@@ -266,6 +266,13 @@ def test_a_path_tolerance_takes_halves_one_after_the_other():
         assert whole is first
         assert np.array_equal(second.positions, method.ends[k + 1])
         assert np.array_equal(results[k // 3].state.positions, method.ends[k + 2])
+
+
+@pytest.mark.parametrize("other", [Scene.from_toml(SCENE), SCENE, None])
+def test_what_is_no_problem_is_refused_by_name(other):
+    """A scene is not one, but gives it."""
+    with pytest.raises(InputError, match=r"problem: is .*; allowed: Problem"):
+        Simulation(other)
 
 
 def test_every_step_bears_the_name_of_its_stage():

@@ -43,8 +43,10 @@ def of_a_file(run: Path, results: Results) -> list[Asked]:
         (lambda: plot(run, run.parent / "drawn", x="strain"), "strain"),
         (lambda: film(run, run.parent / "run.gif"), "holds 1 state of a load step, and a film needs two"),
         (lambda: film(run, run.parent / "run.avi"), "is 'run.avi'; allowed: a name that ends in .gif or .webp or .mp4"),
-        (lambda: film(run, run.parent / "run.gif", every=0), "is 0 and 8; allowed: 1 and more, and 0.01 to 100 a second"),
-        (lambda: film(run, run.parent / "run.gif", rate=101.0), "is 1 and 101; allowed"),
+        (lambda: film(run, run.parent / "run.gif", every=0), "every: is 0; allowed: a whole number from 1 to 1000000"),
+        (lambda: film(run, run.parent / "run.gif", every=1.5), "every: is 1.5; allowed: a whole number"),  # type: ignore[arg-type]
+        (lambda: film(run, run.parent / "run.gif", rate=101.0), "rate: is 101.0; allowed: a number from 0.01 to 100"),
+        (lambda: film(run, run.parent / "run.gif", rate="8"), "rate: is '8'; allowed: a number"),  # type: ignore[arg-type]
         (lambda: Results(run.parent), "is a folder: name the results file in it"),
         (lambda: Results(run.parent / "none.h5"), "none.h5 does not exist: run the scene first"),
         (lambda: Results(run.parent / "cut.h5"), "cut.h5 is damaged"),

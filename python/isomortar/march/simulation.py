@@ -32,6 +32,7 @@ class Simulation:
     Parameters
     ----------
     problem : Problem
+        That of a scene is `Scene.problem()`.
     observer : Observer, optional
         Watches iterations, augmentations, cuts and recorded steps, and hears warnings; without one nobody does.
     resume_from : StepResult, optional

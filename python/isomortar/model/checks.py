@@ -10,6 +10,7 @@ from itertools import combinations
 import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
+from isomortar._arguments import kind
 from isomortar.errors import FoldedElementError, InputError
 from isomortar.geometry.patch import FloatArray
 from isomortar.geometry.refinement import surface_samples
@@ -44,12 +45,13 @@ def check(problem: Problem) -> None:
     Raises
     ------
     InputError
-        Settings of the solver that are not allowed; units that no number holds; left-handed bodies; more memory than there is; glue of
-        faces that do not conform; a support that turns too often in a load step, goes or turns too far from the origin, goes by motion
-        and by force at once, moves where it does not hold, or has a moment and no face to turn; a rigid body that supports contradict
-        each other on, leave components to, or release; a body that nothing holds; supports that contradict each other; contacts and loads
-        that cannot be meant, or are absurdly large; too few Gauss points for a body's weights.
+        No problem; settings of the solver that are not allowed; units that no number holds; left-handed bodies; more memory than
+        there is; glue of faces that do not conform; a support that turns too often in a load step, goes or turns too far from the
+        origin, goes by motion and by force at once, moves where it does not hold, or has a moment and no face to turn; a rigid body
+        that supports contradict each other on, leave components to, or release; a body that nothing holds; supports that contradict
+        each other; contacts and loads that cannot be meant, or are absurdly large; too few Gauss points for a body's weights.
     """
+    kind("problem", problem, Problem)
     _check_settings(problem.settings)
     for body in problem.bodies:
         _check_units(body)

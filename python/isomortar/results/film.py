@@ -10,6 +10,7 @@ from typing import Any
 
 from PIL import Image
 
+from isomortar._arguments import real, whole
 from isomortar.errors import InputError, ResultsError
 from isomortar.results.bodies import common_scale, draw_bodies
 from isomortar.results.files import place_for, writing
@@ -22,6 +23,8 @@ from isomortar.solve.record import StepResult
 FORMATS = {".gif": "GIF", ".webp": "WEBP", ".mp4": "MP4"}
 #: Fewest and most pictures a second: files hold how long each is shown, and not more than some minutes of it.
 RATES = (0.01, 100.0)
+#: One load step in so many is asked for at the most: runs are shorter.
+FEWEST = 1_000_000
 #: Pixels per inch: 8.6 inches are as wide as most windows.
 DENSITY = 110
 
@@ -59,7 +62,7 @@ def film(
     Raises
     ------
     InputError
-        There is no such contact, or no such type of film; `every` is too small, or `rate` too small or too large.
+        There is no such contact, or no such type of film; `every` is no whole number or too small, or `rate` too small or too large.
     ResultsError
         The results file is missing, damaged, or holds too few states; or there is a results file in the film's place, or it cannot be
         written.
@@ -68,8 +71,8 @@ def film(
     if path.suffix not in FORMATS:
         raise InputError(f"is {path.name!r}; allowed: a name that ends in {' or '.join(FORMATS)}", "output")
     encoder = optional("imageio_ffmpeg", "output", "mp4") if path.suffix == ".mp4" else None
-    if every < 1 or not RATES[0] <= rate <= RATES[1]:
-        raise InputError(f"is {every} and {rate:g}; allowed: 1 and more, and {RATES[0]:g} to {RATES[1]:g} a second", "every, rate")
+    whole("every", every, 1, FEWEST)
+    real("rate", rate, lambda value: RATES[0] <= value <= RATES[1], f"a number from {RATES[0]:g} to {RATES[1]:g}")
     with Results(results_path) as results, style():
         number = _number(results, contact)
         shown = _shown(results, every)
