@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from told.too_steep import said
+from told.wrong.contacts import PAIR
 from transforms import scaled
 
 from isomortar.errors import InputError
@@ -10,6 +11,7 @@ from isomortar.harness import Bound, case
 from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
 from isomortar.told.after.averages_apart import averages_apart
+from isomortar.told.before.left_out import of_what_is_left_out
 
 #: A block on one that is held, another one on that, and one that is glued to that.
 SCENE = """
@@ -111,3 +113,39 @@ def points_at_master(unit: float) -> dict[str, float]:
         told = [sentence for sentence in averages_apart(simulation.equilibrium, simulation.state) if "contact 'floor'" in sentence]
         wrong += len(told) != is_told
     return {"wrong": float(wrong)}
+
+
+BASE_SUPPORT, BLOCK_BELOW = '[supports.base]\nface = "lower.w0"', 'kind = "box", lower = [-1, -1, -1], upper = [1, 1, 0]'
+UNHELD = PAIR.replace(BASE_SUPPORT, "")
+#: The same on the inner face of a part of a pipe, whose normals are up to 30 degrees from the middle one, and on half of a pipe.
+HOLLOW = UNHELD.replace(BLOCK_BELOW, 'kind = "ring", inner = 1, outer = 2, width = 2, axis = "y", angles = [60, 120]').replace(
+    "lower.w1", "lower.v0"
+)
+#: A pair whose lower body the upper one is pushed on, and whether that is told to be held by nothing against it.
+PUSHED = (
+    (PAIR, False),
+    (UNHELD, True),
+    (UNHELD.replace("[supports.top]", "friction = 2\n[supports.top]"), True),
+    (UNHELD.replace("[supports.top]", "cohesion = 1\n[supports.top]"), False),
+    (UNHELD.replace("[supports.top]", '[supports.base]\nface = "lower.w0"\ncomponents = ["x", "y"]\n[supports.top]'), True),
+    (UNHELD.replace("[supports.top]", '[supports.base]\nedge = "lower.u0.w0"\ncomponents = ["z"]\n[supports.top]'), False),
+    (UNHELD.replace("[supports.top]", '[supports.base]\nface = "lower.w0"\ncomponents = ["x"]\nforce.z = 1\n[supports.top]'), False),
+    (UNHELD.replace("[supports.top]", '[loads.up]\nbody = "lower"\nweight = [0, 0, 1]\n[supports.top]'), False),
+    (UNHELD.replace("[supports.top]", '[contacts.under]\nslave = "lower.w0"\nplane.point = [0, 0, -1]\n[supports.top]'), False),
+    (UNHELD.replace("[bodies.lower]", "[bodies.lower]\nrigid = true"), False),
+    (HOLLOW.replace("[supports.top]", "friction = 1.5\n[supports.top]"), True),
+    (HOLLOW.replace("[supports.top]", "friction = 2\n[supports.top]"), False),
+    (HOLLOW.replace("[60, 120]", "[0, 180]"), False),
+)
+
+
+@case(
+    claim="Bodies that all of their contacts push one way are told that nothing holds them against it, and no others: those held, loaded, "
+    "between two contacts, round what pushes them, or kept by friction or cohesion.",
+    tier="gate",
+    bounds={"wrong": Bound(0.0, 0.0, "definition: scenes of which that is told and should not be, or the other way round")},
+)
+def pushed_one_way() -> dict[str, float]:
+    """How many of thirteen."""
+    told = [any("pushes it one way" in said for said in of_what_is_left_out(Scene.from_toml(text).whole())) for text, _ in PUSHED]
+    return {"wrong": float(sum(found != is_so for found, (_, is_so) in zip(told, PUSHED, strict=True)))}

@@ -195,6 +195,7 @@ DOUBTFUL = {
     "no contact": (PAIR, _INTERFACE, "", "nothing keeps them apart"),
     "no contact on the way": (PAIR.replace("-0.4, 0.0]", "-0.4, 0.05]"), _INTERFACE, "", "nothing keeps them apart"),
     "idle body": (PAIR, "[contacts.pair]", _ASIDE + "[contacts.pair]", "body 'aside' is in no contact, and nothing moves or loads it"),
+    "not held against": (PAIR, '[supports.base]\nface = "lower.w0"', "", "body 'lower': what it touches ('pair') pushes it one way"),
     "half a model": (PAIR.replace("-0.4, -0.4, 0.0]", "0, -0.4, 0]"), "[-1, -1, -1]", "[0, -1, -1]", "as halves of a whole do"),
     "half a ring": (_HALF, "", "", 'supports with components = ["x"] to arch.u0, arch.u1'),
     "slender elements": (PRESS, "elements = [2, 2, 1]", "elements = [2, 2, 40]", "take fewer along w, or more along u"),
