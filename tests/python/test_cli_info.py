@@ -56,15 +56,15 @@ def test_a_results_file_tells_what_it_holds(invoke: Invoke) -> None:
     short = [*settings(SMALL), "--set", "stages.press.steps=2"]
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("isomortar.results.writer.ResultsWriter.recorded", _until(1))
-        assert invoke("run", "press", *short, "--output", "half.h5")[0] == 3
-    code, out, _ = invoke("info", "half.h5")
+        assert invoke("run", "press", *short, "--output", "half a run.h5")[0] == 3
+    code, out, _ = invoke("info", "half a run.h5")
     assert code == 0
     assert out.splitlines()[1].startswith("1 of 2 load steps (press 1 of 2), 1 with their state; ")
-    assert out.splitlines()[-1] == "not at its end: isomortar run SCENE --resume --output half.h5 goes on"
-    assert invoke("run", "press", *short, "--output", "half.h5", "--resume")[0] == 0
-    code, out, _ = invoke("info", "half.h5", "--json")
+    assert out.splitlines()[-1] == "not at its end: isomortar run SCENE --resume --output 'half a run.h5' goes on"
+    assert invoke("run", "press", *short, "--output", "half a run.h5", "--resume")[0] == 0
+    code, out, _ = invoke("info", "half a run.h5", "--json")
     found = json.loads(out)
-    end = last("half.h5")
+    end = last("half a run.h5")
     assert (code, found["name"], found["recorded"], found["stages"]) == (0, "press", 2, {"press": [2, 2]})
     assert found["unknowns"] == json.loads(invoke("check", "press", *short, "--json")[1])["unknowns"]
     assert found["supports"] == [
@@ -81,10 +81,11 @@ def test_a_results_file_tells_what_it_holds(invoke: Invoke) -> None:
     assert (contact["name"], contact["active"], contact["slip"]) == ("floor", end.contacts[0].active, end.contacts[0].slip)
     assert contact["pressure"] == list(end.contacts[0].pressure_field)
     assert contact["penetration"] == max(end.contacts[0].gap)
-    text = invoke("info", "half.h5")[1]
+    text = invoke("info", "half a run.h5")[1]
     assert f"contact floor: {contact['active']} of {contact['constraints']} constraints active" in text
     assert "not at its end" not in text
     assert invoke("info", "none.h5")[0] == 1
+    assert "isomortar info 'half a run.h5' says what it holds" in invoke("check", "half a run.h5")[2]
 
 
 def test_a_results_file_tells_of_loads(invoke: Invoke) -> None:

@@ -6,6 +6,7 @@ import json
 from collections.abc import Iterator
 from dataclasses import asdict
 from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -186,7 +187,7 @@ def lines(found: Information, path: Path) -> Iterator[str]:
     for warning in found.warnings:
         yield f"warning: {warning}"
     if found.recorded < found.load_steps:
-        yield f"not at its end: isomortar run SCENE --resume --output {path} goes on"
+        yield f"not at its end: isomortar run SCENE --resume --output {quote(str(path))} goes on"
 
 
 def _row(numbers: tuple[float, ...]) -> str:

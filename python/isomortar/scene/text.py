@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import codecs
 from pathlib import Path
+from shlex import quote
 
 from isomortar.errors import InputError
 
@@ -32,7 +33,7 @@ def read_text(path: Path) -> str:
     """
     content = path.read_bytes().removeprefix(codecs.BOM_UTF8)
     if content.startswith(_RESULTS):
-        raise InputError(f"{path} is a results file, and no text: isomortar info {path} says what it holds")
+        raise InputError(f"{path} is a results file, and no text: isomortar info {quote(str(path))} says what it holds")
     marked = next((name for mark, name in _MARKS.items() if content.startswith(mark)), None)
     if marked or b"\0" in content:  # ASCII in UTF-16 without a mark is valid UTF-8, with zeros in between
         raise InputError(f"{path} is {marked or 'UTF-16'} text (or none at all): save it as UTF-8")
