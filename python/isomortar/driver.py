@@ -1,4 +1,4 @@
-"""From a scene to a results file: the whole run, each step on the disk before the next one begins."""
+"""From a scene to a results file: the whole run, its steps on the disk as they come."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from collections.abc import Callable
 from importlib.metadata import version
 from pathlib import Path
 
-from isomortar.errors import ConvergenceError, InputError, IsomortarWarning, ResultsError
+from isomortar.errors import InputError, IsomortarWarning, ResultsError
 from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
 from isomortar.results.files import claimed, is_marked
@@ -37,8 +37,8 @@ def run(
         The results file, complete up to the last load step at any moment; default ``results/NAME.h5``. Its folder is made if it does not
         exist.
     observer : Observer, optional
-        Watches; of a recorded step it hears when that is on the disk. Without one what is doubtful becomes Python's own warnings, of the
-        category `IsomortarWarning`.
+        Watches; of a recorded step it hears when that is on the disk, but where writing takes long. Without one what is doubtful becomes
+        Python's own warnings, of the category `IsomortarWarning`.
     resume : bool
         Go on after the last load step of the file; begin where there is no file; nothing is computed where all is there.
     overwrite : bool
@@ -81,7 +81,7 @@ def compute(scene: Scene, problem: Problem, path: Path, observer: Observer, resu
         try:
             for _ in Simulation(problem, recorder, last).run():
                 steps += 1
-        except ConvergenceError:
+        except BaseException:
             recorder.keep()
             raise
         if steps:  # where all was there the file stays as it is
@@ -123,13 +123,14 @@ class _Recorder(Observer):
     def __init__(self, open_writer: Callable[[], ResultsWriter], observer: Observer) -> None:
         self._open_writer, self._observer = open_writer, observer
         self._complaint: IsomortarWarning | None = None
+        self._begun = False
 
     def started(self, total_steps: int, first_step: int) -> None:
-        self._writer = self._open_writer()
+        self._writer, self._begun = self._open_writer(), True
         self._observer.started(total_steps, first_step)
 
     def iteration(self, step: int, time: float, augmentation: int, record: IterationRecord) -> None:
-        self.keep()  # load steps may take long, and be stopped
+        self._writer.keep_up()  # load steps may take long, and be stopped
         self._observer.iteration(step, time, augmentation, record)
 
     def augmented(self, step: int, time: float, record: AugmentationRecord) -> None:
@@ -151,8 +152,9 @@ class _Recorder(Observer):
             self._complaint = self._complaint or complaint
 
     def keep(self) -> None:
-        """Have all on the disk that was told."""
-        self._writer.keep()
+        """Have all on the disk that was told, of a run that has begun."""
+        if self._begun:
+            self._writer.keep()
 
     def complain(self) -> None:
         """Raise what a warning was made an error of."""

@@ -19,7 +19,9 @@ import pytest
 
 import isomortar
 from isomortar.errors import InputError, ResultsError
+from isomortar.results import writer
 from isomortar.results.files import claimed, sealed, writing
+from isomortar.solve.record import StepResult
 
 SMALL = ["bodies.block.mesh.elements=[3,3,2]", "stages.press.steps=3"]
 
@@ -189,6 +191,33 @@ def test_reading_goes_on_while_a_run_writes(tmp_path: Path) -> None:
                 seen = len(recorded(tmp_path / "run.h5"))
         run.kill()
     assert seen >= 2
+
+
+class _Stopping(isomortar.Observer):
+    """Notes how many load steps are on the disk when one is recorded, and stops at one of them."""
+
+    def __init__(self, path: Path, last: int) -> None:
+        self.path, self.last, self.seen = path, last, list[int]()
+
+    def recorded(self, result: StepResult) -> None:
+        self.seen.append(len(recorded(self.path)))
+        if result.step == self.last:
+            raise KeyboardInterrupt
+
+
+@pytest.mark.parametrize("slow", [False, True])
+def test_steps_are_written_together_where_writing_takes_long_and_kept_if_the_run_is_stopped(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, slow: bool
+) -> None:
+    path, clock = tmp_path / "run.h5", iter(range(10**6))
+    if slow:  # each look at the clock takes a second, and writing so a second, which no ten of go by
+        monkeypatch.setattr(writer, "monotonic", lambda: float(next(clock)))
+    observer = _Stopping(path, 5)
+    with pytest.raises(KeyboardInterrupt):
+        isomortar.run(isomortar.Scene.load("press", ["bodies.block.mesh.elements=[1,1,1]", "stages.press.steps=6"]), path, observer)
+    assert (observer.seen == [1, 2, 3, 4, 5]) is not slow
+    assert observer.seen[-1] >= slow
+    assert recorded(path) == [1, 2, 3, 4, 5]
 
 
 def test_a_file_that_was_edited_and_sealed_again_is_refused_where_bodies_are_missing(results: Path) -> None:

@@ -89,10 +89,10 @@ def run(
 ) -> None:
     """Compute a scene.
 
-    Every load step is on the disk when it is done: after Ctrl-C, a crash or a power cut `--resume` goes on from the last one, and
-    the results file can be read meanwhile. An existing file is an error without `--resume` or `--overwrite`. A scene goes on as well
-    that has stages more at its end, or a last stage of more load steps at the same rate (its motions and factors grow with it), to the
-    numbers of a run from the start; nothing else in it may have changed.
+    Every load step is on the disk when it is done (quick ones that take longer to write some together, for a tenth of the time): after
+    Ctrl-C, a crash or a power cut `--resume` goes on from the last one, and the results file can be read meanwhile. An existing file is an
+    error without `--resume` or `--overwrite`. A scene goes on as well that has stages more at its end, or a last stage of more load steps
+    at the same rate (its motions and factors grow with it), to the numbers of a run from the start; nothing else in it may have changed.
 
     For example:
 

@@ -6,6 +6,7 @@ import os
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
+from time import monotonic
 from typing import Literal
 
 import h5py
@@ -21,6 +22,9 @@ from isomortar.results.files import SEAL_SIZE, read, replace, seal
 from isomortar.results.reader import Results
 from isomortar.solve.record import AugmentationRecord, ContactRates, Observer, Rates, State, StepResult
 
+#: Seconds that writing a file may take at every load step, and how many times as long as it took before it is written again, if it takes
+#: longer: of thousands of quick steps most of the time would go into writing the same again.
+BRIEF, REST = 0.05, 10.0
 #: HDF5 1.10's format: its metadata carry checksums (the data get theirs from the filter), so damage is seen, not read.
 LIBVER = ("v110", "v110")
 
@@ -56,9 +60,9 @@ class ResultsWriter(Observer):
     HDF5 has no transactions: a file killed while it is written may be lost as a whole; and where the disk is full, it ends the
     process. So the file is held in memory; with each step it is sealed, written beside the file, flushed to the disk, and then
     takes the file's name, which is atomic: the name always stands for a complete file. The price is the file's size in memory, and one
-    copy of it a step: the bytes written grow with the square of the number of steps. For 100 steps of 1000 control points that is 8 MB at
-    the end and some 20 ms a step, far below the cost of computing it; where it is not, `states="last"` keeps the file at the size of one
-    state.
+    copy of it a step. For 100 steps of 1000 control points that is 8 MB at the end and some 20 ms a step, far below the cost of computing
+    it; where it is not, several steps are written at once, so that writing takes a tenth of the time at most: of a file that takes a
+    second to write a kill loses up to ten, an interrupt or an error nothing, as both `keep` what is there.
 
     Parameters
     ----------
@@ -98,7 +102,7 @@ class ResultsWriter(Observer):
         self._problem = problem
         self._states = states
         self._longer: str | None = None
-        self._unstored = False
+        self._unstored, self._stored, self._took = False, monotonic(), 0.0
         if overwrite or not self.path.exists():
             self._hold(h5py.File.in_memory(libver=LIBVER))
             self._begin(scene_text, version)
@@ -111,7 +115,7 @@ class ResultsWriter(Observer):
             raise ResultsError(f"{self.path} exists already: resume it, overwrite it, or name another results file")
 
     def warned(self, message: str) -> None:
-        """Append the warning, if it is not there yet; it is on the disk with the next load step, or by `keep`."""
+        """Append the warning, if it is not there yet; it is on the disk with the next load step, or by `keep_up` or `keep`."""
         if "warnings" not in self._file["log"]:
             self._datasets.make("log", {"warnings": layout.LOG["warnings"]})
         if message.encode() not in self._file["log/warnings"][()]:
@@ -119,14 +123,21 @@ class ResultsWriter(Observer):
             self._unstored = True
 
     def recorded(self, result: StepResult) -> None:
-        """Append the step; on return it is on the disk."""
+        """Append the step; on return it is on the disk, or will be soon where writing takes long."""
+        self._unstored = False  # an interrupt on the way leaves a part of a step, which is not to be kept
         self._lengthen()
         self._renew()
         self._append(result)
-        self._store()
+        self._unstored = True
+        self.keep_up()
+
+    def keep_up(self) -> None:
+        """Put on the disk what was told since it was written last, if writing takes next to nothing, or was long ago."""
+        if self._took <= BRIEF or monotonic() - self._stored >= REST * self._took:
+            self.keep()
 
     def keep(self) -> None:
-        """Put on the disk what was told since the last load step."""
+        """Put on the disk what was told since it was written last."""
         if self._unstored:
             self._store()
 
@@ -135,13 +146,15 @@ class ResultsWriter(Observer):
 
     def _store(self) -> None:
         """Put the file as it is in memory in the place of that on the disk."""
+        begun = monotonic()
         self._file.flush()
         image = self._file.id.get_file_image()
         try:
             replace(self.path, seal(image), image)
         except ResultsError as error:
             raise ResultsError(f"{error}{_still_in(self.path)}") from error
-        self._unstored = False
+        self._unstored, self._stored = False, monotonic()
+        self._took = self._stored - begun
 
     def _begin(self, scene_text: str, version: str) -> None:
         file, make = self._file, self._datasets.make
