@@ -8,7 +8,9 @@ import warnings
 from collections.abc import Callable
 from importlib.metadata import version
 from pathlib import Path
+from types import NoneType
 
+from isomortar._arguments import kind
 from isomortar.errors import InputError, IsomortarWarning, ResultsError
 from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Problem
@@ -53,13 +55,15 @@ def run(
     Raises
     ------
     InputError
-        The scene is wrong, or the results file exists; no file has been touched.
+        The scene is wrong, or none; the observer is none; or the results file exists. No file has been touched.
     ConvergenceError
         A load step could not be cut further. The steps before it are in the file.
     ResultsError
         Another run is writing the results file; or what is there is damaged, no results file, belongs to another scene, or cannot be
         written.
     """
+    kind("scene", scene, Scene, str, os.PathLike)
+    kind("observer", observer, Observer, NoneType)
     chosen = scene if isinstance(scene, Scene) else Scene.load(os.fspath(scene))
     return compute(chosen, chosen.problem(), Path(output or results_path(chosen)), observer or _Aloud(), resume, overwrite)
 

@@ -193,6 +193,19 @@ def test_reading_goes_on_while_a_run_writes(tmp_path: Path) -> None:
     assert seen >= 2
 
 
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: isomortar.Results(3), r"path: is 3; allowed: str or PathLike"),  # type: ignore[arg-type]
+        (lambda: isomortar.run(None), r"scene: is None; allowed: Scene or str or PathLike"),  # type: ignore[arg-type]
+        (lambda: isomortar.run("press", observer=5), r"observer: is 5; allowed: Observer or NoneType"),  # type: ignore[arg-type]
+    ],
+)
+def test_what_is_no_path_scene_or_observer_is_refused(call: Callable[[], Any], words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        call()
+
+
 class _Stopping(isomortar.Observer):
     """Notes how many load steps are on the disk when one is recorded, and stops at one of them."""
 

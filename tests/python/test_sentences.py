@@ -255,9 +255,11 @@ def of_results(_: pytest.MonkeyPatch) -> Told:
     yield "none there", refusal(lambda: Results("none.h5"))
     Path("runs").mkdir()
     yield "a folder", refusal(lambda: Results("runs"))
+    yield "a device", refusal(lambda: Results("/dev/null"))
     with Results("run.h5") as results:
         yield "no step", refusal(lambda: results.step(3))
         yield "no curve", refusal(lambda: results.curve("weight"))
+        yield "no curve: of what", refusal(lambda: results.curve("force"))
         yield "no support", refusal(lambda: results.curve("force", support="roof"))
         yield "no component", refusal(lambda: results.curve("time", component="x"))
     whole = Path("run.h5").read_bytes()

@@ -26,6 +26,8 @@ def of_a_file(run: Path, results: Results) -> list[Asked]:
         (lambda: results.step(9), "run.h5; it holds steps 1 to 5"),
         (lambda: results.step(1), "run.h5 kept no state of load step 1 (states = 'last'); it has the curves of all steps"),
         (lambda: results.curve("weight"), "there are: step, time, newton_order, substeps, cuts, next_increment"),
+        (lambda: results.curve("force"), "there is no curve 'force' here; name what it is of, by support= or load=; there are: step, time"),
+        (lambda: results.curve("slip", load="press"), "there is no curve 'slip' here; name what it is of, by contact=; there are: force"),
         (lambda: results.curve("gap", contact="under"), "there is no curve 'gap' here; there are: force_slave, force_master, moment_slave"),
         (lambda: results.curve("force", support="roof"), "there is no support 'roof'; there are: ground, rim, push, top"),
         (lambda: results.curve("force", contact="roof"), "there is no contact 'roof'; there are: under, over"),

@@ -13,6 +13,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from isomortar import _arguments
 from isomortar._frozen import frozen
 from isomortar.errors import ResultsError
 from isomortar.geometry.patch import FloatArray, IntArray
@@ -63,14 +64,19 @@ class Results:
 
     Raises
     ------
+    InputError
+        The path is none.
     ResultsError
         There is no such file, it is damaged, or it holds something else. Every method raises it as well where the file is damaged.
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
+        _arguments.kind("path", path, str, os.PathLike)
         self.path = Path(path)
         if self.path.is_dir():
             raise ResultsError(f"{self.path} is a folder: name the results file in it")
+        if self.path.exists() and not self.path.is_file():
+            raise ResultsError(f"{self.path} is a device, and no results file: name one")
         if not self.path.is_file():
             raise ResultsError(f"{self.path} does not exist: run the scene first, or check the path")
         try:
@@ -177,7 +183,7 @@ class Results:
         else:
             known, place = {name: kind for name, kind in layout.STEP.items() if name != "stage"}, ""
         if quantity not in known:
-            raise ResultsError(f"there is no curve {quantity!r} here; there are: {', '.join(known)}")
+            raise ResultsError(f"there is no curve {quantity!r} here; {_where(quantity)}there are: {', '.join(known)}")
         values: NDArray[Any] = self._read(lambda file: column(file, f"curves/{place}{quantity}", known[quantity])[()])
         if quantity in motion:
             values = np.where(np.isnan(values), motion[quantity], values)
@@ -311,6 +317,13 @@ def _named(entries: tuple[Any, ...], name: str, kind: str) -> Any:
         if entry.name == name:
             return entry
     raise ResultsError(f"there is no {kind} {name!r}; there are: {', '.join(entry.name for entry in entries) or 'none'}")
+
+
+def _where(quantity: str) -> str:
+    """Of what there is a curve of that name, as a part of a sentence; empty where there is none."""
+    kinds = {"support": layout.REACTION, "contact": layout.CONTACT, "load": layout.LOAD}
+    owners = [f"{kind}=" for kind, known in kinds.items() if quantity in known]
+    return f"name what it is of, by {' or '.join(owners)}; " if owners else ""
 
 
 def _ranges(steps: NDArray[np.int64]) -> str:
