@@ -1,4 +1,4 @@
-"""Scenes of which forces, work or pressures are known by hand: ramps, grooves, rods on rough planes, plates that touch down, tubes."""
+"""Scenes whose forces, work or pressures are known by hand: ramps, grooves, rods on rough planes, plates that touch down, tubes, beams."""
 
 from __future__ import annotations
 
@@ -195,6 +195,26 @@ def _shrunk(run: Run) -> Known:
     return [(float(end), 1.0 / soft) for end in run.last.pressure_field]
 
 
+#: Two beams out of one wall, one on the other without friction, pressed down at the end: the front of their contact goes over them by a row
+#: a tangent, however short load increments are.
+BEAMS = """
+format = 1
+materials.m = { young = 1000, poisson = 0, law = "linear-elastic" }
+bodies.a.geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 0.1, 0.05] }
+bodies.a.mesh = { family = "L", order = [3, 2, 2], elements = [10, 1, 1] }
+bodies.b.geometry = { kind = "box", lower = [0, 0, -0.05], upper = [1, 0.1, 0] }
+bodies.b.mesh = { family = "L", order = [3, 2, 2], elements = [7, 1, 1] }
+contacts.c = { slave = "a.w0", master = "b.w1", friction = 0 }
+supports = { a.face = "a.u0", b.face = "b.u0", tip = { edge = "a.u1.w1", components = ["z"] } }
+stages = [{ name = "press", steps = 2, motions.tip.translate = [0, 0, -0.02] }]
+solver.max_cuts = 0
+"""
+
+
+def _beams(run: Run) -> Known:
+    return [(-run.support(-1, "tip", 2), 2.0 * 0.02 * 3.0 * 1000.0 * 0.1 * 0.05**3 / 12.0)]
+
+
 SCENES: dict[str, tuple[str, Callable[[Run], Known]]] = {
     "ramp, up and down": (RAMP, _ramp),
     "to and fro, and across": (TO_AND_FRO, _to_and_fro),
@@ -203,6 +223,7 @@ SCENES: dict[str, tuple[str, Callable[[Run], Known]]] = {
     "strip that is lifted": (LIFTED, _lifted),
     "rod that slips in part": (ROD, _rod),
     "tube that is shrunk on another": (SHRUNK, _shrunk),
+    "beams out of one wall": (BEAMS, _beams),
 }
 #: What bounds are, where they are not those of exact sums: of beams, whose order is not told, and of rods of some elements.
 OFF = {
@@ -210,6 +231,7 @@ OFF = {
     "strip that is lifted": 5e-3,
     "rod that slips in part": 0.03,
     "tube that is shrunk on another": 1e-3,
+    "beams out of one wall": 5e-3,
 }
 
 
@@ -229,7 +251,7 @@ def off(scene: str, changes: Sequence[str] = ()) -> float:
 
 @case(
     claim="Forces, the work of friction and pressures are as by hand: of blocks on ramps and in grooves, of rods that slip in part, of "
-    "plates that touch down or are lifted, and of a tube that is shrunk on another.",
+    "plates that touch down or are lifted, of a tube that is shrunk on another, and of beams out of one wall.",
     tier="gate",
     grid={"scene": tuple(SCENES)},
     bounds=_bounds,

@@ -50,14 +50,14 @@ motions.rim = { translate = [0.1685, 0, 0], rotate = 32.52 }
 [solver]
 max_cuts = 1
 """
-#: Two beams of Lagrange elements out of one wall, one on the other without friction, pressed down at the end.
+#: Two beams of Lagrange elements out of one wall, one on the other without friction, pressed down at the end: the upper one is the coarser.
 BEAMS = """
 format = 1
 materials.m = { young = 1000, poisson = 0, law = "linear-elastic" }
 bodies.a.geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 0.1, 0.05] }
-bodies.a.mesh = { family = "L", order = [3, 2, 2], elements = [10, 1, 1] }
+bodies.a.mesh = { family = "L", order = 2, elements = [14, 1, 1] }
 bodies.b.geometry = { kind = "box", lower = [0, 0, -0.05], upper = [1, 0.1, 0] }
-bodies.b.mesh = { family = "L", order = [3, 2, 2], elements = [7, 1, 1] }
+bodies.b.mesh = { family = "L", order = 2, elements = [20, 1, 1] }
 contacts.c = { slave = "a.w0", master = "b.w1", friction = 0 }
 supports = { a.face = "a.u0", b.face = "b.u0", tip = { edge = "a.u1.w1", components = ["z"] } }
 stages = [{ name = "press", steps = 2, motions.tip.translate = [0, 0, -0.02] }]

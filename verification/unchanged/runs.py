@@ -45,7 +45,7 @@ _ITSELF = "definition: the same points bear and slip, in the same load increment
         **{name: Matches("unchanged", _SAME, allowance=1e-6) for name in ("forces", "places", "pressures")},
         **{name: Matches("unchanged", _ITSELF) for name in ("counts", "said")},
     },
-    files=tuple(FOLDER.glob("*.toml")),
+    files=tuple(FOLDER.rglob("*.toml")),
 )
 def runs(scene: str) -> dict[str, FloatArray]:
     """All curves of a run by kind, forces with moments and work over the size of the scene, and check sums of what is said."""

@@ -273,23 +273,32 @@ def progress(problem: Problem, quiet: bool = False, verbose: bool = False, log: 
     """
     with _kept(log) as keep:
         if quiet:
-            yield Progress(problem, partial(print, file=sys.stderr), Detail.WARNINGS, keep)
+            yield Progress(problem, _print, Detail.WARNINGS, keep)
             return
         drawn, plain = (Detail.ITERATIONS,) * 2 if verbose else (Detail.EVENTS, Detail.STEPS)
         if "ipykernel" in sys.modules:
             yield NotebookProgress(problem, print, drawn, keep)
             return
-        if not sys.stderr.isatty():
-            yield Progress(problem, partial(print, file=sys.stderr), plain, keep)
+        if not getattr(sys.stderr, "isatty", bool)():
+            yield Progress(problem, _print, plain, keep)
             return
         from rich.console import Console  # within: it takes a tenth of a start
         from rich.live import Live
 
         console = Console(stderr=True)
+        if not console.is_terminal:  # the environment says so
+            yield Progress(problem, _print, plain, keep)
+            return
         tell = partial(console.print, markup=False, highlight=False, soft_wrap=True)
         observer = LiveProgress(problem, tell, drawn, keep)
         with Live(observer, console=console, refresh_per_second=5):
             yield observer
+
+
+def _print(line: str) -> None:
+    """Say a line at once; nowhere, where the standard error is closed."""
+    if sys.stderr is not None:
+        print(line, file=sys.stderr, flush=True)
 
 
 @contextmanager

@@ -7,11 +7,13 @@ import numpy as np
 from isomortar._frozen import frozen
 from isomortar.geometry.patch import IntArray
 from isomortar.march.simulation import Simulation
+from isomortar.model import constants
 from isomortar.model.contrasts import element_lengths
 from isomortar.model.entities import Body, Contact, Problem, RigidPlane, Support
 from isomortar.model.glue import pieces
 from isomortar.model.memory import memory_needed
 from isomortar.model.rank import rigid_rank
+from isomortar.model.sheet import Sheet
 from isomortar.model.stance import stance
 
 
@@ -41,7 +43,7 @@ class BodyOutlook:
 class ContactOutlook:
     """A contact: its sides, how it is found, enforced and integrated.
 
-    `apart`: at the start, by cells of the faces; below zero where bodies overlap.
+    `apart`: at the start, by cells of the faces; below zero where bodies overlap, and nothing where it is round-off of their size.
     """
 
     name: str
@@ -145,6 +147,7 @@ def _contact(problem: Problem, contact: Contact, projected: IntArray) -> Contact
     master, projection = "a rigid plane", "along the plane's normal"
     if not isinstance(contact.master, RigidPlane):
         master, projection = contact.master.words, "along averaged normals" if contact.averaged else "closest points"
+    apart = found.gap - found.depth
     return ContactOutlook(
         contact.name,
         contact.slave.words,
@@ -153,7 +156,7 @@ def _contact(problem: Problem, contact: Contact, projected: IntArray) -> Contact
         contact.enforcement,
         len(projected),
         int(np.count_nonzero(projected == 0)),
-        found.gap - found.depth,
+        apart if abs(apart) > constants.SAME_POINT * Sheet.of(problem, contact.slave).size else 0.0,
     )
 
 

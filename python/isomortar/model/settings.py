@@ -51,7 +51,7 @@ class SolverSettings:
     max_augmentations: Count = 100
     """Augmentations after which a load step is cut."""
     max_iterations: Count = 30
-    """Tangents of a Newton loop after which a load step is cut."""
+    """Tangents of a Newton loop after which a load step is cut; up to four times as many while a front of contact or slip gets on."""
     max_cuts: Annotated[int, Field(strict=True, ge=0, le=constants.MOST_CUTS)] = 8
     """How often a load step may be halved before the run ends; 30 times is to a billionth."""
     measures: tuple[Measure, ...] = get_args(Measure)

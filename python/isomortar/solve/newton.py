@@ -160,12 +160,17 @@ class Newton(ABC, Generic[Iterated, Corrected]):
                 iterate, keep = reopened, False
             following, notes = self._by_kept_factors(iterate) if keep else None, (KEPT_FACTORS,)
             if following is None:
-                if loop.tangents == self._settings.max_iterations or not np.isfinite(iterate.merit) or self._trail.circles:
+                if self._spent(loop.tangents) or not np.isfinite(iterate.merit) or self._trail.circles:
                     break
                 iterate, following, notes = self._by_new_factors(iterate, iteration, loop, keep)
             keep = self._keeps and STEADIED not in notes and self._serve(iterate, following)
             iterate = following
         return self._given_up(iterate, tuple(log))
+
+    def _spent(self, tangents: int) -> bool:
+        """Whether a loop has had its tangents; it has more of them while a front of contact or slip gets on (theory 6.11)."""
+        most = self._settings.max_iterations
+        return tangents >= most and (tangents >= constants.MOST_TANGENTS * most or not self._trail.advances)
 
     def _by_new_factors(
         self, iterate: Iterated, iteration: int, loop: _Loop[Iterated], kept: bool

@@ -43,6 +43,7 @@ class Trail:
     def __init__(self) -> None:
         self.states: list[bytes] = []
         self.merits: list[float] = []
+        self._counts: list[tuple[int, int]] = []  # of what is active, and of what slips
         self._last: deque[tuple[Kinematics, ...]] = deque(maxlen=RECENT)
         self._sizes: list[int] = []
 
@@ -50,6 +51,7 @@ class Trail:
         """Note an iterate, and what is left to solve there."""
         self.states.append(states(balance))
         self.merits.append(merit)
+        self._counts.append((balance.active, balance.slipping))
         self._last.append(balance.kinematics)
         self._sizes = [response.state.size for response in balance.responses]
 
@@ -65,6 +67,12 @@ class Trail:
         if len(was) < constants.CIRCLING or self.states[now] != self.states[before]:
             return False
         return bool(left.max() > constants.NEAR_SOLUTION and np.all(np.abs(left - was) <= constants.SAME_MERIT * was))
+
+    @property
+    def advances(self) -> bool:
+        """Whether more or less is active, or slips, than ever before the last iterates: a front that is not there yet (theory 6.11)."""
+        before, last = np.split(np.array(self._counts[constants.ACTIVE_SET_ITERATIONS :]), [-constants.ADVANCING])
+        return bool(len(before) and (np.any(last.min(axis=0) < before.min(axis=0)) or np.any(last.max(axis=0) > before.max(axis=0))))
 
     def toggling(self, pairs: Sequence[PairMechanics]) -> str:
         """What changed to and fro in the last iterations, as a part of a sentence."""

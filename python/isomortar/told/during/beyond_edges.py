@@ -13,7 +13,7 @@ from isomortar.model.sheet import Sheet
 from isomortar.model.supports import BoolArray
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.feet import slave_points
-from isomortar.told.during.softness import gone, local, softness
+from isomortar.told.during.softness import softness
 
 #: Share of the force by which an edge of the master makes contact too stiff, times the width in elements that is over the master: fitted to
 #: punches, of widths from a fifth of an element to ten, on blocks of order 1 to 3.
@@ -40,19 +40,16 @@ class BeyondEdges:
         At how many ends of that the slave goes on.
     softness : float
         Share of the slave in what both bodies give way.
-    local : float
-        Share of what the slave goes that it is pressed in by, about: of a beam that bends it is little.
     """
 
     widths: FloatArray
     edges: FloatArray
     softness: float
-    local: float
 
     @property
     def costs(self) -> FloatArray:
         """Share of the force that elements along each coordinate add to it, by an estimate, shape (2,) (theory 9.13)."""
-        return np.asarray(self.local * self.softness * STIFFENS * self.edges / self.widths)
+        return np.asarray(self.softness * STIFFENS * self.edges / self.widths)
 
     @property
     def too_stiff(self) -> bool:
@@ -82,10 +79,8 @@ def beyond_edges(equilibrium: Equilibrium, pair: Pair, balance: Balance, number:
     if edges.any():  # areas are known better than lines, where quadrature points are few
         area = np.sum(np.prod(grid(du, dv), axis=1) * face.areas(nodes, slopes), where=over.ravel())
         widths[edges > 0] *= (np.sum(pair.slave.area, where=found) / area) ** (1.0 / np.count_nonzero(edges))
-    slave, master = (part[found].mean() for part in softness(problem, equilibrium.numbering, pair, projections))
-    forces = pair.slave.area * np.where(found, np.maximum(pressure, 0.0), 0.0)
-    went, _ = gone(problem, equilibrium.numbering, pair, balance.positions, projections.xi, forces)
-    return BeyondEdges(widths, edges, slave / (slave + master), local(slave * float(np.sqrt(forces @ pressure)), went))
+    slave, master = (part[found].sum() for part in softness(problem, equilibrium.numbering, pair, projections))
+    return BeyondEdges(widths, edges, slave / (slave + master))
 
 
 def _places(direction: Direction) -> tuple[FloatArray, FloatArray]:

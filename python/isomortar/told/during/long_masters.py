@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
+from isomortar._bindings import surface_functions
 from isomortar._frozen import frozen
-from isomortar.geometry.patch import FloatArray
+from isomortar.geometry.patch import FloatArray, IntArray
 from isomortar.model.entities import Contact, Face, Problem
+from isomortar.model.numbering import Numbering
 from isomortar.model.pairs import Pair
+from isomortar.model.rigid import deformation
 from isomortar.model.sheet import Sheet
 from isomortar.solve.equilibrium import Balance, Equilibrium
-from isomortar.told.during.softness import gone, local, softness
+from isomortar.told.during.softness import softness
 
 #: Share of what a master gives way by that its elements keep back, by one over the width of contact in these, and what is taken from that:
 #: fitted to balls and cylinders on blocks of orders 1 to 3; and the most that it is taken for.
@@ -25,6 +28,8 @@ ALL = 0.8
 FINER = 1.2
 #: Share of the force that this adds from which on it is told, and the largest that is: under rigid slaves it is a bound of little use.
 COSTS, LARGEST = 0.1, 1.0
+#: Times what it presses in that a master goes, up to which it does not bend (of balls and cylinders on blocks: 0.7 to 1.2).
+STILL = 1.3
 #: A direction is too coarse where it keeps back this share of what the other one does.
 PART = 0.5
 
@@ -77,8 +82,11 @@ def long_master(equilibrium: Equilibrium, pair: Pair, balance: Balance, number: 
     kept = np.minimum(MOST, KEEPS * np.minimum(1.0, SMOOTH / orders) * np.maximum(0.0, narrow - FREE))
     slave, master = (float(forces @ part) for part in softness(problem, equilibrium.numbering, pair, projections))
     pressed = master / float(forces.sum()) * float(np.sqrt(forces @ pair.field(balance.responses[number].pressure)))
-    _, went = gone(problem, equilibrium.numbering, pair, balance.positions, projections.xi, forces)
-    return LongMaster(widths, kept, master / (slave + master), local(pressed, went))
+    feet = np.flatnonzero(forces)
+    functions = surface_functions(*master_side.arrays(equilibrium.numbering), projections.xi[feet])
+    gone = _gone(_deformations(equilibrium.numbering, balance.positions), pair.master_face, functions, forces[feet])
+    local = min(1.0, (STILL * pressed / gone) ** 2) if gone > 0.0 else 1.0
+    return LongMaster(widths, kept, master / (slave + master), local)
 
 
 def _widths(side: Sheet, places: FloatArray, shares: FloatArray) -> FloatArray:
@@ -92,6 +100,22 @@ def _widths(side: Sheet, places: FloatArray, shares: FloatArray) -> FloatArray:
             elements = (elements - middle + 0.5 * count) % count
         widths[axis] = WIDE * np.sqrt(shares @ np.square(elements - shares @ elements))
     return widths
+
+
+def _deformations(numbering: Numbering, positions: FloatArray) -> FloatArray:
+    """How far control points have gone but for rigid motions of what hangs together, shape (control points, 3): a turn is no bending."""
+    ways = np.zeros_like(positions)
+    for number in range(len(numbering.pieces)):
+        own = numbering.piece_points(number)
+        ways[own] = deformation(numbering.reference[own], positions[own])
+    return ways
+
+
+def _gone(ways: FloatArray, face: IntArray, functions: tuple[IntArray, FloatArray], forces: FloatArray) -> float:
+    """How far a face has gone where forces act, from what of it has gone least the same way; `ways`: those of all control points."""
+    nodes, values = functions
+    mean = forces @ np.einsum("qa,qac->qc", values[:, 0], ways[face[nodes]]) / forces.sum()
+    return float(np.linalg.norm(ways[face] - mean, axis=1).max())
 
 
 def told(problem: Problem, contact: Contact, found: LongMaster, step: int) -> str:

@@ -22,7 +22,7 @@ from isomortar.told.during import long_masters
 from isomortar.told.during.beyond_edges import beyond_edges, told
 from isomortar.told.during.long_masters import long_master
 from isomortar.told.during.pulling import pulls
-from isomortar.told.during.softness import gone, softness, thinness
+from isomortar.told.during.softness import softness, thinness
 
 #: Rows that bear contact below which it is told, in both directions, or in one with functions that have kinks: there forces of balls and
 #: cylinders on blocks were off by up to a third. A single row of smooth functions along a line cost less than 7 %, two rows a tenth, more
@@ -37,8 +37,8 @@ DUAL_ROWS, SHARE_OF_ELEMENT = 2.02, 0.5
 ENOUGH, ALL = 2.5, 0.8
 #: Share of the force that what is deep between control points may cost before it is told, by its estimate (theory 9.10).
 COSTS = 0.1
-#: Depth up to which it costs nothing, and how far bodies go at the least, both over what forces press in: fitted to the same scenes.
-FREE, GOES = 0.5, 2.5
+#: Depth over what forces press in up to which it costs nothing, and what is added below the line: fitted to the same scenes.
+FREE, ADDED = 0.5, 2.0
 #: How far a pressure presses in a layer on what holds it, over its thickness, as a share of pressure times softness where it cannot go
 #: sideways: fitted to 224 forces of balls and cylinders on layers a twentieth to one radius thick (theory 9.10).
 LAYER = 0.85
@@ -155,9 +155,8 @@ def bearing(equilibrium: Equilibrium, mechanics: PairMechanics, balance: Balance
         Of that contact.
     """
     borne = forces(mechanics.pair, balance.responses[number].pressure, balance.kinematics[number].projections)
-    depth, pressed, went = _between(equilibrium, mechanics, balance, number)
-    missing = depth - FREE * pressed
-    costs = missing / (missing + max(GOES * pressed, went)) if pressed > 0.0 else 0.0
+    depth, pressed = _between(equilibrium, mechanics, balance, number)
+    ratio = depth / pressed if pressed > 0.0 else 0.0
     (first, round_first), (second, round_second) = (_sums(mechanics.pair.places, borne, axis) for axis in (0, 1))
     rows = np.array([np.sum(sums) ** 2 / (sums @ sums) for sums in (first, second)])
     directions = Sheet.of(equilibrium.problem, mechanics.pair.contact.slave).directions
@@ -165,7 +164,7 @@ def bearing(equilibrium: Equilibrium, mechanics: PairMechanics, balance: Balance
     round_poles, counts = (round_first, round_second), (len(first), len(second))
     by_element = [count / direction.elements for count, direction in zip(counts, directions, strict=True)]
     least = _least(equilibrium.problem, mechanics.pair.contact, np.array(by_element))
-    return Bearing(rows, counts, least, (u, v), round_poles, depth, costs)
+    return Bearing(rows, counts, least, (u, v), round_poles, depth, (ratio - FREE) / (ratio + ADDED))
 
 
 def _least(problem: Problem, contact: Contact, by_element: FloatArray) -> FloatArray:
@@ -188,20 +187,19 @@ def _sums(places: FloatArray, borne: FloatArray, axis: int) -> tuple[FloatArray,
     return np.asarray(sums + of_pole / len(sums), np.float64), of_pole > 0.5 * float(borne.sum())
 
 
-def _between(equilibrium: Equilibrium, mechanics: PairMechanics, balance: Balance, number: int) -> tuple[float, float, float]:
-    """How deep quadrature points are where there is pressure, how far that presses bodies in, about, and how far they go (theory 9.10)."""
+def _between(equilibrium: Equilibrium, mechanics: PairMechanics, balance: Balance, number: int) -> tuple[float, float]:
+    """How deep quadrature points are where there is pressure, and how far that presses the bodies in, about (theory 9.10)."""
     pair, projections = mechanics.pair, balance.kinematics[number].projections
     pressure = abs(pair.field(balance.responses[number].pressure)) * (projections.found > 0)
     acting = pair.slave.area * pressure
     if not acting.any():
-        return 0.0, 0.0, 0.0
+        return 0.0, 0.0
     depth = np.sqrt(acting @ np.square(gaps(pair, balance.positions, projections)) / acting.sum())
     at = (equilibrium.problem, equilibrium.numbering, pair, projections)
     spread, mean = np.sqrt(equilibrium.problem.images * (acting @ pressure)), acting @ pressure / acting.sum()
     sides = zip(softness(*at), thinness(*at, equilibrium.supports.stage), strict=True)
     pressed = sum(soft * np.minimum(spread, _of_layers(mean, thin)) for soft, thin in sides)
-    went = gone(*at[:3], balance.positions, projections.xi, acting).sum()
-    return float(depth), float(acting @ pressed / acting.sum()), float(went)
+    return float(depth), float(acting @ pressed / acting.sum())
 
 
 def _of_layers(pressure: float, thin: FloatArray) -> FloatArray:

@@ -1,4 +1,4 @@
-"""How bodies give way on both sides of a contact: as deep ones do, (1 - nu^2) / E, as layers on what holds them, and how far they go."""
+"""How bodies give way on both sides of a contact, at its points: as deep ones do, (1 - nu^2) / E, and as layers on what holds them."""
 
 from __future__ import annotations
 
@@ -9,15 +9,12 @@ from isomortar.geometry.patch import FloatArray, opposite
 from isomortar.model.entities import Body, Face, Problem
 from isomortar.model.numbering import Numbering
 from isomortar.model.pairs import Pair
-from isomortar.model.rigid import deformation
 from isomortar.model.sheet import Sheet
 
 #: Softness of an incompressible layer over (1 - nu^2) / E: it goes sideways beside the contact. Fitted at Poisson's ratio 0.49.
 SIDEWAYS = 0.35
 #: A body that is glued to one so many times as stiff is a layer on it.
 STIFFER = 10.0
-#: Times what it is pressed in that a body goes, up to which it does not bend (of balls and cylinders on blocks: 0.7 to 1.2).
-STILL = 1.3
 
 
 def softness(problem: Problem, numbering: Numbering, pair: Pair, projections: Projections) -> tuple[FloatArray, FloatArray]:
@@ -45,41 +42,6 @@ def thinness(problem: Problem, numbering: Numbering, pair: Pair, projections: Pr
                 thickness = np.linalg.norm(numbering.reference[here] - numbering.reference[behind], axis=1)
                 thin[here] = 1.0 / (_confined(body) * thickness)
     return _at_points(problem, numbering, pair, projections, thin)
-
-
-def gone(problem: Problem, numbering: Numbering, pair: Pair, positions: FloatArray, places: FloatArray, forces: FloatArray) -> FloatArray:
-    """How far slave and master have gone where forces at slave points act, from what of their faces has gone least the same way, (2,).
-
-    Zero of what is rigid. Along the mean normal there, and but for rigid motions: a roller that turns has not given way, and a block that
-    is squeezed across has not bent (theory 9.10, 9.15).
-    """
-    pieces = [numbering.piece_points(piece) for piece in range(len(numbering.pieces))]
-    ways = np.concatenate([deformation(numbering.reference[own], positions[own]) for own in pieces])
-    acting, found = np.flatnonzero(forces), np.zeros(2)
-    nodes, own = pair.slave.shape.nodes[acting // pair.slave.per_element], pair.slave.point
-    along = ways @ _mean_normal(np.einsum("qda,qac->qdc", pair.slave.slopes[acting], positions[own[nodes]]), forces[acting])
-    faces, functions = [own[: pair.slave.highest + 1]], [(nodes, pair.slave.shape.values[acting])]
-    if isinstance(pair.contact.master, Face):
-        feet, values = surface_functions(*Sheet.of(problem, pair.contact.master).arrays(numbering), places[acting])
-        faces.append(pair.master_face)
-        functions.append((feet, values[:, 0]))
-    for side, (face, (nodes, values)) in enumerate(zip(faces, functions, strict=True)):
-        mean = forces[acting] @ np.einsum("qa,qa->q", values, along[face[nodes]]) / forces.sum()
-        found[side] = np.abs(along[face] - mean).max()
-    return found
-
-
-def _mean_normal(tangents: FloatArray, forces: FloatArray) -> FloatArray:
-    """Unit normal of a surface with given tangents, shape (points, 2, 3), weighted with forces; zero where they cancel each other."""
-    normals = np.cross(tangents[:, 0], tangents[:, 1])
-    lengths = np.linalg.norm(normals, axis=1)
-    normal = forces @ (normals / np.where(lengths > 0.0, lengths, 1.0)[:, None])
-    return np.asarray(normal / (np.linalg.norm(normal) or 1.0))
-
-
-def local(pressed: float, went: float) -> float:
-    """Share of how far a body has gone that it is pressed in by, about (theory 9.15): of a beam that bends it is little."""
-    return min(1.0, (STILL * pressed / went) ** 2) if went > 0.0 else 1.0
 
 
 def _at_points(
