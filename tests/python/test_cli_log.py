@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 import re
+import shlex
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -11,7 +15,7 @@ from rich.console import Console
 
 import isomortar
 from command_lines import SMALL, Invoke, settings
-from isomortar.cli.progress import LiveProgress
+from isomortar.cli.progress import LiveProgress, progress
 from isomortar.model import constants
 from isomortar.solve.record import IterationRecord
 
@@ -20,10 +24,10 @@ def test_live_progress_shows_where_the_run_is() -> None:
     text = io.StringIO()
     console = Console(file=text, width=80)
     problem = isomortar.Scene.load("iron").problem()
-    progress = LiveProgress(problem, console.print)
-    progress.started(50, 12)
-    progress.iteration(12, 11.5, 2, IterationRecord(3, 1.5e-7, 9, 4, 5))
-    console.print(progress)
+    live = LiveProgress(problem, console.print)
+    live.started(50, 12)
+    live.iteration(12, 11.5, 2, IterationRecord(3, 1.5e-7, 9, 4, 5))
+    console.print(live)
     shown = text.getvalue()
     for part in ("11/50", "elapsed 0:00", "drag: step 12/50", "load time 11.5", "augmentation 2", "iteration 3", "1.5e-07"):
         assert part in shown
@@ -97,3 +101,22 @@ def test_a_log_that_cannot_be_written_is_named(invoke: Invoke) -> None:
 def test_loud_and_quiet_at_once_is_refused(invoke: Invoke) -> None:
     code, _, err = invoke("run", "press", "--quiet", "--verbose")
     assert (code, "--log" in err) == (2, True)
+
+
+def test_a_run_whose_standard_error_is_closed_says_nothing_there(tmp_path: Path) -> None:
+    """Nor where its numbers go."""
+    words = "run press --set stages.press.steps=1 --set bodies.block.mesh.elements=[1,1,1] --output run.h5"
+    command = f"exec {shlex.quote(sys.executable)} -m isomortar {words} 2>&-"
+    ended = subprocess.run(["sh", "-c", command], cwd=tmp_path, stdout=subprocess.PIPE, text=True, check=False)
+    assert (ended.returncode, ended.stdout) == (0, "run.h5\n")
+
+
+def test_lines_are_out_at_once(tmp_path: Path) -> None:
+    """Where the standard error is a file, too."""
+    with (
+        (tmp_path / "said").open("w") as file,
+        contextlib.redirect_stderr(file),
+        progress(isomortar.Scene.load("press").problem()) as watching,
+    ):
+        watching.started(3, 1)
+        assert (tmp_path / "said").read_text() == "press: 3 load steps\n"

@@ -112,9 +112,10 @@ MAX_HALVINGS = 5
 #: loops that converged, and 353 that did not, as of penalties and elastic slips that are far too stiff, this ended none of the former,
 #: and took a third of all tangents from the latter.
 CIRCLING = 4
-#: The last iterates in which a front gets on, of what is active or slips: then a loop has more tangents than are allowed else, up to so
-#: many times. Of layers and beams that lift off each other fronts take 30 to 60 tangents, however short the increment.
-ADVANCING, MOST_TANGENTS = 10, 4
+#: The last iterates in which a front gets on, of what is active or slips: then a loop has more tangents than are allowed else.
+ADVANCING = 10
+#: Up to so many times as many tangents: of layers and beams that lift off each other fronts take 30 to 60, however short increments are.
+MOST_TANGENTS = 4
 #: What is left is the same within this share: what creeps away from a circle, and may still converge, differs by more.
 SAME_MERIT = 1e-3
 #: Late updates of the monolithic method are halved that leave more than so many times what was left: they may pass over a hump.
