@@ -9,7 +9,7 @@ import pytest
 from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
 from isomortar.solve.equilibrium import Balance
-from isomortar.told.during.narrow import Narrow
+from isomortar.told.during.coarse import Coarse
 
 SCENE = """
 format = 1
@@ -27,10 +27,10 @@ stages = [{ name = "press", steps = 1, motions.top.translate = [0, 0, -0.03] }]
 def test_round_off_is_not_narrow(share: float, said: int) -> None:
     simulation = Simulation(Scene.from_toml(SCENE).problem())
     kept: list[Balance] = []
-    after_step = simulation._watches._narrow.after_step
-    simulation._watches._narrow.after_step = lambda balance, *other: kept.append(balance) or after_step(balance, *other)  # type: ignore[method-assign]
+    after_step = simulation._watches._coarse.after_step
+    simulation._watches._coarse.after_step = lambda balance, *other: kept.append(balance) or after_step(balance, *other)  # type: ignore[method-assign]
     list(simulation.run())
     (balance,) = kept
     responses = [replace(response, pressure=share * response.pressure) for response in balance.responses]
-    narrow = Narrow(simulation.equilibrium, simulation.equilibrium.initial_state().contacts)
-    assert len(list(narrow.after_step(replace(balance, responses=responses), 1, True))) == said
+    coarse = Coarse(simulation.equilibrium, simulation.equilibrium.initial_state().contacts)
+    assert len(list(coarse.after_step(replace(balance, responses=responses), 1, True))) == said

@@ -8,11 +8,11 @@ from isomortar._frozen import frozen
 from isomortar.geometry.patch import Direction, FloatArray
 from isomortar.model.enforcement.face import SlaveFace, grid
 from isomortar.model.entities import Contact, Problem
-from isomortar.model.pairs import Pair
 from isomortar.model.sheet import Sheet
 from isomortar.model.supports import BoolArray
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.feet import slave_points
+from isomortar.told.during.giving_way import Yields
 from isomortar.told.during.softness import softness
 
 #: Share of the force by which an edge of the master makes contact too stiff, times the width in elements that is over the master: fitted to
@@ -40,28 +40,48 @@ class BeyondEdges:
         At how many ends of that the slave goes on.
     softness : float
         Share of the slave in what both bodies give way.
+    yields : Yields
+        How far both do.
     """
 
     widths: FloatArray
     edges: FloatArray
     softness: float
+    yields: Yields
 
     @property
     def costs(self) -> FloatArray:
-        """Share of the force that elements along each coordinate add to it, by an estimate, shape (2,) (theory 9.13)."""
-        return np.asarray(self.softness * STIFFENS * self.edges / self.widths)
+        """Shares of the force that elements along each coordinate add to it, by an estimate, shape (2,) (theory 9.13)."""
+        alone = self.softness * STIFFENS * self.edges / self.widths
+        whole = float(alone.sum())
+        return np.asarray(alone * (self.yields.of_force(whole) / whole if whole > 0.0 else 0.0))
 
     @property
-    def too_stiff(self) -> bool:
-        """Whether it is told."""
+    def is_told(self) -> bool:
+        """Whether it costs enough to be told."""
         return bool(self.costs.sum() > COSTS)
 
+    def sentence(self, problem: Problem, contact: Contact, step: int) -> str:
+        """What is said of it at the end of a load step."""
+        letters, body, stage = Sheet.of(problem, contact.slave).letters, contact.slave.body, problem.stages[problem.stage_of(step)].name
+        over = " and ".join(
+            f"{width:.2g} along {letter}" for letter, width, edges in zip(letters, self.widths, self.edges, strict=True) if edges
+        )
+        few = [letter for letter, costs in zip(letters, self.costs, strict=True) if costs > PART * self.costs.max()]
+        return (
+            f"contact {contact.name!r}, load step {step}, the last of stage {stage!r}: elements of its slave {contact.slave.words} are too "
+            f"long for its master, beyond whose edges they go on: {over} are over it, and too stiff. Forces under given motions may be too "
+            f"large by about {10 * round(10.0 * float(self.costs.sum()))} %, pressures by more. Take twice as many elements or more along "
+            f"{' and '.join(few)} (bodies.{body}.mesh.elements), or shorter ones there (mesh.grading)"
+        )
 
-def beyond_edges(equilibrium: Equilibrium, pair: Pair, balance: Balance, number: int) -> BeyondEdges | None:
+
+def beyond_edges(equilibrium: Equilibrium, balance: Balance, number: int, yields: Yields) -> BeyondEdges | None:
     """What is over the master, along the lines of the face that bear most (theory 9.13); None where all is, or nothing.
 
     Lines are lines of places, each as its nearest quadrature point is. What does not bear at its end is not held up there.
     """
+    pair = equilibrium.pairs[number].pair
     projections, pressure = balance.kinematics[number].projections, pair.field(balance.responses[number].pressure)
     contact, problem, found = pair.contact, equilibrium.problem, projections.found > 0
     if found.all() or not found.any():
@@ -80,7 +100,7 @@ def beyond_edges(equilibrium: Equilibrium, pair: Pair, balance: Balance, number:
         area = np.sum(np.prod(grid(du, dv), axis=1) * face.areas(nodes, slopes), where=over.ravel())
         widths[edges > 0] *= (np.sum(pair.slave.area, where=found) / area) ** (1.0 / np.count_nonzero(edges))
     slave, master = (part[found].sum() for part in softness(problem, equilibrium.numbering, pair, projections))
-    return BeyondEdges(widths, edges, slave / (slave + master))
+    return BeyondEdges(widths, edges, slave / (slave + master), yields)
 
 
 def _places(direction: Direction) -> tuple[FloatArray, FloatArray]:
@@ -109,18 +129,3 @@ def _run(over: BoolArray, bears: FloatArray, closed: bool) -> tuple[float, int]:
     run, last = bears[low:high], max(1, min(PARTS // 2, (high - low) // 2))
     ends = (low > 0, run[:last]), (high < len(over), run[-last:])
     return len(run) / PARTS, sum(bool(is_edge and end.mean() > LOADED * run.mean()) for is_edge, end in ends)
-
-
-def told(problem: Problem, contact: Contact, found: BeyondEdges, step: int) -> str:
-    """The sentence."""
-    letters, body, stage = Sheet.of(problem, contact.slave).letters, contact.slave.body, problem.stages[problem.stage_of(step)].name
-    over = " and ".join(
-        f"{width:.2g} along {letter}" for letter, width, edges in zip(letters, found.widths, found.edges, strict=True) if edges
-    )
-    few = [letter for letter, costs in zip(letters, found.costs, strict=True) if costs > PART * found.costs.max()]
-    return (
-        f"contact {contact.name!r}, load step {step}, the last of stage {stage!r}: elements of its slave {contact.slave.words} are too "
-        f"long for its master, beyond whose edges they go on: {over} are over it, and too stiff. Forces under given motions may be too "
-        f"large by about {10 * round(10.0 * float(found.costs.sum()))} %, pressures by more. Take twice as many elements or more along "
-        f"{' and '.join(few)} (bodies.{body}.mesh.elements), or shorter ones there (mesh.grading)"
-    )

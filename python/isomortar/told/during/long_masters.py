@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from isomortar._bindings import surface_functions
 from isomortar._frozen import frozen
-from isomortar.geometry.patch import FloatArray, IntArray
+from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Contact, Face, Problem
-from isomortar.model.numbering import Numbering
-from isomortar.model.pairs import Pair
-from isomortar.model.rigid import deformation
 from isomortar.model.sheet import Sheet
 from isomortar.solve.equilibrium import Balance, Equilibrium
+from isomortar.told.during.giving_way import Yields
+from isomortar.told.during.pulling import pulls
 from isomortar.told.during.softness import softness
 
 #: Share of what a master gives way by that its elements keep back, by one over the width of contact in these, and what is taken from that:
@@ -28,8 +26,6 @@ ALL = 0.8
 FINER = 1.2
 #: Share of the force that this adds from which on it is told, and the largest that is: under rigid slaves it is a bound of little use.
 COSTS, LARGEST = 0.1, 1.0
-#: Times what it presses in that a master goes, up to which it does not bend (of balls and cylinders on blocks: 0.7 to 1.2).
-STILL = 1.3
 #: A direction is too coarse where it keeps back this share of what the other one does.
 PART = 0.5
 
@@ -46,34 +42,52 @@ class LongMaster:
         Share of what the master gives way by that elements keep back along each.
     softness : float
         Share of the master in what both bodies give way.
-    local : float
-        Share of what the master goes that it is pressed in by, about: of a beam that bends it is little.
+    yields : Yields
+        How far both do.
     """
 
     widths: FloatArray
     kept: FloatArray
     softness: float
-    local: float
+    yields: Yields
 
     @property
     def costs(self) -> float:
         """Share of the force that this adds to it at the most, about (theory 9.15)."""
-        return self.local * float(1.0 / (1.0 - self.softness * min(MOST, float(np.linalg.norm(self.kept)))) - 1.0)
+        kept = self.softness * min(MOST, float(np.linalg.norm(self.kept)))
+        return self.yields.of_force(kept / (1.0 - kept))
 
     @property
-    def too_stiff(self) -> bool:
-        """Whether it is told."""
+    def is_told(self) -> bool:
+        """Whether it costs enough to be told."""
         return self.costs > COSTS
 
+    def sentence(self, problem: Problem, contact: Contact, step: int) -> str:
+        """What is said of it at the end of a load step."""
+        assert isinstance(contact.master, Face), "planes have no elements"
+        letters, stage = Sheet.of(problem, contact.master).letters, problem.stages[problem.stage_of(step)].name
+        few = [letter for letter, kept in zip(letters, self.kept, strict=True) if kept > PART * self.kept.max()]
+        keys = ", ".join(f"bodies.{name}.mesh.elements" for name in dict.fromkeys(face.body for face in contact.master.faces))
+        return (
+            f"contact {contact.name!r}, load step {step}, the last of stage {stage!r}: elements of its master {contact.master.words} are "
+            f"too long for it, and too stiff: it is {self.widths[0]:.2g} of them wide along {letters[0]} and {self.widths[1]:.2g} along "
+            f"{letters[1]}. Forces under given motions may be too large by about {10 * round(10.0 * min(LARGEST, self.costs))} %, or by "
+            f"little, as knots lie there, and pressures by more. Take twice as many elements or more along {' and '.join(few)} ({keys}), "
+            "or shorter ones there (mesh.grading)"
+        )
 
-def long_master(equilibrium: Equilibrium, pair: Pair, balance: Balance, number: int) -> LongMaster | None:
-    """How a contact that bears lies on elements of its master (theory 9.15); None on planes, under slaves no finer, and beside mirrors."""
-    projections, problem = balance.kinematics[number].projections, equilibrium.problem
+
+def long_master(equilibrium: Equilibrium, balance: Balance, number: int, yields: Yields) -> LongMaster | None:
+    """How a contact that presses lies on elements of its master (theory 9.15).
+
+    None on planes, under slaves no finer, beside mirrors, and of what pulls.
+    """
+    pair, projections, problem = equilibrium.pairs[number].pair, balance.kinematics[number].projections, equilibrium.problem
     forces = pair.slave.area * np.maximum(pair.field(balance.responses[number].pressure), 0.0) * (projections.found > 0)
     if not isinstance(pair.contact.master, Face) or problem.images > 1 or not forces.any():
         return None
     slave_side, master_side = Sheet.of(problem, pair.contact.slave), Sheet.of(problem, pair.contact.master)
-    if not master_side.element_size > FINER * slave_side.element_size:
+    if not master_side.element_size > FINER * slave_side.element_size or pulls(equilibrium, balance, number):
         return None
     widths = _widths(master_side, projections.xi, forces / forces.sum())
     narrow = np.divide(1.0, widths, out=np.full(2, np.inf), where=widths > 0.0)
@@ -81,12 +95,7 @@ def long_master(equilibrium: Equilibrium, pair: Pair, balance: Balance, number: 
     orders = np.array([direction.order for direction in master_side.directions])
     kept = np.minimum(MOST, KEEPS * np.minimum(1.0, SMOOTH / orders) * np.maximum(0.0, narrow - FREE))
     slave, master = (float(forces @ part) for part in softness(problem, equilibrium.numbering, pair, projections))
-    pressed = master / float(forces.sum()) * float(np.sqrt(forces @ pair.field(balance.responses[number].pressure)))
-    feet = np.flatnonzero(forces)
-    functions = surface_functions(*master_side.arrays(equilibrium.numbering), projections.xi[feet])
-    gone = _gone(_deformations(equilibrium.numbering, balance.positions), pair.master_face, functions, forces[feet])
-    local = min(1.0, (STILL * pressed / gone) ** 2) if gone > 0.0 else 1.0
-    return LongMaster(widths, kept, master / (slave + master), local)
+    return LongMaster(widths, kept, master / (slave + master), yields)
 
 
 def _widths(side: Sheet, places: FloatArray, shares: FloatArray) -> FloatArray:
@@ -100,34 +109,3 @@ def _widths(side: Sheet, places: FloatArray, shares: FloatArray) -> FloatArray:
             elements = (elements - middle + 0.5 * count) % count
         widths[axis] = WIDE * np.sqrt(shares @ np.square(elements - shares @ elements))
     return widths
-
-
-def _deformations(numbering: Numbering, positions: FloatArray) -> FloatArray:
-    """How far control points have gone but for rigid motions of what hangs together, shape (control points, 3): a turn is no bending."""
-    ways = np.zeros_like(positions)
-    for number in range(len(numbering.pieces)):
-        own = numbering.piece_points(number)
-        ways[own] = deformation(numbering.reference[own], positions[own])
-    return ways
-
-
-def _gone(ways: FloatArray, face: IntArray, functions: tuple[IntArray, FloatArray], forces: FloatArray) -> float:
-    """How far a face has gone where forces act, from what of it has gone least the same way; `ways`: those of all control points."""
-    nodes, values = functions
-    mean = forces @ np.einsum("qa,qac->qc", values[:, 0], ways[face[nodes]]) / forces.sum()
-    return float(np.linalg.norm(ways[face] - mean, axis=1).max())
-
-
-def told(problem: Problem, contact: Contact, found: LongMaster, step: int) -> str:
-    """The sentence."""
-    assert isinstance(contact.master, Face), "planes have no elements"
-    letters, stage = Sheet.of(problem, contact.master).letters, problem.stages[problem.stage_of(step)].name
-    few = [letter for letter, kept in zip(letters, found.kept, strict=True) if kept > PART * found.kept.max()]
-    keys = ", ".join(f"bodies.{name}.mesh.elements" for name in dict.fromkeys(face.body for face in contact.master.faces))
-    return (
-        f"contact {contact.name!r}, load step {step}, the last of stage {stage!r}: elements of its master {contact.master.words} are too "
-        f"long for it, and too stiff: it is {found.widths[0]:.2g} of them wide along {letters[0]} and {found.widths[1]:.2g} along "
-        f"{letters[1]}. Forces under given motions may be too large by about {10 * round(10.0 * min(LARGEST, found.costs))} %, or by "
-        f"little, as knots lie there, and pressures by more. Take twice as many elements or more along {' and '.join(few)} ({keys}), or "
-        "shorter ones there (mesh.grading)"
-    )

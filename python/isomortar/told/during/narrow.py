@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-
 import numpy as np
 
 from isomortar._bindings import Projections
@@ -13,16 +11,9 @@ from isomortar.model.entities import Contact, Problem
 from isomortar.model.pairs import Pair
 from isomortar.model.shares import percent
 from isomortar.model.sheet import Sheet
-from isomortar.solve.contact import PairMechanics, PutOff
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.feet import gaps
-from isomortar.solve.record import ContactState
-from isomortar.told.borne import Borne
-from isomortar.told.during import long_masters
-from isomortar.told.during.beyond_edges import beyond_edges, told
-from isomortar.told.during.long_masters import long_master
-from isomortar.told.during.pulling import pulls
-from isomortar.told.during.softness import softness, thinness
+from isomortar.told.during.giving_way import Yields
 
 #: Rows that bear contact below which it is told, in both directions, or in one with functions that have kinks: there forces of balls and
 #: cylinders on blocks were off by up to a third. A single row of smooth functions along a line cost less than 7 %, two rows a tenth, more
@@ -39,13 +30,9 @@ ENOUGH, ALL = 2.5, 0.8
 COSTS = 0.1
 #: Depth over what forces press in up to which it costs nothing, and what is added below the line: fitted to the same scenes.
 FREE, ADDED = 0.5, 2.0
-#: How far a pressure presses in a layer on what holds it, over its thickness, as a share of pressure times softness where it cannot go
-#: sideways: fitted to 224 forces of balls and cylinders on layers a twentieth to one radius thick (theory 9.10).
-LAYER = 0.85
-#: Shares of the force that narrow contact costs: on one row of averages, and by other constraints, of which balls on blocks tell no better.
-FEW, OTHERWISE = "a fifth", "50 %, at the worst by 200 %"
-#: Share of the largest force of a contact below which it opens, or hardly begins: its last row is no fault of the mesh.
-LIGHT = 0.1
+#: Shares of the force that narrow contact costs: on one row of averages, and by other constraints, of which balls on blocks tell no better,
+#: mostly and at the worst: their forces act on few points, which give way far more than what is pressed in by theory.
+FEW, OTHERWISE, WORST = 0.2, "50 %, at the worst by 200 %", 2.0
 
 
 @frozen
@@ -64,10 +51,12 @@ class Bearing:
         Whether functions of the face have kinks along each coordinate.
     round : tuple of bool
         Whether it is a pole, round which a coordinate goes, that bears most: a point, however many rows there are along that.
+    averages : bool
+        Whether constraints are on averages.
     depth : float
         Of the quadrature points, root of the mean square where there is pressure: averages of it are zero.
-    costs : float
-        Share of the force that this costs constraints on averages, by an estimate; below zero it costs nothing (theory 9.10).
+    yields : Yields
+        How far bodies give way.
     """
 
     rows: FloatArray
@@ -75,63 +64,55 @@ class Bearing:
     least: FloatArray
     kinks: tuple[bool, bool]
     round: tuple[bool, bool]
+    averages: bool
     depth: float
-    costs: float
+    yields: Yields
 
     @property
-    def too_narrow(self) -> bool:
-        """Whether it is told."""
+    def costs(self) -> float:
+        """Share of the force that depths between control points cost averages, by an estimate; below zero: nothing (theory 9.10)."""
+        pressed = float(self.yields.pressed.sum())
+        ratio = self.depth / pressed if pressed > 0.0 else 0.0
+        return -self.yields.of_force((FREE - ratio) / (ratio + ADDED))
+
+    @property
+    def is_told(self) -> bool:
+        """Whether it costs enough to be told."""
         few = (self.rows < self.least) & (self.rows < ALL * np.array(self.of))
-        return bool(np.all(few | self.round) or np.any((self.rows < ROWS) & self.kinks)) or self.costs > COSTS
+        is_few = bool(np.all(few | self.round) or np.any((self.rows < ROWS) & self.kinks))
+        return (is_few and self.yields.of_force(FEW if self.averages else WORST) > COSTS) or self.costs > COSTS
 
+    @property
+    def share(self) -> str:
+        """About what share of the force it costs, in words."""
+        if not self.averages:
+            return OTHERWISE
+        return percent(self.costs if self.costs > COSTS else self.yields.of_force(FEW))
 
-class Narrow:
-    """Warnings of contacts that are too narrow for their slaves at the end of a stage; each is given once a contact.
-
-    What bore when the computation begins, or goes on, counts as borne before.
-    """
-
-    def __init__(self, equilibrium: Equilibrium, states: Sequence[ContactState]) -> None:
-        self._equilibrium, self._problem = equilibrium, equilibrium.problem
-        self._watched = dict(enumerate(equilibrium.pairs))
-        self._areas = [_areas(mechanics.pair, mechanics.pair.slave.area) for mechanics in equilibrium.pairs]
-        self._largest = np.array([state.pressure @ area for state, area in zip(states, self._areas, strict=True)])
-        self._borne = Borne(self._problem, states)
-
-    def after_step(self, balance: Balance, step: int, ends: bool) -> Iterator[str]:
-        """Warnings that the end of a load step gives rise to, if it `ends` a stage: all contact of round bodies is narrow at first."""
-        self._borne.see(response.pressure for response in balance.responses)
-        for number, mechanics in list(self._watched.items()):
-            if isinstance(balance.kinematics[number], PutOff):
-                continue
-            pressure = balance.responses[number].pressure
-            force = float(pressure @ self._areas[number])
-            self._largest[number] = max(force, self._largest[number])
-            bears = self._borne.more_than_nothing(number, float(np.abs(pressure).max(initial=0.0)))
-            if not ends or not bears or force <= LIGHT * self._largest[number]:
-                continue
-            found = bearing(self._equilibrium, mechanics, balance, number)
-            if found.too_narrow:
-                del self._watched[number]
-                yield _told(self._problem, mechanics.pair.contact, found, step)
-                continue
-            over = beyond_edges(self._equilibrium, mechanics.pair, balance, number)
-            if over is not None and over.too_stiff:
-                del self._watched[number]
-                yield told(self._problem, mechanics.pair.contact, over, step)
-                continue
-            lies = long_master(self._equilibrium, mechanics.pair, balance, number)
-            if lies is not None and lies.too_stiff and not pulls(self._equilibrium, balance, number):
-                del self._watched[number]
-                yield long_masters.told(self._problem, mechanics.pair.contact, lies, step)
+    def sentence(self, problem: Problem, contact: Contact, step: int) -> str:
+        """What is said of it at the end of a load step."""
+        letters, what = Sheet.of(problem, contact.slave).letters, "control points" if contact.of_averages else "constraints"
+        least = float(self.rows.min())
+        sides = list(zip(letters, self.rows, self.of, strict=True))
+        few = [letter for letter, rows, count in sides if rows <= max(ENOUGH, least) and rows < ALL * count]
+        few = few or [letter for letter, is_round in zip(letters, self.round, strict=True) if not is_round]
+        between = f", and between these it is about {self.depth:.2g} inside its master or apart from it" if self.costs > COSTS else ""
+        stage = problem.stages[problem.stage_of(step)].name
+        return (
+            f"contact {contact.name!r}, load step {step}, the last of stage {stage!r}: it is too narrow for its slave "
+            f"{contact.slave.words}: {self.rows[0]:.1f} of {self.of[0]} rows of {what} along {letters[0]} and {self.rows[1]:.1f} of "
+            f"{self.of[1]} along {letters[1]} bear it{between}. Forces under given motions may be off by about {self.share}, pressures by "
+            f"more. Take twice as many elements or more along {' and '.join(few)} (bodies.{contact.slave.body}.mesh.elements), or shorter "
+            "ones there (mesh.grading)"
+        )
 
 
 def forces(pair: Pair, pressure: FloatArray, projections: Projections) -> FloatArray:
     """Forces of constraints, shape (n,): their pressures by the integrals of their functions over what has a foot (theory 9.9)."""
-    return np.asarray(pressure * _areas(pair, pair.slave.area * (projections.found > 0)))
+    return np.asarray(pressure * areas(pair, pair.slave.area * (projections.found > 0)))
 
 
-def _areas(pair: Pair, area: FloatArray) -> FloatArray:
+def areas(pair: Pair, area: FloatArray) -> FloatArray:
     """Integrals of the constraints' functions with areas of quadrature points, shape (n,)."""
     test = pair.slave.test
     acting = np.einsum("eqa,eq->ea", test.values.reshape(*_by_element(pair), -1), area.reshape(_by_element(pair)))
@@ -142,29 +123,28 @@ def _by_element(pair: Pair) -> tuple[int, int]:
     return pair.slave.elements, pair.slave.per_element
 
 
-def bearing(equilibrium: Equilibrium, mechanics: PairMechanics, balance: Balance, number: int) -> Bearing:
+def bearing(equilibrium: Equilibrium, balance: Balance, number: int, yields: Yields) -> Bearing:
     """What bears a contact that is closed (theory 9.9, 9.10).
 
     Parameters
     ----------
     equilibrium : Equilibrium
-    mechanics : PairMechanics
-        Of the contact.
     balance : Balance
     number : int
-        Of that contact.
+        Of the contact.
+    yields : Yields
     """
-    borne = forces(mechanics.pair, balance.responses[number].pressure, balance.kinematics[number].projections)
-    depth, pressed = _between(equilibrium, mechanics, balance, number)
-    ratio = depth / pressed if pressed > 0.0 else 0.0
-    (first, round_first), (second, round_second) = (_sums(mechanics.pair.places, borne, axis) for axis in (0, 1))
+    pair, kinematics = equilibrium.pairs[number].pair, balance.kinematics[number]
+    borne = forces(pair, balance.responses[number].pressure, kinematics.projections)
+    (first, round_first), (second, round_second) = (_sums(pair.places, borne, axis) for axis in (0, 1))
     rows = np.array([np.sum(sums) ** 2 / (sums @ sums) for sums in (first, second)])
-    directions = Sheet.of(equilibrium.problem, mechanics.pair.contact.slave).directions
+    directions = Sheet.of(equilibrium.problem, pair.contact.slave).directions
     u, v = (direction.order == 1 or direction.family == "L" for direction in directions)
     round_poles, counts = (round_first, round_second), (len(first), len(second))
     by_element = [count / direction.elements for count, direction in zip(counts, directions, strict=True)]
-    least = _least(equilibrium.problem, mechanics.pair.contact, np.array(by_element))
-    return Bearing(rows, counts, least, (u, v), round_poles, depth, (ratio - FREE) / (ratio + ADDED))
+    least = _least(equilibrium.problem, pair.contact, np.array(by_element))
+    depth = _depth(pair, balance, number)
+    return Bearing(rows, counts, least, (u, v), round_poles, pair.contact.enforcement == "mortar", depth, yields)
 
 
 def _least(problem: Problem, contact: Contact, by_element: FloatArray) -> FloatArray:
@@ -187,39 +167,10 @@ def _sums(places: FloatArray, borne: FloatArray, axis: int) -> tuple[FloatArray,
     return np.asarray(sums + of_pole / len(sums), np.float64), of_pole > 0.5 * float(borne.sum())
 
 
-def _between(equilibrium: Equilibrium, mechanics: PairMechanics, balance: Balance, number: int) -> tuple[float, float]:
-    """How deep quadrature points are where there is pressure, and how far that presses the bodies in, about (theory 9.10)."""
-    pair, projections = mechanics.pair, balance.kinematics[number].projections
-    pressure = abs(pair.field(balance.responses[number].pressure)) * (projections.found > 0)
-    acting = pair.slave.area * pressure
+def _depth(pair: Pair, balance: Balance, number: int) -> float:
+    """How deep quadrature points are where there is pressure (theory 9.10)."""
+    projections = balance.kinematics[number].projections
+    acting = pair.slave.area * abs(pair.field(balance.responses[number].pressure)) * (projections.found > 0)
     if not acting.any():
-        return 0.0, 0.0
-    depth = np.sqrt(acting @ np.square(gaps(pair, balance.positions, projections)) / acting.sum())
-    at = (equilibrium.problem, equilibrium.numbering, pair, projections)
-    spread, mean = np.sqrt(equilibrium.problem.images * (acting @ pressure)), acting @ pressure / acting.sum()
-    sides = zip(softness(*at), thinness(*at, equilibrium.supports.stage), strict=True)
-    pressed = sum(soft * np.minimum(spread, _of_layers(mean, thin)) for soft, thin in sides)
-    return float(depth), float(acting @ pressed / acting.sum())
-
-
-def _of_layers(pressure: float, thin: FloatArray) -> FloatArray:
-    """How far a pressure presses in layers of one over these thicknesses, over their softness; infinity of what is none."""
-    return np.divide(LAYER * pressure, thin, out=np.full_like(thin, np.inf), where=thin > 0.0)
-
-
-def _told(problem: Problem, contact: Contact, found: Bearing, step: int) -> str:
-    """The sentence."""
-    letters, what = Sheet.of(problem, contact.slave).letters, "control points" if contact.of_averages else "constraints"
-    least, deep = float(found.rows.min()), found.costs > COSTS
-    sides = list(zip(letters, found.rows, found.of, strict=True))
-    few = [letter for letter, rows, count in sides if rows <= max(ENOUGH, least) and rows < ALL * count]
-    few = few or [letter for letter, is_round in zip(letters, found.round, strict=True) if not is_round]
-    between = f", and between these it is about {found.depth:.2g} inside its master or apart from it" if deep else ""
-    share = OTHERWISE if contact.enforcement != "mortar" else percent(found.costs) if deep else FEW
-    stage = problem.stages[problem.stage_of(step)].name
-    return (
-        f"contact {contact.name!r}, load step {step}, the last of stage {stage!r}: it is too narrow for its slave {contact.slave.words}: "
-        f"{found.rows[0]:.1f} of {found.of[0]} rows of {what} along {letters[0]} and {found.rows[1]:.1f} of {found.of[1]} along "
-        f"{letters[1]} bear it{between}. Forces under given motions may be off by about {share}, pressures by more. Take twice as "
-        f"many elements or more along {' and '.join(few)} (bodies.{contact.slave.body}.mesh.elements), or shorter ones there (mesh.grading)"
-    )
+        return 0.0
+    return float(np.sqrt(acting @ np.square(gaps(pair, balance.positions, projections)) / acting.sum()))

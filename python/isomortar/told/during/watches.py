@@ -10,10 +10,10 @@ from isomortar.solve.record import ContactState, StepResult
 from isomortar.told.during.advice import StepAdvice
 from isomortar.told.during.astray import Astray
 from isomortar.told.during.behind import Behind
+from isomortar.told.during.coarse import Coarse
 from isomortar.told.during.inside_out import InsideOut
 from isomortar.told.during.lost import LostDigits
 from isomortar.told.during.mirrored import Mirrored
-from isomortar.told.during.narrow import Narrow
 from isomortar.told.during.passing import Passing
 from isomortar.told.during.pulling import Pulling
 from isomortar.told.during.sharing import Sharing
@@ -43,7 +43,7 @@ class Watches:
         self._small_strains, self._astray, self._unseen = SmallStrains(equilibrium), Astray(equilibrium), Unseen(equilibrium)
         self._snapping, self._inside_out, self._unstable = Snapping(equilibrium), InsideOut(equilibrium), Unstable(equilibrium)
         self._mirrored, self._shrunk = Mirrored(equilibrium), Shrunk(equilibrium)
-        self._narrow, self._advice = Narrow(equilibrium, states), StepAdvice(problem, step, states)
+        self._coarse, self._advice = Coarse(equilibrium, states), StepAdvice(problem, step, states)
         self._of_stages = [watch for watch in (Passing(problem), Behind(problem)) if watch.needed]
 
     def look(self, before: FloatArray, after: FloatArray, share: float) -> None:
@@ -73,7 +73,7 @@ class Watches:
         yield from self._snapping.after_step(step)
         yield from self._inside_out.after_step(step)
         yield from self._astray.after_step(balance, step)
-        yield from self._narrow.after_step(balance, step, ends)
+        yield from self._coarse.after_step(balance, step, ends)
         yield from self._advice.after_step(step, result.contacts, result.state.contacts)
         self._unseen.after_step(balance)
         if ends and self._of_stages:
