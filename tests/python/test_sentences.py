@@ -16,6 +16,7 @@ from told.astray import STRETCHING, TURNING
 from told.astray import run as astray
 from told.behind import DOWN
 from told.behind import SCENE as FLOOR
+from told.bending import STIFF, thin
 from told.beyond_edges import STRIP as BEYOND_EDGES
 from told.beyond_edges import punch
 from told.dents import scene as at_points
@@ -206,6 +207,9 @@ def along_the_way(_: pytest.MonkeyPatch) -> Told:
     observer = Warned()
     list(Simulation(Scene.from_toml(CAP.replace("ORDER", "2").replace("MANY", "3").replace("YOUNG", "10")).problem(), observer).run())
     yield "long masters", observer.said[0]
+    observer = Warned()
+    list(Simulation(Scene.from_toml(thin(*STIFF["half a ring"])).problem(), observer).run())
+    yield "bends", observer.said[0]
     observer = Warned()
     list(Simulation(Scene.from_toml(slender("sliding", 1.08, "monolithic")).problem(), observer).run())
     at = re.compile(r"(control point) \d+, along \(.*?\)")  # the way has a sign or its opposite

@@ -1,8 +1,11 @@
-"""What is said of thin bodies of order 1: how many times too stiff they are in bending, against beams that are bent."""
+"""What is said of thin bodies whose elements lock: how many times too stiff they are in bending, against beams and rings that are bent."""
 
 from __future__ import annotations
 
 import re
+
+import numpy as np
+from told.runs import Heard
 
 from isomortar.harness import Bound, case
 from isomortar.march.outlook import outlook
@@ -82,3 +85,109 @@ def not_bent() -> dict[str, float]:
     assert all(old in thin for old, _ in SOUND.values())
     doubted = [name for name, (old, new) in SOUND.items() if told(thin.replace(old, new))]
     return {"doubted": float(len(doubted)), "said": float(len(told(thin)))}
+
+
+#: A part of a ring that one end is bent by, and a beam of square section, both of order 2 or, the beam, of order 1.
+RING = """
+format = 1
+materials.m = { young = 1, poisson = 0.3 }
+bodies.b.geometry = { kind = "ring", inner = INNER, outer = 1, width = 0.1, axis = "y", angles = [0, ANGLE] }
+bodies.b.mesh = { order = MESH_ORDER, elements = MESH }
+supports = { wall.face = "b.u0", hand = { face = "b.u1", components = ["z"] } }
+stages = [{ name = "bend", steps = 1, motions.hand.translate = [0, 0, -1e-5] }]
+"""
+BEAM = RING.replace(
+    '"ring", inner = INNER, outer = 1, width = 0.1, axis = "y", angles = [0, ANGLE]', '"box", lower = [0, 0, 0], upper = [2, 0.1, INNER]'
+)
+HELD = BEAM.replace('components = ["z"]', 'components = ["x", "y", "z"]')
+#: Scenes, their inner radius or thickness, angle, and elements of order 2 (beams: last entry 1: of order 1) that are too long for it.
+STIFF: dict[str, tuple[str, float, int, int, int]] = {
+    "half a ring": (RING, 0.9, 180, 2, 8),
+    "half a thin ring": (RING, 0.98, 180, 2, 16),
+    "half a thin ring, coarse": (RING, 0.98, 180, 2, 4),
+    "a quarter": (RING, 0.98, 90, 2, 4),
+    "beam to and fro": (HELD, 0.02, 0, 2, 4),
+    "square beam of order 1": (BEAM, 0.1, 0, 1, 8),
+    "square beam of order 1, to and fro": (HELD, 0.1, 0, 1, 8),
+}
+STIFF_SAID = re.compile(r"body 'b', load step 1, the last of stage 'bend': it bends along u, .* up to about (\S+) (times|%) too stiff")
+
+
+def thin(text: str, inner: float, angle: int, order: int, elements: int) -> str:
+    """A scene of these."""
+    orders = [order, 2, 1] if "ring" in text else [order, 1, min(order, 2)]
+    words = {"INNER": inner, "ANGLE": angle, "MESH_ORDER": orders, "MESH": [elements, 1, 1]}
+    for word, value in words.items():
+        text = text.replace(word, str(value))
+    return text
+
+
+def _run(text: str) -> tuple[list[float], float]:
+    """By how much a body is said to be too stiff, and the force of the hand."""
+    heard, problem = Heard(), Scene.from_toml(text).problem()
+    *_, result = Simulation(problem, heard).run()
+    said = [float(found[1]) * (1.0 if found[2] == "times" else 0.01) for words in heard.said if (found := STIFF_SAID.search(words))]
+    return said, float(np.linalg.norm(result.reactions[1].force))
+
+
+@case(
+    claim="Rings and beams that bend, of elements too long for it, are told by about how much they are too stiff, beside elements of order "
+    "5; of those nothing is said, nor of four times as many of the same order.",
+    tier="gate",
+    grid={"scene": tuple(STIFF)},
+    bounds={
+        "told over off": Bound(at_least=0.5, at_most=2.0, reason="definition: an order of magnitude is told"),
+        "off": Bound(at_least=0.3, reason="definition: by how much it is too stiff, or there is nothing to tell of"),
+        "others": Bound(0.0, 0.0, "definition: sentences of short elements and of order 5"),
+    },
+)
+def stiff(scene: str) -> dict[str, float]:
+    """What is told beside what is true."""
+    text, inner, angle, order, elements = STIFF[scene]
+    said, force = _run(thin(text, inner, angle, order, elements))
+    none, true = _run(thin(text, inner, angle, 5, 12))
+    fine, _ = _run(thin(text, inner, angle, order, 8 * elements))
+    off = force / true - 1.0
+    return {"told over off": said[0] / off if said else 0.0, "off": off, "others": float(len(none) + len(fine))}
+
+
+#: What the half ring and the beam do but bend: what is replaced, and by what. The ring is widened by a pressure; the beam is pulled, moved
+#: as a whole, squeezed, or what is across it is glued to a block.
+_HAND = "motions.hand.translate = [0, 0, -1e-5]"
+_ENDS = """supports.wall = { face = "b.u0", components = ["x", "y"] }
+supports.edge = { edge = "b.u0.v0", components = ["z"] }
+supports.hand = { face = "b.u1", components = ["x", "y"] }
+loads.within = { face = "b.v0", pressure = 1e-6 }"""
+_BLOCK = """glue = [["b.w0", "block.w1"]]
+bodies.block.geometry = { kind = "box", lower = [0, 0, -2], upper = [2, 0.1, 0] }
+bodies.block.mesh = { order = [2, 1, 2], elements = [4, 1, 4] }"""
+OTHERWISE: dict[str, tuple[str, *tuple[tuple[str, str], ...]]] = {
+    "widened": (RING, ('supports = { wall.face = "b.u0", hand = { face = "b.u1", components = ["z"] } }', _ENDS), (", " + _HAND, "")),
+    "pulled": (HELD, ("[0, 0, -1e-5]", "[1e-5, 0, 0]")),
+    "moved": (HELD, (_HAND, "motions.hand.translate = [0, 0, 1], motions.wall.translate = [0, 0, 1]")),
+    "squeezed": (HELD, ("b.u0", "b.w0"), ("b.u1", "b.w1"), ("-1e-5", "-1e-4")),
+    "glued": (HELD, ("format = 1", "format = 1\n" + _BLOCK)),
+}
+
+
+@case(
+    claim="Thin bodies with elements too long for bending that do not bend are not told to be too stiff; of those that are pulled and bent "
+    "it is said once.",
+    tier="gate",
+    bounds={
+        "doubted": Bound(0.0, 0.0, "definition: scenes of which it is said"),
+        "said": Bound(1.0, 1.0, "definition: sentences in two stages that bend"),
+    },
+)
+def otherwise() -> dict[str, float]:
+    """How many of five, and how often of one beside them."""
+    doubted = 0
+    for text, *changes in OTHERWISE.values():
+        for old, new in changes:
+            assert old in text, old
+            text = text.replace(old, new)
+        doubted += len(_run(thin(text, 0.98 if "ring" in text else 0.02, 180, 2, 4))[0])
+    again = HELD.replace("stages = [{", 'stages = [{ name = "bend", steps = 1, motions.hand.translate = [1e-6, 0, -1e-5] }, {').replace(
+        '"bend", steps = 1, motions.hand.translate = [0', '"more", steps = 1, motions.hand.translate = [0'
+    )
+    return {"doubted": float(doubted), "said": float(len(_run(thin(again, 0.02, 0, 2, 4))[0]))}

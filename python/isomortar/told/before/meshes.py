@@ -18,7 +18,7 @@ SLENDER = 20.0
 #: Elements at a face in contact longer than those at the opposite face by this factor were to be the finer ones, most likely.
 GRADED = 3.0
 #: Bending stiffness over the right one above which a body of order 1 hardly bends.
-BENDS = 2.0
+SAID_ABOVE = 2.0
 #: Share of the pressures from which on it is told that the last bits of a tall body's positions may make it; and a factor of the estimate,
 #: fitted to what pressure fields of columns pressed by a tenth were off by (theory 9.6).
 LOST, OF_ESTIMATE = 1e-3, 0.5
@@ -108,27 +108,35 @@ def _few_points(body: Body) -> Iterator[str]:
 
 
 def _hardly_bends(problem: Problem, body: Body) -> Iterator[str]:
-    """A thin body that is of order 1 along its sheet, whose shear strains bear what bending should.
+    """A thin body that is of order 1 along its sheet, whose shear strains bear what bending should."""
+    times = stiff_sheet(problem, body)
+    if times > SAID_ABOVE:
+        lengths = element_lengths(body.patch)
+        across = int(np.argmin([along.sum() for along in lengths]))
+        yield (
+            f"body {body.name!r} is {lengths[across].sum():.3g} thick along {'uvw'[across]}, and its elements of order 1 are so long that "
+            f"it is about {times:.2g} times too stiff in bending: they shear instead (locking). Take bodies.{body.name}.mesh.order = 2 or "
+            "more, or elements shorter than it is thick"
+        )
+
+
+def stiff_sheet(problem: Problem, body: Body) -> float:
+    """How many times too stiff in bending a sheet is that is of order 1 along it, in the direction that bends best; 1 of other bodies.
 
     An element of length h keeps its sides straight, and is sheared by kappa x where the curvature is kappa: a sheet of thickness t is
-    1 + h^2 / (2 (1 + nu) t^2) times as stiff as it should be.
+    1 + h^2 / (2 (1 + nu) t^2) times as stiff as it should be. What is held across, or glued, is no sheet.
     """
     lengths = element_lengths(body.patch)
     across = int(np.argmin([along.sum() for along in lengths]))
     letter, thickness = "uvw"[across], float(lengths[across].sum())
     held = any(problem.holds(Face(body.name, f"{letter}{end}"), k) for end in (0, 1) for k in range(len(problem.stages)))
-    glued = any(face.body == body.name for joint in problem.glue for face in joint)
-    straight = [
+    if held or any(face.body == body.name for joint in problem.glue for face in joint):
+        return 1.0
+    return min(
         1.0 + (float(lengths[k].max()) / thickness) ** 2 / (2.0 * (1.0 + body.material.poisson)) if direction.order == 1 else 1.0
         for k, direction in enumerate(body.patch.directions)
         if k != across
-    ]
-    if min(straight) > BENDS and not held and not glued:
-        yield (
-            f"body {body.name!r} is {thickness:.3g} thick along {letter}, and its elements of order 1 are so long that it is about "
-            f"{min(straight):.2g} times too stiff in bending: they shear instead (locking). Take bodies.{body.name}.mesh.order = 2 or "
-            "more, or elements shorter than it is thick"
-        )
+    )
 
 
 def _one_element(problem: Problem, contact: Contact) -> Iterator[str]:

@@ -10,6 +10,7 @@ from isomortar.solve.record import ContactState, StepResult
 from isomortar.told.during.advice import StepAdvice
 from isomortar.told.during.astray import Astray
 from isomortar.told.during.behind import Behind
+from isomortar.told.during.bending import Bending
 from isomortar.told.during.coarse import Coarse
 from isomortar.told.during.inside_out import InsideOut
 from isomortar.told.during.lost import LostDigits
@@ -42,7 +43,7 @@ class Watches:
         self._lost, self._pulling, self._sharing = LostDigits(equilibrium), Pulling(equilibrium), Sharing(equilibrium)
         self._small_strains, self._astray, self._unseen = SmallStrains(equilibrium), Astray(equilibrium), Unseen(equilibrium)
         self._snapping, self._inside_out, self._unstable = Snapping(equilibrium), InsideOut(equilibrium), Unstable(equilibrium)
-        self._mirrored, self._shrunk = Mirrored(equilibrium), Shrunk(equilibrium)
+        self._mirrored, self._shrunk, self._bending = Mirrored(equilibrium), Shrunk(equilibrium), Bending(equilibrium)
         self._coarse, self._advice = Coarse(equilibrium, states), StepAdvice(problem, step, states)
         self._of_stages = [watch for watch in (Passing(problem), Behind(problem)) if watch.needed]
 
@@ -76,6 +77,8 @@ class Watches:
         yield from self._coarse.after_step(balance, step, ends)
         yield from self._advice.after_step(step, result.contacts, result.state.contacts)
         self._unseen.after_step(balance)
+        if ends:
+            yield from self._bending.after_stage(balance, step)
         if ends and self._of_stages:
             deformed = self._equilibrium.numbering.deformed(balance.positions)
             for watch in self._of_stages:

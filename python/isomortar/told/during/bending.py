@@ -1,0 +1,146 @@
+"""Thin bodies that bend, of elements so long along them that they are far too stiff: they shear and stretch where they should bend."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from functools import cached_property
+
+import numpy as np
+
+from isomortar._frozen import frozen
+from isomortar.geometry.faces import cells
+from isomortar.geometry.patch import FloatArray
+from isomortar.model.contrasts import element_lengths
+from isomortar.model.entities import Body, Problem
+from isomortar.model.rigid import deformation
+from isomortar.solve.equilibrium import Balance, Equilibrium
+from isomortar.told.before.meshes import SAID_ABOVE, stiff_sheet
+
+#: How much too stiff elements of order 2 are in bending, over (h / t)^2 times (h / R)^2 of bodies that are curved, and (h / l)^2 of smooth
+#: ones that are l long: fitted to half and quarter rings (0.10 to 0.18), and to beams and plates (0.02 to 0.28, by how they are held).
+CURVED, STRAIGHT = 0.15, 0.1
+#: Share by which a body is too stiff from which on it is told: estimates are good for the order of magnitude.
+TOLD = 0.25
+#: Length over thickness from which on bodies bend rather than shear, about as beams do.
+SLENDER = 4.0
+#: A body bends where its middle has gone so many times as far across as its thickness has changed, both in the mean.
+BENDS = 2.0
+#: Share of a body's size below which its ways are round-off.
+STILL = 1e-9
+
+
+@frozen
+class Way:
+    """How a body may bend: along one direction, across another one.
+
+    Attributes
+    ----------
+    along, across : int
+        Numbers of the directions.
+    share : float
+        By how much it is too stiff there (theory 9.20).
+    """
+
+    along: int
+    across: int
+    share: float
+
+
+class Bending:
+    """Warnings of bodies that bend and are far too stiff for it, at the end of a stage; each is given once a body."""
+
+    def __init__(self, equilibrium: Equilibrium) -> None:
+        self._equilibrium = equilibrium
+        self._told = set[str]()
+
+    @cached_property
+    def _stiff(self) -> list[tuple[Body, list[Way]]]:
+        """Bodies with the ways in which they are too stiff; of sheets of order 1 that is said before."""
+        problem = self._equilibrium.problem
+        return [(body, found) for body in problem.deformable if stiff_sheet(problem, body) <= SAID_ABOVE and (found := ways(problem, body))]
+
+    def after_stage(self, balance: Balance, step: int) -> Iterator[str]:
+        """Warnings that the end of a stage gives rise to."""
+        for body, found in self._stiff:
+            if body.name in self._told:
+                continue
+            bent = bends(body, self._equilibrium.numbering.of_patch(body.name, balance.positions), found)
+            if bent is not None:
+                self._told.add(body.name)
+                yield self._sentence(body, bent, step)
+
+    def _sentence(self, body: Body, bent: Way, step: int) -> str:
+        problem = self._equilibrium.problem
+        stage, letter, order = problem.stages[problem.stage_of(step)].name, "uvw"[bent.along], body.patch.directions[bent.along].order
+        size = f"{float(f'{bent.share:.2g}'):g} times" if bent.share >= 1.0 else f"{10 * round(10.0 * bent.share)} %"
+        return (
+            f"body {body.name!r}, load step {step}, the last of stage {stage!r}: it bends along {letter}, and its elements of order "
+            f"{order} are so long there that it is up to about {size} too stiff for that: they shear and stretch instead (locking). Take "
+            f"bodies.{body.name}.mesh.order = {order + 1} or more along {letter}, or twice as many elements there"
+        )
+
+
+def ways(problem: Problem, body: Body) -> list[Way]:
+    """Ways in which a body is too stiff in bending, the worst first (theory 9.20); none across faces that are glued to others."""
+    lengths = element_lengths(body.patch)
+    whole = [float(of.sum()) for of in lengths]
+    glued = {"uvw".index(face.face[0]) for joint in problem.glue for face in joint if face.body == body.name}
+    free = [across for across in range(3) if across not in glued]
+    pairs = [(along, across) for along in range(3) for across in free if whole[along] > SLENDER * whole[across]]
+    found = [Way(along, across, _share(body, along, lengths[along], whole[across])) for along, across in pairs]
+    return sorted((way for way in found if way.share > TOLD), key=lambda way: -way.share)
+
+
+def _share(body: Body, along: int, lengths: FloatArray, thick: float) -> float:
+    """By how much elements of these lengths along a direction are too stiff where a body so thick bends (theory 9.20)."""
+    direction, whole = body.patch.directions[along], float(lengths.sum())
+    if direction.order == 1:
+        return float(np.sum(lengths**3)) / whole / thick**2 / (2.0 * (1.0 + body.material.poisson))
+    if direction.order > 2:
+        return 0.0
+    lines = np.moveaxis(body.patch.control_points.reshape(*body.patch.shape, 3, order="F"), along, 0)
+    straight = STRAIGHT / whole**2 if direction.family == "N" else 0.0
+    return float(np.sum(lengths**5)) / whole / thick**2 * (CURVED * _curvature(lines.reshape(len(lines), -1, 3)) ** 2 + straight)
+
+
+def _curvature(lines: FloatArray) -> float:
+    """Mean curvature of the longest of some lines of control points, shape (points, lines, 3): how far it turns, over its length."""
+    steps = np.diff(lines, axis=0)
+    lengths = np.linalg.norm(steps, axis=2)
+    longest = int(np.argmax(lengths.sum(axis=0)))
+    units = steps[:, longest] / lengths[:, longest, None]
+    return float(np.arccos(np.clip(np.sum(units[1:] * units[:-1], axis=1), -1.0, 1.0)).sum() / lengths[:, longest].sum())
+
+
+def bends(body: Body, positions: FloatArray, ways: Sequence[Way]) -> Way | None:
+    """The first of some ways in which a body has bent, by more than it is squeezed, or bent another way; its rigid motion is none.
+
+    Parameters
+    ----------
+    body : Body
+    positions : ndarray, shape (control points of the patch, 3)
+    ways : sequence of Way
+    """
+    now = replace(body.patch, control_points=positions)
+    for way in ways:
+        faces = [f"{'uvw'[way.across]}{end}" for end in (0, 1)]
+        reference, (low, high) = ([cells(patch, face).centres for face in faces] for patch in (body.patch, now))
+        gone = _but_for_size(np.concatenate(reference), np.concatenate([low, high]))
+        if not np.abs(gone).max() > STILL * np.ptp(positions, axis=0).max():
+            return None
+        below, above = np.split(gone, 2)
+        normal = (high - low) / np.linalg.norm(high - low, axis=1, keepdims=True)
+        middle = np.sum(0.5 * (below + above) * normal, axis=1).reshape(cells(now, faces[0]).shape)
+        axis = 0 if way.along == (way.across + 1) % 3 else 1
+        along, beside = (np.std(middle, axis=k).max() for k in (axis, 1 - axis))
+        if along > BENDS * np.sqrt(np.mean(np.sum((above - below) * normal, axis=1) ** 2)) and along > beside:
+            return way
+    return None
+
+
+def _but_for_size(before: FloatArray, after: FloatArray) -> FloatArray:
+    """Ways of points but for the nearest motion that keeps the shape: a ring that widens does not bend."""
+    gone, centred = deformation(before, after), after - after.mean(axis=0)
+    turned = centred - gone
+    return np.asarray(gone - turned * (np.sum(turned * gone) / np.sum(turned * turned)))
