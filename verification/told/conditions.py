@@ -57,6 +57,30 @@ face = "road.w0"
 """
 ROAD = TYRE.replace("plane = { normal = [0, 0, 1] }", 'master = "road.w1"').replace("[[stages]]", f"{_BLOCK}[[stages]]")
 
+#: Two blocks that are glued on the lower one, one or both of their faces there held.
+BESIDE = SCENE.replace(
+    "contacts.c = { slave =", 'glue = [["above.u1", "beside.u0"]]\ncontacts.c = { slave = ["above.w0", "beside.w0"], was ='
+)
+BESIDE = BESIDE.replace('was = "above.w0", ', "").replace(
+    "bodies.above.geometry",
+    'bodies.beside.geometry = { kind = "box", lower = [0.25, -0.25, 0], upper = [0.75, 0.25, 0.5] }\n'
+    "bodies.beside.mesh = { order = 2, elements = [4, 2, 2] }\nbodies.above.geometry",
+)
+BESIDE = BESIDE.replace('top.face = "above.w1"', 'top.face = "above.w0"').replace("stages =", "OTHER\nstages =")
+#: The upper block with elements across that are longest in the middle; those at its lower face are longer than at its upper one.
+_KNOTS = "knots = [[0, 0, 1, 1], [0, 0, 1, 1], [0, 0, LINES, 1, 1]], control_points = POINTS"
+
+
+def layered(lines: tuple[float, float]) -> str:
+    """The blocks with knot lines of the upper one at such shares of its height."""
+    points = [[x, y, 0.5 * z] for z in (0, *lines, 1) for y in (-0.25, 0.25) for x in (-0.25, 0.25)]
+    patch = _KNOTS.replace("LINES", ", ".join(map(str, lines))).replace("POINTS", str(points))
+    geometry = 'bodies.above.geometry = { kind = "box", lower = [-0.25, -0.25, 0], upper = [0.25, 0.25, 0.5] }'
+    return SCENE.replace(geometry, f"bodies.above.patch = {{ order = [1, 1, 1], {patch} }}").replace(
+        "elements = [4, 2, 2]", "elements = [4, 4, 3]"
+    )
+
+
 _SLIDES = "stages.roll.motions.rim.rotate=3"
 _SIDE = 'contacts.c.slave="above.u1"'
 _RIGID = ("bodies.above.rigid=true", "bodies.below.mesh.elements=[8,8,1]")
@@ -88,6 +112,11 @@ CASES: tuple[tuple[str, tuple[str, ...], str], ...] = (
     # A face in contact that is held, in all stages.
     (HELD.replace(', stages = ["one"]', ""), (), "nothing dents it"),
     (HELD, (), ""),
+    (BESIDE.replace("OTHER", 'supports.other.face = "beside.w0"'), ("stages.one.motions.other.translate=[0,0,-0.02]",), "nothing dents it"),
+    (BESIDE.replace("OTHER", ""), (), ""),
+    # Elements that are longest at a face in contact, and not elsewhere.
+    (layered((0.65, 0.9)), (), "mesh.grading along w above 1"),
+    (layered((0.4, 0.9)), (), ""),
     # A plane behind another one, which is parallel to it, and what stays there.
     (PLANES, (), "the plane of 'other' is at or behind the plane of 'c'"),
     (PLANES, ("contacts.other.plane={point=[0,0,-0.01],normal=[0.01,0,1]}",), ""),

@@ -87,7 +87,11 @@ def costs(rates: str, power: float) -> dict[str, float]:
         elif power != 1.0:
             continue
         for choice in every:
-            if sum(n > 0 for n in choice) > 1 and choice not in known.outcomes and all(a >= b for a, b in zip(choice, truth or choice)):
+            if (
+                sum(n > 0 for n in choice) > 1
+                and choice not in known.outcomes
+                and all(a >= b for a, b in zip(choice, truth or choice, strict=True))
+            ):
                 apart.append(abs(search._cost(choice) / known.cost(choice) - 1.0))
                 count += 1
     return {"apart": float(np.max(apart)), "choices": float(count)}
@@ -98,8 +102,8 @@ BELOW = {0.9999999: 1.0, 1.0 / 8.0: 4.0}
 
 
 @case(
-    claim="A target that over-refined runs hardly tell takes meshes that are hardly finer, and hardly more than such runs took; one that is "
-    "eight times smaller takes meshes four times finer, by errors of order 1.5, and 4^5 times as much.",
+    claim="A target that over-refined runs hardly tell takes meshes that are hardly finer, and hardly more than such runs took; one that "
+    "is eight times smaller takes meshes four times finer, by errors of order 1.5, and 4^5 times as much.",
     tier="gate",
     grid={"below": tuple(BELOW)},
     bounds={
@@ -119,8 +123,8 @@ def needed(below: float) -> dict[str, float]:
 
 
 @case(
-    claim="The cheapest is told of each order that all bodies in contact can have, and whose runs were made; a run whose bodies have several "
-    "is of none of them.",
+    claim="The cheapest is told of each order that all bodies in contact can have, and whose runs were made; a run whose bodies have "
+    "several is of none of them.",
     tier="gate",
     grid={"others": ("fewer", "untried")},
     bounds={
