@@ -7,10 +7,12 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
+import h5py
 import pytest
 
 import isomortar
 from command_lines import SMALL, Invoke, last, settings
+from isomortar.results.files import sealed
 from isomortar.results.writer import ResultsWriter
 from isomortar.solve.record import StepResult
 
@@ -84,6 +86,11 @@ def test_a_results_file_tells_what_it_holds(invoke: Invoke) -> None:
     text = invoke("info", "half a run.h5")[1]
     assert f"contact floor: {contact['active']} of {contact['constraints']} constraints active" in text
     assert "not at its end" not in text
+    with h5py.File("half a run.h5", "r+") as file:
+        file["curves/cuts"][...], file["timings/total"][...] = [2, 1], [3.0, 4.5]
+    Path("half a run.h5").write_bytes(sealed(Path("half a run.h5").read_bytes()))
+    of_all = json.loads(invoke("info", "half a run.h5", "--json")[1])
+    assert (of_all["cuts"], of_all["cpu_seconds"]) == (3, 7.5)
     assert invoke("info", "none.h5")[0] == 1
     assert "isomortar info 'half a run.h5' says what it holds" in invoke("check", "half a run.h5")[2]
 

@@ -120,3 +120,20 @@ def test_the_folded_element_among_those_beside_it_is_named(element: int, often: 
             _bindings.add_body(mirrored, MATERIAL.arrays, reference, forces)
         with pytest.raises(FoldedElementError, match=rf"^element {first} is .* reference"):
             _bindings.control_volumes(mirrored)
+
+
+@pytest.mark.parametrize("element", range(6))
+@pytest.mark.parametrize("often", [True, False])
+def test_an_element_without_any_thickness_is_named(element: int, often: bool) -> None:
+    """A determinant of nothing at all is as good as a negative one: of six in a row the one whose ends are one plane."""
+    patch = mesh(box((0.0, 0.0, 0.0), (6.0, 1.0, 1.0)), ("L", "L", "L"), (1, 1, 1), (6, 1, 1))
+    reference = patch.control_points
+    flat = reference - np.outer(reference[:, 0] > element + 0.5, [1.0, 0.0, 0.0])
+    arrays, told = patch_arrays(patch, np.arange(len(reference), dtype=np.int32)), rf"^element {element} is folded \(J = -?0\)"
+    sound, wrong = (BodyArrays(arrays, (2, 2, 2), points, often) for points in (reference, flat))
+    with pytest.raises(FoldedElementError, match=told + "$"):
+        _bindings.add_body(sound, MATERIAL.arrays, flat, np.zeros_like(reference))
+    with pytest.raises(FoldedElementError, match=told + " in the reference"):
+        _bindings.add_body(wrong, MATERIAL.arrays, reference, np.zeros_like(reference))
+    with pytest.raises(FoldedElementError, match=told + " in the reference"):
+        _bindings.control_volumes(wrong)

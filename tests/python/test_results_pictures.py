@@ -287,6 +287,17 @@ def test_a_round_face_is_laid_flat_in_lengths_its_knot_lines_too() -> None:
     assert ends[level] == pytest.approx(np.array([[[0.0, y], [np.pi, y]] for y in (0.0, 0.3)]), rel=1e-4)
 
 
+def test_places_of_a_round_face_laid_flat_move_as_their_derivatives_tell() -> None:
+    """Along the longer side and the shorter one, which are as far apart as a half of a circle and a width."""
+    surface = contact_surfaces(problem(), quiet(1))[0]
+    flat, step = laid(surface), 0.01
+    middles = [0.5 * (d.boundaries[:-1] + d.boundaries[1:]) for d in surface.directions]
+    gradient = flat.at(middles)[1]
+    for axis in (0, 1):
+        there, here = (flat.at([x + sign * step * (k == axis) for k, x in enumerate(middles)])[0] for sign in (1, -1))
+        assert gradient[..., axis] == pytest.approx((there - here) / (2 * step), rel=1e-3, abs=1e-12)
+
+
 def test_a_flat_face_is_drawn_where_it_lies() -> None:
     surface = contact_surfaces(problem(), quiet(1))[0]
     road = problem().body("road").patch

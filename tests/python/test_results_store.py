@@ -90,6 +90,15 @@ def test_the_problem_comes_back(tmp_path: Path) -> None:
             results.contact("tread")
 
 
+def test_counts_of_nothing_are_counts(tmp_path: Path) -> None:
+    """What was counted and did not come is read again as such; what was not counted is not there."""
+    writer = ResultsWriter(tmp_path / "run.h5", problem(), SCENE, "0.1")
+    for number, counters in ((1, {"analyses": 0, "solves": 2}), (2, {"solves": 0})):
+        writer.recorded(dataclasses.replace(step_result(number), counters=counters))
+    with Results(tmp_path / "run.h5") as results:
+        assert [results.step(number).counters for number in (1, 2)] == [{"analyses": 0, "solves": 2}, {"solves": 0}]
+
+
 def test_curves(tmp_path: Path) -> None:
     path = tmp_path / "run.h5"
     write(path, range(1, 4))

@@ -251,6 +251,19 @@ def test_threshold_of_the_condition_can_be_chosen():
         lu.factorise(values, rcond_min=0.5 * (1 + lu.rcond))
 
 
+def test_a_condition_at_the_threshold_is_regular_and_one_below_it_is_not():
+    """However small the threshold is: what has no pivot is singular without one, too."""
+    indptr, indices, values = compressed(random_matrix(np.random.default_rng(3), 12, 0.3))
+    lu = SparseLU(indptr, indices)
+    rcond = lu.factorise(values).rcond
+    lu.factorise(values, rcond_min=rcond).solve(np.ones(12))
+    with pytest.raises(SingularSystemError, match="is singular: reciprocal condition"):
+        lu.factorise(values, rcond_min=np.nextafter(rcond, 1.0))
+    with pytest.raises(SingularSystemError) as caught:
+        lu.factorise(np.zeros_like(values), rcond_min=0.0)
+    assert 0 <= caught.value.place < 12
+
+
 def test_after_a_refused_matrix_nothing_solves_until_the_next_good_one():
     indptr, indices, values = compressed(random_matrix(np.random.default_rng(6), 40))
     lu = SparseLU(indptr, indices).factorise(values)
