@@ -230,3 +230,24 @@ def handles() -> dict[str, float]:
     except KernelError:
         return found | {"refused": 1.0}
     return found | {"refused": 0.0}
+
+
+@case(
+    claim="A matrix whose condition is just what is asked for is regular, and one that has less by its last bit is not; one without a "
+    "pivot is singular whatever is asked for.",
+    tier="gate",
+    bounds={"wrong": Bound(0.0, 0.0, "definition: of three matrices those that are taken for something else")},
+)
+def asked_condition() -> dict[str, float]:
+    """How many."""
+    wrong, matrix = 0, bordered()
+    lu, values = factors(matrix, "amd")
+    rcond = lu.factorise(values).rcond
+    for entries, least, singular in ((values, rcond, False), (values, np.nextafter(rcond, 1.0), True), (0.0 * values, 0.0, True)):
+        refused = False
+        with suppress(SingularSystemError):
+            refused = True
+            lu.factorise(entries, rcond_min=float(least))
+            refused = False
+        wrong += refused != singular
+    return {"wrong": float(wrong)}

@@ -55,6 +55,27 @@ def which_element(size: str) -> dict[str, float]:
     return {"other": float(other[0]), "of volumes": float(other[1])}
 
 
+@case(
+    claim="An element that has no thickness at rest is folded, and named, whichever of those that are computed side by side it is: a "
+    "determinant of nothing at all is as good as a negative one.",
+    tier="gate",
+    bounds={"other": Bound(0.0, 0.0, "definition: elements that are flat where none is named, or another")},
+)
+def flat_element() -> dict[str, float]:
+    """How many of six in a row, the far end of one of which is brought to its near one, and all beyond as far with it."""
+    patch, other = mesh(CUBE, ("L", "L", "L"), (1, 1, 1), (6, 1, 1)), 0
+    along = np.rint(6.0 * (patch.control_points[:, 0] - patch.control_points[:, 0].min()) / np.ptp(patch.control_points[:, 0]))
+    for e in range(6):
+        positions = patch.control_points.copy()
+        positions[:, 0] = np.where(along > e, along - 1.0, along)
+        try:
+            volumes(patch, positions)
+            other += 1
+        except FoldedElementError as error:
+            other += error.place != e
+    return {"other": float(other)}
+
+
 #: Gauss points of an element along a direction.
 GAUSS = np.polynomial.legendre.leggauss(3)[0] / 2.0 + 0.5
 
