@@ -82,7 +82,7 @@ def costs(rates: str, power: float) -> dict[str, float]:
     known.run([known.own, *(search.single(n, 1) for n in range(2 if rates == "untried" else 3))])
     every = list(itertools.product(*(range(len(dial.settings)) for dial in known.dials)))
     for before, truth in ((None, None), ((1, 1, 0), (1, 2, 1))):
-        if truth:
+        if before and truth:
             search._before, search.truth = known.run([before, truth])
         elif power != 1.0:
             continue
