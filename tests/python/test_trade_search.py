@@ -234,3 +234,68 @@ def test_a_knob_is_one_entry(scene, tmp_path):
     assert "friction of floor" in shown
     assert "<code>--set contacts.floor.friction=0</code>" in shown
     assert Scene.load(tmp_path / "within-10-percent.toml").problem().contacts[0].friction == 0.0
+
+
+def told_for(scene, targets, budget=1e6, kind=Formula):
+    """A search by a budget, and its answers."""
+    dials = synthetic()
+    search = Search(kind(scene, dials), dials, [wanted("force.top.x", scene.problem())], budget)
+    search.screen()
+    return search, search.answers(targets)
+
+
+def spent_on_the_truth(scene, target):
+    """What screening and a truth that tells a target cost."""
+    dials = synthetic()
+    search = Search(Formula(scene, dials), dials, [wanted("force.top.x", scene.problem())], math.inf)
+    search.screen()
+    search.find_truth([target])
+    return search.laboratory.spent
+
+
+@pytest.mark.parametrize("share", [0.55, 0.7, 0.85])
+def test_a_truth_has_all_of_the_budget_where_nothing_else_has_use_for_it(scene, share):
+    """Of a truth that takes most of a budget a target is told, with what is left for the search."""
+    budget = spent_on_the_truth(scene, 0.01) / share
+    search, (answer,) = told_for(scene, [0.01], budget)
+    assert answer.best
+    assert answer.error <= 0.01
+    assert 3 * search.uncertainty <= 0.01
+    assert answer.cut == (search.laboratory.spent > budget)
+    assert ("the budget ended the search" in page.sentence(search, answer)) == answer.cut
+
+
+def test_what_half_of_a_budget_tells_is_searched_before_the_rest_goes_into_the_truth(scene):
+    need = spent_on_the_truth(scene, 0.01)
+    _, (alone,) = told_for(scene, [0.05], 1.02 * need)
+    search, (loose, tight) = told_for(scene, [0.05, 0.01], 1.5 * need)
+    assert 3 * search.uncertainty <= 0.01
+    assert tight.best
+    assert not loose.cut
+    assert loose.best.cost == pytest.approx(alone.best.cost, rel=0.12)
+    _, (loose, tight) = told_for(scene, [0.05, 1e-6], need)
+    assert loose.best.cost == pytest.approx(alone.best.cost, rel=0.12)
+    assert tight.best is None
+
+
+def test_a_budget_that_settings_alone_would_spend_is_refused_at_once(scene):
+    dials = synthetic()
+    laboratory = Formula(scene, dials)
+    search = Search(laboratory, dials, [wanted("force.top.x", scene.problem())], 5.0)
+    with pytest.raises(IsomortarError, match=r"takes 1\.0 s of the processor, .* and the budget is 5\.0 s: give more \(--budget, in"):
+        search.screen()
+    assert laboratory.calls == 1
+
+
+def test_finer_runs_that_fail_are_told_of_a_target_that_is_refused(scene):
+    """More of the processor would not help."""
+
+    class Folding(Formula):
+        def of(self, choice):
+            error, cost, _ = super().of(choice)
+            return error, cost, "folded" if choice[1] > 4 else ""
+
+    _, (answer,) = told_for(scene, [1e-3], kind=Folding)
+    assert answer.best is None
+    assert "finer ones do not come to their end: folded" in answer.why
+    assert "--budget" not in answer.why

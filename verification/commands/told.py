@@ -269,7 +269,7 @@ SHARES = {"1%": 0.01, "0.01": 0.01, "12.5 %": 0.125, " 1e-3 ": 1e-3, "1e-1%": 1e
 def exit_of(best: tuple[bool, ...]) -> int:
     """The exit code of a trade with some answers."""
     answers = {0.5**k: SimpleNamespace(best=found) for k, found in enumerate(best, 1)}
-    search = SimpleNamespace(screen=lambda: None, find_truth=lambda _: None, answer=answers.get)
+    search = SimpleNamespace(screen=lambda: None, answers=lambda targets: [answers[target] for target in targets])
     stands: Any = mock.Mock(return_value=search)
     names: dict[str, Any] = {"write": lambda *_: "page.html", "spoken": lambda *_: "an answer"}
     with mock.patch.multiple(page, **names), mock.patch.object(runner, "local_processes", mock.MagicMock()), redirect_stdout(StringIO()):

@@ -126,8 +126,7 @@ def _conduct(
     with local_processes(jobs) as submit:
         search = kind(Laboratory(scene, dials, folder, submit, _tell), dials, wants, 60.0 * budget)
         search.screen()
-        search.find_truth(targets)
-        answers = [search.answer(target) for target in targets]
+        answers = search.answers(targets)
     path = page.write(folder, scene, search, answers, started)
     print("\n".join([*(page.spoken(search, answer) for answer in answers), str(path)]))
     if not all(answer.best for answer in answers):

@@ -20,7 +20,7 @@ from isomortar.trade.want import Want
 class CheaperSearch(Search):
     """The cheapest variant of a scene within a loss of what is wanted; the scene as it is is the truth."""
 
-    def find_truth(self, targets: Sequence[float]) -> None:  # noqa: ARG002
+    def find_truth(self, targets: Sequence[float], share: float = 1.0) -> None:  # noqa: ARG002
         """The scene as it is."""
         self.truth, self.rivals = self.own, (self.own,)
 

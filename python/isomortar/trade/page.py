@@ -23,6 +23,10 @@ from isomortar.trade.search import Recommendation, Search
 from isomortar.trade.want import wanted, wishes
 
 
+#: What a recommendation ends with where the budget was spent before the forecasts of the search named nothing cheaper any more.
+_CUT = "; the budget ended the search, and something cheaper may do (--budget)"
+
+
 def sentence(search: Search, answer: Recommendation) -> str:
     """The answer in words, with its numbers."""
     if answer.best is None:
@@ -30,7 +34,7 @@ def sentence(search: Search, answer: Recommendation) -> str:
     if isinstance(search, CheaperSearch):
         times = search.own.cost / answer.best.cost
         saved = f", {times:.2g} times less than as it is" if times > 1 else "; run afresh it saves nothing: keep the scene as it is"
-        return f"{answer.best.name}: loses {percent(answer.error)} for {_seconds(answer.best.cost)}{saved}."
+        return f"{answer.best.name}: loses {percent(answer.error)} for {_seconds(answer.best.cost)}{saved}{_CUT if answer.cut else ''}."
     parts = [f"{answer.best.name}: {percent(answer.error)} ± {percent(search.uncertainty)} for {_seconds(answer.best.cost)}"]
     if answer.best.choice != search.own.choice:
         parts.append(f"the scene as it is: {percent(search.error(search.own))} for {_seconds(search.own.cost)}")
@@ -38,7 +42,7 @@ def sentence(search: Search, answer: Recommendation) -> str:
         parts.append(f"the binding knob is {answer.binding}")
     others = [(order, outcome) for order, outcome in answer.by_order.items() if order != search.order(answer.best.choice)]
     rest = [f"order {order} " + (f"needs {_seconds(o.cost)}" if o else "was not found to do") for order, o in others]
-    return "; ".join([*parts, *rest]) + "."
+    return "; ".join([*parts, *rest]) + f"{_CUT if answer.cut else ''}."
 
 
 def spoken(search: Search, answer: Recommendation) -> str:

@@ -29,7 +29,8 @@ WORTH = 0.9
 SETTLED = 1.0 / 10.0
 #: Combinations that are tried for one target.
 TRIES = 12
-#: Share of the budget that over-refined runs may take.
+#: Share of the budget that over-refined runs may take where something is told that the rest can look for: half, as a search for what is
+#: cheapest took about as much as the truth that it needs.
 TRUTH = 0.5
 #: Unknowns and their cost with element size: what an answer without enough truth estimates the need by.
 RATE, COST = 1.5, 5.0
@@ -52,6 +53,8 @@ class Recommendation:
         The dial whose next dearer setting would lower the error most.
     by_order : dict of int to Tried or None
         The cheapest run within the target by order of all bodies.
+    cut : bool
+        Whether the budget ended the search: something cheaper may do.
     """
 
     target: float
@@ -60,6 +63,7 @@ class Recommendation:
     why: str = ""
     binding: str = ""
     by_order: Mapping[int, Tried | None] = field(default_factory=dict)
+    cut: bool = False
 
 
 class Search:
@@ -80,6 +84,9 @@ class Search:
         self.rivals: tuple[Tried, ...] = ()  # other over-refined runs: how far they are from the truth is its own error
         self._before: Tried | None = None  # the truth before this one
         self._finest = False  # whether the truth has the dearest settings that there are
+        self._failure = ""  # why over-refined runs finer than the truth did not come to their end
+        self._cut = False  # whether the last search of a target was ended by the budget
+        self._level, self._share = 1, TRUTH  # of the next over-refined runs, and what of the budget they may take
         self._stirring: set[int] = set()  # dials that may change what is wanted beside finer settings of others alone
 
     @cached_property
@@ -130,48 +137,79 @@ class Search:
         return max(yardstick.error(outcome) for yardstick in self.yardsticks)
 
     def screen(self) -> None:
-        """Run every dial one setting cheaper and one dearer, and every choice."""
+        """Run every dial one setting cheaper and one dearer, and every choice.
+
+        Raises
+        ------
+        IsomortarError
+            The budget is not even enough for that.
+        """
         singles = []
         for number, dial in enumerate(self.dials):
             near = (dial.own - 1, dial.own + 1) if dial.refines else range(len(dial.settings))
             singles += [self.single(number, setting) for setting in near if 0 <= setting < len(dial.settings)]
+        needed = self.own.cost * len(set(singles))
+        if needed > self.budget:
+            raise IsomortarError(
+                f"the scene as it is takes {duration(self.own.cost)} of the processor, so that to turn every knob alone, {len(set(singles))} "
+                f"runs, takes about {duration(needed)}, and the budget is {duration(self.budget)}: give more (--budget, in minutes), or "
+                "begin with a coarser scene"
+            )
         self.laboratory.run([self.own.choice, *singles])
 
-    def find_truth(self, targets: Sequence[float]) -> None:
+    def find_truth(self, targets: Sequence[float], share: float = TRUTH) -> None:
         """Over-refined runs of other orders and other meshes, refined from the largest target to the smallest until they tell it.
 
         One differs in both, which may hide an error of either behind that of the other: one more differs from the truth in its mesh alone.
         They are as good as a target asks: what for 5 % spends nothing on load steps that change a thousandth may be enough for 1 % as well.
         Meshes that change nothing either are looked at once more beside the finer ones.
-        Ends where all is told, half of the budget is spent, or two levels tell next to nothing.
+        Ends where all is told, a share of the budget is spent, or two levels tell next to nothing; goes on from there where it is given more.
 
         Raises
         ------
         IsomortarError
             Such a run does not come to its end, or all are one: nothing can be refined.
         """
-        levels = iter(range(1, 1 + max(len(dial.settings) for dial in self.dials)))
+        self._share, last = share, max(len(dial.settings) for dial in self.dials)
         for target in sorted(targets, reverse=True):
-            while self.truth is None or self._stirs(target) or RESOLVED * self.uncertainty > target:
-                level = next(levels, None)
-                if level is None or self._hopeless or not self._refine(level, target):
+            while self.truth is None or self._stirs(target) or not self._told(target):
+                if self._level > last or self._hopeless or not self._refine(self._level, target):
                     return
+                self._level += 1
+
+    def answers(self, targets: Sequence[float]) -> list[Recommendation]:
+        """The cheapest settings for some targets.
+
+        What is told by half of the budget is looked for first; where that leaves targets that are not told, the truth has the rest of it.
+        """
+        self.find_truth(targets)
+        untold = [target for target in targets if not self._told(target)]
+        if untold:
+            for target in targets:
+                if target not in untold:
+                    self._search(target)
+            self.find_truth(untold, 1.0)
+        return [self.answer(target) for target in targets]
 
     def answer(self, target: float) -> Recommendation:
         """The cheapest settings for a target, as a whole and by order."""
-        if RESOLVED * self.uncertainty > target:
+        if not self._told(target):
             return Recommendation(target, None, math.nan, self._needed(target))
-        orders = dict(self._orders())
-        for kept in orders.values():
-            self._pursued(target, kept, hopeful=False)
-        self._pursued(target, {}, hopeful=False)
-        best = self._pursued(target, {}, hopeful=True)
-        by_order = {order: self._cheapest(target, kept) for order, kept in orders.items()}
+        best, by_order = self._search(target)
         if best is None:
             why = "no combination was found within the budget" if self._over else "no combination that was tried comes so near for less"
             return Recommendation(target, None, math.nan, why, "", by_order)
         afresh = self.laboratory.run_afresh(best.choice)
-        return Recommendation(target, afresh, self.error(afresh), "", self._binding(afresh.choice), by_order)
+        return Recommendation(target, afresh, self.error(afresh), "", self._binding(afresh.choice), by_order, self._cut)
+
+    def _search(self, target: float) -> tuple[Tried | None, dict[int, Tried | None]]:
+        """The cheapest run within a target that is told, as a whole and by order."""
+        self._cut, orders = False, dict(self._orders())
+        for kept in orders.values():
+            self._pursued(target, kept, hopeful=False)
+        self._pursued(target, {}, hopeful=False)
+        best = self._pursued(target, {}, hopeful=True)
+        return best, {order: self._cheapest(target, kept) for order, kept in orders.items()}
 
     def order(self, choice: Choice) -> int:
         """The order that all bodies in contact have; 0 where they differ."""
@@ -185,6 +223,10 @@ class Search:
     @property
     def _over(self) -> bool:
         return self.laboratory.spent > self.budget
+
+    def _told(self, target: float) -> bool:
+        """Whether the truth is known well enough for a target."""
+        return RESOLVED * self.uncertainty <= target
 
     @property
     def _hopeless(self) -> bool:
@@ -202,13 +244,14 @@ class Search:
         others = [other for other in dict.fromkeys(coarser) if other != finest]
         choices = (finest, *others)
         self._finest = self.truth is not None and finest == self.truth.choice
-        if self._finest or (self.truth and self.laboratory.spent + sum(map(self._cost, choices)) > TRUTH * self.budget):
+        if self._finest or (self.truth and self.laboratory.spent + sum(map(self._cost, choices)) > self._share * self.budget):
             return False
         if not others:
             raise IsomortarError("nothing of the scene can be refined further, so that two runs cannot tell what the truth is")
         truth, *rivals = self.laboratory.run(choices)
         failed = [outcome for outcome in (truth, *rivals) if outcome.failure]
         if failed and self.truth:
+            self._failure = failed[0].failure
             return False
         if failed:
             raise IsomortarError(f"an over-refined run, which tells the truth, does not come to its end: {failed[0].failure}")
@@ -239,7 +282,7 @@ class Search:
     def _stirs(self, target: float) -> bool:
         """Whether meshes that are settled beside the scene's own ones are not beside finer ones: a slave on a finer master, say."""
         assert self.truth
-        if self.laboratory.spent > TRUTH * self.budget:
+        if self.laboratory.spent > self._share * self.budget:
             return False
         beside, settled = self._coarser(self.truth.choice, 2), self._settled(target)
         meshes = {number for number in settled if self.dials[number].part == "elements"}
@@ -305,8 +348,10 @@ class Search:
         )
         if self._finest:
             return f"{told}, and none that are finer are tried: begin with finer meshes in the scene"
+        if self._failure:
+            return f"{told}, and over-refined runs on finer ones do not come to their end: {self._failure}"
         needed = duration(sum(run.cost for run in (self.truth, *self.rivals)) * finer**COST)
-        return f"{told}, some {needed} of the processor for these (--budget is for all runs, {TRUTH:.0%} of it for them)"
+        return f"{told}, some {needed} of the processor for these, beside {duration(self.laboratory.spent)} of all runs so far (--budget)"
 
     def _orders(self) -> Iterator[tuple[int, dict[int, int]]]:
         """Orders that all bodies in contact can have, and the settings that are kept for each."""
@@ -332,6 +377,7 @@ class Search:
         best = self._cheapest(target, kept)
         for _ in range(TRIES):
             if self._over:
+                self._cut = True
                 break
             model = self._forecasts(hopeful=hopeful)
             choice = model.cheapest(AIM * target, kept) or model.cheapest(target, kept)
