@@ -264,13 +264,13 @@ def test_a_truth_has_all_of_the_budget_where_nothing_else_has_use_for_it(scene, 
 
 def test_what_half_of_a_budget_tells_is_searched_before_the_rest_goes_into_the_truth(scene):
     need = spent_on_the_truth(scene, 0.01)
-    search, (loose, tight) = told_for(scene, [0.05, 0.01], 1.5 * need)
+    search, (loose, tight) = told_for(scene, [0.03, 0.01], 1.5 * need)
     assert loose.best
     assert tight.best
     assert 3 * search.uncertainty <= 0.01
     order = list(search.laboratory.outcomes)
     assert order.index(loose.best.choice) < order.index(search.truth.choice)
-    _, (loose, tight) = told_for(scene, [0.05, 0.01], 0.9 * need)
+    _, (loose, tight) = told_for(scene, [0.03, 0.01], 0.9 * need)
     assert loose.best
     assert not loose.cut
     assert tight.best is None
