@@ -23,10 +23,10 @@ MAX_GAUSS = 64
 _LARGEST = float(np.finfo(np.float64).max)
 
 
-def kind(name: str, value: Any, *allowed: type) -> None:
-    """Refuse what is not of an allowed type."""
+def kind(name: str, value: Any, *allowed: type, way: str = "") -> None:
+    """Refuse what is not of an allowed type; `way` says how one is had."""
     if not isinstance(value, allowed):
-        raise InputError(f"is {value!r:.60}; allowed: {' or '.join(one.__name__ for one in allowed)}", name)
+        raise InputError(f"is {value!r:.60}; allowed: {' or '.join(one.__name__ for one in allowed)}{way}", name)
 
 
 def array(name: str, value: Any, dtype: type, *shape: int | None) -> NDArray[Any]:

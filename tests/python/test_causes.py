@@ -118,8 +118,8 @@ def test_a_sound_scene_gives_no_cause() -> None:
     ("changes", "words"),
     [
         ({"TOP": 1.000001}, "elements of body 'upper' are 1.0e-06 thin and up to 5.0e-01 long"),
-        ({"POISSON": 0.499999}, "Poisson's ratio 0.499999 body 'lower' resists compression 5.0e+05 times"),
-        ({"HARD": 1e12}, "body 'upper' is 1.0e+11 times as stiff as 'lower'"),
+        ({"POISSON": 0.499999}, "Poisson's ratio 0.499999 body 'lower' resists compression 500 000 times"),
+        ({"HARD": 1e12}, "body 'upper' is 1e+11 times as stiff as 'lower'"),
         ({"METHOD": "uzawa", "PENALTY": 1e4}, "a penalty of 10000,"),
         ({"SLAVE": 1, "MASTER": 8}, "contacts.c.quadrature = [16, 16]"),
         ({"SLIP": 1e-4}, "an elastic slip of 0.0001, where the slave is 1 large"),

@@ -9,13 +9,14 @@ import shlex
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from rich.console import Console
 
 import isomortar
 from command_lines import SMALL, Invoke, settings
-from isomortar.cli.progress import LiveProgress, progress
+from isomortar.cli.progress import LiveProgress, NotebookProgress, progress
 from isomortar.model import constants
 from isomortar.solve.record import IterationRecord
 
@@ -120,3 +121,13 @@ def test_lines_are_out_at_once(tmp_path: Path) -> None:
     ):
         watching.started(3, 1)
         assert (tmp_path / "said").read_text() == "press: 3 load steps\n"
+
+
+def test_a_library_of_notebooks_makes_no_notebook(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Programs import it that run notebooks: a kernel is what makes one."""
+    problem = isomortar.Scene.load("press").problem()
+    for shell, drawn in ((None, False), (SimpleNamespace(), False), (SimpleNamespace(kernel=None), False), (SimpleNamespace(kernel=1), True)):
+        monkeypatch.setitem(sys.modules, "ipykernel", SimpleNamespace())
+        monkeypatch.setitem(sys.modules, "IPython", SimpleNamespace(get_ipython=lambda shell=shell: shell))
+        with contextlib.redirect_stderr(io.StringIO()), progress(problem) as watching:
+            assert isinstance(watching, NotebookProgress) == drawn

@@ -271,7 +271,7 @@ def test_a_path_tolerance_takes_halves_one_after_the_other():
 @pytest.mark.parametrize("other", [Scene.from_toml(SCENE), SCENE, None])
 def test_what_is_no_problem_is_refused_by_name(other):
     """A scene is not one, but gives it."""
-    with pytest.raises(InputError, match=r"problem: is .*; allowed: Problem"):
+    with pytest.raises(InputError, match=r"problem: is .*; allowed: Problem, of a scene: scene\.problem\(\)$"):
         Simulation(other)
 
 

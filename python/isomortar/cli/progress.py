@@ -276,7 +276,7 @@ def progress(problem: Problem, quiet: bool = False, verbose: bool = False, log: 
             yield Progress(problem, _print, Detail.WARNINGS, keep)
             return
         drawn, plain = (Detail.ITERATIONS,) * 2 if verbose else (Detail.EVENTS, Detail.STEPS)
-        if "ipykernel" in sys.modules:
+        if _in_notebook():
             yield NotebookProgress(problem, print, drawn, keep)
             return
         if not getattr(sys.stderr, "isatty", bool)():
@@ -293,6 +293,12 @@ def progress(problem: Problem, quiet: bool = False, verbose: bool = False, log: 
         observer = LiveProgress(problem, tell, drawn, keep)
         with Live(observer, console=console, refresh_per_second=5):
             yield observer
+
+
+def _in_notebook() -> bool:
+    """Whether a kernel runs this process: that its library was imported says nothing, as programs do that run notebooks."""
+    shell = sys.modules.get("IPython")
+    return getattr(shell and shell.get_ipython(), "kernel", None) is not None
 
 
 def _print(line: str) -> None:

@@ -51,7 +51,7 @@ def check(problem: Problem) -> None:
         that supports contradict each other on, leave components to, or release; a body that nothing holds; supports that contradict
         each other; contacts and loads that cannot be meant, or are absurdly large; too few Gauss points for a body's weights.
     """
-    kind("problem", problem, Problem)
+    kind("problem", problem, Problem, way=", of a scene: scene.problem()")
     _check_settings(problem.settings)
     for body in problem.bodies:
         _check_units(body)

@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable
 from functools import cached_property
 from pathlib import Path
+from shlex import quote
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
@@ -272,7 +273,7 @@ class Results:
     def _check_seal(self) -> None:
         """HDF5 must not see a damaged file: it may read wrong numbers from it, end the process, or never come back."""
         if not is_marked(self.path) and self.path.suffix == ".toml":
-            raise ResultsError(f"{self.path} is a scene file, and no results: isomortar run {self.path} computes them")
+            raise ResultsError(f"{self.path} is a scene file, and no results: isomortar run {quote(str(self.path))} computes them")
         if not is_marked(self.path):
             raise ResultsError(f"{self.path} is no results file of isomortar, or one of an earlier version: run the scene again")
         if not is_whole(self.path):

@@ -12,6 +12,7 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
 from isomortar.model.contrasts import element_lengths
 from isomortar.model.entities import Body, Contact, Problem
+from isomortar.model.ratios import times
 from isomortar.model.settings import SolverSettings
 from isomortar.model.sheet import Sheet
 from isomortar.solve.contact import PairMechanics
@@ -145,7 +146,7 @@ def _incompressible(body: Body) -> Iterator[str]:
     ratio = body.material.bulk / body.material.shear
     if ratio > INCOMPRESSIBLE:
         yield (
-            f"with Poisson's ratio {body.material.poisson:.15g} body {body.name!r} resists compression {ratio:.1e} times as much as "
+            f"with Poisson's ratio {body.material.poisson:.15g} body {body.name!r} resists compression {times(ratio)} times as much as "
             "shear: its elements lock. Take a lower one"
         )
 
@@ -156,7 +157,7 @@ def _moduli(problem: Problem) -> Iterator[str]:
         ratio = stiffer.modulus / softer.modulus
         if ratio > MODULI:
             yield (
-                f"body {stiffer.name!r} is {ratio:.1e} times as stiff as {softer.name!r}, too different for double precision: take it less "
+                f"body {stiffer.name!r} is {times(ratio)} times as stiff as {softer.name!r}, too different for double precision: take it less "
                 f"stiff, or rigid: bodies.{stiffer.name}.rigid = true"
             )
 

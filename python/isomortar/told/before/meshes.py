@@ -10,6 +10,7 @@ import numpy as np
 from isomortar.geometry.patch import opposite
 from isomortar.model.contrasts import element_lengths
 from isomortar.model.entities import Body, Contact, Face, Problem
+from isomortar.model.ratios import times
 from isomortar.model.settings import SolverSettings
 from isomortar.model.sheet import Sheet
 
@@ -78,7 +79,7 @@ def _tall(body: Body, face: Face) -> Iterator[str]:
     lost = OF_ESTIMATE * np.finfo(float).eps * tall**2 / (wide * element) * condition**0.25
     if lost > LOST:
         yield (
-            f"body {body.name!r} is {tall / wide:.1g} times as tall as {face.words}, a slave face, is wide, and of order {max(orders)} "
+            f"body {body.name!r} is {times(float(f'{tall / wide:.1g}'))} times as tall as {face.words}, a slave face, is wide, and of order {max(orders)} "
             f"there: round-off of its positions may be {lost:.1g} of the pressures, and more of small ones. Take a lower order, longer "
             "elements, or a body that is less tall"
         )
@@ -109,13 +110,13 @@ def _few_points(body: Body) -> Iterator[str]:
 
 def _hardly_bends(problem: Problem, body: Body) -> Iterator[str]:
     """A thin body that is of order 1 along its sheet, whose shear strains bear what bending should."""
-    times = stiff_sheet(problem, body)
-    if times > SAID_ABOVE:
+    stiff = stiff_sheet(problem, body)
+    if stiff > SAID_ABOVE:
         lengths = element_lengths(body.patch)
         across = int(np.argmin([along.sum() for along in lengths]))
         yield (
             f"body {body.name!r} is {lengths[across].sum():.3g} thick along {'uvw'[across]}, and its elements of order 1 are so long that "
-            f"it is about {times:.2g} times too stiff in bending: they shear instead (locking). Take bodies.{body.name}.mesh.order = 2 or "
+            f"it is about {times(float(f'{stiff:.2g}'))} times too stiff in bending: they shear instead (locking). Take bodies.{body.name}.mesh.order = 2 or "
             "more, or elements shorter than it is thick"
         )
 

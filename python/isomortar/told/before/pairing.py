@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from isomortar.model.entities import Contact, Face, Problem, RigidPlane
+from isomortar.model.ratios import times
 from isomortar.model.sheet import Sheet
 from isomortar.solve.contact import PairMechanics
 from isomortar.told.before.dents import AT_POINTS, of_dents
@@ -28,10 +29,10 @@ def of_pairing(problem: Problem, pairs: Sequence[PairMechanics]) -> Iterator[str
         master_area = _area(master.patch.control_points[master.patch.face_points(master.face)])
         finer = (master_area / elements) / (pair.pair.area / pair.pair.slave.elements)
         if stiffer > STIFFER and finer > 1.0:
-            how = "rigid" if slave.rigid else f"{stiffer:.3g} times stiffer"
+            how = "rigid" if slave.rigid else f"{times(stiffer)} times stiffer"
             yield (
                 f"contact {contact.name!r}: the slave {contact.slave.body!r} is {how} and its elements "
-                f"are {finer:.3g} times smaller than the master's; control pressures may be far off. Swap slave and master, or refine the "
+                f"are {times(finer)} times smaller than the master's; control pressures may be far off. Swap slave and master, or refine the "
                 "master"
             )
     for contact in problem.contacts:

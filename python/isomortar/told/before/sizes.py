@@ -10,6 +10,7 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.model.contact_checks import LEAST
 from isomortar.model.entities import Body, Contact, Load, Problem, Support
 from isomortar.model.loads import control_areas
+from isomortar.model.ratios import times
 from isomortar.model.sheet import Sheet
 
 #: Young's moduli further apart were given in two units, most likely: steel is 2e5 times as stiff as soft rubber.
@@ -45,7 +46,7 @@ def _moduli(problem: Problem) -> Iterator[str]:
     ratio = bodies[-1].material.young / bodies[0].material.young if bodies else 1.0
     if ratio > STIFFER:
         yield (
-            f"body {bodies[-1].name!r} is {ratio:.3g} times as stiff as body {bodies[0].name!r}. Are their Young's moduli given in the "
+            f"body {bodies[-1].name!r} is {times(ratio)} times as stiff as body {bodies[0].name!r}. Are their Young's moduli given in the "
             f"same unit? If it is to be rigid beside that one, bodies.{bodies[-1].name}.rigid = true"
         )
 

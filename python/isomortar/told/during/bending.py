@@ -13,6 +13,7 @@ from isomortar.geometry.faces import cells
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.contrasts import element_lengths
 from isomortar.model.entities import Body, Problem
+from isomortar.model.ratios import times
 from isomortar.model.rigid import deformation
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.told.before.meshes import SAID_ABOVE, stiff_sheet
@@ -73,7 +74,7 @@ class Bending:
     def _sentence(self, body: Body, bent: Way, step: int) -> str:
         problem = self._equilibrium.problem
         stage, letter, order = problem.stages[problem.stage_of(step)].name, "uvw"[bent.along], body.patch.directions[bent.along].order
-        size = f"{float(f'{bent.share:.2g}'):g} times" if bent.share >= 1.0 else f"{10 * round(10.0 * bent.share)} %"
+        size = f"{times(float(f'{bent.share:.2g}'))} times" if bent.share >= 1.0 else f"{10 * round(10.0 * bent.share)} %"
         return (
             f"body {body.name!r}, load step {step}, the last of stage {stage!r}: it bends along {letter}, and its elements of order "
             f"{order} are so long there that it is up to about {size} too stiff for that: they shear and stretch instead (locking). Take "
