@@ -126,7 +126,12 @@ def test_lines_are_out_at_once(tmp_path: Path) -> None:
 def test_a_library_of_notebooks_makes_no_notebook(monkeypatch: pytest.MonkeyPatch) -> None:
     """Programs import it that run notebooks: a kernel is what makes one."""
     problem = isomortar.Scene.load("press").problem()
-    for shell, drawn in ((None, False), (SimpleNamespace(), False), (SimpleNamespace(kernel=None), False), (SimpleNamespace(kernel=1), True)):
+    for shell, drawn in (
+        (None, False),
+        (SimpleNamespace(), False),
+        (SimpleNamespace(kernel=None), False),
+        (SimpleNamespace(kernel=1), True),
+    ):
         monkeypatch.setitem(sys.modules, "ipykernel", SimpleNamespace())
         monkeypatch.setitem(sys.modules, "IPython", SimpleNamespace(get_ipython=lambda shell=shell: shell))
         with contextlib.redirect_stderr(io.StringIO()), progress(problem) as watching:

@@ -68,6 +68,7 @@ def of_geometry(_: pytest.MonkeyPatch) -> Told:
     yield "knots: not a list", refusal(lambda: Direction("N", 1, np.array([line])))
     yield "knots: fall", refusal(lambda: Direction("N", 1, np.array([0.0, 0.0, 0.7, 0.4, 1.0, 1.0])))
     yield "knots: not open", refusal(lambda: Direction("N", 1, np.array([0.0, 0.1, 0.9, 1.0])))
+    yield "knots: too near", refusal(lambda: Direction("N", 1, np.array([0.0, 0.0, 1e-80, 1.0, 1.0])))
     yield "knots: torn", refusal(lambda: Direction("N", 1, np.array([0.0, 0.0, 0.5, 0.5, 1.0, 1.0])))
     yield "boundaries", refusal(lambda: Direction("L", 1, line))
     yield "box", refusal(lambda: primitives.box((0, 0, 0), (1, 1, 0)))

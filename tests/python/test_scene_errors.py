@@ -14,7 +14,10 @@ from isomortar.model.messages import IN_BRACES, NAMES
 from isomortar.scene import Scene
 from isomortar.scene.keys import settable_keys
 from isomortar.scene.schema import SceneTable
+from isomortar.scene.source import parse
+from isomortar.scene.toml_text import dump
 from isomortar.scene.types import OF_THE_FILE
+from isomortar.told.before.faces import of_faces
 
 
 def test_the_scene_that_the_cases_change_is_good() -> None:
@@ -254,3 +257,27 @@ def test_names_that_something_else_stands_for_are_told_as_names(path: str, name:
     Scene.load("iron", [f"{path}={name}"])
     with pytest.raises(InputError, match=re.escape(f"{path}: is {'a table' if value[0] == '{' else value}; allowed: {allowed}")):
         Scene.load("iron", [f"{path}={value}"])
+
+
+def test_of_many_planes_behind_one_each_is_told_once() -> None:
+    """And not once for each that lies before it."""
+    data = parse(Scene.load("press").to_toml(), "press")
+    behind = {
+        f"p{k}": {"slave": "block.w0", "plane": {"point": [0, 0, -0.1 * k], "normal": [0, 0, 1]}, "friction": 0.0} for k in range(1, 8)
+    }
+    data["contacts"] |= behind
+    said = [told for told in of_faces(Scene.from_toml(dump(data)).problem()) if "in common" in told]
+    assert len(said) == len(behind)
+    assert all(sum(f"of '{name}' is at or behind" in told for told in said) == 1 for name in behind)
+
+
+@pytest.mark.parametrize("size", ["1e300", "1e-300", "1e155", "1e77"])
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+def test_sizes_that_no_number_holds_are_refused_before_they_are_squared(size: str) -> None:
+    with pytest.raises(InputError, match=r"bodies\.block: body 'block' is .* long; allowed: 1e-76 to 1e\+76"):
+        Scene.load("press", [f"bodies.block.geometry={{ kind = 'box', lower = [0, 0, 0], upper = [{size}, {size}, {size}] }}"]).problem()
+
+
+def test_names_of_other_letters_say_which_letters_names_have() -> None:
+    with pytest.raises(InputError, match=r"not valid TOML.*Names have letters from a to z, digits, _ and -$"):
+        Scene.from_toml("format = 1\nbodies.klötzchen = {}\n")

@@ -11,7 +11,7 @@ from isomortar.errors import FoldedElementError, KernelError, LostProjectionErro
 
 def raise_status(status: int, place: int, jacobian: float = math.nan) -> NoReturn:
     """Raise the exception of a status; `place` counts from 0, `jacobian` is the J of a folded element."""
-    folded = "J <= 0" if math.isnan(jacobian) else f"J = {jacobian:.3g}"
+    folded = "J <= 0" if math.isnan(jacobian) else f"J = {jacobian:.3g}" if jacobian else "J = 0, flat but for round-off"
     sentences: dict[int, tuple[type[KernelError], str]] = {
         Status.FOLDED: (FoldedElementError, f"element {place} is folded ({folded})"),
         Status.FOLDED_INITIALLY: (FoldedElementError, f"element {place} is folded ({folded}) in the reference configuration"),

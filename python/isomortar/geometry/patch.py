@@ -28,6 +28,8 @@ FACES = ("u0", "u1", "v0", "v1", "w0", "w1")
 _USUAL = 64
 #: Share of the heaviest control point's weight below which one moves nothing but itself: its functions are round-off of the others.
 _LIGHTEST = float(np.finfo(np.float64).eps)
+#: Share of a direction's range below which no knot span may be: seen from the other end (`Direction.reversed`) it would be none.
+_SHORTEST = float(np.finfo(np.float64).eps)
 
 
 def _usual(values: ArrayLike) -> FloatArray:
@@ -80,6 +82,13 @@ class Direction:
             self._check_open_knot_vector(knots)
         elif len(knots) < 2 or np.any(np.diff(knots) <= 0):
             raise InputError("element boundaries of a Lagrange direction must increase strictly (at least two)", "knots")
+        spans = np.diff(self.boundaries)
+        if spans.min() < _SHORTEST * spans.sum():
+            share = f"{spans.min() / spans.sum():.3g}"
+            raise InputError(
+                f"has a knot span of {share} of its range; allowed: {_SHORTEST:.2g} or more, for double precision, or the same knot",
+                "knots",
+            )
 
     def _check_open_knot_vector(self, knots: FloatArray) -> None:
         p = self.order
@@ -88,7 +97,7 @@ class Direction:
         if np.any(np.diff(knots) < 0):
             where = int(np.argmax(np.diff(knots) < 0)) + 1
             raise InputError(f"must not decrease, but value {where} ({knots[where]:g}) is below the one before it", "knots")
-        if knots[0] != knots[p] or knots[-1] != knots[-p - 1] or knots[0] == knots[-1]:
+        if any(np.count_nonzero(knots == end) != p + 1 for end in (knots[0], knots[-1])):
             raise InputError(f"must be open: first and last value repeated order + 1 = {p + 1} times", "knots")
         _, multiplicity = np.unique(knots[p + 1 : -p - 1], return_counts=True)
         if np.any(multiplicity > p):

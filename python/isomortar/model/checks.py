@@ -54,7 +54,7 @@ def check(problem: Problem) -> None:
     kind("problem", problem, Problem, way=", of a scene: scene.problem()")
     _check_settings(problem.settings)
     for body in problem.bodies:
-        _check_units(body)
+        check_units(body)
         _check_handedness(body)
         check_closed(body)
     for body in problem.deformable:
@@ -101,7 +101,8 @@ def _check_settings(settings: SolverSettings) -> None:
         )
 
 
-def _check_units(body: Body) -> None:
+def check_units(body: Body) -> None:
+    """Refuse a body whose lengths, or forces that belong to them, no number holds, or of which no digits are left where it stands."""
     size, young = body.size, body.material.young
     if not SIZES[0] <= size <= SIZES[1]:
         raise InputError(

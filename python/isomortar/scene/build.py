@@ -11,6 +11,7 @@ from isomortar.geometry.patch import FACES, Direction, Patch
 from isomortar.geometry.quadrature import contact_points, volume_points
 from isomortar.geometry.refinement import mesh, raised_along
 from isomortar.model import constants
+from isomortar.model.checks import check_units
 from isomortar.model.contact_checks import has_pole
 from isomortar.model.enforcement.integration import integrated
 from isomortar.model.entities import (
@@ -66,6 +67,8 @@ def build(scene: SceneTable, name: str, folder: Path) -> Problem:
     _check_curves(scene)
     planes = tuple(SymmetryPlane("xyz".index(axis), place) for axis, place in sorted(scene.symmetry.items()))
     whole = tuple(_body(body, table, coarse[body], meshes[body], scene) for body, table in scene.bodies.items())
+    for one in whole:
+        check_units(one)  # before anything is squared
     bodies, cuts = upper_part(whole, planes)
     by_name = {body.name: body for body in bodies}
     problem = Problem(

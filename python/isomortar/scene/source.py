@@ -29,6 +29,7 @@ _SHOWN = 60
 _HINTS = {
     "Unclosed array": ". A list has commas between its entries and ends at a ], and numbers have digits on both sides of a point",
     "Unclosed inline table": ". Texts stand in quotes, numbers have digits on both sides of a point, and a table in braces one line",
+    "value pair.*says [^=]*[^\x00-\x7f][^=]*=": ". Names have letters from a to z, digits, _ and -",
     "Invalid value|newline|value pair": ". Texts stand in quotes, numbers have digits on both sides of a point, and a key has = behind it",
     "character '.n'|Expected \"'|Unterminated": ". A text ends at quotes as those that begin it: on the same line, unless they are three",
     "key part.*says.*{": ". A table in braces stands on one line, and has no comma at its end",

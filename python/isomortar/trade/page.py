@@ -22,7 +22,6 @@ from isomortar.trade.model import Yardstick
 from isomortar.trade.search import Recommendation, Search
 from isomortar.trade.want import wanted, wishes
 
-
 #: What a recommendation ends with where the budget was spent before the forecasts of the search named nothing cheaper any more.
 _CUT = "; the budget ended the search, and something cheaper may do (--budget)"
 

@@ -151,9 +151,9 @@ class Search:
         needed = self.own.cost * len(set(singles))
         if needed > self.budget:
             raise IsomortarError(
-                f"the scene as it is takes {duration(self.own.cost)} of the processor, so that to turn every knob alone, {len(set(singles))} "
-                f"runs, takes about {duration(needed)}, and the budget is {duration(self.budget)}: give more (--budget, in minutes), or "
-                "begin with a coarser scene"
+                f"the scene as it is takes {duration(self.own.cost)} of the processor, so that to turn every knob alone, "
+                f"{len(set(singles))} runs, takes about {duration(needed)}, and the budget is {duration(self.budget)}: give more "
+                "(--budget, in minutes), or begin with a coarser scene"
             )
         self.laboratory.run([self.own.choice, *singles])
 
@@ -163,7 +163,8 @@ class Search:
         One differs in both, which may hide an error of either behind that of the other: one more differs from the truth in its mesh alone.
         They are as good as a target asks: what for 5 % spends nothing on load steps that change a thousandth may be enough for 1 % as well.
         Meshes that change nothing either are looked at once more beside the finer ones.
-        Ends where all is told, a share of the budget is spent, or two levels tell next to nothing; goes on from there where it is given more.
+        Ends where all is told, a share of the budget is spent, or two levels tell next to nothing; goes on from there where it is given
+        more.
 
         Raises
         ------

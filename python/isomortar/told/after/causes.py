@@ -157,8 +157,8 @@ def _moduli(problem: Problem) -> Iterator[str]:
         ratio = stiffer.modulus / softer.modulus
         if ratio > MODULI:
             yield (
-                f"body {stiffer.name!r} is {times(ratio)} times as stiff as {softer.name!r}, too different for double precision: take it less "
-                f"stiff, or rigid: bodies.{stiffer.name}.rigid = true"
+                f"body {stiffer.name!r} is {times(ratio)} times as stiff as {softer.name!r}, too different for double precision: take it "
+                f"less stiff, or rigid: bodies.{stiffer.name}.rigid = true"
             )
 
 

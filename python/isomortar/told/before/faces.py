@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import combinations, permutations
+from itertools import combinations, islice
 
 import numpy as np
 
@@ -17,8 +17,9 @@ def of_faces(problem: Problem) -> Iterator[str]:
     for contact in problem.contacts:
         yield from _held(problem, contact)
         yield from _loaded(problem, contact)
-    for one, other in permutations(problem.contacts, 2):
-        yield from _behind(problem, one, other)
+    for other in problem.contacts:
+        said = (sentence for one in problem.contacts if one is not other for sentence in _behind(problem, one, other))
+        yield from islice(said, 1)  # of many on one slave each is told once, and not once for each before it
     for first, second in combinations(problem.given_supports, 2):
         yield from _held_twice(first, second)
 

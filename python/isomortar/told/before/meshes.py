@@ -79,9 +79,9 @@ def _tall(body: Body, face: Face) -> Iterator[str]:
     lost = OF_ESTIMATE * np.finfo(float).eps * tall**2 / (wide * element) * condition**0.25
     if lost > LOST:
         yield (
-            f"body {body.name!r} is {times(float(f'{tall / wide:.1g}'))} times as tall as {face.words}, a slave face, is wide, and of order {max(orders)} "
-            f"there: round-off of its positions may be {lost:.1g} of the pressures, and more of small ones. Take a lower order, longer "
-            "elements, or a body that is less tall"
+            f"body {body.name!r} is {times(tall / wide, 1)} times as tall as {face.words}, a slave face, is wide, and of order "
+            f"{max(orders)} there: round-off of its positions may be {lost:.1g} of the pressures, and more of small ones. Take a lower order, "
+            "longer elements, or a body that is less tall"
         )
 
 
@@ -116,8 +116,8 @@ def _hardly_bends(problem: Problem, body: Body) -> Iterator[str]:
         across = int(np.argmin([along.sum() for along in lengths]))
         yield (
             f"body {body.name!r} is {lengths[across].sum():.3g} thick along {'uvw'[across]}, and its elements of order 1 are so long that "
-            f"it is about {times(float(f'{stiff:.2g}'))} times too stiff in bending: they shear instead (locking). Take bodies.{body.name}.mesh.order = 2 or "
-            "more, or elements shorter than it is thick"
+            f"it is about {times(stiff, 2)} times too stiff in bending: they shear instead (locking). Take bodies.{body.name}.mesh.order = 2 "
+            "or more, or elements shorter than it is thick"
         )
 
 

@@ -32,8 +32,8 @@ def of_pairing(problem: Problem, pairs: Sequence[PairMechanics]) -> Iterator[str
             how = "rigid" if slave.rigid else f"{times(stiffer)} times stiffer"
             yield (
                 f"contact {contact.name!r}: the slave {contact.slave.body!r} is {how} and its elements "
-                f"are {times(finer)} times smaller than the master's; control pressures may be far off. Swap slave and master, or refine the "
-                "master"
+                f"are {times(finer)} times smaller than the master's; control pressures may be far off. Swap slave and master, or refine "
+                "the master"
             )
     for contact in problem.contacts:
         yield from few_points(problem, contact)

@@ -74,7 +74,7 @@ class Bending:
     def _sentence(self, body: Body, bent: Way, step: int) -> str:
         problem = self._equilibrium.problem
         stage, letter, order = problem.stages[problem.stage_of(step)].name, "uvw"[bent.along], body.patch.directions[bent.along].order
-        size = f"{times(float(f'{bent.share:.2g}'))} times" if bent.share >= 1.0 else f"{10 * round(10.0 * bent.share)} %"
+        size = f"{times(bent.share, 2)} times" if bent.share >= 1.0 else f"{10 * round(10.0 * bent.share)} %"
         return (
             f"body {body.name!r}, load step {step}, the last of stage {stage!r}: it bends along {letter}, and its elements of order "
             f"{order} are so long there that it is up to about {size} too stiff for that: they shear and stretch instead (locking). Take "
