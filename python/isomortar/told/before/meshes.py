@@ -80,8 +80,8 @@ def _tall(body: Body, face: Face) -> Iterator[str]:
     if lost > LOST:
         yield (
             f"body {body.name!r} is {times(tall / wide, 1)} times as tall as {face.words}, a slave face, is wide, and of order "
-            f"{max(orders)} there: round-off of its positions may be {lost:.1g} of the pressures, and more of small ones. Take a lower order, "
-            "longer elements, or a body that is less tall"
+            f"{max(orders)} there: round-off of its positions may be {lost:.1g} of the pressures, and more of small ones. Take a lower "
+            "order, longer elements, or a body that is less tall"
         )
 
 
