@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -27,6 +29,12 @@ def kind(name: str, value: Any, *allowed: type, way: str = "") -> None:
     """Refuse what is not of an allowed type; `way` says how one is had."""
     if not isinstance(value, allowed):
         raise InputError(f"is {value!r:.60}; allowed: {' or '.join(one.__name__ for one in allowed)}{way}", name)
+
+
+def place(name: str, value: Any) -> Path:
+    """A path, if it is one."""
+    kind(name, value, str, os.PathLike)
+    return Path(value)
 
 
 def array(name: str, value: Any, dtype: type, *shape: int | None) -> NDArray[Any]:

@@ -63,6 +63,7 @@ def run(
         written.
     """
     kind("scene", scene, Scene, str, os.PathLike)
+    kind("output", output, str, os.PathLike, NoneType)
     kind("observer", observer, Observer, NoneType)
     chosen = scene if isinstance(scene, Scene) else Scene.load(os.fspath(scene))
     return compute(chosen, chosen.problem(), Path(output or results_path(chosen)), observer or _Aloud(), resume, overwrite)

@@ -13,10 +13,12 @@ from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 from time import monotonic
+from types import NoneType
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from isomortar._arguments import kind
 from isomortar.cli.words import many
 from isomortar.errors import InputError
 from isomortar.model.entities import Problem
@@ -271,6 +273,8 @@ def progress(problem: Problem, quiet: bool = False, verbose: bool = False, log: 
     >>> with isomortar.progress(scene.problem()) as watching:  # doctest: +SKIP
     ...     results = isomortar.run(scene, observer=watching)
     """
+    kind("problem", problem, Problem, way=", of a scene: scene.problem()")
+    kind("log", log, str, os.PathLike, NoneType)
     with _kept(log) as keep:
         if quiet:
             yield Progress(problem, _print, Detail.WARNINGS, keep)

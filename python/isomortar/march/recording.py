@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import deepcopy
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -61,7 +62,7 @@ class Recording:
 
     def __init__(self, problem: Problem, equilibrium: Equilibrium, last: StepResult | None) -> None:
         self._problem, self._equilibrium = problem, equilibrium
-        self._stood: tuple[Reaction, ...] = last.reactions if last else ()
+        self._stood: tuple[Reaction, ...] = deepcopy(last.reactions) if last else ()
 
     def passage(self) -> Passage:
         """The way through a load step, at its beginning."""
@@ -74,7 +75,7 @@ class Recording:
         """
         origin = self._equilibrium.origin
         if not np.any(origin):
-            return result.state
+            return deepcopy(result.state)  # who has the result may change it
         positions, supports = result.state.positions - origin, self._equilibrium.standing(result.step)
         supports.anchor(positions, result.time)
         return replace(result.state, positions=supports.placed(positions, result.time))
@@ -96,7 +97,7 @@ class Recording:
         pairs = zip(self._equilibrium.pairs, balance.kinematics, balance.responses, passage.work, strict=True)
         origin, problem = self._equilibrium.origin, self._problem
         reactions = self._reactions(float(step), balance.positions, balance.total)
-        self._stood = reactions
+        self._stood = deepcopy(reactions)
         contacts = tuple(_of_whole(_about_origin(pair.result(balance.positions, k, r, w), origin), problem) for pair, k, r, w in pairs)
         timings, counters = self._equilibrium.ledger.take()
         return StepResult(

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from types import NoneType
 
 import numpy as np
 
-from isomortar.errors import ConvergenceError, PathError
+from isomortar._arguments import kind
+from isomortar.errors import ConvergenceError, InputError, PathError
 from isomortar.march.recording import Recording
 from isomortar.model import constants
 from isomortar.model.checks import check
@@ -41,7 +43,8 @@ class Simulation:
     Raises
     ------
     InputError
-        The problem cannot have a solution, or not a single one (`isomortar.model.checks`), folded elements among that.
+        The problem cannot have a solution, or not a single one (`isomortar.model.checks`), folded elements among that; or the record is
+        of another one.
 
     Attributes
     ----------
@@ -56,12 +59,16 @@ class Simulation:
 
     def __init__(self, problem: Problem, observer: Observer | None = None, resume_from: StepResult | None = None) -> None:
         check(problem)
+        kind("observer", observer, Observer, NoneType)
+        kind("resume_from", resume_from, StepResult, NoneType)
         self.problem = problem
         self.ledger = Ledger()
         self.equilibrium = Equilibrium(problem, self.ledger)
         self._observer = observer or Observer()
         self._method = _METHODS[problem.settings.method](self.equilibrium, self._observer)
         self._extrapolates = problem.settings.method == "monolithic" and "extrapolation" in problem.settings.measures
+        if resume_from:
+            _check_fit(resume_from, self.equilibrium)
         self._recording = Recording(problem, self.equilibrium, resume_from)
         self._step = resume_from.step if resume_from else 0
         self._increment = resume_from.next_increment if resume_from else 1.0
@@ -175,3 +182,20 @@ class Simulation:
                 f"1/{round(1 / increment)} step{alone}: {error}{''.join(f'. {cause[0].upper()}{cause[1:]}' for cause in likely)}"
             ) from error
         self._observer.cut(step, time, 0.5 * increment, str(error))
+
+
+def _check_fit(last: StepResult, equilibrium: Equilibrium) -> None:
+    """Refuse a record that has other control points, constraints, quadrature points or supports than a problem."""
+    begun = equilibrium.initial_state()
+    found, wanted = (
+        [("control points", len(state.positions)), ("supports", supports), ("contacts", len(state.contacts))]
+        + [
+            (f"{what} of contact {contact.name!r}", len(values))
+            for contact, of_one in zip(equilibrium.problem.contacts, state.contacts, strict=False)
+            for what, values in (("constraints", of_one.pressure), ("quadrature points", of_one.projection))
+        ]
+        for state, supports in ((last.state, len(last.reactions)), (begun, len(equilibrium.problem.supports)))
+    )
+    for (what, has), (_, needs) in zip(found, wanted, strict=False):
+        if has != needs:
+            raise InputError(f"is of another problem: it has {has} {what}, and this one {needs}", "resume_from")

@@ -10,7 +10,7 @@ from typing import Any
 
 from PIL import Image
 
-from isomortar._arguments import real, whole
+from isomortar._arguments import place, real, whole
 from isomortar.errors import InputError, ResultsError
 from isomortar.results.bodies import common_scale, draw_bodies
 from isomortar.results.files import place_for, writing
@@ -67,7 +67,7 @@ def film(
         The results file is missing, damaged, or holds too few states; or there is a results file in the film's place, or it cannot be
         written.
     """
-    path = Path(output)
+    path = place("output", output)
     if path.suffix not in FORMATS:
         raise InputError(f"is {path.name!r}; allowed: a name that ends in {' or '.join(FORMATS)}", "output")
     encoder = optional("imageio_ffmpeg", "output", "mp4") if path.suffix == ".mp4" else None

@@ -15,6 +15,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from isomortar import _arguments
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Body, Problem
 from isomortar.model.numbering import Numbering
@@ -55,8 +56,9 @@ def export(results_path: str | os.PathLike[str], outdir: str | os.PathLike[str])
     ResultsError
         The results file is missing or damaged; or a file cannot be written.
     """
+    beside = _arguments.place("outdir", outdir)
     with Results(results_path) as results:
-        collection = Path(outdir) / f"{Path(results_path).stem}.pvd"
+        collection = beside / f"{results.path.stem}.pvd"
         folder = collection.with_suffix("")
         make_folder(folder)
         root = ElementTree.Element("VTKFile", type="Collection", version="1.0", byte_order="LittleEndian")

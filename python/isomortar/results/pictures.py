@@ -10,6 +10,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
+from isomortar._arguments import place
 from isomortar.errors import InputError, ResultsError
 from isomortar.model.entities import Problem
 from isomortar.results.abscissa import Abscissa, abscissa
@@ -80,7 +81,7 @@ def plot(
     _among("field", fields, FIELDS)
     _among("only", only, DRAWABLE)
     _among("format", formats, FORMATS)
-    folder = Path(outdir)
+    folder = place("outdir", outdir)
     with Results(results_path) as results, style():
         if not len(results.steps):
             raise ResultsError(f"{results.path} holds no load step yet: nothing to draw")

@@ -105,6 +105,10 @@ class Results:
             return f"<Results {self.path}: closed>"
         return f"<Results {self.path}: {len(self.steps)}/{self.problem.total_steps} steps>"
 
+    def __reduce__(self) -> tuple[type[Results], tuple[Path]]:
+        """Another process opens the file itself."""
+        return Results, (self.path,)
+
     def close(self) -> None:
         """Close the file."""
         self._file.close()

@@ -17,6 +17,7 @@ import numpy as np
 from matplotlib.colors import Colormap, to_rgb
 from numpy.typing import NDArray
 
+from isomortar._arguments import place
 from isomortar.errors import InputError, ResultsError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Face, Problem, RigidPlane, unit
@@ -118,7 +119,7 @@ def view(results_path: str | os.PathLike[str], output: str | os.PathLike[str]) -
     ResultsError
         The results file is missing, damaged, or holds no state; or there is a results file in the page's place, or it cannot be written.
     """
-    path = Path(output)
+    path = place("output", output)
     if path.suffix != ".html":
         raise InputError(f"is {path.name!r}; allowed: a name that ends in .html", "output")
     with Results(results_path) as results:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import copy
 import itertools
+import os
 from pathlib import Path
 from typing import Any, Literal
 
 from pydantic import ValidationError
 
+from isomortar._arguments import kind, place
 from isomortar.model.checks import check
 from isomortar.model.entities import Problem
 from isomortar.model.messages import input_error
@@ -50,6 +52,7 @@ class Scene:
     """
 
     def __init__(self, text: str, name: str, folder: Path, overrides: SceneChanges = (), source: str = "") -> None:
+        kind("text", text, str)
         self._text, self._folder = text, folder
         self._data = parse(text, source or name)
         apply_overrides(self._data, overrides)
@@ -71,12 +74,13 @@ class Scene:
         overrides : iterable of str, or mapping of str to value
             Overrides of single values: ``bodies.master.mesh.order=[3, 2, 2]``, or ``{"bodies.master.mesh.order": [3, 2, 2]}``.
         """
-        return cls(*read_source(source), overrides, str(source))
+        kind("source", source, str, os.PathLike)
+        return cls(*read_source(os.fspath(source)), overrides, os.fspath(source))
 
     @classmethod
     def from_toml(cls, text: str, folder: str | Path = ".", overrides: SceneChanges = ()) -> Scene:
         """A scene from the text of a scene file; `folder` is where its geometry files lie."""
-        return cls(text, "scene", Path(folder), overrides)
+        return cls(text, "scene", place("folder", folder), overrides)
 
     def with_more_steps(self, *counts: int) -> Scene:
         """The scene with a stage more for each count: so many load steps at the rate of its last stage; loads and forces stay as they are.

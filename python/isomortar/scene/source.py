@@ -10,6 +10,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
+from isomortar._arguments import kind
 from isomortar.errors import InputError
 from isomortar.scene.text import read_text
 from isomortar.scene.types import listed
@@ -121,11 +122,13 @@ def apply_overrides(data: dict[str, Any], overrides: SceneChanges) -> None:
     """
     if isinstance(overrides, Mapping):
         for path, value in overrides.items():
-            if not _PATH.fullmatch(str(path)):
+            if not isinstance(path, str) or not _PATH.fullmatch(path):
                 raise InputError(f"override {path!r} is no path of keys, e.g. solver.max_cuts")
-            _set(data, path, _plain(value, path))
+            _set(data, path, _without_end(value, path))
         return
+    kind("overrides", overrides, Iterable, way=" of texts KEY=VALUE, or a mapping of values by path")
     for override in [overrides] if isinstance(overrides, str) else overrides:
+        kind("overrides", override, str, way=" of the form KEY=VALUE")
         path, equals, value = (part.strip() for part in override.partition("="))
         if not equals or not _PATH.fullmatch(path):
             raise InputError(f"override {override!r} is not of the form KEY=VALUE, e.g. solver.max_cuts=4")
@@ -135,6 +138,14 @@ def apply_overrides(data: dict[str, Any], overrides: SceneChanges) -> None:
 def as_options(overrides: Iterable[str]) -> str:
     """Overrides as the options of a command, in a line that a shell takes as it stands."""
     return shlex.join(word for override in overrides for word in ("--set", override))
+
+
+def _without_end(value: Any, path: str) -> Any:
+    """A value as a scene file can hold it, if it ends."""
+    try:
+        return _plain(value, path)
+    except RecursionError as error:
+        raise InputError("has lists or tables within each other without end", path) from error
 
 
 def _plain(value: Any, path: str) -> Any:
