@@ -93,6 +93,7 @@ class Model:
         self._failed = outcomes.keys() - {outcome.choice for outcome in self._centres}
         base = outcomes[own]
         self._costs, self._effects = {}, {}
+        self._forecasts: dict[Choice, Forecast] = {}
         for outcome in self._centres:
             moved = [number for number, (a, b) in enumerate(zip(outcome.choice, own, strict=True)) if a != b]
             if len(moved) <= 1:
@@ -114,11 +115,16 @@ class Model:
         return max(y.norm(e) for y, e in zip(self._yardsticks, self._effects[number, setting], strict=True))
 
     def forecast(self, choice: Choice) -> Forecast:
-        """Error and cost of a choice whose settings were all tried alone."""
+        """Error and cost of a choice whose settings were all tried alone; each is asked for from several sides, and forecast once."""
+        if choice not in self._forecasts:
+            self._forecasts[choice] = self._forecast(choice)
+        return self._forecasts[choice]
+
+    def _forecast(self, choice: Choice) -> Forecast:
         if choice in self._failed:
             return Forecast(math.inf, math.inf)
         wanted = np.array(choice)
-        centre = int(np.argmin(np.count_nonzero(self._choices != wanted, axis=1)))
+        centre = int((self._choices != wanted).sum(axis=1).argmin())
         near, cost = self._choices[centre], self._centres[centre].cost
         errors, lost = [error.copy() for error in self._errors[centre]], [0.0] * len(self._yardsticks)
         for number in map(int, np.flatnonzero(near != wanted)):
@@ -153,8 +159,9 @@ class Model:
         return best
 
     def _turns(self, choice: Choice, kept: Mapping[int, int]) -> set[Choice]:
-        """All choices that differ by one setting that was tried alone."""
-        return {self._turned(choice, n, s, kept) for n in range(len(self._dials)) for s in self.settings(n)} - {choice}
+        """All choices that differ by one setting that was tried alone, of a dial that is not kept."""
+        free = (n for n in range(len(self._dials)) if n not in kept)
+        return {(*choice[:n], s, *choice[n + 1 :]) for n in free for s in self.settings(n)} - {choice}
 
     def _exchanged(self, choice: Choice, target: float, kept: Mapping[int, int]) -> Choice | None:
         """The cheapest choice within a target of those that differ by two settings, where it is cheaper."""
