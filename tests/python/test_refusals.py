@@ -50,6 +50,8 @@ from isomortar.solve.singular import PairConditions
 from isomortar.solve.timing import Ledger
 from isomortar.told.before import doubts
 from isomortar.told.before.pairing import by_default
+from isomortar.trade.search import Search
+from isomortar.trade.want import wanted
 from results_samples import problem, step_result, without_contact
 from test_advice import warnings
 from test_causes import pushed
@@ -57,6 +59,7 @@ from test_feet import cone, loaded, on_the_axis, ridge
 from test_poles import drawn_together
 from test_sentences import HEARD, Told, refusal, without_digits
 from test_singular import FROM_BESIDE
+from trade_formulas import Formula, synthetic
 
 
 def of_geometry(_: pytest.MonkeyPatch) -> Told:
@@ -155,7 +158,14 @@ def of_problems(patch: pytest.MonkeyPatch) -> Told:
         for moved in (points, upper.control_points * [-1, 1, 1])
     )
     yield "folded", refusal(lambda: Simulation(torn))
+    flat = replace(upper, control_points=upper.control_points * [1, 1, 0])
+    pressed = replace(pair, bodies=tuple(replace(b, patch=flat) if b.name == "upper" else b for b in pair.bodies))
+    yield "flat", refusal(lambda: Numbering(pressed) and Simulation(pressed))
     yield "left-handed", refusal(lambda: Simulation(mirrored))
+    last = next(Simulation(Scene.from_toml(PRESS).problem()).run())
+    yield "record of another problem", refusal(lambda: Simulation(pair, resume_from=last))
+    search = Search(Formula(pair, synthetic()), synthetic(), [wanted("force.top.x", pair)], 5.0)
+    yield "budget of a trade", refusal(search.screen)
     raised = "bodies.block.mesh={ order = 2, contact_order = 3, elements = [4, 4, 2] }"
     yield "symmetry: raised", _of(PLANE, raised, "symmetry={ x = 0.0 }")
     yield "symmetry: closed", _of(_TYRE, "symmetry={ x = 0.0 }")

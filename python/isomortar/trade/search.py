@@ -148,11 +148,12 @@ class Search:
         for number, dial in enumerate(self.dials):
             near = (dial.own - 1, dial.own + 1) if dial.refines else range(len(dial.settings))
             singles += [self.single(number, setting) for setting in near if 0 <= setting < len(dial.settings)]
-        needed = self.own.cost * len(set(singles))
+        runs = len({*singles} - {self.own.choice})
+        needed = self.own.cost * runs
         if needed > self.budget:
             raise IsomortarError(
                 f"the scene as it is takes {duration(self.own.cost)} of the processor, so that to turn every knob alone, "
-                f"{len(set(singles))} runs, takes about {duration(needed)}, and the budget is {duration(self.budget)}: give more "
+                f"{runs} runs, takes about {duration(needed)}, and the budget is {duration(self.budget)}: give more "
                 "(--budget, in minutes), or begin with a coarser scene"
             )
         self.laboratory.run([self.own.choice, *singles])
