@@ -25,6 +25,7 @@ from told.long_masters import CAP
 from told.mirrored import of_half
 from told.narrow import BALL, BALLS, STRIPS, depth, strip
 from told.passing import SCENE as BENT
+from told.pivoting import FLAT as TURNED
 from told.unstable import LYING
 from told.unstable import column as slender
 from told.weights import column
@@ -225,6 +226,7 @@ def along_the_way(_: pytest.MonkeyPatch) -> Told:
         "one row": (BALLS["one row"][0], (depth(0.05),)),
         "two rows of dual constraints": (BALL, (depth(0.025), 'contacts.c.enforcement="dual"')),
         "one row of constraints": (BALLS["constraints at knots"][0], (*BALLS["constraints at knots"][1], depth(0.025))),
+        "turns within an element": (TURNED, ()),
     }.items():
         observer = Warned()
         list(Simulation(Scene.from_toml(text, overrides=changes).problem(), observer).run())

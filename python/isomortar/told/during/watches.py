@@ -16,6 +16,7 @@ from isomortar.told.during.inside_out import InsideOut
 from isomortar.told.during.lost import LostDigits
 from isomortar.told.during.mirrored import Mirrored
 from isomortar.told.during.passing import Passing
+from isomortar.told.during.pivoting import Pivoting
 from isomortar.told.during.pulling import Pulling
 from isomortar.told.during.sharing import Sharing
 from isomortar.told.during.shrunk import Shrunk
@@ -45,6 +46,7 @@ class Watches:
         self._snapping, self._inside_out, self._unstable = Snapping(equilibrium), InsideOut(equilibrium), Unstable(equilibrium)
         self._mirrored, self._shrunk, self._bending = Mirrored(equilibrium), Shrunk(equilibrium), Bending(equilibrium)
         self._coarse, self._advice = Coarse(equilibrium, states), StepAdvice(problem, step, states)
+        self._pivoting = Pivoting(equilibrium)
         self._of_stages = [watch for watch in (Passing(problem), Behind(problem)) if watch.needed]
 
     def look(self, before: FloatArray, after: FloatArray, share: float) -> None:
@@ -74,6 +76,7 @@ class Watches:
         yield from self._snapping.after_step(step)
         yield from self._inside_out.after_step(step)
         yield from self._astray.after_step(balance, step)
+        yield from self._pivoting.after_step(balance, step)
         yield from self._coarse.after_step(balance, step, ends)
         yield from self._advice.after_step(step, result.contacts, result.state.contacts)
         self._unseen.after_step(balance)
