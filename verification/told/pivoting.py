@@ -136,8 +136,8 @@ NOTHING_LOST: dict[str, Changes] = {
 
 
 @case(
-    claim="Nothing is said of contact that is dragged, that sticks or has no friction, nor of constraints at points, which have each slip as "
-    "it is.",
+    claim="Nothing is said of contact that is dragged, that sticks or has no friction, nor of constraints at points, which have each slip "
+    "as it is.",
     tier="gate",
     grid={"scene": tuple(NOTHING_LOST)},
     bounds={"said": Bound(0.0, 0.0, "definition: sentences")},

@@ -124,7 +124,7 @@ def _sentence(problem: Problem, pair: Pair, found: Pivot, step: int) -> str:
     slave = pair.contact.slave
     return (
         f"contact {pair.contact.name!r}, load step {step}: it turns about its normal, and friction has one direction for each control "
-        f"point of its slave {slave.words}: it takes up {percent(found.lost)} less work than at the slips of points, and its moment is too small "
-        f"by about that. Take twice as many elements or more along {' and '.join(Sheet.of(problem, slave).letters)} "
+        f"point of its slave {slave.words}: it takes up {percent(found.lost)} less work than at the slips of points, and its moment is too "
+        f"small by about that. Take twice as many elements or more along {' and '.join(Sheet.of(problem, slave).letters)} "
         f"(bodies.{slave.body}.mesh.elements), or shorter ones there (mesh.grading)"
     )
