@@ -21,6 +21,7 @@ from told.beyond_edges import STRIP as BEYOND_EDGES
 from told.beyond_edges import punch
 from told.dents import scene as at_points
 from told.given_up import all_told, without_digits
+from told.held_inside import ON_EDGE as HELD_INSIDE
 from told.long_masters import CAP
 from told.mirrored import of_half
 from told.narrow import BALL, BALLS, STRIPS, depth, strip
@@ -227,6 +228,7 @@ def along_the_way(_: pytest.MonkeyPatch) -> Told:
         "two rows of dual constraints": (BALL, (depth(0.025), 'contacts.c.enforcement="dual"')),
         "one row of constraints": (BALLS["constraints at knots"][0], (*BALLS["constraints at knots"][1], depth(0.025))),
         "turns within an element": (TURNED, ()),
+        "held inside": (HELD_INSIDE, ()),
     }.items():
         observer = Warned()
         list(Simulation(Scene.from_toml(text, overrides=changes).problem(), observer).run())
