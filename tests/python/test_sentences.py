@@ -17,6 +17,7 @@ from told.astray import run as astray
 from told.behind import DOWN
 from told.behind import SCENE as FLOOR
 from told.bending import STIFF, thin
+from told.between_points import CROSSED, ORDER_3, crossed
 from told.beyond_edges import STRIP as BEYOND_EDGES
 from told.beyond_edges import punch
 from told.dents import scene as at_points
@@ -229,6 +230,8 @@ def along_the_way(_: pytest.MonkeyPatch) -> Told:
         "one row of constraints": (BALLS["constraints at knots"][0], (*BALLS["constraints at knots"][1], depth(0.025))),
         "turns within an element": (TURNED, ()),
         "held inside": (HELD_INSIDE, ()),
+        "between points": (CROSSED, crossed("greville", 12, 13)),
+        "blind between points": (BALL, (depth(0.03), 'contacts.c.enforcement="greville"', *ORDER_3)),
     }.items():
         observer = Warned()
         list(Simulation(Scene.from_toml(text, overrides=changes).problem(), observer).run())
