@@ -105,3 +105,30 @@ def beyond_estimate() -> dict[str, float]:
         "others": float(len(others)),
         "left": float(np.abs(fine / true - 1.0)),
     }
+
+
+#: Half a ring that a rigid plane presses, which bends far more than it is dented.
+RING = """
+format = 1
+materials.m = { young = 10, poisson = 0.3 }
+bodies.a.geometry = { kind = "ring", inner = 0.94, outer = 1, width = 0.2, angles = [-90, 90], axis = "y" }
+bodies.a.mesh = { order = 2, elements = [20, 1, 1] }
+contacts.c = { slave = "a.v1", plane = { point = [0, 0, 1], normal = [0, 0, -1] }, friction = 0, enforcement = "greville" }
+supports = { low.face = "a.u0", high.face = "a.u1" }
+stages = [{ name = "press", steps = 2, motions = { low.translate = [0, 0, 0.2], high.translate = [0, 0, 0.2] } }]
+"""
+
+
+@case(
+    claim="Of a half ring that bends, whose points are far apart beside what it is dented, the force is right, and nothing is said.",
+    tier="gate",
+    bounds={
+        "said": Bound(0.0, 0.0, "definition: sentences on its points"),
+        "off": Bound(at_most=0.05, reason="definition: what its force is off by, of which nothing is said"),
+    },
+)
+def bends() -> dict[str, float]:
+    """Against one of averages with twice as many elements."""
+    found, force = run(RING, ())
+    _, true = run(RING, ('contacts.c.enforcement="mortar"', "bodies.a.mesh.elements=[40, 1, 1]"))
+    return {"said": float(len(found)), "off": float(np.abs(force / true - 1.0))}

@@ -8,20 +8,21 @@ from dataclasses import replace
 import numpy as np
 
 from isomortar import _bindings
+from isomortar._bindings import Projections, surface_functions
 from isomortar._frozen import frozen
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.enforcement import METHODS, SlaveFace
-from isomortar.model.entities import Contact, Problem
+from isomortar.model.entities import Contact, Face, Problem
 from isomortar.model.pairs import Pair
 from isomortar.model.shares import percent
 from isomortar.model.sheet import Sheet
 from isomortar.solve.contact import PutOff
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.feet import gaps
+from isomortar.told.before.dents import AT_POINTS, of_dents
+from isomortar.told.during.long_masters import deformations, way_of_face
 from isomortar.told.during.narrow import bearing, pressed_in
 
-#: Enforcements by so few points that bodies come through between them; at all Gauss points there is nothing between.
-AT_POINTS = ("knots", "greville", "demko")
 #: Gauss points an element, along each coordinate, where gaps are looked at: functions of order 3 are far from straight between constraints.
 POINTS = 4
 #: Shares of the force that a mean gap of as much as the forces press in costs, and a deviation of as much: fitted to crossed cylinders by
@@ -31,6 +32,10 @@ MEAN, DEVIATION = 0.6, 0.23
 COSTS = 0.1
 #: Deviation over what forces press in above which there is no estimate: of such balls and cylinders forces were off by -48 to 61 %.
 BLIND = 1.5
+#: Times what forces press in that faces go, from which on bodies bend: gaps are little beside that, and forces those of the bending.
+BENDS = 6.0
+#: The same beside the gaps' deviation: what a ball has come in by without pressing is no bending (it goes as far as gaps deviate).
+TWICE = 2.0
 
 
 @frozen
@@ -43,10 +48,13 @@ class Between:
         Their mean by the pressure; above zero inside the master.
     deviation : float
         Root of their mean square.
+    gone : float
+        How far the faces go there, from what of them goes least.
     """
 
     mean: float
     deviation: float
+    gone: float
 
     @property
     def costs(self) -> float:
@@ -57,15 +65,20 @@ class Between:
     @property
     def too_coarse(self) -> bool:
         """Whether it is told."""
-        return self.deviation > BLIND or self.costs > COSTS
+        bends = self.gone > max(BENDS, TWICE * self.deviation)
+        return not bends and (self.deviation > BLIND or self.costs > COSTS)
 
 
 class BetweenPoints:
-    """Warnings of contacts by constraints at points that are too far apart for what presses; each is given once."""
+    """Warnings of contacts by constraints at points that are too far apart for what presses; each is given once.
+
+    Of those that are too far apart for all that could press there is a warning before the run.
+    """
 
     def __init__(self, equilibrium: Equilibrium) -> None:
         self._equilibrium = equilibrium
-        self._watched = {k: p for k, p in enumerate(equilibrium.pairs) if p.pair.contact.enforcement in AT_POINTS}
+        pairs = {k: p for k, p in enumerate(equilibrium.pairs) if p.pair.contact.enforcement in AT_POINTS}
+        self._watched = {k: p for k, p in pairs.items() if not any(of_dents(equilibrium.problem, p.pair.contact))}
 
     def after_stage(self, balance: Balance, step: int) -> Iterator[str]:
         """Warnings that the end of a stage gives rise to; what too few rows bear at all is told as narrow contact."""
@@ -89,10 +102,23 @@ def between_points(equilibrium: Equilibrium, balance: Balance, number: int) -> B
     pressure = np.maximum(seen.field(at_control), 0.0) * (feet.found > 0)
     pressed = pressed_in(equilibrium, seen, feet, pressure)
     if not pressed > 0.0:
-        return Between(0.0, 0.0)
+        return Between(0.0, 0.0, 0.0)
     share = seen.slave.area * pressure / (seen.slave.area @ pressure)
     depths: FloatArray = gaps(seen, balance.positions, feet) / pressed
-    return Between(float(share @ depths), float(np.sqrt(share @ np.square(depths))))
+    gone = _gone(equilibrium, contact, seen, feet, balance.positions, share)
+    return Between(float(share @ depths), float(np.sqrt(share @ np.square(depths))), gone / pressed)
+
+
+def _gone(equilibrium: Equilibrium, contact: Contact, seen: Pair, feet: Projections, positions: FloatArray, share: FloatArray) -> float:
+    """How far both sides of a contact have gone where a share of its force acts at points, from what of their faces has gone least."""
+    numbering, acts = equilibrium.numbering, np.flatnonzero(share)
+    ways, slave = deformations(numbering, positions), SlaveFace(contact, equilibrium.problem, numbering)
+    nodes = np.repeat(seen.slave.shape.nodes, seen.slave.per_element, axis=0)[acts]
+    gone = way_of_face(ways, slave.point, (nodes, seen.slave.shape.values[acts][:, None]), share[acts])
+    if isinstance(contact.master, Face):
+        of_master = surface_functions(*Sheet.of(equilibrium.problem, contact.master).arrays(numbering), feet.xi[acts])
+        gone += way_of_face(ways, seen.master_face, of_master, share[acts])
+    return gone
 
 
 def _sentence(problem: Problem, contact: Contact, found: Between, step: int) -> str:
