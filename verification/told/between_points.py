@@ -127,7 +127,7 @@ stages = [{ name = "press", steps = 2, motions = { low.translate = [0, 0, 0.2], 
         "off": Bound(at_most=0.05, reason="definition: what its force is off by, of which nothing is said"),
     },
 )
-def bends() -> dict[str, float]:
+def half_ring() -> dict[str, float]:
     """Against one of averages with twice as many elements."""
     found, force = run(RING, ())
     _, true = run(RING, ('contacts.c.enforcement="mortar"', "bodies.a.mesh.elements=[40, 1, 1]"))
