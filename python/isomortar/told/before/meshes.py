@@ -116,8 +116,8 @@ def _hardly_bends(problem: Problem, body: Body) -> Iterator[str]:
         across = int(np.argmin([along.sum() for along in lengths]))
         yield (
             f"body {body.name!r} is {lengths[across].sum():.3g} thick along {'uvw'[across]}, and its elements of order 1 are so long that "
-            f"it is about {times(stiff, 2)} times too stiff in bending: they shear instead (locking). Take bodies.{body.name}.mesh.order = 2 "
-            "or more, or elements shorter than it is thick"
+            f"it is about {times(stiff, 2)} times too stiff in bending: they shear instead (locking). Take bodies.{body.name}.mesh.order = "
+            "2 or more, or elements shorter than it is thick"
         )
 
 

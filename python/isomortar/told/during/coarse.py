@@ -11,6 +11,7 @@ from isomortar.solve.contact import PutOff
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.record import ContactState
 from isomortar.told.borne import Borne
+from isomortar.told.during.between_points import between_points
 from isomortar.told.during.beyond_edges import beyond_edges
 from isomortar.told.during.giving_way import Yields, giving_way
 from isomortar.told.during.long_masters import long_master
@@ -20,7 +21,7 @@ from isomortar.told.during.softness import pressed_in
 #: Share of the largest force of a contact below which it opens, or hardly begins: its last row is no fault of the mesh.
 LIGHT = 0.1
 #: What looks for what may be wrong with a mesh; the first that finds something tells.
-LOOKS = (bearing, beyond_edges, long_master)
+LOOKS = (bearing, between_points, beyond_edges, long_master)
 
 
 class Coarse:
@@ -56,7 +57,9 @@ class Coarse:
     def _sentence(self, balance: Balance, number: int, step: int) -> str:
         """What is told of a contact; empty: nothing. How far it moves its bodies is asked where something would be told of deep ones."""
         equilibrium = self._equilibrium
-        deep = Yields(pressed_in(equilibrium, balance, number), np.zeros(2))
+        pair, projections = equilibrium.pairs[number].pair, balance.kinematics[number].projections
+        pressure = abs(pair.field(balance.responses[number].pressure)) * (projections.found > 0)
+        deep = Yields(pressed_in(equilibrium, pair, projections, pressure), np.zeros(2))
         as_they_are: Yields | None = None
         for look in LOOKS:
             found = look(equilibrium, balance, number, deep)
@@ -64,5 +67,5 @@ class Coarse:
                 as_they_are = as_they_are or replace(deep, ways=giving_way(equilibrium, balance, number))
                 found = replace(found, yields=as_they_are)
                 if found.is_told:
-                    return found.sentence(self._problem, equilibrium.pairs[number].pair.contact, step)
+                    return found.sentence(self._problem, pair.contact, step)
         return ""

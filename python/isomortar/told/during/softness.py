@@ -10,7 +10,7 @@ from isomortar.model.entities import Body, Face, Problem
 from isomortar.model.numbering import Numbering
 from isomortar.model.pairs import Pair
 from isomortar.model.sheet import Sheet
-from isomortar.solve.equilibrium import Balance, Equilibrium
+from isomortar.solve.equilibrium import Equilibrium
 
 #: Softness of an incompressible layer over (1 - nu^2) / E: it goes sideways beside the contact. Fitted at Poisson's ratio 0.49.
 SIDEWAYS = 0.35
@@ -21,10 +21,11 @@ LAYER = 0.85
 STIFFER = 10.0
 
 
-def pressed_in(equilibrium: Equilibrium, balance: Balance, number: int) -> FloatArray:
-    """How far the pressures of a contact press in slave and master, about, in their mean, shape (2,) (theory 9.10); zeros of none."""
-    pair, projections = equilibrium.pairs[number].pair, balance.kinematics[number].projections
-    pressure = abs(pair.field(balance.responses[number].pressure)) * (projections.found > 0)
+def pressed_in(equilibrium: Equilibrium, pair: Pair, projections: Projections, pressure: FloatArray) -> FloatArray:
+    """How far pressures at a slave's points, none below zero, press in slave and master, about, in their mean, shape (2,) (theory 9.10).
+
+    Zeros where there are none.
+    """
     acting = pair.slave.area * pressure
     if not acting.any():
         return np.zeros(2)

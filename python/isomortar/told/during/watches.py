@@ -12,7 +12,6 @@ from isomortar.told.during.astray import Astray
 from isomortar.told.during.behind import Behind
 from isomortar.told.during.bending import Bending
 from isomortar.told.during.coarse import Coarse
-from isomortar.told.during.between_points import BetweenPoints
 from isomortar.told.during.held_inside import HeldInside
 from isomortar.told.during.inside_out import InsideOut
 from isomortar.told.during.lost import LostDigits
@@ -49,7 +48,6 @@ class Watches:
         self._mirrored, self._shrunk, self._bending = Mirrored(equilibrium), Shrunk(equilibrium), Bending(equilibrium)
         self._coarse, self._advice = Coarse(equilibrium, states), StepAdvice(problem, step, states)
         self._pivoting, self._held_inside = Pivoting(equilibrium), HeldInside(equilibrium)
-        self._between_points = BetweenPoints(equilibrium)
         self._of_stages = [watch for watch in (Passing(problem), Behind(problem)) if watch.needed]
 
     def look(self, before: FloatArray, after: FloatArray, share: float) -> None:
@@ -86,7 +84,6 @@ class Watches:
         if ends:
             yield from self._bending.after_stage(balance, step)
             yield from self._held_inside.after_stage(balance, step)
-            yield from self._between_points.after_stage(balance, step)
         if ends and self._of_stages:
             deformed = self._equilibrium.numbering.deformed(balance.positions)
             for watch in self._of_stages:
