@@ -164,6 +164,7 @@ def of_problems(patch: pytest.MonkeyPatch) -> Told:
     yield "left-handed", refusal(lambda: Simulation(mirrored))
     last = next(Simulation(Scene.from_toml(PRESS).problem()).run())
     yield "record of another problem", refusal(lambda: Simulation(pair, resume_from=last))
+    yield "a scene for its problem", refusal(lambda: Simulation(Scene.from_toml(PRESS)))  # type: ignore[arg-type]
     search = Search(Formula(pair, synthetic()), synthetic(), [wanted("force.top.x", pair)], 5.0)
     yield "budget of a trade", refusal(search.screen)
     raised = "bodies.block.mesh={ order = 2, contact_order = 3, elements = [4, 4, 2] }"
@@ -200,6 +201,8 @@ def of_files(patch: pytest.MonkeyPatch) -> Told:
     yield "no TOML, twice", refusal(lambda: Scene.load("twice.toml")).partition(")")[2]
     Path("comma.toml").write_text("format = 0,1")
     yield "no TOML, where", refusal(lambda: Scene.load("comma.toml")).partition(")")[2]
+    Path("letters.toml").write_text("bodies.klötzchen = {}", encoding="utf-8")
+    yield "no TOML, letters", refusal(lambda: Scene.load("letters.toml")).partition(")")[2]
     Path("quote.toml").write_text('name = "a\nformat = 1')
     yield "no TOML, quote", refusal(lambda: Scene.load("quote.toml")).partition(")")[2]
     Path("braces.toml").write_text("a = { b = 1,\nc = 2 }")
@@ -209,6 +212,10 @@ def of_files(patch: pytest.MonkeyPatch) -> Told:
     yield "a scene for results", refusal(lambda: Results("point.toml"))
     Path("list.toml").write_text(f"a = [{40 * '1, '}5., 2, 3]\n")
     yield "no TOML, list", refusal(lambda: Scene.load("list.toml")).partition(")")[2]
+    yield "values of no kind", refusal(lambda: Scene.load("press", 5))  # type: ignore[arg-type]
+    ring: list[object] = []
+    ring.append(ring)
+    yield "values without end", refusal(lambda: Scene.load("press", {"solver.max_cuts": ring}))
     yield "value", _but_the_end(refusal(lambda: apply_overrides({"solver": {}}, ["solver.max_cuts=[1"])))
     writer = ResultsWriter("run.h5", problem(), "", "0", states="last")
     yield "plotted: no step", refusal(lambda: plot("run.h5", "figures"))

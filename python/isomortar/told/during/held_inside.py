@@ -67,7 +67,7 @@ def held_inside(equilibrium: Equilibrium, contact: Contact, positions: FloatArra
 def _depths(equilibrium: Equilibrium, face: SlaveFace, positions: FloatArray, places: FloatArray) -> tuple[FloatArray, FloatArray]:
     """How deep places are in the master of a contact, shape (places,), 0 beside it, and the master's normals there, of any length."""
     problem, master = equilibrium.problem, face.contact.master
-    assert isinstance(master, Face), "of planes the ways of supports tell"
+    assert isinstance(master, Face), "planes are told otherwise"
     assert face.master is not None
     slave = SlaveArrays.of_points(np.arange(len(positions), len(positions) + len(places), dtype=np.int32))
     everywhere = np.vstack([positions, places])
