@@ -129,7 +129,8 @@ def test_an_element_without_any_thickness_is_named(element: int, often: bool) ->
     patch = mesh(box((0.0, 0.0, 0.0), (6.0, 1.0, 1.0)), ("L", "L", "L"), (1, 1, 1), (6, 1, 1))
     reference = patch.control_points
     flat = reference - np.outer(reference[:, 0] > element + 0.5, [1.0, 0.0, 0.0])
-    arrays, told = patch_arrays(patch, np.arange(len(reference), dtype=np.int32)), rf"^element {element} is folded \(J = -?0\)"
+    arrays = patch_arrays(patch, np.arange(len(reference), dtype=np.int32))
+    told = rf"^element {element} is folded \(J = 0, flat but for round-off\)"
     sound, wrong = (BodyArrays(arrays, (2, 2, 2), points, often) for points in (reference, flat))
     with pytest.raises(FoldedElementError, match=told + "$"):
         _bindings.add_body(sound, MATERIAL.arrays, flat, np.zeros_like(reference))

@@ -110,7 +110,7 @@ STIFF: dict[str, tuple[str, float, int, int, int]] = {
     "square beam of order 1": (BEAM, 0.1, 0, 1, 8),
     "square beam of order 1, to and fro": (HELD, 0.1, 0, 1, 8),
 }
-STIFF_SAID = re.compile(r"body 'b', load step 1, the last of stage 'bend': it bends along u, .* up to about (\S+) (times|%) too stiff")
+STIFF_SAID = re.compile(r"body 'b', load step 1, the last of stage 'bend': it bends along \w, .* up to about (\S+) (times|%) too stiff")
 
 
 def thin(text: str, inner: float, angle: int, order: int, elements: int) -> str:
@@ -126,7 +126,11 @@ def _run(text: str) -> tuple[list[float], float]:
     """By how much a body is said to be too stiff, and the force of the hand."""
     heard, problem = Heard(), Scene.from_toml(text).problem()
     *_, result = Simulation(problem, heard).run()
-    said = [float(found[1]) * (1.0 if found[2] == "times" else 0.01) for words in heard.said if (found := STIFF_SAID.search(words))]
+    said = [
+        float(found[1]) - 1.0 if found[2] == "times" else 0.01 * float(found[1])
+        for words in heard.said
+        if (found := STIFF_SAID.search(words))
+    ]
     return said, float(np.linalg.norm(result.reactions[1].force))
 
 
@@ -151,9 +155,12 @@ def stiff(scene: str) -> dict[str, float]:
     return {"told over off": said[0] / off if said else 0.0, "off": off, "others": float(len(none) + len(fine))}
 
 
-#: What the half ring and the beam do but bend: what is replaced, and by what. The ring is widened by a pressure; the beam is pulled, moved
-#: as a whole, squeezed, or what is across it is glued to a block.
+#: What the half ring and the beam do but bend: what is replaced, and by what. The ring is widened by a pressure, and as a tube that is held
+#: at its ends; the beam is pulled, moved as a whole, squeezed, twisted, or what is across it is glued to a block.
 _HAND = "motions.hand.translate = [0, 0, -1e-5]"
+_HELD = 'supports = { wall.face = "b.u0", hand = { face = "b.u1", components = ["z"] } }'
+_TUBE = 'supports = { low.face = "b.w0", high.face = "b.w1" }\nloads.within = { face = "b.v0", pressure = 1e-6 }'
+_FINER = ("order = MESH_ORDER, elements = MESH", "order = [2, 1, 2], elements = [16, 1, 4]")
 _ENDS = """supports.wall = { face = "b.u0", components = ["x", "y"] }
 supports.edge = { edge = "b.u0.v0", components = ["z"] }
 supports.hand = { face = "b.u1", components = ["x", "y"] }
@@ -162,10 +169,16 @@ _BLOCK = """glue = [["b.w0", "block.w1"]]
 bodies.block.geometry = { kind = "box", lower = [0, 0, -2], upper = [2, 0.1, 0] }
 bodies.block.mesh = { order = [2, 1, 2], elements = [4, 1, 4] }"""
 OTHERWISE: dict[str, tuple[str, *tuple[tuple[str, str], ...]]] = {
-    "widened": (RING, ('supports = { wall.face = "b.u0", hand = { face = "b.u1", components = ["z"] } }', _ENDS), (", " + _HAND, "")),
+    "widened": (RING, (_HELD, _ENDS), (", " + _HAND, "")),
     "pulled": (HELD, ("[0, 0, -1e-5]", "[1e-5, 0, 0]")),
     "moved": (HELD, (_HAND, "motions.hand.translate = [0, 0, 1], motions.wall.translate = [0, 0, 1]")),
     "squeezed": (HELD, ("b.u0", "b.w0"), ("b.u1", "b.w1"), ("-1e-5", "-1e-4")),
+    "twisted": (
+        HELD,
+        (_HAND, "motions.hand.rotate = 5"),
+        ('"x", "y", "z"] }', '"x", "y", "z"], axis = [1, 0, 0], centre = [2, 0.05, 0] }'),
+    ),
+    "blown up": (RING, (_HELD, _TUBE), (", " + _HAND, ""), ("width = 0.1", "width = 4"), (", angles = [0, ANGLE]", ""), _FINER),
     "glued": (HELD, ("format = 1", "format = 1\n" + _BLOCK)),
 }
 
@@ -180,14 +193,14 @@ OTHERWISE: dict[str, tuple[str, *tuple[tuple[str, str], ...]]] = {
     },
 )
 def otherwise() -> dict[str, float]:
-    """How many of five, and how often of one beside them."""
+    """How many of seven, and how often of one beside them."""
     doubted = 0
     for text, *changes in OTHERWISE.values():
         for old, new in changes:
             assert old in text, old
             text = text.replace(old, new)
         doubted += len(_run(thin(text, 0.98 if "ring" in text else 0.02, 180, 2, 4))[0])
-    again = HELD.replace("stages = [{", 'stages = [{ name = "bend", steps = 1, motions.hand.translate = [1e-6, 0, -1e-5] }, {').replace(
+    again = HELD.replace("stages = [{", 'stages = [{ name = "bend", steps = 1, motions.hand.translate = [1e-8, 0, -1e-5] }, {').replace(
         '"bend", steps = 1, motions.hand.translate = [0', '"more", steps = 1, motions.hand.translate = [0'
     )
     return {"doubted": float(doubted), "said": float(len(_run(thin(again, 0.02, 0, 2, 4))[0]))}

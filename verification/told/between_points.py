@@ -26,7 +26,7 @@ stages = [{ name = "press", steps = 2, motions.top.translate = [0, 0, -0.1] }, {
 """
 BETWEEN = re.compile(
     r"contact 'c', load step (\d+), the last of stage '\w+': its constraints, at points of its slave a\.\w\d, are too far apart for what "
-    r"presses, .*may be (off by a third, too small or too large|too small by about (\S+) %), pressures by more\. "
+    r"presses, .*may be (off by a third, too small or too large|off by about (\S+) %), pressures by more\. "
     r'Take contacts\.c\.enforcement = "mortar"'
 )
 Changes = tuple[str, ...]

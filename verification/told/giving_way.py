@@ -178,3 +178,42 @@ def bent(scene: str) -> dict[str, float]:
         forces.append(abs(float(last.contacts[0].force_slave[2])))
     share = 0.01 * float(said[0][0]) if said[0] else 0.0
     return {"told": abs(share - abs(forces[0] / forces[1] - 1.0)), "fine": float(len(said[1]))}
+
+
+#: A strip that lies on a rigid floor by a contact, or is held on its base, under a cylinder narrower than its elements.
+LYING = """
+format = 1
+materials.m = { young = 10, poisson = 0.3 }
+bodies.a = { geometry = { kind = "box", lower = [-1, 0, -0.2], upper = [1, 0.2, 0] }, mesh = { order = [2, 1, 2], elements = [6, 1, 2] } }
+bodies.b.rigid = true
+bodies.b.geometry = { kind = "ring", inner = 0.2, outer = 1, width = 0.4, centre = [0.1, 0.1, 1], axis = "y" }
+bodies.b.mesh = { order = [2, 1, 1], elements = [8, 8, 1] }
+bodies.floor = { rigid = true, geometry = { kind = "box", lower = [-2, -1, -1.2], upper = [2, 1, -0.2] } }
+contacts.c = { slave = "a.w1", master = "b.v1", friction = 0, projection = "closest" }
+HOW
+supports.end = { face = "a.u0", components = ["x"] }
+supports.top.face = "b.v0"
+supports.back = { face = "a.v0", components = ["y"] }
+supports.front = { face = "a.v1", components = ["y"] }
+supports.floor.face = "floor.w0"
+stages = [{ name = "press", steps = 1, motions.top.translate = [0, 0, -0.02] }]
+"""
+HOW = (
+    'contacts.f = { slave = "a.w0", master = "floor.w1", friction = 0 }',
+    'supports.base = { face = "a.w0", components = ["z"] }',
+)
+
+
+@case(
+    claim="A strip that another contact keeps from bending is told what narrow contact costs it as one that supports hold: by itself it "
+    "would bend far more.",
+    tier="gate",
+    bounds={
+        "told": Bound(at_least=0.5, reason="definition: share of the force that is missing, 68 % beside 96 elements"),
+        "apart": Bound(at_most=0.03, reason="definition: what is told of both, one digit of two"),
+    },
+)
+def lying() -> dict[str, float]:
+    """The share of the strip that lies, and by how much that of the other one differs."""
+    lies, held = ([0.01 * float(found[1]) for words in run(LYING.replace("HOW", how)) if (found := SHARE.search(words))] for how in HOW)
+    return {"told": lies[0] if lies else 0.0, "apart": abs(lies[0] - held[0]) if lies and held else 1.0}

@@ -77,4 +77,4 @@ def _curves(results: Results) -> dict[str, FloatArray]:
 
 def _sum(sentence: str) -> float:
     """A check sum of a sentence but for its numbers, whose last digits round-off may change."""
-    return float(zlib.crc32(re.sub(r"[-+0-9.]+(e[-+]?[0-9]+)?", "0", sentence).encode()))
+    return float(zlib.crc32(re.sub(r"[-+0-9.]+(e[-+]?[0-9]+)?( [0-9]{3}(?![0-9]))*", "0", sentence).encode()))

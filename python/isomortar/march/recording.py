@@ -73,12 +73,12 @@ class Recording:
 
         Far from the origin these are fewer; supports then put what they prescribe in its place anew, or it would seem to move.
         """
-        origin = self._equilibrium.origin
+        origin, state = self._equilibrium.origin, deepcopy(result.state)  # who has the result may change it
         if not np.any(origin):
-            return deepcopy(result.state)  # who has the result may change it
-        positions, supports = result.state.positions - origin, self._equilibrium.standing(result.step)
+            return state
+        positions, supports = state.positions - origin, self._equilibrium.standing(result.step)
         supports.anchor(positions, result.time)
-        return replace(result.state, positions=supports.placed(positions, result.time))
+        return replace(state, positions=supports.placed(positions, result.time))
 
     def work(self, start: State, balance: Balance) -> FloatArray:
         """Friction work and spurious work of each contact pair in an increment, shape (pairs, 2) (theory 3.31)."""

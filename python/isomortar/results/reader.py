@@ -107,7 +107,7 @@ class Results:
 
     def __reduce__(self) -> tuple[type[Results], tuple[Path]]:
         """Another process opens the file itself."""
-        return Results, (self.path,)
+        return Results, (self.path.absolute(),)
 
     def close(self) -> None:
         """Close the file."""

@@ -257,7 +257,7 @@ class Search:
             return False
         if failed:
             raise IsomortarError(f"an over-refined run, which tells the truth, does not come to its end: {failed[0].failure}")
-        self._before, self.truth, self.rivals = self.truth, truth, tuple(rivals)
+        self._before, self.truth, self.rivals, self._failure = self.truth, truth, tuple(rivals), ""
         return True
 
     def _refined(self, settled: set[int], orders: int, meshes: int, last: int) -> Choice:

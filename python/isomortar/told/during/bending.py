@@ -74,11 +74,12 @@ class Bending:
     def _sentence(self, body: Body, bent: Way, step: int) -> str:
         problem = self._equilibrium.problem
         stage, letter, order = problem.stages[problem.stage_of(step)].name, "uvw"[bent.along], body.patch.directions[bent.along].order
-        size = f"{times(bent.share, 2)} times" if bent.share >= 1.0 else f"{10 * round(10.0 * bent.share)} %"
+        far = bent.share >= 1.0
+        size = f"{times(1.0 + bent.share, 2)} times" if far else f"{10 * round(10.0 * bent.share)} %"
         return (
             f"body {body.name!r}, load step {step}, the last of stage {stage!r}: it bends along {letter}, and its elements of order "
             f"{order} are so long there that it is up to about {size} too stiff for that: they shear and stretch instead (locking). Take "
-            f"bodies.{body.name}.mesh.order = {order + 1} or more along {letter}, or twice as many elements there"
+            f"bodies.{body.name}.mesh.order = {order + 1} or more along {letter}, {'and' if far else 'or'} twice as many elements there"
         )
 
 
@@ -110,7 +111,8 @@ def _curvature(lines: FloatArray) -> float:
     steps = np.diff(lines, axis=0)
     lengths = np.linalg.norm(steps, axis=2)
     longest = int(np.argmax(lengths.sum(axis=0)))
-    units = steps[:, longest] / lengths[:, longest, None]
+    there = lengths[:, longest] > 0.0
+    units = steps[there, longest] / lengths[there, longest, None]
     return float(np.arccos(np.clip(np.sum(units[1:] * units[:-1], axis=1), -1.0, 1.0)).sum() / lengths[:, longest].sum())
 
 
@@ -130,14 +132,31 @@ def bends(body: Body, positions: FloatArray, ways: Sequence[Way]) -> Way | None:
         gone = _but_for_size(np.concatenate(reference), np.concatenate([low, high]))
         if not np.abs(gone).max() > STILL * np.ptp(positions, axis=0).max():
             return None
-        below, above = np.split(gone, 2)
-        normal = (high - low) / np.linalg.norm(high - low, axis=1, keepdims=True)
-        middle = np.sum(0.5 * (below + above) * normal, axis=1).reshape(cells(now, faces[0]).shape)
-        axis = 0 if way.along == (way.across + 1) % 3 else 1
-        along, beside = (np.std(middle, axis=k).max() for k in (axis, 1 - axis))
-        if along > BENDS * np.sqrt(np.mean(np.sum((above - below) * normal, axis=1) ** 2)) and along > beside:
+        shape, axis = cells(now, faces[0]).shape, 0 if way.along == (way.across + 1) % 3 else 1
+        (below, above), thick = np.split(gone, 2), np.linalg.norm(high - low, axis=1)
+        normal = (high - low) / thick[:, None]
+        across = np.sum(0.5 * (below + above) * normal, axis=1).reshape(shape)
+        along, beside = (np.std(across.mean(axis=k)) for k in (1 - axis, axis))  # what is twisted has gone nowhere in the mean
+        middles = [np.reshape(0.5 * (one + other), (*shape, 3)) for one, other in (reference, (low, high))]
+        squeezed = np.sqrt(np.mean(np.sum((above - below) * normal, axis=1) ** 2))
+        if along > max(BENDS * squeezed, beside) and _bent(across, axis, middles[0], float(thick.mean())) > _stretched(*middles):
             return way
     return None
+
+
+def _bent(across: FloatArray, axis: int, middle: FloatArray, thick: float) -> float:
+    """Strain of bending along an axis of a middle, whose cells have gone so far across, in the mean."""
+    step = np.linalg.norm(np.diff(middle, axis=axis), axis=2).mean()
+    return 0.5 * thick * float(np.sqrt(np.mean(np.square(np.diff(across.mean(axis=1 - axis), 2))))) / step**2
+
+
+def _stretched(before: FloatArray, after: FloatArray) -> float:
+    """Strain of the lines of a middle as wholes, the larger one of both ways: where elements lock they stretch to and fro."""
+    strains = []
+    for axis in (0, 1):
+        long, now = (np.linalg.norm(np.diff(middle, axis=axis), axis=2).sum(axis=axis) for middle in (before, after))
+        strains.append(np.sqrt(np.mean(np.square((now - long)[long > 0.0] / long[long > 0.0]))))
+    return float(max(strains))
 
 
 def _but_for_size(before: FloatArray, after: FloatArray) -> FloatArray:

@@ -68,7 +68,7 @@ class Between:
         """What is said of it at the end of a load step."""
         stage, slave = problem.stages[problem.stage_of(step)].name, contact.slave
         share = percent(round(self.costs, 2))
-        off = "off by a third, too small or too large" if self.deviation > BLIND else f"too small by about {share}"
+        off = "off by a third, too small or too large" if self.deviation > BLIND else f"off by about {share}"
         return (
             f"contact {contact.name!r}, load step {step}, the last of stage {stage!r}: its constraints, at points of its slave "
             f"{slave.words}, are too far apart for what presses, which is inside its master or apart from it between them. Forces under "

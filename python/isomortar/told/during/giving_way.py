@@ -11,13 +11,18 @@ from isomortar.errors import KernelError
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Problem
 from isomortar.model.rank import motions_left, moved
+from isomortar.model.rigid import deformation
 from isomortar.model.supports import Supports
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.system import LinearSystem, Source
+from isomortar.solve.timing import Ledger
 
 #: How far bodies go, over how far they are pressed in by theory, up to which nothing bends: 0.6 to 1.8 was seen of balls and cylinders on
 #: blocks, strips and layers.
 STILL = 2.0
+#: Times what points have gone that they may go by a contact alone: others that hold a body keep it from bending as it would without them.
+#: Two, as a contact's own share may be against what others have moved it by.
+MORE = 2.0
 
 
 @frozen
@@ -70,9 +75,21 @@ def giving_way(equilibrium: Equilibrium, balance: Balance, number: int) -> Float
         ways = _deformed_by(forces, equilibrium, positions)
     except KernelError:  # of bodies that nothing but contact keeps from buckling
         return np.zeros(2)
-    works = np.sum(forces * ways, axis=1) / float(pair.slave.area @ (abs(pair.field(state.pressure)) * (kinematics.projections.found > 0)))
-    slave = float(works[pair.slave.point].sum())
-    return np.array([slave, float(works.sum()) - slave])
+    whole = float(pair.slave.area @ (abs(pair.field(state.pressure)) * (kinematics.projections.found > 0)))
+    works, sizes, gone = np.sum(forces * ways, axis=1), np.linalg.norm(forces, axis=1), _gone(equilibrium, positions)
+    on_slave = np.isin(np.arange(len(positions)), pair.slave.point)
+    return np.array([min(works[side].sum(), MORE * sizes[side] @ gone[side]) for side in (on_slave, ~on_slave)]) / whole
+
+
+def _gone(equilibrium: Equilibrium, positions: FloatArray) -> FloatArray:
+    """How far control points have gone, at the most, shape (control points,): of pieces that supports leave rigid motions without these."""
+    numbering, gone = equilibrium.numbering, np.linalg.norm(positions - equilibrium.numbering.reference, axis=1)
+    for number, piece in enumerate(numbering.pieces):
+        own = numbering.piece_points(number)
+        deformed = np.linalg.norm(deformation(numbering.reference[own], positions[own]), axis=1)
+        free = len(motions_left(equilibrium.problem, piece, equilibrium.supports.stage)) > 0
+        gone[own] = deformed if free else np.maximum(gone[own], deformed)
+    return gone
 
 
 def _deformed_by(forces: FloatArray, equilibrium: Equilibrium, positions: FloatArray) -> FloatArray:
@@ -88,7 +105,7 @@ def _deformed_by(forces: FloatArray, equilibrium: Equilibrium, positions: FloatA
     problem, numbering, solid = _held(equilibrium.problem), equilibrium.numbering, equilibrium.solid
     supports = Supports(problem, numbering, equilibrium.supports.stage)
     with equilibrium.ledger.phase("solid"):
-        stiffness = solid.forces_and_tangent(positions)[1]
+        stiffness = solid.forces_and_tangent(positions)[1].copy()  # the solid keeps its own
     forces, rigid = forces.copy(), list[tuple[slice, FloatArray]]()
     for number, piece in enumerate(numbering.pieces):
         own, left = numbering.piece_points(number), motions_left(problem, piece, supports.stage)
@@ -101,7 +118,7 @@ def _deformed_by(forces: FloatArray, equilibrium: Equilibrium, positions: FloatA
             stiffness[solid.diagonal[own.start + point], component, component] += np.abs(stiffness[solid.diagonal[own]]).max()
     if not len(supports.free):
         return np.zeros_like(positions)
-    system = LinearSystem(len(supports.free), [Source(solid.pattern, supports.equation, supports.equation)], equilibrium.ledger)
+    system = LinearSystem(len(supports.free), [Source(solid.pattern, supports.equation, supports.equation)], Ledger())
     system.factorise([stiffness])
     ways = supports.spread(system.solve(forces.ravel()[supports.free]), positions)
     for own, basis in rigid:
