@@ -76,7 +76,7 @@ bodies.base.mesh.elements = [6, 2, 2]
 contacts.c = { slave = "block.w0", master = "base.w1", enforcement = "KIND", subcells = 0 } # these are cut where it stands
 supports = { drag.face = "block.u0", clamp.face = "base.u0", bed.face = "base.w0" }
 stages = [
-    { name = "slide", steps = 3, motions.drag.translate = [WAY, 0, 0] },
+    { name = "slide", steps = 1, motions.drag.translate = [WAY, 0, 0] }, # it touches without a force: in shorter ones round-off decides
     { name = "press", steps = 2, motions.drag.translate = [0, 0, -0.01] },
 ]
 """
