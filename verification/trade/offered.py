@@ -59,7 +59,7 @@ def in_units() -> dict[str, float]:
         for x, y in zip(ours, first, strict=True)
         if y > 0
     ]
-    return {"off": float(np.max(off)), "tried": float(min(sum(x > 0.0 for x in of) for of in tried[0]))}
+    return {"off": float(np.max(off)), "tried": float(np.min([sum(x > 0.0 for x in of) for of in tried[0]]))}
 
 
 @case(
