@@ -134,7 +134,7 @@ def bends(body: Body, positions: FloatArray, ways: Sequence[Way]) -> Way | None:
             return None
         shape, axis = cells(now, faces[0]).shape, 0 if way.along == (way.across + 1) % 3 else 1
         (below, above), thick = np.split(gone, 2), np.linalg.norm(high - low, axis=1)
-        normal = (high - low) / thick[:, None]
+        normal = np.divide(high - low, thick[:, None], out=np.zeros_like(high), where=thick[:, None] > 0.0)  # nothing is across a seam
         across = np.sum(0.5 * (below + above) * normal, axis=1).reshape(shape)
         along, beside = (np.std(across.mean(axis=k)) for k in (1 - axis, axis))  # what is twisted has gone nowhere in the mean
         middles = [np.reshape(0.5 * (one + other), (*shape, 3)) for one, other in (reference, (low, high))]
