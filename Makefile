@@ -2,8 +2,9 @@
 .DEFAULT_GOAL := help
 .PHONY: help setup setup-mumps demo verify nightly manual wheel test lint format
 
-# One BLAS thread is as fast as two on systems of this size; the cores go to cases.
+# One BLAS thread is as fast as two on systems of this size; the cores go to cases, and threads of each would be in others' way.
 export OPENBLAS_NUM_THREADS ?= 1
+test verify nightly: export OMP_NUM_THREADS ?= 1
 
 BIN := .venv/bin
 READY := .venv/set-up

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import functools
+
 import numpy as np
 from loads.falling import computed
 from loads.light import CUTS
 
 from isomortar.errors import ConvergenceError
+from isomortar.geometry.patch import FloatArray
 from isomortar.harness import Bound, case
 
 #: A roller on a floor, which it touches as well as the plate on it, and a block in a gap, between what is pressed together.
@@ -131,6 +134,15 @@ def without_load(body: str, method: str) -> dict[str, float]:
     return {"forces": float(np.abs(one - other).max() / np.abs(other).max()), "cuts": float(sum(step.cuts for step in alone))}
 
 
+@functools.cache
+def between_plates(rollers: int, method: str) -> tuple[FloatArray, float]:
+    """Forces at the end below and above each of some rollers, shape (rollers, 2), and cuts of load increments."""
+    text = "".join(_BETWEEN_PLATES.replace("NAME", f"r{k}").replace("AT", str(x)) for k, x in enumerate(_PLACES[rollers]))
+    steps = computed(_PLATES + text, method)
+    forces = np.array([contact.force_slave[2] for contact in steps[-1].contacts]).reshape(-1, 2)
+    return forces, float(sum(step.cuts for step in steps))
+
+
 @case(
     claim="Rollers side by side between two bodies, which they touch and which alone hold them, begin in contact and stay between.",
     tier="gate",
@@ -144,18 +156,14 @@ def without_load(body: str, method: str) -> dict[str, float]:
 )
 def side_by_side(rollers: int, method: str) -> dict[str, float]:
     """Differences of forces above and below, of both sides, and to a single roller, over the mean; cuts of load increments."""
-    steps, single = (
-        computed(_PLATES + "".join(_BETWEEN_PLATES.replace("NAME", f"r{k}").replace("AT", str(x)) for k, x in enumerate(places)), method)
-        for places in (_PLACES[rollers], _PLACES[1])
-    )
-    forces, alone = (np.array([contact.force_slave[2] for contact in found[-1].contacts]).reshape(-1, 2) for found in (steps, single))
+    (forces, cuts), (alone, _) = between_plates(rollers, method), between_plates(1, method)
     left = {
         "between": forces.sum(axis=1),
         "sides": forces - forces[::-1],
         "neighbours": forces - alone,
     }
     mean = float(np.abs(forces).mean())
-    return {name: float(np.abs(values).max() / mean) for name, values in left.items()} | {"cuts": float(sum(step.cuts for step in steps))}
+    return {name: float(np.abs(values).max() / mean) for name, values in left.items()} | {"cuts": cuts}
 
 
 @case(

@@ -26,7 +26,7 @@ stages = [{ name = "press", steps = 4, motions.top.translate = [0.1, 0, -0.1] }]
 WAYS: dict[str, Callable[[Path, Path], object]] = {
     "export": isomortar.export,
     "plot": lambda results, folder: isomortar.plot(results, folder, only=["curves", "maps"], formats=["png"]),
-    "film": lambda results, folder: isomortar.film(results, folder / "film.gif"),
+    "film": lambda results, folder: isomortar.film(results, folder / "film.gif", every=4),
     "view": lambda results, folder: isomortar.view(results, folder / "page.html"),
 }
 #: Bytes of a file, as shares of those of all of them, at which the system kills who writes it.

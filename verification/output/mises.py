@@ -21,7 +21,7 @@ from isomortar.scene import Scene
 
 #: Scenes by what they are cut down to: blocks whose stress bends sharply where it changes its sign, and one that turns as a whole.
 SCENES = {
-    "press": Scene.load("press"),
+    "press": Scene.load("press", ["stages.press.steps=2"]),
     "twist": Scene.load("twist", ["stages.press.steps=3", "stages.twist.steps=1"]),
     "turned": Scene.from_toml(
         """

@@ -79,6 +79,7 @@ contacts.a = { slave = "a.w0", plane = {}, friction = 0.9 }
 contacts.b = { slave = "b.w0", plane = {}, friction = 0.3 }
 loads.a = { body = "a", weight = [LEAN, 0, -1] }
 loads.b = { body = "b", weight = OTHER }
+solver = { max_cuts = 1, max_iterations = 15 }
 stages = [{ name = "p", steps = 2 }]
 """
 #: Loads of both, and what is said of each.

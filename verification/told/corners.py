@@ -16,7 +16,7 @@ bodies.block = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, HE
 contacts.floor = { slave = "block.w0", friction = FRICTION, FLOOR }
 contacts.wall = { slave = "block.u1", friction = FRICTION, WALL }
 loads.own = { body = "block", weight = WEIGHT }
-solver = { method = "METHOD", max_cuts = 2, max_iterations = 15 }
+solver = { method = "METHOD", max_cuts = 1, max_iterations = 15 }
 stages = [{ name = "stand", steps = 1 }]
 """
 GROUNDS = {

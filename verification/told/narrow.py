@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 
 import numpy as np
@@ -127,6 +128,12 @@ def strips(slave: str) -> dict[str, float]:
     }
 
 
+@functools.cache
+def truth(way: float) -> float:
+    """The force on a ball that is so deep, of a quarter of 16 x 16 elements."""
+    return run(QUARTER, (depth(way), "bodies.a.mesh.elements=[16, 16, 6]"))[1]
+
+
 #: Balls on blocks that do not carry their contact: scene, changes, depth, and the share that is told where it is no estimate.
 EXCHANGED = ('contacts.c.slave="b.w0"', 'contacts.c.master="a.w1"')
 BALLS: dict[str, tuple[str, Changes, float, str]] = {
@@ -158,10 +165,9 @@ DEEP = (depth(0.15), "stages.press.steps=3", "bodies.a.mesh.elements=[12, 12, 4]
 def balls(scene: str) -> dict[str, float]:
     """What is said, and how far the force is off that of a quarter of 16 x 16 elements."""
     text, changes, way, fixed = BALLS[scene]
-    _, true = run(QUARTER, (depth(way), "bodies.a.mesh.elements=[16, 16, 6]"))
     said, force = run(text, (*changes, depth(way)))
     others, _ = run(QUARTER, (*changes, *DEEP))
-    off, told = abs(1.0 - force / true), [words["share"] for words in said]
+    off, told = abs(1.0 - force / truth(way)), [words["share"] for words in said]
     share = 0.01 * float(told[0].removesuffix(" %")) if told and not fixed else 0.2
     return {
         "said": float(len(said)) if bool(told and (told[0] == fixed or not fixed)) else -1.0,
@@ -380,7 +386,6 @@ OTHERWISE = tuple((elements, way, at) for elements in (6, 8) for way in (0.015, 
 def told_otherwise(enforcement: str) -> dict[str, float]:
     """Of balls on blocks that are told of, against a quarter of 16 x 16 elements."""
     told, off = [], []
-    true = {way: run(QUARTER, (depth(way), "bodies.a.mesh.elements=[16, 16, 6]"))[1] for way in (0.015, 0.03)}
     for elements, way, at in OTHERWISE:
         method = ("solver.method='uzawa'",) if enforcement == "kts" else ()
         mesh = (f"bodies.a.mesh.elements=[{elements}, {elements}, 4]", f"contacts.c.enforcement='{enforcement}'")
@@ -388,7 +393,7 @@ def told_otherwise(enforcement: str) -> dict[str, float]:
         for words in said:
             shares = [0.01 * float(share) for share in re.findall(r"\d+", words["share"])] or [0.33]
             told.append((shares[0], shares[-1]))
-            off.append(abs(force / true[way] - 1.0))
+            off.append(abs(force / truth(way) - 1.0))
     about, worst = np.array(told or [(np.nan, np.nan)]).T
     return {"said": float(len(off)), "worst": float(np.max(off / worst)), "mean": float(np.mean(about) / np.mean(off))}
 

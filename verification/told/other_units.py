@@ -96,6 +96,6 @@ def why(problem: Problem) -> Counter[tuple[str, ...]]:
 )
 def given_up_in_units(scene: str) -> dict[str, float]:
     """How many."""
-    problem = Scene.from_toml(GIVEN_UP[scene]).problem()
+    problem = Scene.from_toml(GIVEN_UP[scene], overrides=["solver.max_cuts=1"]).problem()
     said = why(problem)
     return {"others": sum(others(said, why(scaled(problem, *units))) for units in UNITS)}

@@ -22,7 +22,7 @@ materials.soft.young = YOUNG
 bodies.block = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 2] }, mesh.elements = [4, 2, 2] }
 GROUND
 LOADS
-solver = { method = "METHOD", max_cuts = 2, max_iterations = 15 }
+solver = { method = "METHOD", max_cuts = 1, max_iterations = 15 }
 stages = [{ name = "stand", steps = 1 }]
 """
 TABLE = """
@@ -111,7 +111,7 @@ def carries() -> dict[str, float]:
 HEAD = """
 format = 1
 materials.soft.young = 1e4
-solver = { max_cuts = 2, max_iterations = 15 }
+solver = { max_cuts = 1, max_iterations = 15 }
 stages = [{ name = "stand", steps = 1 }]
 """
 LOWER = 'bodies.lower = { geometry = { kind = "box", lower = [0, 0, 0], upper = [3, 1, 1] }, mesh.elements = [6, 2, 1] }\n'
@@ -145,7 +145,7 @@ contacts.floor = { slave = "ring.v1", friction = 0, plane = {} }
 contacts.top = { slave = "ring.v1", master = "lid.w0", friction = 0 }
 supports.lid.face = "lid.w1"
 loads.in = { face = "ring.v0", pressure = 0.05 }
-solver = { method = "METHOD", max_cuts = 2 }
+solver = { method = "METHOD", max_cuts = 1 }
 stages = [{ name = "press", steps = 2, motions.lid.translate = [0, 0, -1.9] }]
 """
 BOX = 'kind = "box", lower = [0, 0, 0], upper = [1, 1.3, 2]'

@@ -26,6 +26,7 @@ from isomortar.told.before.faces import of_faces
 from isomortar.told.before.left_out import of_what_is_left_out
 from isomortar.told.before.meshes import of_meshes
 from isomortar.told.before.motions import FLAT, approach, between, in_far_steps, nearest_approach, of_motions
+from isomortar.told.before.not_held import not_held_against
 from isomortar.told.before.poles import doubts_at_poles
 from isomortar.told.before.sizes import of_sizes
 from isomortar.told.before.turns import of_rolling, of_turns
@@ -72,6 +73,7 @@ def doubts(problem: Problem, state: State) -> Iterator[str]:
     yield from of_sizes(problem)
     yield from of_faces(problem)
     yield from of_what_is_left_out(problem)
+    yield from not_held_against(problem)
     stances = [stance(problem, contact) for contact in problem.contacts]
     travel = _travel(problem) if problem.contacts else 0.0
     presses = any(c.smoothing for c in problem.contacts) or any(s.depth > constants.NO_PART * s.thickness for s in stances)

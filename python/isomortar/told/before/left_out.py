@@ -1,4 +1,4 @@
-"""What a model may lack: a contact between bodies that meet, what moves a body or holds it against what pushes it, the other half."""
+"""What a model may lack: a contact between bodies that meet, what moves a body, the other half."""
 
 from __future__ import annotations
 
@@ -10,9 +10,8 @@ import numpy as np
 from isomortar.geometry.faces import cells
 from isomortar.geometry.patch import FloatArray, Patch
 from isomortar.model.constants import SAME_POINT
-from isomortar.model.entities import Body, Contact, Face, Problem
+from isomortar.model.entities import Body, Face, Problem
 from isomortar.model.glue import pieces
-from isomortar.model.sheet import Sheet
 from isomortar.told.before.meeting import meet
 
 
@@ -25,11 +24,10 @@ def of_what_is_left_out(problem: Problem) -> Iterator[str]:
             "contacts.NAME with slave and master, or glue"
         )
     yield from _idle_bodies(problem, {name for pair in through for name in pair})
-    yield from _not_held_against(problem)
     yield from _missing_symmetry(problem)
 
 
-def _pieces(problem: Problem) -> list[set[str]]:
+def names_together(problem: Problem) -> list[set[str]]:
     """Names of bodies that are glued together."""
     return [{body.name for body in piece} for piece in pieces(problem)]
 
@@ -42,7 +40,7 @@ def _in_contact(problem: Problem) -> list[set[str]]:
 
 def without_contact(problem: Problem) -> list[tuple[str, str]]:
     """Bodies that are at or in each other, or come to be by their supports, and neither in contact nor glued."""
-    whole, found = _pieces(problem), []
+    whole, found = names_together(problem), []
     for one, other in unrelated(problem):
         ways = [np.zeros(3), *(a - b for a, b in zip(_ways(problem, one, whole), _ways(problem, other, whole), strict=True))]
         if any(meet(one, other, way) for way in np.unique(ways, axis=0)):
@@ -52,7 +50,7 @@ def without_contact(problem: Problem) -> list[tuple[str, str]]:
 
 def unrelated(problem: Problem) -> Iterator[tuple[Body, Body]]:
     """Pairs of bodies that are neither in contact nor glued."""
-    together = (*_in_contact(problem), *_pieces(problem))
+    together = (*_in_contact(problem), *names_together(problem))
     for one, other in combinations(problem.bodies, 2):
         if not any({one.name, other.name} <= names for names in together):
             yield one, other
@@ -74,49 +72,12 @@ def _idle_bodies(problem: Problem, told: set[str]) -> Iterator[str]:
     touched = told | {name for names in _in_contact(problem) for name in names}
     loaded = {load.body for load in problem.loads} | {s.place.body for s in problem.supports if s.moves or s.is_plate}
     if len(problem.bodies) > 1:
-        for names in _pieces(problem):
+        for names in names_together(problem):
             if not names & (touched | loaded):
                 yield (
                     f"body {sorted(names)[0]!r} is in no contact, and nothing moves or loads it: it only costs time. Give it a contact, or "
                     "take it out"
                 )
-
-
-def _not_held_against(problem: Problem) -> Iterator[str]:
-    """Bodies that all of their contacts push one way, while no support or load holds them against that."""
-    rigid = {body.name for body in problem.bodies if body.rigid}
-    loaded = {load.body for load in problem.loads} | {s.place.body for s in problem.supports if s.is_plate}
-    for names in _pieces(problem):
-        pushing = list(_pushing(problem, names))
-        if pushing and not names & (rigid | loaded) and not _can_balance(problem, names, pushing):
-            which = ", ".join(repr(contact.name) for contact, _ in pushing)
-            yield (
-                f"body {sorted(names)[0]!r}: what it touches ({which}) pushes it one way, and no support, load or other contact holds it "
-                "against that: it can bear nothing there. Hold it by a support, or give it the contact that it lies on"
-            )
-
-
-def _pushing(problem: Problem, names: set[str]) -> Iterator[tuple[Contact, Face]]:
-    """Contacts of glued bodies with others, and their sides of these."""
-    for contact in problem.contacts:
-        own = [side for side in (contact.slave, contact.master) if isinstance(side, Face) and side.body in names]
-        if len(own) == 1:
-            yield contact, own[0]
-
-
-def _can_balance(problem: Problem, names: set[str], pushing: list[tuple[Contact, Face]]) -> bool:
-    """Whether pressures and friction on faces may have no resultant along what supports neither hold nor are to move (theory 9.18)."""
-    if any(contact.cohesion for contact, _ in pushing):
-        return True
-    own = [support for support in problem.supports if support.place.body in names]
-    held = [k for k in range(3) for s in own if k in s.carried or any(motion.translate[k] for motion in s.motions)]
-    sheets = [Sheet.of(problem, side) for _, side in pushing]
-    found = [cells(sheet.patch, sheet.face) for sheet in sheets]
-    normals = np.concatenate([face.normals[face.areas > 0.0] for face in found])
-    way = np.where(np.isin(range(3), held), 0.0, normals.mean(axis=0))
-    least = float((normals @ way).min())
-    friction = max(contact.friction for contact, _ in pushing)
-    return not least > friction * np.sqrt(max(0.0, float(way @ way) - least**2))
 
 
 def _missing_symmetry(problem: Problem) -> Iterator[str]:
