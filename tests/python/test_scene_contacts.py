@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
+
+import numpy as np
 import pytest
 from told.wrong.choices import NEEDED, PROJECTIONS
-from told.wrong.contacts import LAGRANGE, PAIR, PRESS, RINGS, UNUSUAL, WRONG
+from told.wrong.contacts import BLOCK, LAGRANGE, PAIR, PRESS, RINGS, UNUSUAL, WRONG
 
 from isomortar.errors import InputError, LostProjectionError
 from isomortar.model.enforcement.subcells import Subcells
@@ -110,3 +113,19 @@ def test_cells_that_cannot_be_are_refused(text, overrides, sentence):
     with pytest.raises(InputError, match=sentence) as refused:
         Scene.from_toml(text, overrides=overrides).problem()
     assert refused.value.field.endswith(".subcells")
+
+
+@pytest.mark.parametrize("size", [1e-6, 1.0, 1e6])
+@pytest.mark.parametrize(("end", "refused"), [((1, 4e-16), True), ((4e-16, 4e-16), True), ((1, 1e-5), False), ((1e-7, 1e-7), False)])
+def test_faces_that_are_a_line_or_a_point_but_for_round_off_are_refused(end: tuple[float, float], refused: bool, size: float) -> None:
+    """In any unit of length; those that are only narrow, or small beside their body, are let through."""
+    points = np.array([[u, v, w] for w in (0.0, 1.0) for v in (0.0, 1.0) for u in (0.0, 1.0)])
+    tip = points[:, 1] == 0.0
+    points[tip] = [0.1, 0.0, 0.4] + points[tip] * [end[0], 0.0, end[1]]
+    control_points = (size * points).tolist()
+    body = f"\n[bodies.upper.patch]\norder = [1, 1, 1]\nknots = {[[0, 0, 1, 1]] * 3}\ncontrol_points = {control_points}\n"
+    text = PAIR.replace(BLOCK, body).replace('"upper.w0"', '"upper.v0"').replace('"upper.w1"', '"upper.v1"')
+    text = text.replace("lower = [-1, -1, -1], upper = [1, 1, 0]", f"lower = {[-9 * size] * 3}, upper = {[9 * size, -0.2 * size, 9 * size]}")
+    text = text.replace('"lower.w1"', '"lower.v1"').replace("[0, 0, -0.1]", f"[0, {-0.1 * size}, 0]")
+    with pytest.raises(InputError, match="fall onto a line or a point") if refused else contextlib.nullcontext():
+        Scene.from_toml(text).problem()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 from rational_functions import shares
@@ -185,30 +186,34 @@ def graded(grading: float) -> dict[str, float]:
 
 
 @case(
-    claim="Cells of a face have its area and its normal, are as many in each direction as they are to be at least, and end with its "
-    "elements, however few or many these are.",
+    claim="Cells of a face have its area and its normal, are as many in each direction as they are to be at least, no more than it "
+    "takes to end with its elements, and with nodes of Lagrange's, however few or many these are.",
     tier="gate",
     grid={"elements": (1, 5, CELLS - 1, CELLS, CELLS + 1, 3 * CELLS)},
     bounds={
         "area": Bound(at_most=1e-13, reason=_ROUND_OFF),
         "normal": Bound(at_most=1e-13, reason=_ROUND_OFF),
         "thickness": Bound(at_most=1e-13, reason=_ROUND_OFF),
-        "few": Bound(0.0, 0.0, "definition: faces with fewer cells than are to be, or none that end with an element"),
+        "few": Bound(0.0, 0.0, "definition: faces with fewer cells than are to be, or none that end with an element, or at a node"),
+        "many": Bound(0.0, 0.0, "definition: faces with cells that could be left out, of all elements, or ways between nodes, as many"),
     },
 )
 def cells_of_faces(elements: int) -> dict[str, float]:
-    """Largest errors over the faces of a box with so many elements along two directions; how many have too few cells."""
+    """Largest errors over the faces of a box with so many elements along two directions; how many have too few, or too many, cells."""
     lengths = np.array([1.0, 0.5, 2.0])
-    patch = mesh(box((0.0, 0.0, 0.0), tuple(lengths)), ("N",) * 3, (1, 2, 1), (elements, elements, 1))
-    worst, few = np.zeros(3), 0
-    for face in FACES:
+    worst, few, many = np.zeros(3), 0, 0
+    whole = box((0.0, 0.0, 0.0), tuple(lengths))
+    patches = [mesh(whole, families, (1, 2, 1), (elements, elements, 1)) for families in (("N",) * 3, ("L",) * 3, ("N", "L", "N"))]
+    for patch, face in product(patches, FACES):
         axis, found = "uvw".index(face[0]), cells(patch, face)
         out = np.where(np.arange(3) == axis, 1.0 if face[1] == "1" else -1.0, 0.0)
         area = float(np.prod(np.delete(lengths, axis)))
         errors = (found.areas.sum() / area - 1.0, found.normals - out, found.thickness / lengths[axis] - 1.0)
         worst = np.maximum(worst, [np.abs(error).max() for error in errors])
-        few += len(found.areas) < CELLS**2 or len(found.areas) % (elements if axis == 2 else 1) != 0
-    return dict(zip(("area", "normal", "thickness"), map(float, worst), strict=True)) | {"few": float(few)}
+        parts = [d.elements * (d.order if d.family == "L" else 1) for d in patch.face_directions(face)]
+        few += min(found.shape) < CELLS or any(n % part for n, part in zip(found.shape, parts, strict=True))
+        many += any(n >= CELLS + part for n, part in zip(found.shape, parts, strict=True))
+    return dict(zip(("area", "normal", "thickness"), map(float, worst), strict=True)) | {"few": float(few), "many": float(many)}
 
 
 @case(
