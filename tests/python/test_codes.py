@@ -8,7 +8,10 @@ from pathlib import Path
 import pytest
 
 from isomortar._arrays import FRICTION_LAWS, LAWS
+from isomortar._bindings.statuses import raise_status
 from isomortar._codes import ROW_KINDS, FirstRow, PointState, Status
+from isomortar.errors import FoldedElementError, KernelError
+from isomortar.solve.method import FAILURES
 
 FORTRAN = Path(__file__).parents[2] / "fortran"
 
@@ -38,3 +41,15 @@ def test_kinds_of_rows_are_those_of_python() -> None:
     assert ROW_KINDS["paper"] == FirstRow.SLIP_SUM + 1
     assert ROW_KINDS["local"] == FirstRow.SLIP_SUM - 1
     assert ROW_KINDS["frictionless"] == FirstRow.TRACTION_WORK - 1
+
+
+@pytest.mark.parametrize("status", [s for s in Status if s is not Status.OK])
+def test_what_positions_make_cuts_a_load_increment_and_all_else_ends_the_run(status: Status) -> None:
+    """A shorter increment has other positions: it helps against these, and against nothing else."""
+    of_positions = {Status.FOLDED, Status.FOLDED_INITIALLY, Status.DEGENERATE_SURFACE, Status.NOT_FINITE, Status.PASSED_THROUGH}
+    with pytest.raises(KernelError) as raised:
+        raise_status(status, 17)
+    assert isinstance(raised.value, FAILURES) == (status in of_positions)
+    assert isinstance(raised.value, FoldedElementError) == (status in {Status.FOLDED, Status.FOLDED_INITIALLY})
+    assert raised.value.place == 17
+    assert "17" in str(raised.value)

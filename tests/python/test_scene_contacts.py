@@ -125,7 +125,9 @@ def test_faces_that_are_a_line_or_a_point_but_for_round_off_are_refused(end: tup
     control_points = (size * points).tolist()
     body = f"\n[bodies.upper.patch]\norder = [1, 1, 1]\nknots = {[[0, 0, 1, 1]] * 3}\ncontrol_points = {control_points}\n"
     text = PAIR.replace(BLOCK, body).replace('"upper.w0"', '"upper.v0"').replace('"upper.w1"', '"upper.v1"')
-    text = text.replace("lower = [-1, -1, -1], upper = [1, 1, 0]", f"lower = {[-9 * size] * 3}, upper = {[9 * size, -0.2 * size, 9 * size]}")
+    text = text.replace(
+        "lower = [-1, -1, -1], upper = [1, 1, 0]", f"lower = {[-9 * size] * 3}, upper = {[9 * size, -0.2 * size, 9 * size]}"
+    )
     text = text.replace('"lower.w1"', '"lower.v1"').replace("[0, 0, -0.1]", f"[0, {-0.1 * size}, 0]")
     with pytest.raises(InputError, match="fall onto a line or a point") if refused else contextlib.nullcontext():
         Scene.from_toml(text).problem()

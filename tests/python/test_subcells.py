@@ -89,3 +89,10 @@ def test_lines_are_counted_the_same_from_either_end() -> None:
 @pytest.mark.parametrize("elements", [90, 150])
 def test_lines_along_the_bounds_of_elements_cross_none(elements: int) -> None:
     assert lines(beside(0.0, 1.0, elements, 0.0, 1.0, elements, 0)) == 0
+
+
+@pytest.mark.parametrize("elements", [1, 4, 16])
+@pytest.mark.parametrize(("share", "more"), [(4e-6, 0), (4e-5, 1), (1.0 - 4e-5, 1), (1.0 - 4e-6, 0)])
+def test_lines_are_left_alone_at_the_bounds_of_an_element_by_shares_of_its_own_length(elements: int, share: float, more: int) -> None:
+    line = (elements // 2 + share) / elements
+    assert len(bounds(beside(0.0, 1.0, elements, line - 1.0, line + 1.0, 2, 1))) == elements + more
