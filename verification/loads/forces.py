@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import permutations
+from itertools import permutations, product
 
 import numpy as np
 from geometry.bodies import BODIES, refined
@@ -24,14 +24,14 @@ _SIZE, _WEIGHT = 0.7, (0.3, -0.2, -1.1)
 _ROUND_OFF = "round-off: sums over the control points and quadrature points of a face"
 
 
-def loaded(patch: Patch, kind: str, faces: tuple[str, ...], closed: str | None = None) -> tuple[Loads, Numbering]:
+def loaded(patch: Patch, kind: str, faces: tuple[str, ...], closed: str | None = None, pressure: float = _SIZE) -> tuple[Loads, Numbering]:
     """A body of some kind under one pressure on some of its faces, and its weight."""
     order = int(kind[1:])
     orders = tuple(max(order, direction.order) if kind[0] == "N" else order for direction in patch.directions)
     family: Family = "N" if kind[0] == "N" else "L"
     fine = mesh(patch, (family,) * 3, orders, (8, 2, 2) if closed else (2, 3, 2))
     body = Body("body", fine, Material(), (order + 2,) * 3, closed)  # type: ignore[arg-type]
-    loads = [Load(face, "pressure", "body", face, (_SIZE,), (1.0,)) for face in faces]
+    loads = [Load(face, "pressure", "body", face, (pressure,), (1.0,)) for face in faces]
     loads.append(Load("weight", "weight", "body", None, _WEIGHT, (1.0,)))
     problem = Problem("loaded", (body,), (), (), (Stage("stage", 1),), loads=tuple(loads))
     numbering = Numbering(problem)
@@ -100,7 +100,7 @@ def closed_way(kind: str, faces: str) -> dict[str, float]:
 
 
 @case(
-    claim="A pressure makes the force that it has to: size times area along the inward normal, none all round a body or a ring.",
+    claim="A pressure, or suction, makes the force that it has to: size times area along the inward normal, none all round a body.",
     tier="gate",
     grid={"kind": KINDS},
     bounds={
@@ -116,10 +116,10 @@ def resultants(kind: str) -> dict[str, float]:
     patch = box(_LOWER, _UPPER)
     sides = np.subtract(_UPPER, _LOWER)
     errors = []
-    for number, face in enumerate(FACES):
-        loads, numbering = loaded(patch, kind, (face,))
+    for (number, face), pressure in product(enumerate(FACES), (_SIZE, -_SIZE)):
+        loads, numbering = loaded(patch, kind, (face,), pressure=pressure)
         axis, way = number // 2, 1.0 if face[1] == "0" else -1.0
-        exact = way * _SIZE * np.prod(np.delete(sides, axis)) * np.eye(3)[axis]
+        exact = way * pressure * np.prod(np.delete(sides, axis)) * np.eye(3)[axis]
         errors.append(float(np.linalg.norm(pressing(loads, numbering.reference).sum(axis=0) - exact) / np.linalg.norm(exact)))
     loads, numbering = loaded(bowl((0.1, 0.2), 0.5, 0.0, 0.2, 1.0), kind, ("w0",))
     under = pressing(loads, numbering.reference).sum(axis=0)
