@@ -40,14 +40,17 @@ from told.wrong.singular import CORNER
 from isomortar.errors import IsomortarError
 from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Face
+from isomortar.model.numbering import Numbering
+from isomortar.model.pairs import Pair
 from isomortar.model.plates import rotation
 from isomortar.results.reader import Results
 from isomortar.results.writer import ResultsWriter
 from isomortar.scene import Scene
 from isomortar.told.before import doubts
-from isomortar.told.during import pulling
+from isomortar.told.during import leaving, pulling
 from isomortar.told.during.advice import StepAdvice
 from isomortar.told.during.inside_out import InsideOut
+from isomortar.told.during.leaving import Leaving
 from isomortar.told.during.snapping import Snapping
 from results_samples import problem, step_result
 from test_advice import Warned, _of_weights, rational, warnings
@@ -128,7 +131,10 @@ def along_the_way(_: pytest.MonkeyPatch) -> Told:
     measured = tuple(replace(c, active=9, pressure_field=np.array([0.0, 0.5]), excluded=0, spurious_work=0.0) for c in result.contacts)
     assert list(advice.after_step(1, measured, calm)) == []
     left = (replace(measured[0], excluded=7), measured[1])
-    yield from zip(("left the master", "oscillates"), advice.after_step(2, left, wild), strict=True)
+    pairs = [Pair(contact, problem(), Numbering(problem())) for contact in problem().contacts]
+    over = [replace(calm[0], projected=(np.arange(96) >= 7).astype(np.int32)), calm[1]]
+    (yield "left the master", *Leaving(pairs, calm).after_step(2, left, over))
+    (yield "oscillates", *advice.after_step(2, left, wild))
     assert list(advice.after_step(3, left, wild)) == list(advice.at_the_end({})) == []
     half = [replace(state, projected=(np.arange(96) < 48).astype(np.int32)) for state in calm]
     beyond = (measured[0], replace(measured[1], excluded=48))
@@ -137,8 +143,8 @@ def along_the_way(_: pytest.MonkeyPatch) -> Told:
     (yield "beside", *advice.after_step(4, gone, calm))
     tread, ground = problem().contacts
     averaged = replace(problem(), contacts=(replace(tread, master=Face("tyre", "v0"), projection="averaged"), ground))
-    far = StepAdvice(averaged, 0, calm).after_step(2, (replace(gone[0], active=1), gone[1]), calm)
-    yield from zip(("left or far", "beside or far"), far, strict=True)
+    yield "left or far", leaving._sentence(Pair(averaged.contacts[0], averaged, Numbering(averaged)), 96, 1.0, 2)
+    (yield "beside or far", *StepAdvice(averaged, 0, calm).after_step(2, gone, calm))
     assert list(advice.after_step(5, gone, calm)) == []
     (yield "opened", *advice.at_the_end({}))
     advice = StepAdvice(problem(), 0, calm)

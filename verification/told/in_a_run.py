@@ -8,10 +8,11 @@ import numpy as np
 
 from isomortar.harness import Bound, case
 from isomortar.march.simulation import Simulation
-from isomortar.model.entities import Problem
 from isomortar.scene import Scene
+from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.record import ContactResult, ContactState, StepResult
 from isomortar.told.during.advice import StepAdvice
+from isomortar.told.during.leaving import Leaving
 
 #: Two contacts of a body, of which the first one is never spoken of.
 SCENE = """
@@ -79,13 +80,15 @@ def made(result: ContactResult, state: ContactState, given: Given) -> tuple[Cont
     return told, replace(state, pressure=pressure, projected=feet)
 
 
-def said(problem: Problem, start: tuple[ContactState, ...], step: StepResult, history: tuple[Given, ...], begun: int = 0) -> str:
+def said(of: Equilibrium, start: tuple[ContactState, ...], step: StepResult, history: tuple[Given, ...], begun: int = 0) -> str:
     """What is said of a history of the second contact, beside one that stays closed, in a run that goes on from load step `begun`."""
-    advice = StepAdvice(problem, begun, start)
+    advice = StepAdvice(of.problem, begun, start)
+    leaving = Leaving([mechanics.pair for mechanics in of.pairs], start)
     heard: list[str] = []
     for number, given in enumerate(history, start=begun + 1):
         both = [made(*of) for of in zip(step.contacts, step.state.contacts, (CLOSED, given), strict=True)]
-        heard += advice.after_step(number, [result for result, _ in both], [state for _, state in both])
+        results, states = [result for result, _ in both], [state for _, state in both]
+        heard += [*leaving.after_step(number, results, states), *advice.after_step(number, results, states)]
     heard += advice.at_the_end({})
     return "; ".join(heard)
 
@@ -105,11 +108,11 @@ def histories() -> dict[str, float]:
     wrong = 0
     for history, expected in HISTORIES:
         words = SAID.get(expected, expected)
-        heard = said(problem, start, step, history)
+        heard = said(simulation.equilibrium, start, step, history)
         wrong += heard.count("contact '") != bool(words) or heard.count("contact 'told'") != bool(words) or words not in heard
     for given, history, expected in GOING_ON:
         words = SAID.get(expected, expected)
         before = tuple(made(*of)[1] for of in zip(step.contacts, step.state.contacts, (CLOSED, given), strict=True))
-        heard = said(problem, before, step, history, 3)
+        heard = said(simulation.equilibrium, before, step, history, 3)
         wrong += heard.count("contact '") != bool(words) or heard.count("contact 'told'") != bool(words) or words not in heard
     return {"wrong": float(wrong)}

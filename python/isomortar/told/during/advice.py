@@ -50,7 +50,11 @@ class StepAdvice:
                 self._closed[name] = step
             self._work[name] += result.work
             self._slid |= {name} if result.slip else set()
-            yield from self._leaving(name, step, result, excluded, len(state.projected))
+            if result.excluded == len(state.projected) > excluded and self._first(name, "beside"):
+                yield (
+                    f"contact {name!r}, load step {step}: the slave face {self._slaves[name]} is wholly beside its master now"
+                    f"{self._far[name]}, and touches nothing. Use a larger master, or look at the motions"
+                )
             largest, field = float(state.pressure.max()), float(result.pressure_field[1])
             bears = self._borne.more_than_nothing(number, field)
             if result.active > 3 and bears and largest > OSCILLATION * field and self._first(name, "oscillation"):
@@ -58,19 +62,6 @@ class StepAdvice:
                     f"contact {name!r}, load step {step}: control pressures reach {largest:.3g} where the pressure field reaches "
                     f"{field:.3g}; {_why_large(result.excluded)}: look at the field, not at them"
                 )
-
-    def _leaving(self, name: str, step: int, result: ContactResult, excluded: int, points: int) -> Iterator[str]:
-        """Warnings of slave points that have left the master; of `points` so many were `excluded` before."""
-        if result.active and result.excluded > excluded and self._first(name, "leaving"):
-            yield (
-                f"contact {name!r}, load step {step}: {result.excluded - excluded} slave quadrature points have left the master"
-                f"{self._far[name]}; what they carried is gone in a jump. Use a larger master or smaller load steps"
-            )
-        if result.excluded == points > excluded and self._first(name, "beside"):
-            yield (
-                f"contact {name!r}, load step {step}: the slave face {self._slaves[name]} is wholly beside its master now{self._far[name]}"
-                ", and touches nothing. Use a larger master, or look at the motions"
-            )
 
     def at_the_end(self, unseen: Mapping[str, float]) -> Iterator[str]:
         """Warnings that the whole run gives rise to; what was closed before the step that it went on from is not known.

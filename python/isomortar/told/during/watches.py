@@ -14,6 +14,7 @@ from isomortar.told.during.bending import Bending
 from isomortar.told.during.coarse import Coarse
 from isomortar.told.during.held_inside import HeldInside
 from isomortar.told.during.inside_out import InsideOut
+from isomortar.told.during.leaving import Leaving
 from isomortar.told.during.lost import LostDigits
 from isomortar.told.during.mirrored import Mirrored
 from isomortar.told.during.passing import Passing
@@ -48,6 +49,7 @@ class Watches:
         self._mirrored, self._shrunk, self._bending = Mirrored(equilibrium), Shrunk(equilibrium), Bending(equilibrium)
         self._coarse, self._advice = Coarse(equilibrium, states), StepAdvice(problem, step, states)
         self._pivoting, self._held_inside = Pivoting(equilibrium), HeldInside(equilibrium)
+        self._leaving = Leaving([mechanics.pair for mechanics in equilibrium.pairs], states)
         self._of_stages = [watch for watch in (Passing(problem), Behind(problem)) if watch.needed]
 
     def look(self, before: FloatArray, after: FloatArray, share: float) -> None:
@@ -79,6 +81,7 @@ class Watches:
         yield from self._astray.after_step(balance, step)
         yield from self._pivoting.after_step(balance, step)
         yield from self._coarse.after_step(balance, step, ends)
+        yield from self._leaving.after_step(step, result.contacts, result.state.contacts)
         yield from self._advice.after_step(step, result.contacts, result.state.contacts)
         self._unseen.after_step(balance)
         if ends:
