@@ -38,7 +38,7 @@ for _old, _new in (
     (", quadrature = [3, 2]", ""),
 ):
     BOWL = BOWL.replace(_old, _new)
-LEFT = re.compile(r"load step 2: (\d+) slave quadrature points have left the master.*; what they carried, about (\S+) % of the contact's force")
+LEFT = re.compile(r"load step 2: (\d+) slave quadrature points have left the master.*; what they carried, about (\S+) % of the contact's")
 
 
 class Heard(Observer):
