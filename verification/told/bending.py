@@ -100,7 +100,16 @@ BEAM = RING.replace(
     '"ring", inner = INNER, outer = 1, width = 0.1, axis = "y", angles = [0, ANGLE]', '"box", lower = [0, 0, 0], upper = [2, 0.1, INNER]'
 )
 HELD = BEAM.replace('components = ["z"]', 'components = ["x", "y", "z"]')
-#: Scenes, their inner radius or thickness, angle, and elements of order 2 (beams: last entry 1: of order 1) that are too long for it.
+#: The same with both ends clamped, and a beam of two layers that are glued, of which one is held.
+CLAMPED = RING.replace('components = ["z"]', 'components = ["x", "y", "z"]')
+LAYERS = HELD.replace(
+    "supports =",
+    """bodies.c.geometry = { kind = "box", lower = [0, 0, INNER], upper = [2, 0.1, TWICE] }
+bodies.c.mesh = { order = MESH_ORDER, elements = MESH }
+glue = [["b.w1", "c.w0"]]
+supports =""",
+)
+#: Scenes, their inner radius or thickness, angle, order and elements that are too long for it.
 STIFF: dict[str, tuple[str, float, int, int, int]] = {
     "half a ring": (RING, 0.9, 180, 2, 8),
     "half a thin ring": (RING, 0.98, 180, 2, 16),
@@ -109,6 +118,11 @@ STIFF: dict[str, tuple[str, float, int, int, int]] = {
     "beam to and fro": (HELD, 0.02, 0, 2, 4),
     "square beam of order 1": (BEAM, 0.1, 0, 1, 8),
     "square beam of order 1, to and fro": (HELD, 0.1, 0, 1, 8),
+    "a quarter that can but stretch": (CLAMPED, 0.98, 90, 2, 2),
+    "a quarter of one element of order 3": (RING, 0.98, 90, 3, 1),
+    "half a ring of order 3, clamped": (CLAMPED, 0.98, 180, 3, 4),
+    "two layers": (LAYERS, 0.01, 0, 2, 4),
+    "two layers of order 1": (LAYERS, 0.01, 0, 1, 32),
 }
 STIFF_SAID = re.compile(r"body 'b', load step 1, the last of stage 'bend': it bends along \w, .* up to about (\S+) (times|%) too stiff")
 
@@ -116,7 +130,7 @@ STIFF_SAID = re.compile(r"body 'b', load step 1, the last of stage 'bend': it be
 def thin(text: str, inner: float, angle: int, order: int, elements: int) -> str:
     """A scene of these."""
     orders = [order, 2, 1] if "ring" in text else [order, 1, min(order, 2)]
-    words = {"INNER": inner, "ANGLE": angle, "MESH_ORDER": orders, "MESH": [elements, 1, 1]}
+    words = {"TWICE": 2.0 * inner, "INNER": inner, "ANGLE": angle, "MESH_ORDER": orders, "MESH": [elements, 1, 1]}
     for word, value in words.items():
         text = text.replace(word, str(value))
     return text

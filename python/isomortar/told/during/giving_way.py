@@ -72,7 +72,7 @@ def giving_way(equilibrium: Equilibrium, balance: Balance, number: int) -> Float
     forces = np.zeros_like(positions)
     mechanics.add_forces(positions, kinematics, mechanics.bearing(replace(state, traction=np.zeros_like(state.traction))), forces)
     try:
-        ways = _deformed_by(forces, equilibrium, positions)
+        ways = deformed_by(forces, equilibrium, positions)
     except KernelError:  # of bodies that nothing but contact keeps from buckling
         return np.zeros(2)
     whole = float(pair.slave.area @ (abs(pair.field(state.pressure)) * (kinematics.projections.found > 0)))
@@ -92,7 +92,7 @@ def _gone(equilibrium: Equilibrium, positions: FloatArray) -> FloatArray:
     return gone
 
 
-def _deformed_by(forces: FloatArray, equilibrium: Equilibrium, positions: FloatArray) -> FloatArray:
+def deformed_by(forces: FloatArray, equilibrium: Equilibrium, positions: FloatArray) -> FloatArray:
     """Ways of control points by forces on bodies without contact, shape (control points, 3); what supports move by forces stands still.
 
     Pieces that supports leave rigid motions are pushed back by forces evenly on all of their points, and these motions are not counted.
