@@ -178,12 +178,34 @@ motions.left.translate = [0.04, 0, 0]
 """
 
 
+#: A sheet between two others, of which one is pressed by as much as it is thick, or the sheet is narrow and the others meet beside it.
+_SHEETS = """
+format = 1
+bodies.low = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 0.2] }, mesh.elements = [2, 2, 1] }
+bodies.sheet = { geometry = { kind = "box", lower = [0, 0, 0.2], upper = [WIDE, 1, 0.3] }, mesh.elements = [3, 3, 1] }
+bodies.high = { geometry = { kind = "box", lower = [0, 0, 0.3], upper = [1, 1, 0.5] }, mesh.elements = [2, 2, 1] }
+contacts.below = { slave = "sheet.w0", master = "low.w1", friction = 0 }
+contacts.above = { slave = "sheet.w1", master = "high.w0", friction = 0 }
+supports = { base.face = "low.w0", top.face = "high.w1" }
+stages = [{ name = "press", steps = 1, motions.top.translate = [0, 0, -WAY] }]
+"""
+
+
 @case(
-    claim="A body that two others touch keeps these apart neither beside it nor along it: it is said that they meet.",
+    claim="A body that two others touch keeps these apart neither beside it nor along it: it is said that they meet; and not of what would "
+    "have to go through it.",
     tier="gate",
-    bounds={"silent": Bound(0.0, 0.0, "definition: scenes of which it is not")},
+    bounds={
+        "silent": Bound(0.0, 0.0, "definition: scenes of which it is not"),
+        "doubted": Bound(0.0, 0.0, "definition: sheets that are pressed by up to twice their thickness of which it is"),
+    },
 )
 def past_what_both_touch() -> dict[str, float]:
-    """How many of two."""
-    pairs = {_PAST: "bodies 'punch' and 'base' meet", _ALONG: "bodies 'left' and 'right' meet"}
-    return {"silent": float(sum(not any(words in warning for warning in warnings(text)) for text, words in pairs.items()))}
+    """How many of three, and of three."""
+    beside = _SHEETS.replace("WIDE", "0.4").replace("WAY", "0.1")
+    pairs = {_PAST: "bodies 'punch' and 'base' meet", _ALONG: "bodies 'left' and 'right' meet", beside: MEET}
+    within = [_SHEETS.replace("WIDE", "1").replace("WAY", way) for way in ("0.05", "0.1", "0.2")]
+    return {
+        "silent": float(sum(not any(words in warning for warning in warnings(text)) for text, words in pairs.items())),
+        "doubted": float(sum(any(MEET in warning for warning in warnings(text)) for text in within)),
+    }

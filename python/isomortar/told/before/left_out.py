@@ -43,9 +43,17 @@ def without_contact(problem: Problem) -> list[tuple[str, str]]:
     whole, found = names_together(problem), []
     for one, other in unrelated(problem):
         ways = [np.zeros(3), *(a - b for a, b in zip(_ways(problem, one, whole), _ways(problem, other, whole), strict=True))]
-        if any(meet(one, other, way) for way in np.unique(ways, axis=0)):
+        between = _between(problem, one, other, whole)
+        if any(meet(one, other, way, between) for way in np.unique(ways, axis=0)):
             found.append((one.name, other.name))
     return found
+
+
+def _between(problem: Problem, one: Body, other: Body, whole: list[set[str]]) -> list[Body]:
+    """Bodies that no support moves and that are in contact with one of two: these do not come through them to each other."""
+    touching = [names for names in _in_contact(problem) if names & {one.name, other.name}]
+    near = {name for names in touching for name in names} - {one.name, other.name}
+    return [body for body in problem.bodies if body.name in near and not np.any(_ways(problem, body, whole))]
 
 
 def unrelated(problem: Problem) -> Iterator[tuple[Body, Body]]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from isomortar._frozen import frozen
@@ -14,24 +16,39 @@ from isomortar.model.supports import BoolArray
 
 #: Cells of a body's outside that are compared with those of another one.
 SOME = 1500
+#: Shares of the way from where a body meets another one to where it begins, at which others may be between: seven places, so that layers
+#: as thin as an eighth of the way are found.
+PLACES = tuple(k / 8 for k in range(1, 8))
 
 
 @frozen
 class _Heights:
-    """Of some cells of a body's outside: how high they are above another body, whether beside its nearest cell, and facing it."""
+    """Of some cells of a body's outside: where, how high they are above another body, whether beside its nearest cell, and facing it."""
 
+    points: FloatArray
     above: FloatArray
     beside: BoolArray
     facing: BoolArray
 
 
-def meet(one: Body, other: Body, way: FloatArray) -> bool:
-    """Whether a body that has gone some way and another one are within or at each other."""
+def meet(one: Body, other: Body, way: FloatArray, between: Sequence[Body] = ()) -> bool:
+    """Whether a body that has gone some way and another one are within or at each other; not where that led through one `between`."""
     size = _common_size(one, other, way)
     return size > 0.0 and any(  # of two the smaller may be wholly inside
-        bool(np.any(~h.beside & ((h.above < -NO_PART * size) | (h.facing & (h.above < NO_PART * size)))))
-        for h in (_heights(*seen) for seen in ((one, other, way), (other, one, -way)))
+        _are_at(_heights(*seen), size, seen[2], between) for seen in ((one, other, way), (other, one, -way))
     )
+
+
+def _are_at(heights: _Heights, size: float, way: FloatArray, between: Sequence[Body]) -> bool:
+    """Whether some cells are in or at a body, by the size of both, that have not come through others on their way."""
+    in_or_at = (heights.above < -NO_PART * size) | (heights.facing & (heights.above < NO_PART * size))
+    points = heights.points[~heights.beside & in_or_at]
+    through = np.zeros(len(points), dtype=np.bool_)
+    for share in PLACES if len(points) and np.any(way) else ():
+        for body in between:
+            above, _, beside = _above(points - share * way, body)
+            through |= (above < -NO_PART * size) & ~beside
+    return not through.all()
 
 
 def depth(one: Body, other: Body) -> float:
@@ -56,12 +73,18 @@ def _heights(one: Body, other: Body, way: FloatArray) -> _Heights:
     centres, normals, _ = _outside(one)
     step = max(1, len(centres) // SOME)
     points, normals = centres[::step] + way, normals[::step]
-    theirs, out, areas = _outside(other)
+    above, out, beside = _above(points, other)
+    return _Heights(points, above, beside, np.einsum("ij,ij->i", normals, out) < FACING)
+
+
+def _above(points: FloatArray, body: Body) -> tuple[FloatArray, FloatArray, BoolArray]:
+    """How high points are above a body, the normals of its nearest cells, and which points are beside these."""
+    theirs, out, areas = _outside(body)
     found = nearest(points, theirs)
     arms = points - theirs[found]
     above = np.einsum("ij,ij->i", arms, out[found])
     beside = np.linalg.norm(arms - above[:, None] * out[found], axis=1) > np.sqrt(areas[found])
-    return _Heights(above, beside, np.einsum("ij,ij->i", normals, out[found]) < FACING)
+    return above, out[found], beside
 
 
 def _outside(body: Body) -> tuple[FloatArray, FloatArray, FloatArray]:
