@@ -215,14 +215,20 @@ def conduct(study: Study, folder: Path, jobs: int) -> None:
         raise typer.Exit(FAILED)
 
 
-def _table(found: Sequence[blessing.Change]) -> Table:
+def _table(found: Sequence[blessing.Change | blessing.Rewording]) -> Table:
     """What a blessing changes, as numbers."""
     from rich.table import Table
+
+    from isomortar.harness import blessing
 
     table = Table()
     for heading in ("cell", "number", "values", "largest, old", "largest, new", "difference", "old uncertainty"):
         table.add_column(heading, overflow="fold")
     for change in found:
+        if isinstance(change, blessing.Rewording):
+            lines, others = (f"{len(of)} lines" for of in (change.new.splitlines(), change.lines))
+            table.add_row(change.cell.name, change.number, lines, "none" if change.old is None else "words", "words", others, "")
+            continue
         old = "none" if change.old is None else f"{abs(change.old).max():.6g}"
         new, difference, worth = (f"{v:.6g}" for v in (abs(change.new).max(), change.difference, change.old_uncertainty))
         table.add_row(change.cell.name, change.number, str(change.new.size), old, new, difference, worth)

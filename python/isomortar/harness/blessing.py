@@ -14,13 +14,14 @@ from isomortar._frozen import frozen
 from isomortar.errors import InputError
 from isomortar.geometry.patch import FloatArray
 from isomortar.harness import svg
-from isomortar.harness.cases import Case, Cell, Curve, Matches
+from isomortar.harness.cases import Case, Cell, Curve, Matches, Words
 from isomortar.harness.compare import Lookup
 from isomortar.harness.measurement import restored
 from isomortar.harness.references import Reference, dataset_name, made_by, write_reference
 from isomortar.harness.report import template
 from isomortar.harness.runner import Result
 from isomortar.harness.store import identity
+from isomortar.harness.wording import reworded
 from isomortar.results.files import write_whole
 
 #: The number of a cell by which it states how far off its others are, relative to their largest values, measured by two refinements.
@@ -53,7 +54,23 @@ class Change:
         return float(np.abs(self.new - self.old).max()) if self.new.shape == self.old.shape else np.inf
 
 
-def changes(results: Sequence[Result], lookup: Lookup) -> list[Change]:
+@frozen
+class Rewording:
+    """What blessing words changes: the new text, and the old one (None: there was none)."""
+
+    cell: Cell
+    number: str
+    reference: str
+    new: str
+    old: str | None
+
+    @property
+    def lines(self) -> list[str]:
+        """What is not as it was, to the last digit; all of it where there was nothing."""
+        return reworded(self.old or "", self.new, 0.0)
+
+
+def changes(results: Sequence[Result], lookup: Lookup) -> list[Change | Rewording]:
     """What blessing these results changes.
 
     Raises
@@ -61,7 +78,7 @@ def changes(results: Sequence[Result], lookup: Lookup) -> list[Change]:
     InputError
         The run is not green but for its references, a number could be no reference, or the case is compared with none.
     """
-    found = []
+    found: list[Change | Rewording] = []
     for result in results:
         claims = result.cell.case.bounds_of(result.cell.settings)
         known = result.measurement.numbers.get(MEASURED)
@@ -75,6 +92,12 @@ def changes(results: Sequence[Result], lookup: Lookup) -> list[Change]:
             if result.measurement.ending != "measured" or check.state == "not measured":
                 raise InputError("was not measured: only a green run can be blessed", f"{result.cell.name}.{check.name}")
             value = result.measurement.numbers[check.name]
+            if (said := restored(value, Words)) is not None:
+                if not said.text.strip():
+                    raise InputError("says nothing: it can be no reference", f"{result.cell.name}.{check.name}")
+                known_words = lookup(claim.reference, result.cell, check.name)
+                found.append(Rewording(result.cell, check.name, claim.reference, said.text, known_words.text if known_words else None))
+                continue
             curve = restored(value, Curve)
             new = np.asarray(value if curve is None else curve.y, float)
             if not (new.size and np.isfinite(new).all()):
@@ -88,11 +111,15 @@ def changes(results: Sequence[Result], lookup: Lookup) -> list[Change]:
     return found
 
 
-def picture(folder: Path, case: Case, found: Sequence[Change]) -> Path:
-    """Write a page of pictures to a folder: of each number the new values over the old ones, and below what they differ by."""
+def picture(folder: Path, case: Case, found: Sequence[Change | Rewording]) -> Path:
+    """Write a page of pictures to a folder: of each number the new values over the old ones, and below what they differ by.
+
+    Of words the lines that are others.
+    """
     path = folder / f"bless-{case.family}-{case.function.__name__}.html"
-    figures = [(change, _values(change), _differences(change)) for change in found]
-    write_whole(path, template("blessing.html").render(case=case, figures=figures))
+    figures = [(change, _values(change), _differences(change)) for change in found if isinstance(change, Change)]
+    words = [change for change in found if isinstance(change, Rewording)]
+    write_whole(path, template("blessing.html").render(case=case, figures=figures, words=words))
     return path
 
 
@@ -114,7 +141,7 @@ def _differences(change: Change) -> str:
 
 
 def bless(
-    case: Case, found: Sequence[Change], folder: Path, reason: str, kind: Literal["self", "over-refined"], uncertainty: float
+    case: Case, found: Sequence[Change | Rewording], folder: Path, reason: str, kind: Literal["self", "over-refined"], uncertainty: float
 ) -> list[Path]:
     """Write the references that a case is compared with; `uncertainty` is relative to each number's largest value.
 
@@ -141,7 +168,7 @@ def bless(
         mine = [change for change in found if change.reference == name]
         if (folder / name / "record.toml").exists() and Reference(folder / name).record["class"] in ("exact", "other code"):
             raise InputError("is exact or of another program; a run of this program does not replace it", str(folder / name))
-        datasets = {dataset_name(c.cell, c.number): (c.new, shares[c.cell.name] * float(np.abs(c.new).max())) for c in mine}
+        datasets = {dataset_name(c.cell, c.number): (c.new, shares[c.cell.name] * _largest(c.new)) for c in mine}
         record = {
             "title": case.claim,
             "class": kind,
@@ -160,7 +187,12 @@ def bless(
     return written
 
 
-def _measured(change: Change) -> float:
+def _largest(values: FloatArray | str) -> float:
+    """What an uncertainty is relative to; that of words, in each line to its own numbers."""
+    return 1.0 if isinstance(values, str) else float(np.abs(values).max())
+
+
+def _measured(change: Change | Rewording) -> float:
     """The uncertainty that the cell itself measured, relative.
 
     Raises
@@ -168,7 +200,7 @@ def _measured(change: Change) -> float:
     InputError
         It measured none.
     """
-    if not (np.isfinite(change.measured) and change.measured > 0):
+    if isinstance(change, Rewording) or not (np.isfinite(change.measured) and change.measured > 0):
         raise InputError(
             f"has no positive number {MEASURED!r}, measured by the case (as by two refinements): without it a run is of class self",
             change.cell.name,

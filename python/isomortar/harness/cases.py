@@ -69,7 +69,7 @@ class Curve:
 
 @frozen
 class Words:
-    """What was said, beside the numbers: to be shown, and nothing can be claimed of it."""
+    """What was said, beside the numbers: to be shown (`Shown`), or to be as it was, line by line (`Matches`)."""
 
     text: str
 
@@ -128,7 +128,8 @@ class Matches:
     """Agreement with the dataset of the same name in a reference.
 
     The tolerance is twice the reference's uncertainty plus `allowance` times the largest absolute value of the reference:
-    the error that this computation itself is allowed, with its reason.
+    the error that this computation itself is allowed, with its reason. Of `Words` that holds for the numbers of each line, and what is
+    no number is to be the same.
     """
 
     reference: str

@@ -13,7 +13,10 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.harness.cases import Bound, Cell, Claim, Curve, Matches, Order, Shown, Words
 from isomortar.harness.measurement import Measurement, Stored, real_numbers, restored
 from isomortar.harness.orders import Convergence, OrderEstimate, estimate_order
+from isomortar.harness.wording import reworded
 
+#: Lines of a text that are told where more are not as they were: the first ones show what it is, and a page of them nobody reads.
+TOLD = 4
 #: Best first. Only ``passed`` passes.
 CheckState = Literal["passed", "missing reference", "not measured", "skipped", "failed", "crashed", "timed out"]
 CHECK_STATES: tuple[CheckState, ...] = ("passed", "missing reference", "not measured", "skipped", "failed", "crashed", "timed out")
@@ -47,11 +50,15 @@ class Check:
 
 @frozen
 class Expected:
-    """A dataset of a reference: values, uncertainty (one number or the values' shape), and the reference's class."""
+    """A dataset of a reference: values, uncertainty (one number or the values' shape), and the reference's class.
+
+    `text`: of words, which have no values, and whose uncertainty is relative; None: the dataset holds numbers.
+    """
 
     values: FloatArray
     uncertainty: FloatArray
     kind: str
+    text: str | None = None
 
 
 #: Finds the dataset of a reference for a cell and a number; None: there is none.
@@ -111,6 +118,8 @@ def _check(cell: Cell, name: str, claim: Claim, value: Stored, lookup: Lookup) -
     if isinstance(claim, Order):
         return _check_order(name, claim, value)
     if (said := restored(value, Words)) is not None:
+        if isinstance(claim, Matches):
+            return _check_words(name, claim, said.text, lookup(claim.reference, cell, name))
         shown = isinstance(claim, Shown)
         found = said.text if shown else "words, not numbers"
         return Check(name, "passed" if shown else "failed", np.nan, _limit(claim), found, claim.reason)
@@ -162,6 +171,19 @@ def _check_match(name: str, claim: Matches, entries: FloatArray, expected: Expec
     state: CheckState = "passed" if agreement.agrees else "failed"
     found = f"reference of class {expected.kind}{note}: {agreement.why}"
     return Check(name, state, shown, _limit(claim), found, claim.reason, reference=expected.kind)
+
+
+def _check_words(name: str, claim: Matches, text: str, expected: Expected | None) -> Check:
+    if expected is None or not text.strip():
+        missing = f"{claim.reference} has no such dataset" if expected is None else "nothing is said"
+        return Check(name, "missing reference" if expected is None else "failed", np.nan, _limit(claim), missing, claim.reason)
+    if expected.text is None:
+        return Check(name, "failed", np.nan, _limit(claim), f"words, and {claim.reference} holds numbers", claim.reason)
+    changed = reworded(expected.text, text, 2 * float(expected.uncertainty) + claim.allowance)
+    note = " (shows change, not correctness)" if expected.kind == "self" else ""
+    count = f"{len(changed)} of {len(expected.text.splitlines())} lines are others"
+    found = f"reference of class {expected.kind}{note}: {count}" + "".join(f"\n    {line}" for line in changed[:TOLD])
+    return Check(name, "failed" if changed else "passed", np.nan, _limit(claim), found, claim.reason, reference=expected.kind)
 
 
 def _limit(claim: Claim) -> str:

@@ -29,6 +29,8 @@ from isomortar.scene.toml_text import dump
 
 Kind = Literal["exact", "over-refined", "other code", "self"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
+#: Type of datasets that hold a text: its letters in UTF-8, as numbers are held in double precision, of whatever type they were.
+_LETTERS = np.dtype(np.uint8)
 #: What every record says of itself, as a text; ``sha256`` is that of ``data.h5``.
 FIELDS = ("title", "class", "origin", "made", "uncertainty", "sha256")
 
@@ -62,12 +64,13 @@ class Reference:
 
     def _read(self, name: str, item: h5py.Dataset | h5py.Group) -> None:
         if isinstance(item, h5py.Dataset):
-            values = np.asarray(item, dtype=np.float64)
             uncertainty = np.asarray(item.attrs.get("uncertainty", np.nan), dtype=np.float64)
+            text = bytes(np.asarray(item)).decode() if item.dtype == _LETTERS else None
+            values = np.zeros(1) if text else np.asarray(item, dtype=np.float64)
             shapes = uncertainty.shape in ((), values.shape)
             if not (shapes and values.size and np.isfinite(values).all() and np.isfinite(uncertainty).all() and (uncertainty >= 0).all()):
                 raise InputError(f"{name} must be finite, not empty, with an uncertainty of zero or more", str(self.folder / "data.h5"))
-            self._expected[name] = Expected(values, uncertainty, str(self.record["class"]))
+            self._expected[name] = Expected(values, uncertainty, str(self.record["class"]), text)
 
     def get(self, cell: Cell, number: str) -> Expected | None:
         """The dataset of a cell and number, of class ``self`` where a run of that case made it; None: there is none."""
@@ -102,13 +105,18 @@ def finder(folder: Path) -> Lookup:
     return lookup
 
 
-def write_reference(folder: Path, datasets: Mapping[str, tuple[np.ndarray, float]], record: Mapping[str, str]) -> None:
-    """Write a reference: values with their absolute uncertainty by dataset name, and a record (all of FIELDS but the hash)."""
+def write_reference(folder: Path, datasets: Mapping[str, tuple[np.ndarray | str, float]], record: Mapping[str, str]) -> None:
+    """Write a reference: values with their absolute uncertainty by dataset name, and a record (all of FIELDS but the hash).
+
+    A text stands there as its letters in UTF-8, compressed; its uncertainty is relative to the numbers in it.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     memory = io.BytesIO()
     with h5py.File(memory, "w") as file:
         for name, (values, uncertainty) in sorted(datasets.items()):
-            file.create_dataset(name, data=values, track_times=False).attrs["uncertainty"] = uncertainty
+            data = np.frombuffer(values.encode(), _LETTERS) if isinstance(values, str) else values
+            packed = {"compression": "gzip"} if isinstance(values, str) else {}
+            file.create_dataset(name, data=data, track_times=False, **packed).attrs["uncertainty"] = uncertainty
     (folder / "data.h5").write_bytes(memory.getvalue())
     complete = {**record, "sha256": hashlib.sha256(memory.getvalue()).hexdigest()}
     (folder / "record.toml").write_text(dump(complete))
