@@ -14,7 +14,7 @@ from judge.runs import refused
 from judge.ways import BOUNDS, WAYS, told
 
 from isomortar.harness import Bound, Matches, case
-from isomortar.harness.blessing import MEASURED, bless, changes
+from isomortar.harness.blessing import Change, MEASURED, bless, changes
 from isomortar.harness.cases import Case, Cell
 from isomortar.harness.compare import judge
 from isomortar.harness.measurement import Measurement
@@ -121,7 +121,7 @@ def blessed(way: str) -> dict[str, float]:
                 off = kept is None or not np.array_equal(kept.values, values) or kept.uncertainty != share * np.abs(values).max()
                 wrong += [f"{kind} {asked}, {cell.label}: {kept}"] * bool(off or (kept and kept.kind != kind))
             wrong += ["made"] * (Reference(folder / "kept").record["made"] != made_by(ONE.case))
-        (change, *_) = changes([result(ONE, [1.5, -3.0], 1e-2, folder)], finder(folder))
+        change = next(of for of in changes([result(ONE, [1.5, -3.0], 1e-2, folder)], finder(folder)) if isinstance(of, Change))
         wrong += [f"{change}"] * (change.difference != 0.5 or change.old_uncertainty != 1e-1 * 3.0 or change.measured != 1e-2)
         for why, kind, asked in ((" ", "self", 1e-3), ("so", "self", 0.0), ("so", "self", np.nan), ("so", "self", -1.0)):
             wrong += [f"{why}, {asked}"] * (not refused(partial(bless, ONE.case, [change], folder, why, kind, asked)))  # type: ignore[arg-type]

@@ -70,11 +70,12 @@ def axes_lines(axes: Axes) -> Iterator[str]:
         if not isinstance(artist, Axes | Axis | Spine) and artist is not axes.patch:
             yield from artist_lines(artist)
     for child in axes.child_axes:
-        yield from axes_lines(child)
+        if isinstance(child, Axes):
+            yield from axes_lines(child)
 
 
 def _ticks(axis: Axis) -> str:
-    params, named = axis.get_tick_params(), axis.get_major_formatter().format_ticks(axis.get_majorticklocs())
+    params, named = axis.get_tick_params(), axis.get_major_formatter().format_ticks(axis.get_majorticklocs().tolist())
     return f"{numbers(axis.get_majorticklocs())} {named[:PRINTED]} grid {params.get('gridOn')} {params.get('grid_color')}"
 
 
@@ -93,7 +94,7 @@ def artist_lines(artist: Artist) -> Iterator[str]:
     yield type(artist).__name__
 
 
-def _mapped(artist: ScalarMappable) -> str:
+def _mapped(artist: Any) -> str:
     """Values in colours, and which."""
     ends = [to_hex(artist.cmap(value)) for value in (-1.0, 0.0, 0.5, 1.0, 2.0)]
     return f"colours {artist.cmap.name} {ends} from {numbers(artist.get_clim())}: {numbers(np.ma.filled(artist.get_array(), np.nan))}"
@@ -109,7 +110,7 @@ def _text(text: Text) -> str | None:
     if not text.get_text():
         return None
     place = text.xy if isinstance(text, Annotation) else text.get_position()
-    side = f"{text.get_ha()} {text.get_va()} {text.get_rotation():g} {text.get_fontsize():g} {text.get_fontweight()}"
+    side = f"{text.get_horizontalalignment()} {text.get_verticalalignment()} {text.get_rotation():g} {text.get_fontsize():g} {text.get_fontweight()}"
     return f"{text.get_text()!r} at {numbers([float(p) for p in place])} {_hex(text.get_color())} {side}"
 
 
@@ -135,7 +136,7 @@ def _arrows(arrows: Quiver) -> str:
     return f"scale {numbers([arrows.scale or 0.0])} {look} x {numbers(arrows.U)} y {numbers(arrows.V)} at {numbers(arrows.XY)}"
 
 
-def _legend(legend: Legend) -> str:
+def _legend(legend: Any) -> str:
     return f"{[text.get_text() for text in legend.get_texts()]} columns {legend._ncols}"
 
 

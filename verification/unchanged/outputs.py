@@ -152,7 +152,7 @@ def _made(desk: Desk, *words: str) -> Iterator[str]:
     yield from (f"{words[0]} {line}" for line in drawn)
     for path in sorted(set(Path().rglob("*.*")) - there):
         yield f"{words[0]} {path}"
-        yield from (f"{path.stem} {line}" for line in _READ.get(path.suffix, lambda _: ())(path))
+        yield from (f"{path.stem} {line}" for line in (_READ[path.suffix](path) if path.suffix in _READ else ()))
 
 
 #: What tells of files, by their type; of figures it was told when they were drawn.
