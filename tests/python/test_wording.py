@@ -27,7 +27,7 @@ def same(kind):
         (OLD, []),
         (OLD.replace("1.5", "1.5000001").replace("-3e-14", "2.2e-13"), []),
         (OLD.replace("1.5", "1.50001"), ["force ... was '(1.5, -3e-14, 2)', is '(1.50001, -3e-14, 2)'"]),
-        (OLD.replace("3 w", "4 w"), ["... was '3 warnings of v1', is '4 warnings of v1'"]),
+        (OLD.replace("3 w", "4 w"), [" ... was '3 warnings of v1', is '4 warnings of v1'"]),
         (OLD.replace("v1", "v0"), ["3 warnings of ... was 'v1', is 'v0'"]),
         (OLD.replace("(1.5", "(nan"), ["force ... was '(1.5, -3e-14, 2)', is '(nan, -3e-14, 2)'"]),
         (OLD.replace("(1.5", "(-1.5"), ["force ... was '(1.5, -3e-14, 2)', is '(-1.5, -3e-14, 2)'"]),

@@ -110,7 +110,8 @@ def _text(text: Text) -> str | None:
     if not text.get_text():
         return None
     place = text.xy if isinstance(text, Annotation) else text.get_position()
-    side = f"{text.get_horizontalalignment()} {text.get_verticalalignment()} {text.get_rotation():g} {text.get_fontsize():g} {text.get_fontweight()}"
+    side = f"{text.get_horizontalalignment()} {text.get_verticalalignment()} {text.get_rotation():g}"
+    side += f" {text.get_fontsize():g} {text.get_fontweight()}"
     return f"{text.get_text()!r} at {numbers([float(p) for p in place])} {_hex(text.get_color())} {side}"
 
 
