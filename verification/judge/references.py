@@ -14,7 +14,7 @@ from judge.runs import refused
 from judge.ways import BOUNDS, WAYS, told
 
 from isomortar.harness import Bound, Matches, case
-from isomortar.harness.blessing import Change, MEASURED, bless, changes
+from isomortar.harness.blessing import MEASURED, Change, bless, changes
 from isomortar.harness.cases import Case, Cell
 from isomortar.harness.compare import judge
 from isomortar.harness.measurement import Measurement
