@@ -44,7 +44,7 @@ class Locking:
 
 
 def locking(equilibrium: Equilibrium, positions: FloatArray, body: Body, along: int) -> Locking:
-    """By how much a body, with all that is glued to it, is too stiff along a direction for the forces that act (theory 9.24).
+    """By how much a body, with all that is glued to it, is too stiff along a direction for the forces that act (theory 9.23).
 
     Parameters
     ----------
@@ -141,7 +141,7 @@ def _along(matrix: FloatArray, grid: FloatArray, along: int) -> FloatArray:
 
 
 def _on(matrix: FloatArray, before: Patch, after: Patch, along: int, forces: FloatArray) -> FloatArray:
-    """Forces on a raised patch that do the same work as some on the patch before in all that this can do (theory 9.24)."""
+    """Forces on a raised patch that do the same work as some on the patch before in all that this can do (theory 9.23)."""
     grid = (forces / before.weights[:, None]).reshape((*before.shape, 3), order="F")
     inverse = np.asarray(np.linalg.pinv(matrix).T)
     for end in (0, -1):  # what acts on the faces there acts on no others
