@@ -152,7 +152,7 @@ def _camera_towards(normal: FloatArray) -> Camera:
     """A camera that looks onto a face of that outward normal, a little from the side."""
     level = float(np.hypot(normal[0], normal[1]))
     elevation = float(np.degrees(np.arctan2(normal[2], level)))
-    azimuth = float(np.degrees(np.arctan2(normal[1], normal[0]))) - 25.0 if level > 0.5 else VIEW.azimuth
+    azimuth = float(np.degrees(np.arctan2(normal[1], normal[0])) - 25.0) % 360.0 if level > 0.5 else VIEW.azimuth
     return Camera(azimuth, 15.0 + 0.6 * elevation)
 
 

@@ -7,7 +7,6 @@ from itertools import combinations
 
 import numpy as np
 
-from isomortar.geometry.faces import cells
 from isomortar.geometry.patch import FloatArray, Patch
 from isomortar.model.constants import SAME_POINT
 from isomortar.model.entities import Body, Face, Problem
