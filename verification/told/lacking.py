@@ -178,7 +178,8 @@ motions.left.translate = [0.04, 0, 0]
 """
 
 
-#: A sheet between two others, of which one is pressed by as much as it is thick, or the sheet is narrow and the others meet beside it.
+#: A sheet between two others, of which one is pressed by as much as it is thick, or the sheet is narrow and the others meet beside it, or
+#: it is pushed into the lower one, which it is in no contact with.
 _SHEETS = """
 format = 1
 bodies.low = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 0.2] }, mesh.elements = [2, 2, 1] }
@@ -186,9 +187,11 @@ bodies.sheet = { geometry = { kind = "box", lower = [0, 0, 0.2], upper = [WIDE, 
 bodies.high = { geometry = { kind = "box", lower = [0, 0, 0.3], upper = [1, 1, 0.5] }, mesh.elements = [2, 2, 1] }
 contacts.below = { slave = "sheet.w0", master = "low.w1", friction = 0 }
 contacts.above = { slave = "sheet.w1", master = "high.w0", friction = 0 }
-supports = { base.face = "low.w0", top.face = "high.w1" }
+supports.base.face = "low.w0"
+supports.top.face = "high.w1"
 stages = [{ name = "press", steps = 1, motions.top.translate = [0, 0, -WAY] }]
 """
+_BELOW = 'contacts.below = { slave = "sheet.w0", master = "low.w1", friction = 0 }\n'
 
 
 @case(
@@ -201,10 +204,11 @@ stages = [{ name = "press", steps = 1, motions.top.translate = [0, 0, -WAY] }]
     },
 )
 def past_what_both_touch() -> dict[str, float]:
-    """How many of three, and of three."""
+    """How many of four, and of three."""
     beside = _SHEETS.replace("WIDE", "0.4").replace("WAY", "0.1")
-    pairs = {_PAST: "bodies 'punch' and 'base' meet", _ALONG: "bodies 'left' and 'right' meet", beside: MEET}
     within = [_SHEETS.replace("WIDE", "1").replace("WAY", way) for way in ("0.05", "0.1", "0.2")]
+    pushed = within[2].replace("[1, 1, 0.2]", "[1, 1, 0.19]").replace(_BELOW, 'supports.side.face = "sheet.u0"\n')
+    pairs = {_PAST: "bodies 'punch' and 'base' meet", _ALONG: "bodies 'left' and 'right' meet", beside: MEET, pushed: MEET}
     return {
         "silent": float(sum(not any(words in warning for warning in warnings(text)) for text, words in pairs.items())),
         "doubted": float(sum(any(MEET in warning for warning in warnings(text)) for text in within)),

@@ -49,9 +49,13 @@ def without_contact(problem: Problem) -> list[tuple[str, str]]:
 
 
 def _between(problem: Problem, one: Body, other: Body, whole: list[set[str]]) -> list[Body]:
-    """Bodies that no support moves and that are in contact with one of two: these do not come through them to each other."""
-    touching = [names for names in _in_contact(problem) if names & {one.name, other.name}]
-    near = {name for names in touching for name in names} - {one.name, other.name}
+    """Bodies that no support moves and that are in contact with both of two: these do not come through them to each other.
+
+    What is in contact with one alone may be pushed into the other one.
+    """
+    sides = [next(names for names in whole if body.name in names) for body in (one, other)]
+    touching = [set[str]().union(*(names for names in _in_contact(problem) if names & side)) for side in sides]
+    near = {name for names in whole if names not in sides and all(names & touched for touched in touching) for name in names}
     return [body for body in problem.bodies if body.name in near and not np.any(_ways(problem, body, whole))]
 
 
