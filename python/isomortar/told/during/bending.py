@@ -17,7 +17,7 @@ from isomortar.model.ratios import times
 from isomortar.model.rigid import deformation
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.told.before.meshes import SAID_ABOVE, stiff_sheet
-from isomortar.told.during.locking import locking
+from isomortar.told.during.locking import ESTIMATED, locking
 
 #: How much too stiff elements of order 2 are in bending, over (h / t)^2 times (h / R)^2 of bodies that are curved, and (h / l)^2 of smooth
 #: ones that are l long: fitted to half and quarter rings (0.10 to 0.18), and to beams and plates (0.02 to 0.28, by how they are held).
@@ -88,7 +88,7 @@ class Bending:
         computed = locking(self._equilibrium, positions, body, way.along)
         if not bends_more:
             way = replace(way, share=computed.share * (computed.at_ends and computed.share > STIFF))
-        elif computed.at_ends or body.patch.directions[way.along].order > 2:
+        elif computed.at_ends or body.patch.directions[way.along].order > ESTIMATED:
             way = replace(way, share=computed.share)
         return way if way.share > TOLD else None
 
