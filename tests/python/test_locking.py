@@ -13,7 +13,8 @@ from isomortar.told.during import locking
 BEAM = """
 format = 1
 materials.m = { young = 1, poisson = 0 }
-bodies.b = { geometry = { kind = "box", lower = [0, 0, 0], upper = [2, 0.1, 0.05] }, mesh = { order = [ORDER, 1, 2], elements = [4, 1, 1] } }
+bodies.b.geometry = { kind = "box", lower = [0, 0, 0], upper = [2, 0.1, 0.05] }
+bodies.b.mesh = { order = [ORDER, 1, 2], elements = [4, 1, 1] }
 supports.wall.face = "b.u0"
 stages = [{ name = "bend", steps = 1 }]
 """
