@@ -24,7 +24,7 @@ def solves(monkeypatch: pytest.MonkeyPatch, order: int, power: int) -> int:
     """How often it is solved for how far forces move a beam whose points go across by a power of their place, or along for none."""
     equilibrium, solved = Equilibrium(Scene.from_toml(BEAM.replace("ORDER", str(order))).problem(), Ledger()), list[Equilibrium]()
 
-    def went(of: Equilibrium, _: FloatArray) -> float:
+    def went(of: Equilibrium, *_: object) -> float:
         solved.append(of)
         return float(len(solved))
 
